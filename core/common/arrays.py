@@ -16,17 +16,9 @@ RADIX_BITS = 16  # numpy sorts integers of up to 16 bits in linear time (radix s
 
 
 def order_by(*keys: np.ndarray) -> np.ndarray:
-    """Indices that sort by several keys, like `numpy.lexsort`: stable, in linear time.
+    """(N,) indices that sort by several (N,) int32 keys, like `numpy.lexsort`: stable, in linear time; the last is the primary key.
 
     Each key is split into digits of 16 bits and sorted digit by digit, the least significant first (radix sort), where there are many.
-
-    Parameters
-    ----------
-    keys : (N,) int32 each; the last is the primary key
-
-    Returns
-    -------
-    (N,) intp
     """
     if keys and len(keys[0]) < FEW:
         return np.lexsort(keys)
@@ -42,13 +34,11 @@ def order_by(*keys: np.ndarray) -> np.ndarray:
 
 
 def bucket_argsort(cell: np.ndarray, count: int, own: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Rows sorted by cell, stable; in linear time for fewer than 2**16 cells.
+    """Rows, of all or those of a mask (N,), sorted by cell, stable; in linear time for fewer than 2**16 cells.
 
     Parameters
     ----------
     cell : (N,) cell numbers, 0 to count - 1
-    count : number of cells
-    own : (N,) bool, rows to use; all by default
 
     Returns
     -------
@@ -70,17 +60,7 @@ def above_least(values: np.ndarray) -> np.ndarray:
 
 
 def decimate_cells(cell: np.ndarray, most: int) -> np.ndarray:
-    """Indices of at most about `most` members of every cell, evenly spaced in their order; sorted by cell.
-
-    Parameters
-    ----------
-    cell : (N,) int32 cell numbers, 0 or more
-    most : members kept per cell
-
-    Returns
-    -------
-    (M,) intp
-    """
+    """(M,) indices of at most about `most` members of every cell, evenly spaced in their order; sorted by cell, (N,) int32 numbers from 0."""
     count = np.bincount(cell)
     step = -(-count // most)
     order = order_by(cell)
@@ -92,17 +72,7 @@ def decimate_cells(cell: np.ndarray, most: int) -> np.ndarray:
 
 
 def ranked(values: np.ndarray, ranks: np.ndarray | Sequence[int]) -> np.ndarray:
-    """The values at given ranks of the ascending order, found by counting.
-
-    Parameters
-    ----------
-    values : (N,) int32 or float32 without NaN
-    ranks : (R,) int, 0 to N - 1
-
-    Returns
-    -------
-    (R,) of the dtype of `values`
-    """
+    """The values, (N,) int32 or float32 without NaN, at (R,) ranks 0 to N - 1 of the ascending order, found by counting."""
     key = above_least(_sortable_bits(values))
     digit = key >> max(int(key.max()).bit_length() - RADIX_BITS, 0)
     below = np.cumsum(np.bincount(digit))
@@ -128,17 +98,7 @@ def _sortable_bits(values: np.ndarray) -> np.ndarray:
 
 
 def quantiles(values: np.ndarray, shares: np.ndarray | Sequence[float]) -> np.ndarray:
-    """Quantiles in linear time, interpolated as by `numpy.quantile`.
-
-    Parameters
-    ----------
-    values : (N,) int32 or float32 without NaN, N > 0
-    shares : (S,) 0 to 1
-
-    Returns
-    -------
-    (S,) float64
-    """
+    """(S,) quantiles of (N,) int32 or float32 without NaN, N > 0, in linear time, interpolated as by `numpy.quantile`."""
     return _interpolated(shares, len(values), lambda ranks: ranked(values, ranks))
 
 
@@ -162,31 +122,18 @@ def _interpolated(shares: np.ndarray | Sequence[float], count: int, at_ranks: Ca
 # What hangs together: groups of things of which pairs are linked.
 
 def linked_groups(first: np.ndarray, second: np.ndarray, count: int) -> np.ndarray:
-    """The group of each thing: those that links lead to from each other, in either direction, over any others.
+    """(count,) int32, the group of each thing: those that links lead to from each other, in either direction, over any others.
 
-    Parameters
-    ----------
-    first, second : (P,) int, the two things of each link; links may be told twice
-    count : number of things
-
-    Returns
-    -------
-    (count,) int32, groups numbered from 0 in the order of their first things
+    The links are two (P,) arrays of things; one may be named twice. Groups are numbered from 0 in the order of their first things.
     """
     graph = coo_matrix((np.ones(len(first), bool), (first, second)), shape=(count, count))
     return connected_components(graph, directed=False)[1]
 
 
 def members_of(number: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
-    """The members of all groups, found by sorting: a search of its members for every group compares everything with everything.
+    """Yield (number, (M,) ascending members) of all groups, ascending; `number` (N,) is the group of each thing, below 0 where it is of none.
 
-    Parameters
-    ----------
-    number : (N,) int, the group of each thing; below 0 where it is of none
-
-    Yields
-    ------
-    number of a group, ascending, and (M,) its members, ascending
+    They are found by sorting: a search of its members for every group compares everything with everything.
     """
     known = np.flatnonzero(number >= 0)
     order = known[np.argsort(number[known], kind="stable")]
@@ -209,18 +156,13 @@ def stretch_of(places: np.ndarray, start: float, end: float) -> slice:
 
 
 def best_within(place: np.ndarray, row: np.ndarray, score: np.ndarray, span: int) -> np.ndarray:
-    """Which scores are the greatest of their surroundings; equal ones all are.
+    """(N,) bool, which scores are the greatest of their surroundings; equal ones all are.
 
     Parameters
     ----------
     place : (N,) cells, counted row by row, ascending
     row : (N,) rows of cells
-    score : (N,)
     span : cells of a row on either side that are compared
-
-    Returns
-    -------
-    (N,) bool
     """
     best = np.ones(len(place), bool)
     for lag in range(1, min(span, len(place) - 1) + 1):
@@ -238,18 +180,14 @@ ROUNDING_TOLERANCE = 1e-6  # m, more than coordinates are rounded by
 
 def overlapping_pairs(first: np.ndarray, last: np.ndarray, other_first: np.ndarray, other_last: np.ndarray,
                       apart: float = 0.0) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Pairs of stretches that overlap, touch or lie no farther apart than a distance.
+    """Yield (P,) indices a, b of pairs of stretches that overlap, touch or lie no farther than `apart` metres from each other.
+
+    Every pair comes once, a stretch with itself too; some that lie a hair farther apart are among them.
 
     Parameters
     ----------
     first, last : (N,) m, first <= last
     other_first, other_last : (M,) m, likewise
-    apart : m
-
-    Yields
-    ------
-    a, b : (P,) int each, indices of the first and the second stretch of each pair. Every pair comes
-        once, a stretch with itself too; some that lie a hair farther apart are among them.
     """
     reach = apart + ROUNDING_TOLERANCE
     order, other_order = np.argsort(first, kind="stable"), np.argsort(other_first, kind="stable")
@@ -288,11 +226,9 @@ class Rows:
 
     @classmethod
     def names(cls) -> tuple[str, ...]:
-        """Names of the fields that have one entry for each thing."""
         return _names_of(cls)
 
     def columns(self) -> list[np.ndarray]:
-        """The arrays, in the order of the fields."""
         return [getattr(self, name) for name in self.names()]
 
     def __len__(self) -> int:
@@ -303,7 +239,6 @@ class Rows:
 
     @classmethod
     def join(cls: type[AnyRows], parts: Sequence[AnyRows]) -> AnyRows:
-        """The entries of all parts, one after the other."""
         return cls(*map(np.concatenate, zip(*(part.columns() for part in parts))))
 
 

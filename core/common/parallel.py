@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from ..lazy import LazyModule
 from .errors import Cancelled, RoadExtractionError
-from .progress import Progress
+from .progress import Progress, RememberedMessages
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,25 +42,18 @@ def ordered_map(function: Callable[[Item], Result], items: Iterable[Item], progr
 
     At most one result more than there are threads is computed ahead, so memory stays bounded. While a result is
     awaited, cancellation is checked too, by `progress` and by `check_cancelled`. numpy and scipy release the
-    interpreter lock in their heavy loops, which is where most of the time is spent.
+    interpreter lock in their heavy loops, which is where most of the time is spent. Whatever the function raises is raised, and the remaining items
+    are dropped.
 
     Parameters
     ----------
-    function : called with one item, in a worker thread
-    items : items in order
     progress : reports the share of the items that are done
     threads : number of threads; by default one per processor core, at most four
-
-    Yields
-    ------
-    function(item) for every item
 
     Raises
     ------
     Cancelled
         If the user cancelled; the worker threads end at their next `check_cancelled`.
-    Exception
-        Whatever `function` raises; the remaining items are dropped.
     """
     items = list(items)
     threads = threads or min(MAX_WORKERS, os.cpu_count() or 1)
@@ -103,13 +96,9 @@ def cancellation_scope(progress: Progress) -> Iterator[None]:
 
 
 def check_cancelled() -> None:
-    """Check for cancellation in long work that has no `progress` argument.
+    """Raise `Cancelled` in long work without a `progress` argument, if the user cancelled or nobody uses the results of this worker thread any more.
 
-    Raises
-    ------
-    Cancelled
-        If the user cancelled (see `cancellation_scope`), or in a worker thread of `ordered_map` whose results are no
-        longer used.
+    See `cancellation_scope` and `ordered_map`.
     """
     check = getattr(_thread, "check", None)
     if check is not None:
@@ -117,59 +106,46 @@ def check_cancelled() -> None:
 
 
 class InBackground(Generic[Result]):
-    """A function that a thread of its own computes; use it as a context, which the thread does not outlive.
+    """A function of a Progress that a thread of its own computes; use it as a context, which the thread does not outlive.
 
-    Parameters
-    ----------
-    function : of a Progress; what it reads must not change meanwhile
+    What the function reads must not change meanwhile.
     """
 
     def __init__(self, function: Callable[[Progress], Result]):
-        self._function, self._heard = function, _Heard()
-        self._found: list[Result] = []
-        self._failed: BaseException | None = None
+        self._function, self._progress = function, _MessagesForLater()
+        self._future: Future[Result] = Future()
         self._thread = threading.Thread(target=self._work, daemon=True)
 
     def _work(self) -> None:
         try:
-            with cancellation_scope(self._heard):
-                self._found.append(self._function(self._heard))
+            with cancellation_scope(self._progress):
+                self._future.set_result(self._function(self._progress))
         except BaseException as error:
-            self._failed = error
+            self._future.set_exception(error)
 
     def __enter__(self) -> InBackground[Result]:
         self._thread.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._heard.ended.set()
+        self._progress.ended.set()
         self._thread.join()
 
     def result(self, progress: Progress = Progress()) -> Result:
-        """What the function returns, as soon as it does; what it had to say is said now, in its order.
-
-        Raises
-        ------
-        Cancelled
-            If the user cancelled.
-        Exception
-            Whatever the function raises.
-        """
+        """What the function returns or raises, as soon as it does; what it had to say is said now, in its order."""
         while self._thread.is_alive():
             progress.check_cancelled()
             self._thread.join(POLL_INTERVAL)
-        for say, text in self._heard.messages:
+        for say, text in self._progress.messages:
             getattr(progress, say)(text)
-        if self._failed is not None:
-            raise self._failed
-        return self._found[0]
+        return self._future.result()
 
 
-class _Heard(Progress):
+class _MessagesForLater(RememberedMessages):
     """Keeps messages, as a dialog is spoken to by one thread only, and ends work whose result is not wanted any more."""
 
     def __init__(self) -> None:
-        self.messages: list[tuple[str, str]] = []
+        super().__init__()
         self.ended = threading.Event()
 
     def report(self, fraction: float) -> None:
@@ -179,12 +155,6 @@ class _Heard(Progress):
         if self.ended.is_set():
             raise Cancelled
 
-    def info(self, text: str) -> None:
-        self.messages.append(("info", text))
-
-    def warn(self, text: str) -> None:
-        self.messages.append(("warn", text))
-
 
 # Reused working memory, work on some rows of a long table at a time, and the return of freed memory to the operating system.
 
@@ -192,17 +162,9 @@ ROWS_OF_A_PART = 1024   # rows of some hundred cells: a megabyte of each array
 
 
 def by_rows(function: Callable[[slice], np.ndarray], count: int, at_once: int = ROWS_OF_A_PART) -> np.ndarray:
-    """What a function gives for rows that do not depend on each other, computed some at a time, so that what it needs meanwhile stays small.
+    """What a function of a slice gives for `count` rows, (count, ...), computed some at a time, so that what it needs meanwhile stays small.
 
-    Parameters
-    ----------
-    function : of a slice of the rows; an array with one entry for each of them
-    count : of rows
-    at_once : rows in a slice
-
-    Returns
-    -------
-    (count, ...) array
+    The rows do not depend on each other.
     """
     found = function(slice(0, min(at_once, count)))
     if count <= at_once:
@@ -341,13 +303,7 @@ def lack_of_memory() -> str:
 
 
 def claim_memory() -> None:
-    """Where memory is limited, take what the work cannot do without, while it is there: large libraries, and working memory of OpenBLAS.
-
-    Raises
-    ------
-    RoadExtractionError
-        If that is more than this process may have.
-    """
+    """Where memory is limited, take what the work cannot do without, while it is there, or refuse: large libraries, working memory of OpenBLAS."""
     lacking = lack_of_memory()
     if lacking:
         raise RoadExtractionError(lacking)

@@ -43,12 +43,14 @@ class Progress:
         return _PartOfProgress(self, start, end)
 
 
-class _PartOfProgress(Progress):
-    def __init__(self, whole: Progress, start: float, end: float):
-        self.whole, self.start, self.span = whole, start, end - start
+class _PassedOn(Progress):
+    """Passes everything on to the progress of the whole work."""
+
+    def __init__(self, whole: Progress):
+        self.whole = whole
 
     def report(self, fraction: float) -> None:
-        self.whole.report(self.start + self.span * min(max(fraction, 0.0), 1.0))
+        self.whole.report(fraction)
 
     def check_cancelled(self) -> None:
         self.whole.check_cancelled()
@@ -60,16 +62,37 @@ class _PartOfProgress(Progress):
         self.whole.warn(text)
 
 
+class _PartOfProgress(_PassedOn):
+    def __init__(self, whole: Progress, start: float, end: float):
+        super().__init__(whole)
+        self.start, self.span = start, end - start
+
+    def report(self, fraction: float) -> None:
+        self.whole.report(self.start + self.span * min(max(fraction, 0.0), 1.0))
+
+
+class RememberedMessages(_PassedOn):
+    """Passes everything on, and remembers the messages: a list of ("info" or "warn", text)."""
+
+    def __init__(self, whole: Progress = Progress()):
+        super().__init__(whole)
+        self.messages: list[tuple[str, str]] = []
+
+    def info(self, text: str) -> None:
+        self.messages.append(("info", text))
+        super().info(text)
+
+    def warn(self, text: str) -> None:
+        self.messages.append(("warn", text))
+        super().warn(text)
+
+
 class RemainingTime:
     """Estimates the remaining time from the fraction done, in round steps.
 
     The remaining work is assumed to advance as fast as the work so far. Each of `REMAINING_STEPS` is returned at most
     once as the time runs down, so a run of one minute gets four estimates. A longer estimate than the last one is
     returned only if it is clearly longer.
-
-    Parameters
-    ----------
-    clock : function that returns the current time in seconds
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic):
@@ -77,16 +100,7 @@ class RemainingTime:
         self._last, self._last_at = math.inf, 0.0
 
     def after(self, fraction: float) -> int | None:
-        """The remaining time where a new estimate is due.
-
-        Parameters
-        ----------
-        fraction : fraction of the work that is done, 0 to 1
-
-        Returns
-        -------
-        Seconds, one of `REMAINING_STEPS`; None where no new estimate is due.
-        """
+        """Remaining seconds, one of `REMAINING_STEPS`, with a fraction of the work done; None where no new estimate is due."""
         elapsed = self._clock() - self._began
         if elapsed < MIN_ELAPSED or not MIN_FRACTION <= fraction < 1.0:
             return None

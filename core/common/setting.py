@@ -32,13 +32,7 @@ class Limits:
         return 0 * self.minimum if self.zero else self.minimum
 
     def check(self, value: float) -> None:
-        """Refuse a value that is not allowed.
-
-        Raises
-        ------
-        RoadExtractionError
-            If it lies outside the limits, or is NaN.
-        """
+        """Refuse a value outside the limits, or NaN."""
         if self.minimum <= value <= self.maximum or self.zero and value == 0:
             return
         unit = self.unit if self.unit in ("", "°") else f" {self.unit}"
@@ -47,13 +41,7 @@ class Limits:
 
 
 def setting(default: Any, minimum: float, maximum: float, name: str, unit: str = "", zero: str = "") -> Any:
-    """A dataclass field of a Settings class with Limits; call `check_limits` in its `__post_init__`.
-
-    Parameters
-    ----------
-    default : default value
-    minimum, maximum, name, unit, zero : see Limits
-    """
+    """A dataclass field of a Settings class with Limits; call `check_limits` in its `__post_init__`."""
     return field(default=default, metadata={_KEY: Limits(minimum, maximum, name, unit, zero)})
 
 
@@ -63,13 +51,7 @@ def limits_of(settings: Any, name: str) -> Limits | None:
 
 
 def check_limits(settings: Any) -> None:
-    """Check all settings of an object against their limits.
-
-    Raises
-    ------
-    RoadExtractionError
-        If one lies outside; the message names the first.
-    """
+    """Refuse settings of which one lies outside its limits; the message names the first."""
     for entry in fields(settings):
         if _KEY in entry.metadata:
             entry.metadata[_KEY].check(getattr(settings, entry.name))

@@ -46,12 +46,9 @@ def language() -> str:
 # The values of fields in the user's words. In English they are shown as they stand in the layers.
 
 def word(value: Any, field: str = "") -> str:
-    """A value of a field in the user's words; a dash for none.
+    """A value in the user's words; a dash for none. `field` tells which field it is of, where a word means different things in different fields.
 
-    Parameters
-    ----------
-    value : of any type; a word of the vocabulary below, or a name or number, which stay as they are
-    field : which one, where a word means different things in different fields
+    Names and numbers, which are not in the vocabulary below, stay as they are.
     """
     if value is None or value == "":
         return "–"
@@ -144,7 +141,6 @@ class CoreMessages:
 
     @classmethod
     def load(cls, path: Path, word: Callable[[str], str] = str) -> CoreMessages:
-        """Those of a file; none where there is no file."""
         return cls(json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}, word)
 
     def told(self, text: str) -> str:

@@ -16,17 +16,7 @@ COUNTRIES = {one.name: one for one in (NEUTRAL, CHINA, GERMANY, JAPAN, UNITED_ST
 
 
 def country(name: str) -> Country:
-    """The country of this name.
-
-    Parameters
-    ----------
-    name : one of COUNTRIES; "neutral" is the default everywhere
-
-    Raises
-    ------
-    RoadExtractionError
-        If the catalogue has no such country.
-    """
+    """The country of this name; one that the catalogue does not have is refused."""
     if name not in COUNTRIES:
         raise RoadExtractionError(f"There is no country called {name!r} in the catalogue. Choose one of {', '.join(COUNTRIES)}.")
     return COUNTRIES[name]

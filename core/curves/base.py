@@ -31,7 +31,7 @@ class Curve:
     length: float   # m
 
     def at(self, u: np.ndarray) -> np.ndarray:
-        """(N, 2) positions, metres, at arc lengths u (N,)."""
+        """(N, 2) positions, metres, at (N,) arc lengths u."""
         raise NotImplementedError
 
     def heading(self, u: np.ndarray | float) -> np.ndarray:
@@ -48,11 +48,10 @@ class Curve:
         return float("nan")
 
     def project(self, x: np.ndarray, y: np.ndarray, near: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Orthogonal projection of points onto the curve, by Newton's method.
+        """Orthogonal projection of (N,) points onto the curve, by Newton's method.
 
         Parameters
         ----------
-        x, y : (N,) metres
         near : (N,) arc lengths near the projections, if known; else the nearest points of the curve are searched
 
         Returns

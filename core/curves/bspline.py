@@ -76,7 +76,8 @@ class _SplineBasis:
 
         values : (N, C) metres of the points of all blocks; residuals_of : gives (N,) m from values and slopes of the splines at these points
         """
-        weight, solved = np.ones(len(values)), [None] * len(self.sizes)
+        weight = np.ones(len(values))
+        solved: list[Any] = [None] * len(self.sizes)
         for turn in range(rounds):
             control = self._solve(weight, values)
             residuals = residuals_of(self._values @ control, self._slopes @ control)

@@ -84,7 +84,6 @@ class PointGroups:
         return (ordered[self.starts + (self.counts - 1) // 2] + ordered[self.starts + self.counts // 2]) / 2
 
     def maxima(self, values: np.ndarray) -> np.ndarray:
-        """(L,) maxima of (N,) values over the points of each line."""
         return np.maximum.reduceat(values, self.starts)
 
     def subsampled(self, max_points: int) -> np.ndarray:

@@ -40,39 +40,21 @@ class ExecutionSettings:
 
     @property
     def work(self) -> WorkFolder | None:
-        """The work folder, if there is one.
-
-        Raises
-        ------
-        RoadExtractionError
-            If nothing can be written there.
-        """
+        """The work folder, if there is one; refused where nothing can be written there."""
         return WorkFolder(self.work_folder) if self.work_folder else None
 
 
 def cluster_for(settings: ExecutionSettings, progress: Progress = Progress()) -> Cluster | None:
-    """The Dask cluster of a run, None where there is none; asked for before the survey is read, as there is much that it may lack.
-
-    Raises
-    ------
-    RoadExtractionError
-        If the cluster cannot be used.
-    """
+    """The Dask cluster of a run, None where there is none; asked for before the survey is read, as there is much that it may lack."""
     return cluster_of(settings.scheduler, settings.insecure, settings.work, progress) if settings.scheduler else None
 
 
 def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(), progress: Progress = Progress(),
                  cluster: Cluster | None = None) -> Executor:
-    """The executor of a run; close it at the end.
-
-    Parameters
-    ----------
-    points : of the files
-    progress : is told who does the work, where that are not threads as usual
-    cluster : result of `cluster_for`
-    """
+    """The executor of a run over files with so many points; close it at the end. `cluster` is the result of `cluster_for`."""
     executor: Executor = cluster or _executor_for(points, settings, progress)
-    return KeptResults(executor, WorkFolder(settings.work_folder)) if settings.work_folder else executor
+    work = settings.work
+    return KeptResults(executor, work) if work else executor
 
 
 def automatic_workers(points: int) -> int:

@@ -24,8 +24,8 @@ from uuid import uuid4
 from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL
 from ..common.progress import Progress
-from .phase import Phase, name_of, read_plain, write_plain
-from .tasks import BEAT, NEEDED, ShippedPhase, items_done, items_together, look_around, raise_answer, sees_files
+from .phase import Executor, Phase, name_of, read_plain, write_plain
+from .tasks import BEAT, NEEDED, ShippedPhase, items_done, items_together, look_around, raise_answer, sees_files, versions
 from .work_folder import WorkFolder, code_digest
 
 BEAT_TIME = 2.0         # s between two signs of life of the caller
@@ -38,14 +38,12 @@ RESULT_TIME = 30.0      # s until a result written by another machine is seen he
 
 
 def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: Progress = Progress()) -> Cluster:
-    """The cluster of a scheduler, checked and ready for work; close it at the end.
+    """The cluster of a running scheduler, checked and ready for work; close it at the end.
 
     Parameters
     ----------
-    address : of a running scheduler
-    insecure : is an unencrypted connection to another computer wanted?
+    address, insecure : as of `client_of`
     work : folder of the user's that all machines see; None takes one for temporary files, which all workers on this computer see
-    progress : is told how many workers there are and where to watch them
 
     Raises
     ------
@@ -82,8 +80,8 @@ class _Part:
     done: bool = False
 
 
-class Cluster:
-    """Executor that uses the workers of a Dask cluster.
+class Cluster(Executor):
+    """Executor that uses the workers of a Dask cluster, whose memory is theirs.
 
     Parameters
     ----------
@@ -98,7 +96,7 @@ class Cluster:
 
     def __init__(self, client: Any, work: Path | None = None, threads: int = 1):
         self.client, self.named, self.threads = client, work is not None, threads
-        self.folder = Path(tempfile.mkdtemp(prefix="lanewright-")) if work is None else work / f"run-{uuid4().hex[:8]}"
+        self.folder: Path = Path(tempfile.mkdtemp(prefix="lanewright-")) if work is None else work / f"run-{uuid4().hex[:8]}"
         self.folder.mkdir(exist_ok=True)
         self._left = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
         (self.folder / BEAT).write_text(str(CALLER_LOST), encoding="utf-8")
@@ -135,31 +133,17 @@ class Cluster:
             shipped.unlink(missing_ok=True)
             work.end()
 
-    def passing(self) -> Cluster:
-        """Itself: it keeps nothing."""
-        return self
-
     def disk_error(self, error: OSError) -> RoadExtractionError:
-        """One sentence about the folder, which cannot be used."""
         return _disk_error(self.folder, error)
 
     def sees(self, paths: Sequence[Path]) -> bool:
-        """Whether every worker finds these files where this computer does, and can decode them."""
         sizes = {str(path): path.stat().st_size for path in paths}
         return all(found is True for found in self.client.run(sees_files, sizes, on_error="return").values())
 
     def new_file(self) -> Path:
-        """A new name in the folder."""
         return self.folder / f"file{next(self._numbers)}.plain"
 
-    def forget(self) -> None:
-        """Memory of workers is not ours."""
-
-    def release(self) -> None:
-        """Memory of workers is not ours."""
-
     def close(self) -> None:
-        """Let the scheduler go and remove the folder; nothing more is run."""
         self._closed.set()
         self.client.close()
         self._left.detach()
@@ -257,7 +241,6 @@ class _Work:
         self._finish(part)
 
     def result(self, part):
-        """The result of a part that is done."""
         until = time.monotonic() + RESULT_TIME
         while not part.file.exists() and time.monotonic() < until:
             time.sleep(POLL_INTERVAL)
@@ -290,7 +273,6 @@ class _Work:
         return RoadExtractionError(f"The connection to the Dask scheduler was lost while {during} was at work. Run again, or without SCHEDULER.")
 
     def end(self):
-        """Leave nothing to do."""
         futures = [future for _, future, _ in self.pending.values()]
         if futures and self.client.status == "running":
             self.client.cancel(futures, force=True)
@@ -357,12 +339,7 @@ def check_address(address: str, insecure: bool) -> None:
 
 
 def client_of(address: str, insecure: bool = False) -> Any:
-    """A distributed.Client of a running scheduler.
-
-    Parameters
-    ----------
-    address : tls://host:port, or tcp:// on this computer
-    insecure : is an unencrypted connection to another computer wanted?
+    """A distributed.Client of a running scheduler at tls://host:port, or tcp:// on this computer; elsewhere only where `insecure` is set.
 
     Raises
     ------
@@ -417,13 +394,7 @@ def _check_greeting(address, security):
 
 
 def wait_for_workers(client: Any, progress: Progress) -> dict[str, int]:
-    """{address: threads} of the workers, as soon as there is one.
-
-    Raises
-    ------
-    RoadExtractionError
-        If none came within WORKERS_TIME.
-    """
+    """{address: threads} of the workers, as soon as there is one; refused if none came within WORKERS_TIME."""
     until = time.monotonic() + WORKERS_TIME
     while not (workers := client.nthreads()):
         if time.monotonic() > until:
@@ -433,61 +404,31 @@ def wait_for_workers(client: Any, progress: Progress) -> dict[str, int]:
     return dict(workers)
 
 
-def own_versions() -> dict[str, str]:
-    """Versions of Python and of the packages EQUAL on this computer; "" for a package that was not installed by pip."""
-    found = {"python": platform.python_version()}
-    for name in EQUAL:
-        try:
-            found[name] = importlib.metadata.version(name)
-        except importlib.metadata.PackageNotFoundError:
-            found[name] = ""
-    return found
-
-
 def _check_versions(client: Any) -> None:
-    """Refuse workers whose Python or packages are others than ours.
-
-    Raises
-    ------
-    RoadExtractionError
-        Naming the worker, the package and both versions.
-    """
-    own = own_versions()
+    """Refuse workers whose Python or packages are others than ours; the message names the worker, the package and both versions."""
+    here = versions(EQUAL)
     # functions of the standard library, which every worker has
-    _compare("Python", client.run(platform.python_version, on_error="return"), own["python"], _minor)
+    minor = {worker: found if isinstance(found, BaseException) else ".".join(found.split(".")[:2])
+             for worker, found in client.run(platform.python_version, on_error="return").items()}
+    _compare("Python", minor, here["python"])
     for name in EQUAL:
         # the plugin is no installed package; what it consists of is compared by `_check_workers`
-        _compare(name, client.run(importlib.metadata.version, name, on_error="return"), own[name])
+        _compare(name, client.run(importlib.metadata.version, name, on_error="return"), here[name])
 
 
-def _compare(name, found, own, essential=str):
-    for worker, version in found.items():
-        if isinstance(version, BaseException):
+def _compare(name, found, here):
+    for worker, there in found.items():
+        if isinstance(there, BaseException):
             raise RoadExtractionError(f"The worker {worker} has no {name}. Install it for its Python: {INSTALL} (QGIS is not needed there).")
-        if own and essential(version) != essential(own):
-            raise RoadExtractionError(f"The worker {worker} has {name} {version}, this computer has {own}; results could differ. Install the same "
+        if here and there != here:
+            raise RoadExtractionError(f"The worker {worker} has {name} {there}, this computer has {here}; results could differ. Install the same "
                                       "version for both.")
 
 
-def _minor(version):
-    return version.split(".")[:2]
-
-
 def _check_workers(client: Any, folder: Path, word: str, named: bool, progress: Progress) -> None:
-    """See that every worker has our code and sees our folder, and warn of what slows the work down.
+    """See that every worker has our code and sees the file `word` in our folder, and warn of what slows the work down.
 
-    Parameters
-    ----------
-    client : distributed.Client
-    folder : that workers and caller share
-    word : name of a file in it
-    named : whether the user chose the folder
-    progress : is told what does not suit
-
-    Raises
-    ------
-    RoadExtractionError
-        Naming the worker.
+    `named` tells whether the user chose the folder.
     """
     for worker, found in client.run(look_around, str(folder), word, on_error="return").items():
         if isinstance(found, BaseException) or found["code"] != code_digest():

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any, BinaryIO, Protocol
+from typing import Any, BinaryIO
 from uuid import uuid4
 
 import numpy as np
@@ -52,29 +52,11 @@ class Recipe:
         return (self.function, *self.arguments, *values) if alike else None
 
 
-class Source(Protocol):
-    """What a phase reads from."""
-
-    def recipe(self, folder: Path) -> Recipe:
-        """Put into the folder what another process needs, unless it is there, and say how the source is opened."""
-
-
 class NoSource:
     """What phases read from whose items hold all that they need, which is little."""
 
     def recipe(self, folder: Path) -> Recipe:
-        """There is nothing to open."""
         return Recipe("core.execution.phase:NoSource", {})
-
-
-def _no_place(item: Any) -> str:
-    """What messages call an item of which nothing is known."""
-    return str(item)
-
-
-def _no_size(item: Any) -> float:
-    """The size of items that are alike."""
-    return 0.0
 
 
 @dataclass(frozen=True)
@@ -83,7 +65,8 @@ class Phase:
 
     function : public function of a module of the package, called as `function(source, item, *arguments)`. It changes nothing; its
         result, an item and the arguments are plain values (see plain.py)
-    source : what it reads from, open in this process
+    source : what it reads from, open in this process; its `recipe(folder)` puts into the folder what another process needs, unless it is
+        there, and gives the Recipe
     arguments : plain values that all items share
     place : names the stretch of road that an item is, for messages
     size : tells items apart by how long they take; any unit
@@ -94,8 +77,8 @@ class Phase:
     function: Callable[..., Any]
     source: Any
     arguments: tuple[Any, ...] = ()
-    place: Callable[[Any], str] = field(default=_no_place, compare=False)
-    size: Callable[[Any], float] = field(default=_no_size, compare=False)
+    place: Callable[[Any], str] = field(default=str, compare=False)
+    size: Callable[[Any], float] = field(default=lambda item: 0.0, compare=False)
     join: Callable[[list[Any]], Any] | None = field(default=None, compare=False)
     together: int = field(default=1, compare=False)
 
@@ -104,12 +87,13 @@ class Phase:
         return self.function(self.source, item, *self.arguments)
 
 
-class Executor(Protocol):
-    """Who runs phases."""
+class Executor:
+    """Who runs phases. What is not said otherwise is that of threads of this process.
 
-    @property
-    def folder(self) -> Path | None:
-        """That all workers see, for what phases write; None where the workers are threads of this process."""
+    folder : that all workers see, for what phases write; None where the workers are threads of this process
+    """
+
+    folder: Path | None = None
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order.
@@ -126,15 +110,19 @@ class Executor(Protocol):
         Exception
             Whatever the function raises.
         """
+        raise NotImplementedError
 
     def passing(self) -> Executor:
         """Who runs phases whose results are not worth keeping for a later run."""
+        return self
 
     def disk_error(self, error: OSError) -> RoadExtractionError:
         """One sentence about the folder, which cannot be used."""
+        return RoadExtractionError(f"A file cannot be written: {error}.")
 
     def sees(self, paths: Sequence[Path]) -> bool:
         """Whether all workers can read these files, which are point clouds."""
+        return True
 
     def forget(self) -> None:
         """Free the memory in which workers keep what the phases before read from; no phase is running."""
@@ -161,7 +149,6 @@ def name_of(function: Any) -> str:
 
 
 def named(name: str) -> Any:
-    """The function or class that `name_of` named."""
     module, _, attribute = name.partition(":")
     return getattr(import_module(f"{PACKAGE}.{module}"), attribute)
 
@@ -195,23 +182,15 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
     OSError
         With a file name, if it cannot be written.
     """
-    arrays: list[np.ndarray] = []
-    tree = _tree(value, arrays)
-    # as they lie in memory, so that whoever reads them computes with the same order of numbers
-    turned = [array.ndim > 1 and array.flags.f_contiguous and not array.flags.c_contiguous for array in arrays]
-    text = json.dumps([tree, [[np.lib.format.dtype_to_descr(array.dtype), array.shape, last] for array, last in zip(arrays, turned)]]).encode()
-    rows = [_bytes_of(np.ascontiguousarray(array.T if last else array)) for array, last in zip(arrays, turned)]
-    head = TEXT_LENGTH.pack(len(text)) + text
-    check = zlib.crc32(head)
-    for row in rows:
-        check = zlib.crc32(row, check)
+    contents, check = _contents(value), 0
+    for part in contents:
+        check = zlib.crc32(part, check)
     # processes of several machines may write the same file
     unfinished = (unfinished_in or path.parent) / f"{path.stem}.{uuid4().hex}.part{path.suffix}"
     try:
         with open(unfinished, "wb") as file:
-            file.write(FORMAT + CHECKSUM.pack(check) + head)
-            for row in rows:
-                file.write(row)
+            file.write(FORMAT + CHECKSUM.pack(check))
+            file.writelines(contents)
         os.replace(unfinished, path)
     except OSError as error:
         if error.filename is None:   # of a full disk
@@ -219,6 +198,16 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
         raise
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def _contents(value):
+    """What follows the checksum in the file of a value: bytes, and arrays of bytes."""
+    arrays: list[np.ndarray] = []
+    tree = _tree(value, arrays)
+    # as they lie in memory, so that whoever reads them computes with the same order of numbers
+    turned = [array.ndim > 1 and array.flags.f_contiguous and not array.flags.c_contiguous for array in arrays]
+    text = json.dumps([tree, [[np.lib.format.dtype_to_descr(array.dtype), array.shape, last] for array, last in zip(arrays, turned)]]).encode()
+    return [TEXT_LENGTH.pack(len(text)) + text, *(_bytes_of(np.ascontiguousarray(array.T if last else array)) for array, last in zip(arrays, turned))]
 
 
 def read_plain(path: Path) -> Any:
@@ -271,13 +260,9 @@ def _bytes_of(array):
     return array.reshape(-1).view(np.uint8)
 
 
-def _dtype(kind: Any) -> Any:
-    return np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
-
-
 def _read_array(file: BinaryIO, kind: Any, shape: list[int], last: bool) -> np.ndarray:
     """The next array; `last` tells that its last index runs slowest."""
-    dtype = _dtype(kind)
+    dtype = np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
     if dtype.hasobject:
         raise TypeError("An array of objects is no plain value.")
     array = np.empty(shape[::-1] if last else shape, dtype)
@@ -287,12 +272,9 @@ def _read_array(file: BinaryIO, kind: Any, shape: list[int], last: bool) -> np.n
 
 
 def digest(value: Any, without: str = "") -> str:
-    """32 hexadecimal digits that two values share only if they are equal.
+    """32 hexadecimal digits that two values of `write_plain` share only if they are equal.
 
-    Parameters
-    ----------
-    value : as in `write_plain`
-    without : a text that does not count, such as the path of a folder that may be moved
+    The text `without` does not count: the path of a folder that may be moved.
     """
     arrays: list[np.ndarray] = []
     text = json.dumps(_tree(value, arrays))
@@ -305,92 +287,74 @@ def digest(value: Any, without: str = "") -> str:
 
 def _tree(value, arrays):
     """The value as JSON, in which numbers of arrays stand for these."""
-    if value is None or isinstance(value, (bool, str)) or type(value) in (int, float):
+    if isinstance(value, (type(None), bool, str)) or type(value) in (int, float):
         return value
+    if isinstance(value, (np.ndarray, np.generic)):
+        return _tree_of_array(value, arrays)
+    if isinstance(value, dict):
+        return {"dict": [[_tree(key, arrays), _tree(item, arrays)] for key, item in value.items()]}
+    if type(value) in (list, tuple):
+        return {type(value).__name__: [_tree(item, arrays) for item in value]}
+    return {"object": name_of(type(value)), "state": [[name, _tree(item, arrays)] for name, item in _state(value).items()]}
+
+
+def _tree_of_array(value, arrays):
     if isinstance(value, np.generic) and value.dtype.kind in "biuf" and value.dtype.itemsize <= 8:
         return {"number": [value.dtype.str, value.item()]}
-    if isinstance(value, (np.ndarray, np.generic)):
-        if value.dtype.hasobject:
-            raise TypeError("An array of objects is no plain value.")
-        arrays.append(np.asarray(value))
-        return {"array" if isinstance(value, np.ndarray) else "scalar": f"a{len(arrays) - 1}"}
-    if isinstance(value, dict):
-        return {"dict": [[_tree(key, arrays), _tree(one, arrays)] for key, one in value.items()]}
-    if type(value) in (list, tuple):
-        return {type(value).__name__: [_tree(one, arrays) for one in value]}
-    return {"object": name_of(type(value)), "state": [[name, _tree(one, arrays)] for name, one in _state(value).items()]}
+    if value.dtype.hasobject:
+        raise TypeError("An array of objects is no plain value.")
+    arrays.append(np.asarray(value))
+    return {"array" if isinstance(value, np.ndarray) else "scalar": f"a{len(arrays) - 1}"}
 
 
 def _state(value):
     """The attributes of an object by name."""
-    own = type(value).__dict__.get("__getstate__")
-    if own is not None:
-        return own(value)
-    return {one.name: getattr(value, one.name) for one in fields(value)} if is_dataclass(value) else vars(value)
+    getstate = type(value).__dict__.get("__getstate__")
+    if getstate is not None:
+        return getstate(value)
+    return {attribute.name: getattr(value, attribute.name) for attribute in fields(value)} if is_dataclass(value) else vars(value)
 
 
 def _value(tree, arrays):
     if not isinstance(tree, dict):
         return tree
-    kind = next(iter(tree))
+    kind, held = next(iter(tree.items()))
     if kind == "number":
-        name, number = tree[kind]
-        return np.dtype(name).type(number)
-    if kind in ("array", "scalar"):
-        return arrays[tree[kind]] if kind == "array" else arrays[tree[kind]][()]
+        return np.dtype(held[0]).type(held[1])
+    if kind == "array":
+        return arrays[held]
+    if kind == "scalar":
+        return arrays[held][()]
     if kind == "dict":
-        return {_value(key, arrays): _value(one, arrays) for key, one in tree[kind]}
+        return {_value(key, arrays): _value(item, arrays) for key, item in held}
     if kind in ("list", "tuple"):
-        return (list if kind == "list" else tuple)(_value(one, arrays) for one in tree[kind])
-    made = object.__new__(named(tree["object"]))
-    state = {name: _value(one, arrays) for name, one in tree["state"]}
-    restore = type(made).__dict__.get("__setstate__")
+        items = [_value(item, arrays) for item in held]
+        return items if kind == "list" else tuple(items)
+    return _object(named(held), {name: _value(item, arrays) for name, item in tree["state"]})
+
+
+def _object(kind, state):
+    """An object of a class of core with the attributes of `_state`."""
+    value = object.__new__(kind)
+    restore = kind.__dict__.get("__setstate__")
     if restore is not None:
-        restore(made, state)
+        restore(value, state)
     else:
-        for name, one in state.items():
-            object.__setattr__(made, name, one)   # of frozen classes, too
-    return made
+        for name, attribute in state.items():
+            object.__setattr__(value, name, attribute)   # of frozen classes, too
+    return value
 
 
 # Phases run by threads of this process: for small surveys, and wherever nothing else works.
 
-class Threads:
-    """Executor that uses threads.
-
-    Parameters
-    ----------
-    count : number of threads; None for one per processor core, at most four
-    """
+class Threads(Executor):
+    """Executor that uses threads: `count` of them; None for one per processor core, at most four."""
 
     def __init__(self, count: int | None = None):
         self.count = count
-        self.folder: Path | None = None
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
-        """Yield the results of all items in their order; see `Executor`. Nothing is kept by it."""
         return ordered_map(phase.result, items, progress, self.count)
-
-    def passing(self) -> Threads:
-        """Itself: it keeps nothing."""
-        return self
-
-    def disk_error(self, error: OSError) -> RoadExtractionError:
-        """One sentence about a folder that cannot be used."""
-        return RoadExtractionError(f"A file cannot be written: {error}.")
-
-    def sees(self, paths: Sequence[Path]) -> bool:
-        """What this process sees."""
-        return True
-
-    def forget(self) -> None:
-        """Nothing is kept between phases."""
-
-    def release(self) -> None:
-        """Nothing is kept between phases."""
-
-    def close(self) -> None:
-        """Nothing is left to end."""
 
 
 THREADS = Threads()

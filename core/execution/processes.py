@@ -17,7 +17,7 @@ from typing import Any
 from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL, check_cancelled, ordered_map
 from ..common.progress import Progress
-from .phase import Phase, name_of, read_plain, write_plain
+from .phase import Executor, Phase, name_of, read_plain, write_plain
 from .tasks import ShippedPhase, command_of, environment, import_folders, items_together, no_window, raise_answer
 
 TRIALS = 2          # of an item whose worker ended; what kills two workers kills a third
@@ -25,7 +25,7 @@ END_TIME = 5.0      # s that a worker may take to end by itself
 LAST_WORDS = 2000   # characters of what a dead worker wrote that are passed on
 
 
-class WorkerProcesses:
+class WorkerProcesses(Executor):
     """Executor that uses worker processes.
 
     Workers are started when they are first needed and kept until `close`. What a phase reads from is put into a folder, once;
@@ -104,7 +104,6 @@ class WorkerProcesses:
             f"Try fewer workers, or 0 for the automatic choice. {last}".rstrip())
 
     def disk_error(self, error: OSError) -> RoadExtractionError:
-        """One sentence about a file that cannot be read or written, there or in a work folder."""
         return RoadExtractionError(f"Worker processes cannot use the disk: {error}. Free some space there, or run without worker processes; "
                                    "the variable TMPDIR (Windows: TEMP) names the folder for temporary files.")
 
@@ -123,21 +122,12 @@ class WorkerProcesses:
         with self._lock:
             self._all.discard(worker)
 
-    def passing(self) -> WorkerProcesses:
-        """Itself: it keeps nothing."""
-        return self
-
-    def sees(self, paths: Sequence[Path]) -> bool:
-        """What this process sees: they run on the same computer."""
-        return True
-
     def forget(self) -> None:
-        """Have the workers free what the phases before read from; that is quicker than to start new ones."""
+        # that is quicker than to start new ones
         for worker in self._all:
             worker.forget()
 
     def release(self) -> None:
-        """End the workers; the next phase starts new ones."""
         self._idle = queue.SimpleQueue()
         ending, self._all = self._all, set()
         for worker in ending:
@@ -146,7 +136,6 @@ class WorkerProcesses:
             worker.end()
 
     def close(self) -> None:
-        """End the workers and remove the folder; nothing more is run."""
         self.release()
         self._left.detach()
         shutil.rmtree(self.folder, ignore_errors=True)

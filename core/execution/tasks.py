@@ -31,14 +31,9 @@ WORK_ROUNDS = 8   # of work that a worker has in a phase at least, where its ite
 
 
 def items_together(phase: Phase, count: int, workers: int, usual: int = 1) -> int:
-    """How many items, one after the other along the road, a worker is given at once.
+    """How many of the `count` items of a phase, one after the other along the road, one of some `workers` is given at once.
 
-    Parameters
-    ----------
-    phase : Phase, which may ask for some
-    count : of all its items
-    workers : that share them
-    usual : where the phase asks for fewer; in any case there are no more than leave every worker some rounds of work
+    As many as the phase asks for, at least the `usual` number, but no more than leave every worker some rounds of work.
     """
     return max(min(max(phase.together, usual), count // (WORK_ROUNDS * max(workers, 1))), 1)
 
@@ -109,13 +104,7 @@ class Tasks:
 
 
 def raise_answer(answer: dict[str, str], phase: Phase, item: Any, worker: str) -> None:
-    """Raise what went wrong with an item, in the words for users.
-
-    Parameters
-    ----------
-    answer : of `Tasks.answer`
-    phase, item : that were asked for
-    worker : what messages call the worker
+    """Raise what went wrong with an item, by the answer of `Tasks.answer`; `worker` is what messages call the worker.
 
     Raises
     ------
@@ -151,13 +140,12 @@ _lock = threading.Lock()
 
 
 def look_around(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
-    """What the caller must know of a worker.
+    """What the caller must know of a worker, which Dask gives as `dask_worker`.
 
     Parameters
     ----------
     folder : of the caller
     word : file in it that the worker must see
-    dask_worker : the worker itself, given by Dask
 
     Returns
     -------
@@ -185,18 +173,12 @@ def sees_files(sizes: dict[str, int]) -> bool:
 
 
 def items_done(phase: str, items: Sequence[str], results: Sequence[str], code: str) -> dict[str, str]:
-    """Compute some items of a phase, one after the other, but for those whose results are there.
-
-    Parameters
-    ----------
-    phase : file as in `Tasks.answer`
-    items, results : as many files, likewise
-    code : digest of the caller's Lanewright
+    """Compute some items of a phase, one after the other, but for those whose results are there; files as of `Tasks.answer`.
 
     Returns
     -------
     as `Tasks.answer`, with the number of the item that it is about as "at"; those before it are computed, those after it not. Also {"code": ...}
-    where the worker's Lanewright is another
+    where the worker's Lanewright has another digest than `code`, that of the caller
     """
     left = [k for k, result in enumerate(results) if not Path(result).exists()]
     if not left:
@@ -268,10 +250,10 @@ TRIAL_TIME = 30.0   # s that a trial may take on a busy computer
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS")   # the last is lazrs's
 
 
-def versions() -> dict[str, str]:
-    """The versions of Python and of the packages NEEDED in this process; "" for a missing one."""
+def versions(names: Sequence[str] = NEEDED) -> dict[str, str]:
+    """The versions of Python (its first two numbers) and of packages in this process; "" for what was not installed as a package."""
     found = {"python": ".".join(map(str, sys.version_info[:2]))}
-    for name in NEEDED:
+    for name in names:
         try:
             found[name] = version(name)
         except PackageNotFoundError:
@@ -291,7 +273,6 @@ def environment() -> dict[str, str]:
 
 
 def no_window() -> int:
-    """Flags by which Windows opens no console window."""
     return getattr(subprocess, "CREATE_NO_WINDOW", 0)
 
 

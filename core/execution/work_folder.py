@@ -24,11 +24,7 @@ LONGEST_NOTE = 1 << 24   # bytes; what a run says in a thousand lines is a hundr
 
 
 class WorkFolder:
-    """A folder for finished work.
-
-    Parameters
-    ----------
-    path : of the folder, which is made where it is missing
+    """A folder for finished work, which is made where it is missing.
 
     Raises
     ------
@@ -94,108 +90,44 @@ def _checksums(folder):
     return found
 
 
-class Heard(Progress):
-    """Passes everything on, and remembers the messages.
-
-    Parameters
-    ----------
-    progress : Progress that listens
-
-    Attributes
-    ----------
-    messages : list of ("info" or "warn", text)
-    """
-
-    def __init__(self, progress: Progress):
-        self.progress = progress
-        self.messages: list[tuple[str, str]] = []
-
-    def report(self, fraction: float) -> None:
-        """Pass on."""
-        self.progress.report(fraction)
-
-    def check_cancelled(self) -> None:
-        """Pass on."""
-        self.progress.check_cancelled()
-
-    def info(self, text: str) -> None:
-        """Pass on and remember."""
-        self.messages.append(("info", text))
-        self.progress.info(text)
-
-    def warn(self, text: str) -> None:
-        """Pass on and remember."""
-        self.messages.append(("warn", text))
-        self.progress.warn(text)
-
-
-class KeptResults:
-    """Executor that keeps every result in a work folder and has done only what is not there.
-
-    Parameters
-    ----------
-    executor : Executor that does the rest
-    """
+class KeptResults(Executor):
+    """Executor that keeps every result in a work folder and has another one do only what is not there."""
 
     def __init__(self, executor: Executor, work: WorkFolder):
-        self.executor, self.work = executor, work
-
-    @property
-    def folder(self) -> Path | None:
-        """That of the executor."""
-        return self.executor.folder
-
-    def passing(self) -> Executor:
-        """The executor that does the rest."""
-        return self.executor.passing()
+        self.executor, self.work, self.folder = executor, work, executor.folder
+        # all but the work itself is that of the executor
+        self.sees, self.passing, self.forget, self.release, self.close = (  # type: ignore[method-assign]
+            executor.sees, executor.passing, executor.forget, executor.release, executor.close)
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
-        """Yield the results of all items in their order; see `Executor`."""
         items = list(items)
         # a recipe names the folder, which may be moved
         key = digest((code_digest(), name_of(phase.function), phase.source.recipe(self.work.path), phase.arguments), str(self.work.path))
         folder = self.work.path / f"phase-{key}"
         files = [folder / f"{digest(item)}.plain" for item in items]
-        missing = [k for k, file in enumerate(files) if not is_whole(file)]
+        missing = {file: item for file, item in zip(files, items) if not is_whole(file)}
         if len(missing) < len(items):
             progress.info(f"{len(items) - len(missing)} of {len(items)} parts of the work were finished by an earlier run.")
-        left = set(missing)
         try:
             folder.mkdir(exist_ok=True)
-            for k in missing:   # what the failing power left of a file
-                files[k].unlink(missing_ok=True)
-            made = self.executor.run(phase, [items[k] for k in missing], progress, [files[k] for k in missing])
-            for k, file in enumerate(files):
-                if k not in left:
-                    yield read_plain(file)
-                    continue
-                result = next(made)
-                if not file.exists():
-                    write_plain(file, result)
+            for file in missing:   # what the failing power left of a file
+                file.unlink(missing_ok=True)
+            made = self.executor.run(phase, list(missing.values()), progress, list(missing))
+            for file in files:
+                if file in missing:
+                    del missing[file]   # a later item may be the same
+                    result = next(made)
+                    if not file.exists():
+                        write_plain(file, result)
+                else:
+                    result = read_plain(file)
                 yield result
         except OSError as error:
             raise self.work.error(error) from error
         progress.report(1.0)
 
     def disk_error(self, error: OSError) -> RoadExtractionError:
-        """One sentence about the folder, which cannot be used."""
         return self.work.error(error)
-
-    def sees(self, paths: Sequence[Path]) -> bool:
-        """Whether the workers see files."""
-        return self.executor.sees(paths)
-
-    def forget(self) -> None:
-        """Free the memory in which workers keep what the phases before read from."""
-        self.executor.forget()
-
-    def release(self) -> None:
-        """Free all memory that is of use in further phases alone."""
-        self.executor.release()
-
-    def close(self) -> None:
-        """End what was started; what is finished stays."""
-        self.executor.close()
 
 
 @lru_cache(maxsize=1)

@@ -10,5 +10,5 @@ from ..lazy import public
 __getattr__, __all__ = public(__name__, {
     "correction": ("IntensityReport", "IntensitySettings", "Saturation", "correct_intensity", "saturation_of"),
     "image": ("ImageSettings", "check_fits", "check_image_shows", "make_intensity_image", "write_intensity_image"),
-    "tiled_image": ("IntensityRaster", "TiledImage"),
+    "tiled_image": ("TiledImage",),
 })

@@ -40,17 +40,9 @@ class VehicleDistances:
                             if first <= p.time[-1] + PASS_MARGIN and last >= p.time[0] - PASS_MARGIN]
 
     def of(self, points: Points, kinds: Sequence[int] = (ACROSS_TRACK, FROM_VEHICLE)) -> list[np.ndarray]:
-        """Signed distances from the vehicle.
+        """Signed distances of (N) points from the vehicle, (N,) int32 of 0.1 mm for each of the kinds, left of travel positive.
 
-        Parameters
-        ----------
-        points : (N) road points
-        kinds : which distances are asked for
-
-        Returns
-        -------
-        for each of `kinds` (N,) int32, units of 0.1 mm, left of travel positive: across the track, or horizontally
-        from the vehicle with the sign of the side; UNKNOWN_DISTANCE where no pass drove at the point's time
+        Across the track, or horizontally from the vehicle with the sign of the side; UNKNOWN_DISTANCE where no pass drove at the point's time.
         """
         time, number = points.time, points.pass_number
         found = [np.full(len(points), UNKNOWN_DISTANCE, np.int32) for _ in kinds]
@@ -131,18 +123,10 @@ LEVEL_OF_COUNT = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * LEVELS_PER_DO
 
 
 def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
-    """Median and lower spread of asphalt, among values of asphalt and paint.
+    """Median and lower spread (down to the 15.9 % quantile) of asphalt, among (N,) values of asphalt and paint without NaN, N > 0.
 
     Paint is at the bright end, so values brighter than three spreads above the median are left out; so are those four standard deviations below it,
     of dark repairs and water. How much that is, the 30 % quantile tells, which they move less than the lower spread. Three rounds are enough.
-
-    Parameters
-    ----------
-    values : (N,) float, no NaN, at least one
-
-    Returns
-    -------
-    median, spread : the spread is the distance from the median to the 15.9 % quantile
     """
     values = ascending(values)
     for _ in range(CLEANING_ROUNDS):
@@ -197,16 +181,13 @@ class IntensityHistograms:
 
     def count(self, scanner: np.ndarray, distances: Sequence[np.ndarray], intensity: np.ndarray,
               kinds: Sequence[int] = (ACROSS_TRACK, FROM_VEHICLE)) -> list[BinCounts]:
-        """Counts of some points, to be added with `add`.
-
-        A point whose distance or intensity is not known counts nowhere.
+        """Counts of some points, to be added with `add`; a point whose distance or intensity is not known counts nowhere.
 
         Parameters
         ----------
         scanner : (N,) int
         distances : for each of `kinds` (N,) int32 of `VehicleDistances.of`
         intensity : (N,) NaN where it could not be corrected
-        kinds : kinds of distance
         """
         known = distances[0] != UNKNOWN_DISTANCE
         if intensity.dtype.kind == "f":
@@ -230,13 +211,7 @@ class IntensityHistograms:
         return found
 
     def add(self, found: Sequence[BinCounts], times: int = 1) -> None:
-        """Add counts.
-
-        Parameters
-        ----------
-        found : result of `count`
-        times : how many points each counted point stands for
-        """
+        """Add results of `count`; each counted point stands for some `times` of them."""
         for some in found:
             bins = slice(some.first, some.first + some.counts.shape[1])
             self.counts[some.kind, :, bins] += some.counts if times == 1 else times * some.counts
@@ -258,18 +233,10 @@ class IntensityHistograms:
 
 
 def asphalt_of_histograms(histograms: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Median and lower spread of asphalt in each histogram of levels.
+    """Median and lower spread of asphalt in each of (..., INTENSITY_LEVELS) histograms of levels, NaN where there are fewer than 200 points.
 
     Levels brighter than three lower spreads above the median are taken for paint
     and left out, and the median is taken again: paint never raises it.
-
-    Parameters
-    ----------
-    histograms : (..., INTENSITY_LEVELS) int
-
-    Returns
-    -------
-    median, sigma : (...) intensity; NaN where there are fewer than 200 points
     """
     total = histograms.sum(axis=-1)
     known = total >= MIN_ASPHALT_POINTS
@@ -350,18 +317,7 @@ class AsphaltTable:
 
     @staticmethod
     def corrections(lookup: np.ndarray, scanner: np.ndarray, distance: np.ndarray) -> np.ndarray:
-        """Corrections of points.
-
-        Parameters
-        ----------
-        lookup : (scanners, LOOKUP_STEPS + 1) of the method of that name
-        scanner : (N,) int
-        distance : (N,) int32 of `VehicleDistances.of`
-
-        Returns
-        -------
-        (N,) float32
-        """
+        """(N,) float32 corrections of points by the array of `lookup`, their scanners (N,) and the distances (N,) int32 of `VehicleDistances.of`."""
         index = distance + np.int32(LOOKUP_HALF)
         index >>= LOOKUP_SHIFT
         np.clip(index, 0, LOOKUP_STEPS - 1, out=index)
@@ -377,8 +333,6 @@ def is_logarithmic(median: np.ndarray, sigma: np.ndarray, weight: np.ndarray) ->
     On a linear scale the spread falls with the level, on a logarithmic one it does not: the slope of log(spread) over log(level) is 1 or 0. A scale
     whose level hardly falls is taken as linear; there both corrections do the same. Our own rule.
 
-    Parameters
-    ----------
     median, sigma, weight : arrays of one shape: asphalt and number of points by distance; NaN where unknown
     """
     use = np.isfinite(median) & np.isfinite(sigma) & (sigma > 0) & (median > 0)
@@ -393,13 +347,7 @@ def is_logarithmic(median: np.ndarray, sigma: np.ndarray, weight: np.ndarray) ->
 
 
 def weighted_median(values: np.ndarray, weights: np.ndarray) -> float:
-    """The value below which half of the weight lies.
-
-    Parameters
-    ----------
-    values : (N,) float, at least one
-    weights : (N,) 0 or more
-    """
+    """The value below which half of the weight lies, of (N,) values, N > 0, with (N,) weights of 0 or more."""
     order = np.argsort(values, kind="stable")
     sums = np.cumsum(weights[order])
     return float(values[order][np.searchsorted(sums, 0.5 * sums[-1])])

@@ -78,7 +78,6 @@ class _ScannerTurns:
 
     @classmethod
     def none(cls) -> _ScannerTurns:
-        """No turns."""
         return cls(np.full(SOURCE_IDS, np.nan))
 
     @property
@@ -145,13 +144,7 @@ class _BeamGeometry:
 
     @classmethod
     def of(cls, p: Pass, points: Points, time: np.ndarray) -> _BeamGeometry:
-        """Geometry of the points of a pass.
-
-        Parameters
-        ----------
-        points : (N) points
-        time : (N,) s, the time at which the position of the vehicle is taken for each point
-        """
+        """Geometry of (N) points of a pass, each seen from where the vehicle was at a time, (N,) s."""
         px, py, pz = p.position(time)
         dx, dy = points.x - px, points.y - py
         by_roll: np.ndarray | float = 0.0
@@ -185,13 +178,7 @@ class Beams:
 
     @classmethod
     def of(cls, road_points: RoadPoints, frame: RoadFrame, scanners: int, progress: Progress = Progress()) -> Beams | None:
-        """Beams of a survey's scanners; None where every scanner has one, or all of one brightness.
-
-        Parameters
-        ----------
-        frame : RoadFrame with times
-        scanners : their numbers are below this
-        """
+        """Beams of a survey's scanners, numbered below `scanners`; None where every scanner has one, or all of one brightness."""
         samples = _samples(road_points, frame, scanners)
         if not samples:
             return None
@@ -253,7 +240,6 @@ class Beams:
 
     @property
     def count(self) -> int:
-        """How many beams were equalised."""
         return sum(len(corrections) for corrections in self.corrections.values())
 
 
@@ -305,8 +291,6 @@ def _histogram(place):
 def sharpness(counts: np.ndarray) -> float:
     """How much fuller the elevation bin of a point is, on average, than the mean of a degree around it: 1 for an even distribution.
 
-    Parameters
-    ----------
     counts : (ELEVATION_BINS,) float, points at each elevation
     """
     total = counts.sum()

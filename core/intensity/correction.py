@@ -58,13 +58,7 @@ class Saturation:
 
     @classmethod
     def from_levels(cls, levels: np.ndarray, highest: float | None = None) -> Saturation:
-        """Saturation of counts of points.
-
-        Parameters
-        ----------
-        levels : (scanners, INTENSITY_LEVELS) int, how many points have each level
-        highest : the highest intensity, where it is known exactly
-        """
+        """Saturation of (scanners, INTENSITY_LEVELS) counts of points; `highest` is the highest intensity, where it is known exactly."""
         levels = levels[levels.any(axis=1)]
         if not len(levels):
             return cls()
@@ -210,38 +204,22 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     step = _sampling_step(road_points)
     before, after = IntensityHistograms(scanners), IntensityHistograms(scanners)
     modelled = IntensityHistograms(scanners) if beams else before
-    executor, length = road_points.executor, road_points.store.section_length
-    stretches = road_points.store.stretches(STRETCH_POINTS if executor.folder else 0)
-
-    def run(function, arguments, part):
-        phase = Phase(function, road_points, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length))
-        return executor.run(phase, stretches, part)
-
     # points without a position of the vehicle, and all points
     without_vehicle, highest = np.zeros(2, np.int64), 0
-    for raw, equal, brightest, lost in run(levels_of_stretch, (list(frame.passes), beams, scanners, step), progress.part(0.2, 0.5)):
+    arguments = list(frame.passes), beams, scanners, step
+    for raw, equal, brightest, lost in _run(levels_of_stretch, road_points, arguments, progress.part(0.2, 0.5)):
         before.add(raw, step)
         modelled.add(equal, step)
         without_vehicle += lost
         highest = max(highest, brightest)
     table = AsphaltTable.from_counts(modelled.counts)
-    if without_vehicle[0] > MAX_SHARE_WITHOUT_VEHICLE * without_vehicle[1]:
-        reason = ("Intensity was not corrected: the trajectory does not say where the vehicle was when "
-                  f"{without_vehicle[0]:,} of {without_vehicle[1]:,} points were measured.")
-    elif table is None:
-        reason = "Intensity was not corrected: there are too few road points to estimate the intensity of asphalt at each distance."
+    reason = _reason_of_counts(table, *without_vehicle.tolist())
     if reason or table is None:
         progress.warn(reason)
         return road_points, IntensityReport(reason=reason)
     if settings.scale != "automatic":
         table.logarithmic = settings.scale == "logarithmic"
-
-    kinds, lookup = np.unique(table.distance_kind[points_by_scanner[:scanners] > 0]).tolist(), table.lookup()
-    store = road_points.store.with_column("corrected", executor.folder)
-    for road, found, counts in run(corrected_of_stretch, (list(frame.passes), beams, table, lookup, kinds, step), progress.part(0.5, 1.0)):
-        for section, corrected in found:
-            store.put(road, section, corrected)
-        after.add(counts, step)
+    store = _corrected_store(road_points, table, (list(frame.passes), beams), points_by_scanner, step, after, progress.part(0.5, 1.0))
     report = _report(before.counts, after.counts, table, points_by_scanner)
     report.beams = beams.count if beams else 0
     report.saturation = Saturation.from_levels(before.counts[ACROSS_TRACK].sum(axis=1), highest)
@@ -252,14 +230,41 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     return replace(road_points, store=store, has_corrected=True), report
 
 
+def _run(function, road_points, arguments, progress):
+    """Yield the results of a phase, a function of stretches of the road."""
+    executor, length = road_points.executor, road_points.store.section_length
+    phase = Phase(function, road_points, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length))
+    return executor.run(phase, road_points.store.stretches(STRETCH_POINTS if executor.folder else 0), progress)
+
+
+def _reason_of_counts(table, lost, points):
+    """Why nothing can be corrected with a table of asphalt, of which so many points had no position of the vehicle; "" where it can."""
+    if lost > MAX_SHARE_WITHOUT_VEHICLE * points:
+        return ("Intensity was not corrected: the trajectory does not say where the vehicle was when "
+                f"{lost:,} of {points:,} points were measured.")
+    if table is None:
+        return "Intensity was not corrected: there are too few road points to estimate the intensity of asphalt at each distance."
+    return ""
+
+
+def _corrected_store(road_points, table, passes_and_beams, points_by_scanner, step, after, progress):
+    """The points with `corrected`, whose levels are added to the histograms `after`."""
+    kinds = np.unique(table.distance_kind[points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
+    store = road_points.store.with_column("corrected", road_points.executor.folder)
+    arguments = *passes_and_beams, table, table.lookup(), kinds, step
+    for road, sections, counts in _run(corrected_of_stretch, road_points, arguments, progress):
+        for section, corrected in sections:
+            store.put(road, section, corrected)
+        after.add(counts, step)
+    return store
+
+
 def levels_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequence[Pass], beams: Beams | None, scanners: int,
                       step: int) -> tuple[list[BinCounts], list[BinCounts], int, np.ndarray]:
     """The phase that counts intensities.
 
     Parameters
     ----------
-    stretch : Stretch of a road
-    passes : of the road frame
     beams : Beams whose brightness is made equal, None for none
     scanners : their numbers are below this
     step : points in every step-th centimetre of the road are counted
@@ -289,15 +294,13 @@ def corrected_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequ
 
     Parameters
     ----------
-    road_points, stretch, passes, beams, step : as of `levels_of_stretch`
+    passes, beams, step : as of `levels_of_stretch`
     table, lookup : AsphaltTable and its `lookup`
     kinds : kinds of distance that it needs
 
     Returns
     -------
-    road : number
-    found : (number of a section, (N,) float32 corrected intensity) of each section
-    counts : of the corrected intensities
+    the road, (number of a section, (N,) float32 corrected intensity) of each section, and counts of the corrected intensities
     """
     histograms, found, counts = IntensityHistograms(len(table.distance_kind)), [], []
     for key in road_points.store.in_stretch(stretch):

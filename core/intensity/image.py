@@ -70,7 +70,6 @@ class _WeightedSums:
     weights: np.ndarray
 
     def add_to(self, other: _WeightedSums) -> None:
-        """Add the part that lies in another rectangle to the sums there."""
         height, width = self.total.shape
         down, right = other.row - self.row, self.column - other.column
         r0, r1 = max(-down, 0), min(other.total.shape[0] - down, height)
@@ -93,7 +92,11 @@ def _lattice_cell(units: np.ndarray | int, origin: float, cell_size: float) -> A
 
 def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.ndarray], origin: np.ndarray, settings: ImageSettings,
                         step: int = 1) -> _WeightedSums:
-    """Sums of weights and of weighted values per cell.
+    """Sums of weights and of weighted values per cell of a rectangle that holds all cells within reach.
+
+    Points are taken in blocks and sorted by cell. What the points of one cell add to its neighbours is then one row of a matrix product. Weights
+    and sums are in single precision, far finer than intensities are. A cell and a half away or farther, weights are so small that a share of the
+    points gives the same result.
 
     Parameters
     ----------
@@ -101,16 +104,6 @@ def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nd
     brightness : function of (N,) float32 intensities that returns (N,) float32 factors of the points' weights
     origin : (2,) or more, map coordinates that x and y of the points leave out, m
     step : one of `step` points stands for all of them on cells farther than the next
-
-    Returns
-    -------
-    _WeightedSums of a rectangle that holds all cells within reach
-
-    Notes
-    -----
-    Points are taken in blocks and sorted by cell. What the points of one cell add to its neighbours is then one row of a matrix product. Weights
-    and sums are in single precision, far finer than intensities are. A cell and a half away or farther, weights are so small that a share of the
-    points gives the same result.
     """
     x, y, values = points.records["x"], points.records["y"], points.value
     reach, cell = _reach_of(settings), settings.cell_size
@@ -234,27 +227,35 @@ WIDTH_SAMPLE_STEP = 16      # the width of a piece is taken from every 16th poin
 MAX_RANKED_POINTS = 50_000  # points of a piece whose intensities are ranked; of twice as many an evenly spread share
 TILES_AHEAD = 16        # the sums of a piece are kept while they are needed again within so many tiles
 
-PieceKey = tuple[int, int]      # road, number of the piece along it
+PIECE_LENGTH = RANKING_WINDOW / PIECES_PER_WINDOW
 Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice
+Tile = tuple[int, int]   # column and row of tiles
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """A piece of road that is interpolated at once.
+
+    road, number : of the road, and of the piece along it
+    extent : Extent of the cells that its points reach
+    step : one of so many points weighs on farther cells
+    limits : 1 % and 99 % of the intensities about it
+    """
+
+    road: int
+    number: int
+    extent: Extent
+    step: int
+    limits: tuple[float, float]
 
 
 def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = ImageSettings(), progress: Progress = Progress(),
                          path: str | PathLike | None = None, memory_limit: int = TILE_MEMORY) -> TiledImage:
-    """Interpolate the intensity of road points into an image that can be read at once, and into a GeoTIFF where a path is given.
+    """The image of `write_intensity_image` in memory, to be read at once like an IntensityImage, and in a GeoTIFF too where a path is given.
 
     Parameters
     ----------
-    path : of the GeoTIFF, the same pixels as `write_intensity_image` writes; None for no file
     memory_limit : bytes of pixels kept in memory; the others go to a temporary file, and all where other processes work on the points
-
-    Returns
-    -------
-    TiledImage, which `extract_markings` reads like an IntensityImage
-
-    Raises
-    ------
-    RoadExtractionError
-        If there are no points, the image has too many tiles, or the file cannot be written.
     """
     grid, tiles = _interpolate(road_points, settings, progress)
     image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, memory_limit, road_points.executor.folder)
@@ -311,17 +312,7 @@ def write_intensity_image(road_points: RoadPoints, path: str | PathLike, setting
 
 
 def check_fits(width: float, height: float, settings: ImageSettings) -> None:
-    """Refuse an image that would have too many tiles for one file.
-
-    Parameters
-    ----------
-    width, height : m, east and north
-
-    Raises
-    ------
-    RoadExtractionError
-        If it has more than 2**24 tiles.
-    """
+    """Refuse an image of so many metres east and north that would have too many tiles for one file (2**24)."""
     side = GEOTIFF_TILE * settings.cell_size
     if np.ceil(width / side) * np.ceil(height / side) > MAX_TILES:
         raise RoadExtractionError(
@@ -334,40 +325,72 @@ def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Pro
     if not len(road_points):
         raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
-    together = LOOKED_WINDOWS if road_points.executor.folder else 1
-    phase = Phase(windows_of_image, road_points, (settings,), lambda some: _place(road_points, some[0], RANKING_WINDOW))
-    tasks = [windows[k:k + together] for k in range(0, len(windows), together)]
-    found = [one for some in road_points.executor.run(phase, tasks, progress.part(0.0, 0.3)) for one in some]
-    extents = {piece: extent for _, window_extents, _ in found for piece, extent in window_extents.items()}
-    steps = {piece: step for *_, window_steps in found for piece, step in window_steps.items()}
+    looked = _run(windows_of_image, road_points, windows, LOOKED_WINDOWS, settings, progress.part(0.0, 0.3),
+                  lambda window: (*window, RANKING_WINDOW))
+    pieces = [piece for window in looked for piece in window]
     # the grid is fixed in the map: pixel column = column of the map's lattice minus the first one
-    c0, c1 = min(e[0] for e in extents.values()), max(e[1] for e in extents.values()) + 1
-    r0, r1 = min(e[2] for e in extents.values()), max(e[3] for e in extents.values()) + 1
+    extents = np.array([piece.extent for piece in pieces], np.int64)
+    (c0, r0), (c1, r1) = extents[:, ::2].min(axis=0).tolist(), (extents[:, 1::2].max(axis=0) + 1).tolist()
     check_fits((c1 - c0) * settings.cell_size, (r1 - r0) * settings.cell_size, settings)
     grid = _Grid(settings, c0, r1 - 1, c1 - c0, r1 - r0)
-    limits = {window: limits for window, (limits, *_) in zip(windows, found)}
-    pieces_of_tile: dict[tuple[int, int], list[PieceKey]] = {}
-    for piece, extent in sorted(extents.items()):
-        for tile in grid.tiles_of(extent):
+    return grid, _tiles(grid, pieces, road_points, settings, progress.part(0.3, 1.0))
+
+
+def _tiles(grid: _Grid, pieces: Sequence[_Piece], road_points: RoadPoints, settings: ImageSettings,
+           progress: Progress) -> Iterator[tuple[int, int, np.ndarray]]:
+    work = _pieces_by_tile(grid, pieces)
+    made, done = _lifetimes(work)
+    sums = _run(sums_of_pieces, road_points, [piece for new in made for piece in new], PIECES_PER_TASK, settings, progress,
+                lambda piece: (piece.road, piece.number, PIECE_LENGTH))
+    kept: dict[_Piece, _WeightedSums] = {}
+    for ((column, row), parts), new, old in zip(work, made, done):
+        kept.update((piece, next(sums)) for piece in new)
+        values = grid.tile(column, row, [kept[piece] for piece in parts])
+        if values is not None:
+            yield column * GEOTIFF_TILE, row * GEOTIFF_TILE, values
+        for piece in old:
+            del kept[piece]
+
+
+def _run(function, road_points, items, together, settings, progress, place):
+    """Yield the results of a phase of items, some of them together in a task of a worker process; `place` gives road, number and length of one."""
+    executor = road_points.executor
+    together = together if executor.folder else 1
+
+    def name(task):
+        road, number, length = place(task[0])
+        return road_points.survey.stretch(road, number * length, (number + 1) * length)
+
+    tasks = [items[k:k + together] for k in range(0, len(items), together)]
+    return (result for results in executor.run(Phase(function, road_points, (settings,), name), tasks, progress) for result in results)
+
+
+def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, list[_Piece]]]:
+    """Pieces that touch each tile, in the order of the road, so that a tile finds most of its pieces still there."""
+    pieces_of_tile: dict[Tile, list[_Piece]] = {}
+    for piece in sorted(pieces, key=lambda piece: (piece.road, piece.number)):
+        for tile in grid.tiles_of(piece.extent):
             pieces_of_tile.setdefault(tile, []).append(piece)
-    # in the order of the road, so that a tile finds most of its pieces still there
-    work = sorted(pieces_of_tile.items(), key=lambda item: (item[1][0], item[0]))
+    return sorted(pieces_of_tile.items(), key=lambda item: (item[1][0].road, item[1][0].number, item[0]))
 
-    def sums(pieces: list[PieceKey]) -> Iterator[_WeightedSums]:
-        executor = road_points.executor
-        items = [(piece, steps[piece], limits[piece[0], piece[1] // PIECES_PER_WINDOW]) for piece in pieces]
-        together = PIECES_PER_TASK if executor.folder else 1
-        phase = Phase(sums_of_pieces, road_points, (settings,), lambda some: _place(road_points, some[0][0], RANKING_WINDOW / PIECES_PER_WINDOW))
-        tasks = [items[k:k + together] for k in range(0, len(items), together)]
-        return (found for some in executor.run(phase, tasks, progress.part(0.3, 1.0)) for found in some)
 
-    def tiles() -> Iterator[tuple[int, int, np.ndarray]]:
-        for (column, row), parts in _with_pieces(work, sums):
-            values = grid.tile(column, row, parts)
-            if values is not None:
-                yield column * GEOTIFF_TILE, row * GEOTIFF_TILE, values
+def _lifetimes(work: list[tuple[Tile, list[_Piece]]]) -> tuple[list[list[_Piece]], list[list[_Piece]]]:
+    """Of each tile, the pieces that are computed for it and those that are let go after it.
 
-    return grid, tiles()
+    A piece is kept for the tiles that follow soon, and computed again for those that follow late, such as the ones that another road crosses.
+    """
+    uses: dict[_Piece, list[int]] = {}
+    for k, (_, pieces) in enumerate(work):
+        for piece in pieces:
+            uses.setdefault(piece, []).append(k)
+    made: list[list[_Piece]] = [[] for _ in work]
+    done: list[list[_Piece]] = [[] for _ in work]
+    for piece, tiles in uses.items():
+        cuts = np.flatnonzero(np.diff(tiles) > TILES_AHEAD)
+        for first, last in zip(np.r_[0, cuts + 1], np.r_[cuts, len(tiles) - 1]):
+            made[tiles[first]].append(piece)
+            done[tiles[last]].append(piece)
+    return made, done
 
 
 def _window_numbers(road_points, road):
@@ -375,52 +398,29 @@ def _window_numbers(road_points, road):
     return range(int(np.floor(start / RANKING_WINDOW)), int(np.ceil(end / RANKING_WINDOW)))
 
 
-def _place(road_points, key, length):
-    """What messages call a window or piece."""
-    road, number = key
-    return road_points.survey.stretch(road, number * length, (number + 1) * length)
+def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]], settings: ImageSettings) -> list[list[_Piece]]:
+    """The phase that looks what there is to interpolate in some windows, each a road and a number along it: the pieces with points of each."""
+    return [_pieces_of_window(road_points, *window, settings) for window in windows]
 
 
-def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]],
-                     settings: ImageSettings) -> list[tuple[tuple[float, ...], dict[PieceKey, Extent], dict[PieceKey, int]]]:
-    """The phase that looks what there is to interpolate in some windows.
-
-    Parameters
-    ----------
-    windows : road and number along it of each
-
-    Returns
-    -------
-    of each window:
-    limits : 1 % and 99 % of its intensities
-    extents : {piece: Extent} of its pieces
-    steps : {piece: n}, one of n points of a piece weighs on farther cells
-    """
-    return [_look_at(road_points, *window, settings) for window in windows]
-
-
-def _look_at(road_points, road, number, settings):
-    """What `windows_of_image` returns of one window."""
-    reach = _reach_of(settings)
-    extents: dict[PieceKey, Extent] = {}
-    steps: dict[PieceKey, int] = {}
-    values = []
+def _pieces_of_window(road_points, road, number, settings):
+    reach, cell = _reach_of(settings), settings.cell_size
+    pieces, values = [], []
     for piece in range(number * PIECES_PER_WINDOW, (number + 1) * PIECES_PER_WINDOW):
-        points = _points_of(road_points, (road, piece))
+        points = _points_of(road_points, road, piece)
         if len(points):
-            steps[road, piece] = _sampling_step(points, settings)
-            (c0, c1), (r0, r1) = ([int(_lattice_cell(int(end), o, settings.cell_size)) for end in (c.min(), c.max())]
+            step = _sampling_step(points, settings)
+            (c0, c1), (r0, r1) = ([int(_lattice_cell(int(end), o, cell)) for end in (c.min(), c.max())]
                                   for c, o in ((points.records[name], o) for name, o in zip("xy", road_points.origin)))
-            extents[road, piece] = c0 - reach, c1 + reach, r0 - reach, r1 + reach
-            values.append(points[::max(steps[road, piece], len(points) // MAX_RANKED_POINTS)].value)
-    return tuple(quantiles(np.concatenate(values), [0.01, 0.99]).tolist()) if values else (0.0, 1.0), extents, steps
+            pieces.append((road, piece, (c0 - reach, c1 + reach, r0 - reach, r1 + reach), step))
+            values.append(points[::max(step, len(points) // MAX_RANKED_POINTS)].value)
+    limits = tuple(quantiles(np.concatenate(values), [0.01, 0.99]).tolist()) if values else ()
+    return [_Piece(*piece, limits) for piece in pieces]
 
 
-def _points_of(road_points, piece):
-    """The points of one piece, 5 m of road."""
-    road, number = piece
-    length = RANKING_WINDOW / PIECES_PER_WINDOW
-    return road_points.window(road, number * length, (number + 1) * length)
+def _points_of(road_points, road, number):
+    """The points of one piece."""
+    return road_points.window(road, number * PIECE_LENGTH, (number + 1) * PIECE_LENGTH)
 
 
 def _sampling_step(points: Points, settings: ImageSettings) -> int:
@@ -430,21 +430,16 @@ def _sampling_step(points: Points, settings: ImageSettings) -> int:
     """
     d = points[::WIDTH_SAMPLE_STEP].records["d"]
     width = max((int(d.max()) - int(d.min())) * COORDINATE_SCALE, settings.cell_size)
-    return max(int(len(points) * settings.cell_size**2 / (RANKING_WINDOW / PIECES_PER_WINDOW * width) / FAR_POINTS_PER_CELL), 1)
+    return max(int(len(points) * settings.cell_size**2 / (PIECE_LENGTH * width) / FAR_POINTS_PER_CELL), 1)
 
 
-def sums_of_pieces(road_points: RoadPoints, items: list[tuple[PieceKey, int, tuple[float, float]]], settings: ImageSettings) -> list[_WeightedSums]:
-    """The phase that interpolates pieces.
-
-    Parameters
-    ----------
-    items : of each the piece, one of how many of its points weighs on farther cells, and 1 % and 99 % of the intensities about it
-    """
-    return [_sums_of_piece(road_points, *item, settings) for item in items]
+def sums_of_pieces(road_points: RoadPoints, pieces: list[_Piece], settings: ImageSettings) -> list[_WeightedSums]:
+    """The phase that interpolates pieces."""
+    return [_sums_of_piece(road_points, piece, settings) for piece in pieces]
 
 
-def _sums_of_piece(road_points, piece, step, limits, settings):
-    low, high = limits
+def _sums_of_piece(road_points, piece, settings):
+    low, high = piece.limits
 
     def brightness(value):
         found = value - np.float32(low)
@@ -455,33 +450,7 @@ def _sums_of_piece(road_points, piece, step, limits, settings):
         found += np.float32(1.0 - settings.beta)
         return found
 
-    return _interpolation_sums(_points_of(road_points, piece), brightness, road_points.origin, settings, step)
-
-
-def _with_pieces(work: list[tuple[tuple[int, int], list[PieceKey]]],
-                 sums: Callable[[list[PieceKey]], Iterator[_WeightedSums]]) -> Iterator[tuple[tuple[int, int], list[_WeightedSums]]]:
-    """Yield (tile, _WeightedSums of its pieces) in order; `sums` are those of pieces, in their order.
-
-    A piece is kept for the tiles that follow soon, and computed again for those that follow late, such as the ones that another road crosses.
-    """
-    uses: dict[PieceKey, list[int]] = {}
-    for k, (_, pieces) in enumerate(work):
-        for piece in pieces:
-            uses.setdefault(piece, []).append(k)
-    made: list[list[PieceKey]] = [[] for _ in work]
-    done: list[list[PieceKey]] = [[] for _ in work]
-    for piece, tiles in uses.items():
-        cuts = np.flatnonzero(np.diff(tiles) > TILES_AHEAD)
-        for first, last in zip(np.r_[0, cuts + 1], np.r_[cuts, len(tiles) - 1]):
-            made[tiles[first]].append(piece)
-            done[tiles[last]].append(piece)
-    results = sums([piece for pieces in made for piece in pieces])
-    kept: dict[PieceKey, _WeightedSums] = {}
-    for k, (tile, pieces) in enumerate(work):
-        kept.update((piece, next(results)) for piece in made[k])
-        yield tile, [kept[piece] for piece in pieces]
-        for piece in done[k]:
-            del kept[piece]
+    return _interpolation_sums(_points_of(road_points, piece.road, piece.number), brightness, road_points.origin, settings, piece.step)
 
 
 class _Grid:
@@ -499,7 +468,7 @@ class _Grid:
     def summary(self) -> str:
         return f"Intensity image: {self.width:,} x {self.height:,} cells of {self.cell:g} m."
 
-    def tiles_of(self, extent: Extent) -> list[tuple[int, int]]:
+    def tiles_of(self, extent: Extent) -> list[Tile]:
         """(column, row) of every tile that an extent touches."""
         c0, c1, r0, r1 = extent
         return [(column, row) for column in range((c0 - self.column) // GEOTIFF_TILE, (c1 - self.column) // GEOTIFF_TILE + 1)

@@ -5,9 +5,8 @@ The chain reads the image through this object; the GeoTIFF is written for the us
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple, Protocol, Union, cast
+from typing import NamedTuple, cast
 from uuid import uuid4
 
 import numpy as np
@@ -17,67 +16,6 @@ from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
 from ..survey.store.spill_file import PART_WIDTHS, ColumnFile, Packing, SpillFile, StoredColumn
 
 TILE_MEMORY = 64 * 2**20   # bytes of pixels kept in memory; the tiles that follow go to a temporary file
-
-
-Origin = Union[Sequence[float], np.ndarray]   # two or more map coordinates, m
-
-
-class IntensityRaster(Protocol):
-    """What the extraction of markings reads: an open GeoTIFF (IntensityImage) or a TiledImage.
-
-    Attributes
-    ----------
-    geotransform : six numbers as GDAL has them, map coordinates; north up, square pixels
-    cell_size : metres
-    width, height : pixels
-    crs : WKT, "" where it is unknown
-    """
-
-    geotransform: tuple[float, ...]
-    cell_size: float
-    width: int
-    height: int
-    crs: str
-
-    def pixel_of(self, x: np.ndarray, y: np.ndarray, origin: Origin = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
-        """Column and row of places; pixel 0 reaches from 0 to 1.
-
-        Parameters
-        ----------
-        x, y : (N,) coordinates that leave out `origin`, m
-        origin : (2,) or more map coordinates, m
-
-        Returns
-        -------
-        column, row : (N,) float
-        """
-
-    def sample(self, x: np.ndarray, y: np.ndarray, origin: Origin = (0.0, 0.0), bilinear: bool = False) -> np.ndarray:
-        """Image values at places.
-
-        Parameters
-        ----------
-        x, y : (N,) coordinates that leave out `origin`, m
-        origin : (2,) or more map coordinates, m
-        bilinear : between the centres of four pixels, else the pixel that a place lies in
-
-        Returns
-        -------
-        (N,) float32, NaN where there is no data
-        """
-
-    def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
-        """Values of a window.
-
-        Parameters
-        ----------
-        column, row : of the first pixel, which may lie outside the image
-        width, height : pixels
-
-        Returns
-        -------
-        (height, width) float32, NaN where there is no data or no image
-        """
 
 
 class _StoredTile(NamedTuple):
@@ -97,9 +35,6 @@ class TiledImage(IntensityImage):
 
     Parameters
     ----------
-    geotransform : six numbers as GDAL has them, map coordinates
-    width, height : pixels
-    crs : WKT, "" where it is unknown
     memory_limit : bytes of pixels kept in memory; the tiles that follow go to a temporary file
     folder : where all pixels go instead, so that other processes can read them; None for none
     """
@@ -122,13 +57,7 @@ class TiledImage(IntensityImage):
             geotransform=[float(number) for number in self.geotransform], width=int(self.width), height=int(self.height), crs=self.crs))
 
     def put(self, column: int, row: int, values: np.ndarray) -> None:
-        """Put a tile.
-
-        Parameters
-        ----------
-        column, row : first pixel of the tile, multiples of its side
-        values : (H, W) float32, NODATA or NaN where there is none
-        """
+        """Put a tile of (H, W) float32, NODATA or NaN where there is none; column and row of its first pixel are multiples of its side."""
         known = np.isfinite(values) & (values != np.float32(NODATA))
         rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
         if not len(rows):
@@ -146,17 +75,7 @@ class TiledImage(IntensityImage):
         self._tiles[column // GEOTIFF_TILE, row // GEOTIFF_TILE] = _StoredTile(*first, pixels.shape, stored)
 
     def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
-        """Values of a window.
-
-        Parameters
-        ----------
-        column, row : of the first pixel, which may lie outside the image
-        width, height : pixels
-
-        Returns
-        -------
-        (height, width) float32, NaN where there is no data or no image
-        """
+        """(height, width) float32 from a first pixel on, which may lie outside the image; NaN where there is no data or no image."""
         values = np.full((height, width), np.nan, np.float32)
         c0, c1 = max(column, 0), min(column + width, self.width)
         r0, r1 = max(row, 0), min(row + height, self.height)
@@ -184,7 +103,6 @@ class TiledImage(IntensityImage):
         return [(column * GEOTIFF_TILE, row * GEOTIFF_TILE) for column, row in sorted(self._tiles, key=lambda tile: tile[::-1])]
 
     def close(self) -> None:
-        """Forget the pixels, and give the disk space back."""
         self._tiles = {}
         if self._file is not None:
             self._file.close()

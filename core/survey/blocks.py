@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..common.parallel import ScratchBuffers
-from .frame.projection import POINTS_PER_PROJECTION, RoadProjection
+from .frame.projection import RoadProjection
 from .frame.road_frame import RoadFrame
 from .las.point_fields import EVER, SCANNER_FIELDS, IntensitySource, LasAxis, flagged, times_by_value, valid_points
 from .las.samples import TimeSlots
@@ -18,7 +18,7 @@ from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
 from .store.section_store import PartitionedPoints, SectionStore
 from .trajectory.time_systems import SECONDS_PER_WEEK
-from .weights import READING
+from .weights import FRAME, READING
 
 if TYPE_CHECKING:
     import laspy
@@ -142,8 +142,8 @@ class _BlockProjector:
         names = set(block.point_format.dimension_names)
         axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
         # small pieces stay in the processor cache
-        for first in range(0, len(block), POINTS_PER_PROJECTION):
-            yield from self._piece(block[first:first + POINTS_PER_PROJECTION], names, axes, found, ground)
+        for first in range(0, len(block), FRAME.points_per_projection):
+            yield from self._piece(block[first:first + FRAME.points_per_projection], names, axes, found, ground)
 
     def _piece(self, piece, names, axes, found, ground):
         buffers = self._scratch.of(len(piece))

@@ -12,12 +12,12 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
-from ..common.progress import Progress
+from ..common.progress import Progress, RememberedMessages
 from ..execution.choice import ExecutionSettings, cluster_for, executor_for
 from ..execution.phase import THREADS, Executor, digest
-from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
+from ..execution.work_folder import KeptResults, WorkFolder, code_digest
 from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
-from .adjustment.adjust import adjust_passes, compare_carriageways, said_of_levels
+from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_levels
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import LOWEST_SENSOR, fitted_trajectory
 from .blocks import PointChoice, unwrap_week
@@ -29,14 +29,14 @@ from .las.point_fields import check_coloured, intensity_source_of, without_inten
 from .las.reader import CloudHeader, read_headers
 from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
-from .store.section_store import SECTION_LENGTH, SectionStore
+from .store.section_store import SectionStore
 from .store.spill_file import parts_are_whole
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import align_time, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
-from .weights import READING
+from .weights import READING, STORE
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -105,7 +105,7 @@ def _kept_survey(work, executor, read, progress):
         found = _found_survey(work, name, files, progress)
         if found is not None:
             return found
-        heard = Heard(progress)
+        listener = RememberedMessages(progress)
         parts = WorkFolder(str(work.path / f"{name}.parts"))
         if not parts_are_whole(parts.path / "points"):
             parts.discard()
@@ -113,14 +113,14 @@ def _kept_survey(work, executor, read, progress):
         reading = KeptResults(_readers(executor.executor, files, progress), parts)
         shared = _SharedReading(reading, executor.executor, parts.path / "points", work.begin(name))
         try:
-            survey = read_survey(*read, heard, shared)
+            survey = read_survey(*read, listener, shared)
         except RoadExtractionError:
             # another run, which was quicker, has removed the parts
             found = _found_survey(work, name, files, progress)
             if found is None:
                 raise
             return found
-        work.finish(name, survey.folder, heard.messages)
+        work.finish(name, survey.folder, listener.messages)
         parts.discard()
         return survey
     except OSError as error:
@@ -304,7 +304,7 @@ def _see_passes(survey, fit_passes, measured, shared, progress):
             file.unlink()
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
     if len(survey.frame.roads) > 1:
-        for said in said_of_levels(survey.frame):
+        for said in warnings_of_levels(survey.frame):
             progress.warn(said)
         if fit_passes and survey.has_time:
             compare_carriageways(survey, progress.part(1.0, 1.0))
@@ -316,8 +316,8 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     Threads work section by section, and Python lets several of them work at once only where arrays are large.
     """
     density = sum(file.count for file in files) / max(sum(road.length for road in frame.roads), 1.0)
-    lengths = SECTION_LENGTH, *READING.longer_sections
-    return max((length for length in lengths if length * density <= READING.section_points), default=SECTION_LENGTH)
+    lengths = STORE.section_length, *READING.longer_sections
+    return max((length for length in lengths if length * density <= READING.section_points), default=STORE.section_length)
 
 
 def _sampled(files, reader, has_time, progress):

@@ -16,9 +16,9 @@ from .frame.road import CORRIDOR
 from .las.point_fields import INTENSITY_SOURCES
 from .las.reader import CloudHeader
 from .store.records import Points, road_of
-from .store.section_store import MEMORY_LIMIT, SectionStore
+from .store.section_store import SectionStore
 from .survey_reader import Finishing, UnorderedPoints
-from .weights import LAS, READING
+from .weights import LAS, READING, STORE
 
 if TYPE_CHECKING:
     from .adjustment.register import PassCorrections
@@ -55,7 +55,7 @@ class SurveySettings:
     trajectory_sigma: float = setting(0.0, 0.0, 10.0, "The accuracy of the trajectory", "m")
     above_road: float = setting(READING.kept_above_road, 1.0, 100.0, "The height above the road", "m")
     section_length: float | None = None
-    memory_limit: int = MEMORY_LIMIT
+    memory_limit: int = STORE.memory_limit
     block: int = LAS.points_per_block
 
     def __post_init__(self) -> None:

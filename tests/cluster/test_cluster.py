@@ -24,8 +24,9 @@ from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import cluster as executing
 from lanewright.core.execution.choice import ExecutionSettings
-from lanewright.core.execution.cluster import client_of, cluster_of, own_versions
+from lanewright.core.execution.cluster import EQUAL, client_of, cluster_of
 from lanewright.core.execution.phase import Phase, Threads
+from lanewright.core.execution.tasks import versions
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.scanlines.section_planes import all_scanlines
@@ -211,10 +212,10 @@ def test_two_runs_at_once_in_one_work_folder_find_the_same(cluster, tmp_path):
 
 
 def test_other_packages_and_other_code_are_refused_by_name(cluster, monkeypatch):
-    own = own_versions()
-    for name, version in dict(python="3.8.1", numpy="0.9", distributed="1.0").items():
+    here = versions(EQUAL)
+    for name, version in dict(python="3.8", numpy="0.9", distributed="1.0").items():
         with monkeypatch.context() as patch:
-            patch.setattr(executing, "own_versions", lambda: {**own, name: version})
+            patch.setattr(executing, "versions", lambda names: {**here, name: version})
             with pytest.raises(RoadExtractionError, match=f"(?i)worker tcp.* has {name} .*{version}"):
                 cluster_of(cluster.address, False, None)
     monkeypatch.setattr(executing, "code_digest", lambda: "another")

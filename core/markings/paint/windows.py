@@ -17,8 +17,7 @@ import numpy as np
 
 from ...curves.robust import median
 from ...execution.phase import Recipe
-from ...intensity.tiled_image import IntensityRaster
-from ...io.geotiff import new_geotiff
+from ...io.geotiff import IntensityImage, new_geotiff
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
@@ -300,7 +299,7 @@ Burn = Callable[[np.ndarray, np.ndarray], None]   # burns (M,) local x, y
 
 
 @contextmanager
-def marking_mask(path: str | PathLike, image: IntensityRaster, origin: np.ndarray) -> Iterator[Burn]:
+def marking_mask(path: str | PathLike, image: IntensityImage, origin: np.ndarray) -> Iterator[Burn]:
     """Open a byte GeoTIFF, 1 where a marking is, no data elsewhere; gives a function that burns local x, y into it.
 
     `path` : of the GeoTIFF, which appears when the block is left without an error; it has the pixels of `image`. `origin` : of local coordinates, m.
@@ -322,7 +321,7 @@ def marking_mask(path: str | PathLike, image: IntensityRaster, origin: np.ndarra
         yield burn
 
 
-def _pixel_centres(image: IntensityRaster, x: np.ndarray, y: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _pixel_centres(image: IntensityImage, x: np.ndarray, y: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Local x, y (M,) of the centres of the pixels that places lie in, each once, and the (M,) index of a place in each pixel."""
     column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
     _, first = np.unique(row * (image.width + 1) + column, return_index=True)
@@ -330,7 +329,7 @@ def _pixel_centres(image: IntensityRaster, x: np.ndarray, y: np.ndarray, origin:
     return (left - origin[0]) + (column[first] + 0.5) * size, (top - origin[1]) - (row[first] + 0.5) * size, first
 
 
-def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityRaster, origin: np.ndarray,
+def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityImage, origin: np.ndarray,
                     road: Road) -> tuple[np.ndarray, np.ndarray]:
     """Local x, y (M,) of the image's pixels whose centres lie in painted cells of a road, of which the first begins at `first` * 4 cm."""
     row, column = np.nonzero(cells)
@@ -349,7 +348,7 @@ def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityR
     return x[inside], y[inside]
 
 
-def burn_points(burn: Burn, points: RoadPoints, image: IntensityRaster, frame: RoadFrame) -> None:
+def burn_points(burn: Burn, points: RoadPoints, image: IntensityImage, frame: RoadFrame) -> None:
     """Burn the cells that points on paint lie in, gaps between scan lines closed; `burn` is given by `marking_mask`."""
     halo = int(np.ceil(SHAPES.close_along / CELL_SIZE)) + 1
     for road in points.roads():

@@ -20,32 +20,16 @@ from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ..frame.passes import LEVEL_SEPARATION, Pass
+from ..frame.passes import Pass
 from ..frame.road_frame import RoadFrame
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
-from .register import (
-    AXES,
-    CORRECTION_STEP,
-    MAX_OFFSET,
-    PLAN_AXES,
-    POOLING_SIGMA,
-    WINDOW_LENGTH,
-    PassCorrections,
-    PassOffsets,
-    pass_offsets,
-    sigma_of_passes,
-)
+from ..weights import ADJUST, FRAME, REGISTER
+from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
-AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: a road stays as measured if nine tenths of its offsets are less
-OFFSET_SIGMA = 0.003           # m, sigma of a measured offset
-OUTLIER_SCALE = 0.010              # m of residual at which the weight of an offset is one half (Cauchy weights)
-REWEIGHTING_ROUNDS = 5                 # iterations of robust weights
-DRIFT_CHANGE_SIGMA = 0.010             # m, sigma of the drift from window to window
-DRIFT_SIGMA = 0.20                # m, sigma of the drift itself
 
 
 def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | None = None) -> None:
@@ -74,17 +58,13 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
     if moves:
         corrections = continued_corrections(survey.frame, _map_corrections(survey.frame, moves), compared)
         for road in survey.store.roads():
-            if warning := said_of_one_drive(road, places_of_one_drive(survey.frame.passes_of(road), compared, corrections)):
+            if warning := warning_of_one_drive(road, places_of_one_drive(survey.frame.passes_of(road), compared, corrections)):
                 progress.warn(warning)
         _replace_points(survey, corrections, progress.part(0.5, 1.0), folder)
 
 
 def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-    """Corrections of passes from the offsets between them, by least squares with robust weights.
-
-    Parameters
-    ----------
-    offsets : PassOffsets of one road
+    """Corrections of passes from the offsets between them on one road, by least squares with robust weights.
 
     Returns
     -------
@@ -92,27 +72,27 @@ def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray,
     """
     numbers = sorted({number for pair in offsets for number in (pair.one, pair.other)})
     first, last = (end(np.concatenate([pair.stations for pair in offsets])) for end in (np.min, np.max))
-    stations = np.arange(first, last + CORRECTION_STEP / 2, CORRECTION_STEP)
+    stations = np.arange(first, last + REGISTER.correction_step / 2, REGISTER.correction_step)
     count = len(stations)
     rows = np.arange(count - 1)
     step = sparse.coo_matrix((np.r_[-np.ones(count - 1), np.ones(count - 1)], (np.r_[rows, rows], np.r_[rows, rows + 1])), (count - 1, count))
-    prior = sparse.kron(sparse.identity(len(numbers)), step.T @ step / DRIFT_CHANGE_SIGMA**2 + sparse.identity(count) / DRIFT_SIGMA**2)
+    prior = sparse.kron(sparse.identity(len(numbers)), step.T @ step / ADJUST.drift_change_sigma**2 + sparse.identity(count) / ADJUST.drift_sigma**2)
     found = np.zeros((len(numbers), len(AXES), count))
     for k, axis in enumerate(AXES):
         places, measured = [], []
         for pair in offsets:
             known = np.flatnonzero(np.isfinite(getattr(pair, axis)))
-            at = np.rint((pair.stations[known] - first) / CORRECTION_STEP).astype(np.int64)
+            at = np.rint((pair.stations[known] - first) / REGISTER.correction_step).astype(np.int64)
             places.append(np.c_[numbers.index(pair.one) * count + at, numbers.index(pair.other) * count + at])
             measured.append(getattr(pair, axis)[known])
         columns, values = np.concatenate(places), np.concatenate(measured)
         of = np.repeat(np.arange(len(values)), 2)
         between = sparse.csr_matrix((np.tile([-1.0, 1.0], len(values)), (of, columns.ravel())), (len(values), len(numbers) * count))
         weight = np.ones(len(values))
-        for _ in range(REWEIGHTING_ROUNDS):
-            precision = sparse.diags(weight / OFFSET_SIGMA**2)
+        for _ in range(ADJUST.reweighting_rounds):
+            precision = sparse.diags(weight / ADJUST.offset_sigma**2)
             u = spsolve((between.T @ precision @ between + prior).tocsc(), between.T @ (precision @ values))
-            weight = 1.0 / (1.0 + ((between @ u - values) / OUTLIER_SCALE) ** 2)
+            weight = 1.0 / (1.0 + ((between @ u - values) / ADJUST.outlier_scale) ** 2)
         found[:, k] = u.reshape(len(numbers), count)
     return {number: (stations, found[k]) for k, number in enumerate(numbers)}
 
@@ -126,7 +106,8 @@ def _separations(offsets):
 
 
 def _disagree(offsets):
-    return any(len(values) and np.percentile(values, 90) > least for values, least in zip(_separations(offsets), (AGREEMENT_PLAN, AGREEMENT_HEIGHT)))
+    limits = ADJUST.agreement_plan, ADJUST.agreement_height
+    return any(len(values) and np.percentile(values, 90) > least for values, least in zip(_separations(offsets), limits))
 
 
 def _report_offsets(road, offsets, found, progress):
@@ -135,7 +116,7 @@ def _report_offsets(road, offsets, found, progress):
         apart = _separations(offsets)
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in apart)
         said = f"Road {road}: its passes lay {plan} beside and {up} above each other"
-        if max((float(v.max()) for v in apart if len(v)), default=0.0) > MAX_OFFSET:
+        if max((float(v.max()) for v in apart if len(v)), default=0.0) > REGISTER.max_offset:
             progress.warn(f"{said}, which is more than navigation drifts within a survey. Drives of different years or datums lie so far apart. They "
                           "were laid on each other, each moved by its share. Nothing shows which of them is right, so the map may be off by half of "
                           "that distance. Process the files of each drive by itself, or measure control points.")
@@ -145,7 +126,7 @@ def _report_offsets(road, offsets, found, progress):
         plan, up = (100 * np.percentile(v, 90) for v in _separations(offsets))
         progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
                      "they stay as they were measured.")
-    if warning := said_of_places(road, remaining_places(offsets, found)):
+    if warning := warning_of_places(road, remaining_places(offsets, found)):
         progress.warn(warning)
 
 
@@ -199,12 +180,8 @@ def _replace_points(survey, moves, progress, folder):
 
 
 def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: Progress = Progress(), folder: Path | None = None) -> None:
-    """Replace the store of a survey by one of moved points.
+    """Replace the store of a Survey by one of points that `moved` gives, the Columns of a section with other coordinates.
 
-    Parameters
-    ----------
-    survey : Survey
-    moved : gives the Columns of a section with other coordinates
     folder : of the moved points that are not kept in memory; None for a temporary file
     """
     before = survey.store
@@ -227,7 +204,6 @@ def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: P
 
 # A drive that was laid on others goes on where it measures alone: it is moved on as where it left them, not back to where it was measured.
 
-MAX_SEAM = 1.0   # s between the end of a pass and the start of the next one of the same drive
 
 
 def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: list[PassOffsets]) -> PassCorrections:
@@ -235,12 +211,8 @@ def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: li
 
     Navigation drifts slowly, by centimetres over kilometres, so what a drive is off by at the end of a road is what it is off by at the start of
     the next. Between two that were moved the correction changes evenly. Two passes meet in their middle, so what one was moved by across the road
-    is also the sigma of where they meet; `frame.pass_sigma` of roads without one says so.
-
-    Parameters
-    ----------
-    moves : PassCorrections of the passes that were compared
-    compared : PassOffsets of all roads; passes that were found to lie as the others do are not moved
+    is also the sigma of where they meet; `frame.pass_sigma` of roads without one says so. Passes that were compared and found to lie as the others
+    do are not moved.
     """
     known = {number for pair in compared for number in (pair.one, pair.other)}
     by_pass = dict(moves.by_pass)
@@ -266,7 +238,7 @@ def _beside_moved(passes, by_pass, known):
 
 def _moved_across(frame, moves, p):
     """RMS metres by which a pass is moved across its road."""
-    s = np.linspace(*p.span, max(int(np.ptp(p.span) / CORRECTION_STEP), 2))
+    s = np.linspace(*p.span, max(int(np.ptp(p.span) / REGISTER.correction_step), 2))
     east, north, _ = moves.metres(p.number, s)
     heading = frame.road(p.road).heading(s)
     return float(np.sqrt(np.mean((north * np.cos(heading) - east * np.sin(heading)) ** 2)))
@@ -274,7 +246,7 @@ def _moved_across(frame, moves, p):
 
 def _touching(first: Pass | None, then: Pass | None, by_pass: dict) -> Pass | None:
     """The one of two passes that was moved, if they touch in time."""
-    if first is None or then is None or not 0.0 <= then.time[0] - first.time[-1] <= MAX_SEAM:
+    if first is None or then is None or not 0.0 <= then.time[0] - first.time[-1] <= ADJUST.max_seam:
         return None
     return next((one for one in (first, then) if one.number in by_pass), None)
 
@@ -283,25 +255,17 @@ def _led_on(moves, p, before, after):
     """(station of the first node, (3, N) int16 in 0.1 mm) of a pass from the ends of those before and after it, either of them None."""
     ends = [np.array(moves.metres(one.number, one.s[[row]])) for one, row in ((before, -1), (after, 0)) if one is not None]
     first, last = p.span
-    nodes = first + CORRECTION_STEP * np.arange(int(np.ceil((last - first) / CORRECTION_STEP)) + 1)
+    nodes = first + REGISTER.correction_step * np.arange(int(np.ceil((last - first) / REGISTER.correction_step)) + 1)
     share = np.interp(nodes, [first, last], [0.0, 1.0] if p.s[-1] > p.s[0] else [1.0, 0.0])
     return first, to_units(ends[0] + share * (ends[-1] - ends[0])).astype(np.int16)
 
 
 # Where passes still differ after they were laid on each other, and where one was moved that no other confirms, place by place.
 
-MAX_REMAINING = 0.02   # m in plan that two passes may still differ by: less than a marking's edge is blurred by
-MAX_CHANGE = 0.04      # m to the next window that a correction changes by: navigation drifts more slowly, so a pass jumped somewhere between
-MOST_NAMED = 12        # places that a message names
 
 
 def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np.ndarray, np.ndarray]]) -> list[tuple[float, float, float]]:
-    """Stretches of a road along which two of its passes still differ.
-
-    Parameters
-    ----------
-    offsets : PassOffsets of the road
-    corrections : of `solve_corrections`; empty where nothing was moved
+    """Stretches of a road along which two of its passes still differ, by their PassOffsets and the result of `solve_corrections`.
 
     Returns
     -------
@@ -315,19 +279,14 @@ def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np
             applied = _applied(pair, corrections, axis)
             left = np.abs(np.nan_to_num(getattr(pair, axis) - applied))
             rest = np.hypot(rest, np.maximum(left, _evened_out(pair.stations, applied)))
-        for station, metres in (*zip(pair.stations[rest > MAX_REMAINING], rest[rest > MAX_REMAINING]), *((station, np.inf) for station in pair.far)):
+        remains = rest > ADJUST.max_remaining
+        for station, metres in (*zip(pair.stations[remains], rest[remains]), *((station, np.inf) for station in pair.far)):
             places[float(station)] = max(places.get(float(station), 0.0), float(metres))
     return _stretches_of(places)
 
 
 def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], corrections: PassCorrections) -> list[tuple[float, float, float]]:
-    """Stretches of a road along which a pass was moved in plan and was compared with no other, there or as near as drift changes little.
-
-    Parameters
-    ----------
-    passes : of the road
-    offsets : PassOffsets of all roads
-    corrections : PassCorrections, as they are applied
+    """Stretches along which a pass over a road was moved in plan and was compared with no other, there or as near as drift changes little.
 
     Returns
     -------
@@ -343,7 +302,8 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
         stations = (np.arange(first, last + 1) + 0.5) * WINDOW_LENGTH
         away = np.abs(stations[:, None] - known).min(axis=1, initial=np.inf)
         moved = np.hypot(*corrections.metres(p.number, stations)[:2])
-        for station, metres in zip(*(values[(away > POOLING_SIGMA) & (moved > MAX_REMAINING)].tolist() for values in (stations, moved))):
+        alone = (away > REGISTER.pooling_sigma) & (moved > ADJUST.max_remaining)
+        for station, metres in zip(stations[alone].tolist(), moved[alone].tolist()):
             places[station] = max(places.get(station, 0.0), metres)
     return _stretches_of(places)
 
@@ -352,7 +312,7 @@ def _evened_out(stations, applied):
     """(N,) m of a jump that remain in the windows it lies between, as corrections change evenly from one to the next; 0 where there is none."""
     found = np.zeros(len(stations))
     change = np.abs(np.diff(applied))
-    for k in np.flatnonzero((change > MAX_CHANGE) & (np.diff(stations) < 1.5 * WINDOW_LENGTH)).tolist():
+    for k in np.flatnonzero((change > ADJUST.max_change) & (np.diff(stations) < 1.5 * WINDOW_LENGTH)).tolist():
         found[k:k + 2] = np.maximum(found[k:k + 2], change[k] / 2)
     return found
 
@@ -378,19 +338,18 @@ def _applied(pair, corrections, axis):
     return other - one
 
 
-def said_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
-    """The warning about places that remain; "" where there is none."""
+def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
     if not places:
         return ""
-    named = [f"{start:.0f} to {end:.0f} m (" + (f"more than {100 * MAX_OFFSET:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
-                                                else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:MOST_NAMED]]
+    named = [f"{start:.0f} to {end:.0f} m (" + (
+                 f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
+                 else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:ADJUST.most_named]]
     more = _further(places)
     return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: curbs and lines may be doubled or blurred there. "
             "Adjust the trajectories of the drives to each other, or process the files of each drive by itself.")
 
 
-def said_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
-    """The warning about places where one drive alone was moved; "" where there is none."""
+def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
     if not places:
         return ""
     return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved there as where it last "
@@ -398,12 +357,12 @@ def said_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> st
 
 
 def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
-    """Places by station with what is said of their metres in cm, those beyond MOST_NAMED as a number."""
-    return ", ".join(f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:MOST_NAMED]) + _further(places)
+    named = (f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:ADJUST.most_named])
+    return ", ".join(named) + _further(places)
 
 
 def _further(places):
-    return f" and at {len(places) - MOST_NAMED} further places" if len(places) > MOST_NAMED else ""
+    return f" and at {len(places) - ADJUST.most_named} further places" if len(places) > ADJUST.most_named else ""
 
 
 # Carriageways that were driven one by one, as of a motorway: whether their drives agree on the ground between them, place by place.
@@ -411,24 +370,12 @@ def _further(places):
 # Such roads share no pass, so nothing lays them on each other. What both drives see is the strip between the two tracks. Its flat places give the
 # difference in height to millimetres. Across they tell nothing: of a guard rail each drive sees its own side, and rails hide the paint behind them.
 
-FARTHEST_BESIDE = 30.0                    # m between the tracks of two carriageways
-LEAST_PARALLEL = np.cos(np.radians(15))  # cosine of the angle between them, at least
-SHORTEST_BESIDE = 50.0                    # m beside each other, shorter than which it is a junction
-SAME_GROUND, SHARE_ALONG = 12.0, 0.8     # m between tracks over one road, and share of the shorter one that they run along each other
-EVEN_RISE = 0.15                          # m by which one may vary in height above the other: navigation drifts by less, ramps climb by more
-SHARE_BETWEEN = 0.25, 0.75               # of the way from one track to the other: what both drives see well
-HEIGHT_CELL = 0.25                        # m, of the cells that heights are compared in
-FLAT_CELL_RANGE = 0.03                    # m between the highest and the lowest point of a flat cell
-MIN_FLAT_CELLS = 40                     # flat cells that both drives see, for a difference
-MAX_HEIGHT_APART = 0.02                   # m in height that two drives may differ by without a warning
 
 
 class Beside(NamedTuple):
-    """Two roads that run beside each other.
+    """Two roads, `one` and `other`, that run beside each other.
 
-    one, other : their numbers
-    stations : (N,) m on the first, middles of windows of CORRECTION_STEP
-    places : (N,) m, the same on the second
+    stations, places : (N,) m on the first, middles of windows of `correction_step`, and on the second
     apart : (N,) m of offset, left positive, from the first to the second
     up : (N,) m by which the points of the second lie higher, NaN where both hardly see the same
     """
@@ -442,45 +389,39 @@ class Beside(NamedTuple):
 
 
 def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
-    """Tell how far roads lie apart in height that run beside each other and share no pass.
-
-    Parameters
-    ----------
-    survey : Survey with times, after its passes were adjusted
-    progress : Progress, for the messages
-    """
+    """Tell how far roads of a Survey lie apart in height that run beside each other and share no pass, after its passes were adjusted."""
     for pair in roads_beside(survey.frame):
         up = ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))
         found = pair._replace(up=np.array(list(up)))
-        said, warns = _said_of_carriageways(found)
+        said, warns = _message_of_carriageways(found)
         (progress.warn if warns else progress.info)(said)
 
 
 def roads_beside(frame: Any) -> list[Beside]:
-    """Pairs of roads that run beside each other for SHORTEST_BESIDE and more on one level; `up` is not known yet."""
+    """Pairs of roads that run beside each other for `shortest_beside` and more on one level; `up` is not known yet."""
     found = []
     for one, other, s, place, offset, rise in _parallel(frame):
-        known = np.flatnonzero(np.abs(rise) < LEVEL_SEPARATION)
-        if len(known) * CORRECTION_STEP >= SHORTEST_BESIDE:
+        known = np.flatnonzero(np.abs(rise) < FRAME.level_separation)
+        if len(known) * REGISTER.correction_step >= ADJUST.shortest_beside:
             way = np.sign(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known])))
             found.append(Beside(one, other, s[known], place[known], -way * offset[known], np.full(len(known), np.nan)))
     return found
 
 
-def said_of_levels(frame: Any) -> list[str]:
+def warnings_of_levels(frame: Any) -> list[str]:
     """Warnings about roads that were driven along each other at another height, always by the same: one road, with heights of two kinds.
 
     A bridge or a second deck climbs to its height somewhere, and roads on a slope lie farther apart.
     """
     said = []
     for one, other, s, _, offset, rise in _parallel(frame):
-        known = np.flatnonzero((np.abs(offset) < SAME_GROUND) & (np.abs(rise) >= LEVEL_SEPARATION))
+        known = np.flatnonzero((np.abs(offset) < FRAME.same_carriageway) & (np.abs(rise) >= FRAME.level_separation))
         length = min(np.ptp([p.span for p in frame.passes_of(road)]) for road in (one, other))
-        if len(known) * CORRECTION_STEP < max(SHORTEST_BESIDE, SHARE_ALONG * length):
+        if len(known) * REGISTER.correction_step < max(ADJUST.shortest_beside, ADJUST.share_along * length):
             continue
         middle = float(np.median(rise[known]))
-        if np.quantile(np.abs(rise[known] - middle), SHARE_ALONG) < EVEN_RISE:
-            first, last = s[known].min() - CORRECTION_STEP / 2, s[known].max() + CORRECTION_STEP / 2
+        if np.quantile(np.abs(rise[known] - middle), ADJUST.share_along) < ADJUST.even_rise:
+            first, last = s[known].min() - REGISTER.correction_step / 2, s[known].max() + REGISTER.correction_step / 2
             said.append(
                 f"Roads {one} and {other} run along each other at stations {first:.0f} to {last:.0f} m of road {one}, and one lies "
                 f"{abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two kinds (above the "
@@ -492,52 +433,53 @@ def said_of_levels(frame: Any) -> list[str]:
 def _parallel(frame):
     """Yield (road, other road, stations, places, offsets and m that the first lies higher) where roads run beside or above each other."""
     tracks = [shapely.linestrings(np.c_[p.x, p.y]) for p in frame.passes]
-    near = shapely.STRtree(tracks).query(tracks, predicate="dwithin", distance=FARTHEST_BESIDE).T
+    near = shapely.STRtree(tracks).query(tracks, predicate="dwithin", distance=ADJUST.farthest_beside).T
     roads = np.array([p.road for p in frame.passes])
     for one, other in sorted({(int(a), int(b)) for a, b in roads[near] if a < b}):
         spans = np.array([p.span for p in frame.passes_of(one)])
-        s = np.arange(np.floor(spans.min() / CORRECTION_STEP), np.ceil(spans.max() / CORRECTION_STEP)) * CORRECTION_STEP + CORRECTION_STEP / 2
+        step = REGISTER.correction_step
+        s = np.arange(np.floor(spans.min() / step), np.ceil(spans.max() / step)) * step + step / 2
         x, y = frame.road(one).to_map(s, np.zeros(len(s)))
-        place, offset = frame.road(other).locate(x, y, corridor=FARTHEST_BESIDE)
+        place, offset = frame.road(other).locate(x, y, corridor=ADJUST.farthest_beside)
         known = np.flatnonzero(np.isfinite(offset))
-        known = known[np.abs(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known]))) > LEAST_PARALLEL]
+        known = known[np.abs(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known]))) > ADJUST.least_parallel]
         rise = frame.track_height(one, s[known]) - frame.track_height(other, place[known])
         yield one, other, s[known], place[known], offset[known], rise
 
 
 def _height_apart(survey, pair, k):
     """m by which the second road's points lie higher in one window; NaN where too little is seen of both."""
-    road, half = survey.frame.road(pair.one), CORRECTION_STEP / 2
-    sides, cells = np.sort(pair.apart[k] * np.array(SHARE_BETWEEN)), []
+    road, half = survey.frame.road(pair.one), REGISTER.correction_step / 2
+    sides, cells = np.sort(pair.apart[k] * np.array(ADJUST.share_between)), []
     for number, station in ((pair.one, pair.stations[k]), (pair.other, pair.places[k])):
         points = survey.window(number, station - 1.5 * half, station + 1.5 * half)
         between = np.flatnonzero(np.abs(np.abs(points.d) - 0.5 * abs(pair.apart[k])) < np.ptp(sides) / 2 + 1.0)
-        s, d = road.locate(points.x[between], points.y[between], corridor=FARTHEST_BESIDE)
+        s, d = road.locate(points.x[between], points.y[between], corridor=ADJUST.farthest_beside)
         own = (np.abs(s - pair.stations[k]) < half) & (d > sides[0]) & (d < sides[1])
         cells.append(_flat_cells(s[own] - pair.stations[k] + half, d[own] - sides[0], points.z[between[own]]))
     (one, low), (other, high) = cells
     _, a, b = np.intersect1d(one, other, return_indices=True)
-    return float(np.median(high[b] - low[a])) if len(a) >= MIN_FLAT_CELLS else np.nan
+    return float(np.median(high[b] - low[a])) if len(a) >= ADJUST.min_flat_cells else np.nan
 
 
 def _flat_cells(along, across, z):
     """Numbers of the flat cells that points lie in, rising, and their mean heights, m."""
     if not len(z):
         return np.empty(0, int), np.empty(0)
-    cell = (along / HEIGHT_CELL).astype(int) * 1000 + (across / HEIGHT_CELL).astype(int)
+    cell = (along / ADJUST.height_cell).astype(int) * 1000 + (across / ADJUST.height_cell).astype(int)
     order = np.argsort(cell, kind="stable")
     numbers, first = np.unique(cell[order], return_index=True)
     z = z[order]
-    flat = np.maximum.reduceat(z, first) - np.minimum.reduceat(z, first) < FLAT_CELL_RANGE
+    flat = np.maximum.reduceat(z, first) - np.minimum.reduceat(z, first) < ADJUST.flat_cell_range
     return numbers[flat], (np.add.reduceat(z, first) / np.diff(np.append(first, len(z))))[flat]
 
 
-def _said_of_carriageways(pair: Beside) -> tuple[str, bool]:
+def _message_of_carriageways(pair: Beside) -> tuple[str, bool]:
     """What is said of two roads beside each other, and whether it is a warning."""
     known = np.isfinite(pair.up)
-    far = known & (np.abs(pair.up) > MAX_HEIGHT_APART)
-    where = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - CORRECTION_STEP / 2:.0f} to "
-             f"{pair.stations.max() + CORRECTION_STEP / 2:.0f} m, and no drive measured both")
+    far = known & (np.abs(pair.up) > ADJUST.max_height_apart)
+    where = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - REGISTER.correction_step / 2:.0f} to "
+             f"{pair.stations.max() + REGISTER.correction_step / 2:.0f} m, and no drive measured both")
     if far.any():
         return (f"{where}. Their drives differ in height at "
                 f"{_named_places(_stretches_of(dict(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist()))), 'by up to {:.1f} cm')}. "

@@ -24,6 +24,7 @@ from ...lazy import cv2
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
+from ..weights import REGISTER
 
 if TYPE_CHECKING:
     import laspy
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
 # Corrections of passes that were adjusted to each other; stored with the points, so that measured coordinates can be restored.
 
-CORRECTION_STEP = 10.0        # m of station between nodes
 VLR_USER_ID = "Lanewright"    # of the LAS records, one per pass; the record id is the pass number + 1
 _HEAD = np.dtype([("first", "<f8"), ("count", "<u4")])
 
@@ -40,7 +40,7 @@ _HEAD = np.dtype([("first", "<f8"), ("count", "<u4")])
 class PassCorrections:
     """East, north and up corrections of every pass that was moved, by station.
 
-    by_pass : {pass number: (station of the first node in m, (3, N) int16 in 0.1 mm)}, nodes CORRECTION_STEP apart; constant
+    by_pass : {pass number: (station of the first node in m, (3, N) int16 in 0.1 mm)}, nodes `correction_step` apart; constant
         beyond the first and the last node
     """
 
@@ -49,7 +49,7 @@ class PassCorrections:
     def metres(self, number: int, s: np.ndarray) -> tuple[np.ndarray, ...]:
         """East, north and up corrections, (N,) metres each, of a pass at (N,) stations."""
         first, values = self.by_pass[number]
-        nodes = first + CORRECTION_STEP * np.arange(values.shape[1])
+        nodes = first + REGISTER.correction_step * np.arange(values.shape[1])
         return tuple(np.interp(s, nodes, row) * COORDINATE_SCALE for row in values)
 
     def units(self, records: Columns | np.ndarray) -> np.ndarray:
@@ -83,35 +83,12 @@ class PassCorrections:
 
 AXES = "along", "left", "up"
 PLAN_AXES = AXES[:2]
-MIN_COUPLED_OFFSET = 0.02   # m along or across, less than which shifts the other by less than the noise of an offset
-MUCH_LARGER = 2.0           # times: bars 27° off the road and more, moved across, look moved along by less
 CHANNELS = "steps", "paint"
 CHANNEL_SCALE = {"steps": 1e4, "paint": 64.0}  # units per m, and per standard deviation of intensity
-WINDOW_LENGTH = CORRECTION_STEP          # m of road compared at a time, counted from station 0
-STRIP_HALF_WIDTH = 12.0           # m either side of the reference line
-LAG_CELL, ROW_CELL = 0.02, 0.25  # m: cell size along an offset, and across it
-MAX_OFFSET = 0.30            # m between two passes
-LAGS = np.arange(-int(round(MAX_OFFSET / LAG_CELL)), int(round(MAX_OFFSET / LAG_CELL)) + 1)
-MAX_ROUGH_OFFSET = 1.5       # m between two drives of different years or datums
-ROUGH_LAGS = 2 * np.arange(-int(MAX_ROUGH_OFFSET / LAG_CELL / 2), int(MAX_ROUGH_OFFSET / LAG_CELL / 2) + 1)   # narrower than half of a line
-MIN_COMPARED = 0.3           # of the windows that show an offset across, or the passes seem to lie farther apart
-ROUGH_GROUPS, ROUGH_GROUP = 5, 3   # groups along a road, and windows of each, that are searched then
-MIN_CELL_HEIGHT, MAX_CELL_HEIGHT = -0.3, 0.4   # m about the road's expected height: ground and curbs
-HEIGHT_BLUR_CELLS = 3               # cells over which heights are averaged
-DETREND_CELLS = 51            # cells: variations over more than a metre are neither curbs nor paint
-MAX_STEP, MAX_CONTRAST = 0.05, 4.0  # m of height, and standard deviations of intensity, at which cells are clipped
-MAX_CORRELATION = 0.999           # at which the correlation is clipped
-FACE_CELLS, FACE_HEIGHT = 9, 0.03  # cells along a row, and m between the highest and the lowest of them, that show a face such as a curb's
-FLAT_STEP = 0.01           # m: the height offset is measured on cells flatter than this
-MIN_SHARED_CELLS = 300           # cells that two passes must share in a window
-CORRELATED_CELLS = 6.0            # neighbouring cells whose errors are correlated
-POOLING_SIGMA = 15.0          # m of road, over which drift changes little
-MAX_OFFSET_SIGMA = 0.006           # m: standard deviation of an accepted offset at most
-PRIOR_OFFSET_SIGMA = 0.10           # m: prior standard deviation of offsets; of two equally good ones the smaller is chosen
-MIN_LIKELIHOOD_RATIO = 25.0           # twice the log likelihood ratio of the best offset against none
-MAX_RUNNER_UP = 0.7            # of that ratio, for the second best offset
-PARABOLA_CELLS = 2                # cells either side of the best, for the parabola
-PEAK_CELLS = 2             # cells beside the best that belong to its peak
+WINDOW_LENGTH = REGISTER.correction_step          # m of road compared at a time, counted from station 0
+LAGS = np.arange(-int(round(REGISTER.max_offset / REGISTER.lag_cell)), int(round(REGISTER.max_offset / REGISTER.lag_cell)) + 1)
+_ROUGH_REACH = int(REGISTER.max_rough_offset / REGISTER.lag_cell / 2)
+ROUGH_LAGS = 2 * np.arange(-_ROUGH_REACH, _ROUGH_REACH + 1)   # narrower than half of a line
 
 
 @dataclass(frozen=True)
@@ -121,7 +98,7 @@ class PassOffsets:
     one, other : pass numbers
     stations : (N,) middles of the windows, m
     along, left, up : (N,) metres, NaN where unknown
-    far : (K,) middles of the windows in which the offset seems to exceed MAX_OFFSET
+    far : (K,) middles of the windows in which the offset seems to exceed `max_offset`
     """
 
     one: int
@@ -154,16 +131,14 @@ class Strips:
 
     @classmethod
     def of(cls, fine: np.ndarray, coarse: np.ndarray, h: np.ndarray, intensity: np.ndarray, shape: tuple[int, int]) -> Strips:
-        """The strips of (N,) points.
+        """The strips of (N,) points, in so many rows and cells of a shape.
 
         Parameters
         ----------
         fine, coarse : (N,) m along a row, in whose direction offsets are measured, and across rows
         h : (N,) m above the road
-        intensity : (N,)
-        shape : rows and cells
         """
-        row, cell = (coarse / ROW_CELL).astype(np.int64), (fine / LAG_CELL).astype(np.int64)
+        row, cell = (coarse / REGISTER.row_cell).astype(np.int64), (fine / REGISTER.lag_cell).astype(np.int64)
         inside = (row >= 0) & (row < shape[0]) & (cell >= 0) & (cell < shape[1])
         place = (row * shape[1] + cell)[inside]
 
@@ -174,29 +149,29 @@ class Strips:
             with np.errstate(invalid="ignore", divide="ignore"):
                 return np.where(count > 0.5, total / count, np.float32(np.nan))
 
-        heights = means(h, HEIGHT_BLUR_CELLS)
-        steps = np.clip(_detrended(heights), -MAX_STEP, MAX_STEP)
+        heights = means(h, REGISTER.height_blur_cells)
+        steps = np.clip(_detrended(heights), -REGISTER.max_step, REGISTER.max_step)
         paint = _detrended(np.where(_at_faces(heights), np.float32(np.nan), means(intensity, 1)))
         known = np.isfinite(paint)
         spread = float(np.median(np.abs(paint[known]))) / 0.6745 if known.any() else 0.0
-        return cls(heights, steps, np.clip(paint / max(spread, 1e-6), -MAX_CONTRAST, MAX_CONTRAST))
+        return cls(heights, steps, np.clip(paint / max(spread, 1e-6), -REGISTER.max_contrast, REGISTER.max_contrast))
 
     def part(self, rows: slice, cells: slice) -> Strips:
-        """The strips of some rows and cells."""
         return Strips(self.heights[rows, cells], self.steps[rows, cells], self.paint[rows, cells])
 
 
 def _at_faces(heights):
-    """(rows, cells) bool, whether heights differ by FACE_HEIGHT within FACE_CELLS; unknown ones do not."""
+    """(rows, cells) bool, whether heights differ by `face_height` within `face_cells`; unknown ones do not."""
     known, far = np.isfinite(heights), np.float32(1e3)
-    return (maximum_filter1d(np.where(known, heights, -far), FACE_CELLS, axis=1)
-            - minimum_filter1d(np.where(known, heights, far), FACE_CELLS, axis=1)) > FACE_HEIGHT
+    return (maximum_filter1d(np.where(known, heights, -far), REGISTER.face_cells, axis=1)
+            - minimum_filter1d(np.where(known, heights, far), REGISTER.face_cells, axis=1)) > REGISTER.face_height
 
 
 def _detrended(values):
-    """Values minus their mean over DETREND_CELLS cells of the row; NaN stays."""
+    """Values minus their mean over `detrend_cells` cells of the row; NaN stays."""
     known = np.isfinite(values)
-    return values - _box_sum(np.where(known, values, np.float32(0)), DETREND_CELLS) / np.maximum(_box_sum(known.astype(np.float32), DETREND_CELLS), 1)
+    total, count = (_box_sum(part, REGISTER.detrend_cells) for part in (np.where(known, values, np.float32(0)), known.astype(np.float32)))
+    return values - total / np.maximum(count, 1)
 
 
 def _box_sum(values, cells):
@@ -228,26 +203,17 @@ def height_offset(one: Strips, other: Strips, lag: int) -> float:
     """Median height of `one` above `other` moved by `lag`, of flat cells, m; NaN for too few cells."""
     a, b = (slice(max(way * lag, 0), one.heights.shape[1] + min(way * lag, 0)) for way in (1, -1))
     off = one.heights[:, a] - other.heights[:, b]
-    level = np.maximum(np.abs(one.steps[:, a]), np.abs(other.steps[:, b])) < FLAT_STEP
+    level = np.maximum(np.abs(one.steps[:, a]), np.abs(other.steps[:, b])) < REGISTER.flat_step
     off = off[level & np.isfinite(off)]
-    return float(np.median(off)) if len(off) >= MIN_SHARED_CELLS else np.nan
+    return float(np.median(off)) if len(off) >= REGISTER.min_shared_cells else np.nan
 
 
 def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> list[PassOffsets]:
-    """Offsets between the passes over a road, each with the next one there.
+    """Offsets between the passes over a road of a Survey with times, each with the next one there.
 
     Oblique bars, as of hatched areas, look moved along where they were moved across, and the other way round. So where passes lie apart, the
     offsets along one axis are taken out before those along the other are measured, and then the other way round. Lines along the road show what
     is across alone, so offsets along come first only where they are much the larger.
-
-    Parameters
-    ----------
-    survey : Survey with times
-    road : number
-
-    Returns
-    -------
-    list of PassOffsets, one per pair of passes
     """
     windows = _windows_of_several(survey, road)
     seen = _seen(survey, road, windows, {}, progress.part(0.0, 1.0 / 3.0))
@@ -257,13 +223,19 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
         seen = _seen(survey, road, windows, rough, progress.part(1.0 / 3.0, 1.0 / 3.0))
         found = _combined(seen)
     along, left = (_mean_size(found, axis) for axis in PLAN_AXES)
-    order = PLAN_AXES if along > MUCH_LARGER * left else PLAN_AXES[::-1]
+    order = PLAN_AXES if along > REGISTER.much_larger * left else PLAN_AXES[::-1]
+    found = _uncoupled(survey, road, found, seen, rough, order, progress)
+    return [_with_rough(pair, rough.get((pair.one, pair.other), {})) for pair in found]
+
+
+def _uncoupled(survey, road, offsets, seen, rough, order, progress):
+    """The PassOffsets, those along each axis of the order measured with those along the other taken out."""
     for k, (taken, measured) in enumerate((order, order[::-1]), start=1):
-        moves = {(pair.one, pair.other): _taken_out(pair, taken, rough.get((pair.one, pair.other), {})) for pair in found}
+        moves = {(pair.one, pair.other): _taken_out(pair, taken, rough.get((pair.one, pair.other), {})) for pair in offsets}
         if apart := sorted({number for places in moves.values() for number in places}):
             again = _seen(survey, road, apart, moves, progress.part(k / 3.0, (k + 1) / 3.0))
-            found = _measured_again(found, measured, seen, again)
-    return [_with_rough(pair, rough.get((pair.one, pair.other), {})) for pair in found]
+            offsets = _measured_again(offsets, measured, seen, again)
+    return offsets
 
 
 def _windows_of_several(survey, road):
@@ -284,7 +256,7 @@ def _taken_out(pair, axis, rough):
     """{window: (along, left) by which the second of two passes is to be moved} to take out the offsets along one axis; `rough` the same, before."""
     moves = {}
     for number, metres in zip((pair.stations // WINDOW_LENGTH).astype(int).tolist(), pair.everywhere(axis).tolist()):
-        if abs(metres) > MIN_COUPLED_OFFSET:
+        if abs(metres) > REGISTER.min_coupled_offset:
             along, left = rough.get(number, (0.0, 0.0))
             moves[number] = (along + metres, left) if axis == "along" else (along, left + metres)
     return moves
@@ -308,18 +280,18 @@ def _with_rough(pair, places):
 
 
 def _rough_offsets(survey, road, pair):
-    """{window: (along, left) by which the second of two passes is to be moved} where they lie farther apart than MAX_OFFSET; {} where they do not.
+    """{window: (along, left) by which the second of two passes is to be moved} where they lie farther apart than `max_offset`; {} where they do not.
 
     Drives of different years, or in different datums, lie apart by as much as a metre. Where hardly any window shows an offset, or large ones,
-    and where none shows one along the road, groups of windows are searched up to MAX_ROUGH_OFFSET.
+    and where none shows one along the road, groups of windows are searched up to `max_rough_offset`.
     """
     known = pair.left[np.isfinite(pair.left)]
-    across = len(known) < MIN_COMPARED * len(pair.left) or len(pair.far) > 0 or np.median(np.abs(known)) > MAX_OFFSET / 2
+    across = len(known) < REGISTER.min_compared * len(pair.left) or len(pair.far) > 0 or np.median(np.abs(known)) > REGISTER.max_offset / 2
     if not across and np.isfinite(pair.along).any():
         return {}
     numbers = (pair.stations // WINDOW_LENGTH).astype(int)
     along, left = _of_groups(survey, road, pair, numbers)
-    if max(np.abs(along).max(), np.abs(left).max()) <= MAX_OFFSET:
+    if max(np.abs(along).max(), np.abs(left).max()) <= REGISTER.max_offset:
         return {}
     if not across:
         left = np.zeros(len(numbers))
@@ -327,10 +299,10 @@ def _rough_offsets(survey, road, pair):
 
 
 def _of_groups(survey, road, pair, numbers):
-    """(N,) m along and (N,) m left at N windows, up to MAX_ROUGH_OFFSET, as groups of them show; 0 along an axis that few groups show."""
-    starts = np.unique(np.linspace(0, max(len(numbers) - ROUGH_GROUP, 0), ROUGH_GROUPS).astype(int)).tolist()
+    """(N,) m along and (N,) m left at N windows, up to `max_rough_offset`, as groups of them show; 0 along an axis that few groups show."""
+    starts = np.unique(np.linspace(0, max(len(numbers) - REGISTER.rough_group, 0), REGISTER.rough_groups).astype(int)).tolist()
     found = []
-    for group in (numbers[start:start + ROUGH_GROUP] for start in starts):
+    for group in (numbers[start:start + REGISTER.rough_group] for start in starts):
         evidence = [one[pair.one, pair.other]
                     for one in ordered_map(lambda number: _window_evidence(survey, road, number, {}, ROUGH_LAGS), group.tolist())
                     if (pair.one, pair.other) in one]
@@ -347,7 +319,7 @@ def _of_groups(survey, road, pair, numbers):
 
 
 def _rough_offset(likeness):
-    """m of best correlation up to MAX_ROUGH_OFFSET from (2, 4, L) sums, by paint where it shows one."""
+    """m of best correlation up to `max_rough_offset` from (2, 4, L) sums, by paint where it shows one."""
     offsets = best_offsets(likeness, ROUGH_LAGS)[0]
     steps, paint = (offsets[CHANNELS.index(name)] for name in CHANNELS)
     return paint if np.isfinite(paint) else steps
@@ -373,21 +345,21 @@ def _window_evidence(survey, road, number, moves, lags=LAGS):
     moves : {(one, other): {window: (along, left) by which the other is moved before}}
     """
     points = survey.window(road, number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)
-    nodes = number * WINDOW_LENGTH + np.arange(int(WINDOW_LENGTH / ROW_CELL) + 1) * ROW_CELL
+    nodes = number * WINDOW_LENGTH + np.arange(int(WINDOW_LENGTH / REGISTER.row_cell) + 1) * REGISTER.row_cell
     s, d = points.s, points.d
     h = points.z - np.interp(s, nodes, survey.road_height(road, nodes))
-    near = np.flatnonzero((np.abs(d) < STRIP_HALF_WIDTH) & (h > MIN_CELL_HEIGHT) & (h < MAX_CELL_HEIGHT))
-    owner, s, d, h = points.pass_number.take(near), s[near] - number * WINDOW_LENGTH, d[near] + STRIP_HALF_WIDTH, h[near]
+    near = np.flatnonzero((np.abs(d) < REGISTER.strip_half_width) & (h > REGISTER.min_cell_height) & (h < REGISTER.max_cell_height))
+    owner, s, d, h = points.pass_number.take(near), s[near] - number * WINDOW_LENGTH, d[near] + REGISTER.strip_half_width, h[near]
     intensity = points.intensity.take(near).astype(float)
 
     def strips(own, along=0.0, left=0.0):
         """Strips across and along of the points of a pass, moved."""
         places, offsets = s[own] + along, d[own] + left
-        return [Strips.of(fine, coarse, h[own], intensity[own], (round(width / ROW_CELL), round(length / LAG_CELL)))
-                for fine, coarse, length, width in ((offsets, places, 2 * STRIP_HALF_WIDTH, WINDOW_LENGTH),
-                                                    (places, offsets, WINDOW_LENGTH, 2 * STRIP_HALF_WIDTH))]
+        return [Strips.of(fine, coarse, h[own], intensity[own], (round(width / REGISTER.row_cell), round(length / REGISTER.lag_cell)))
+                for fine, coarse, length, width in ((offsets, places, 2 * REGISTER.strip_half_width, WINDOW_LENGTH),
+                                                    (places, offsets, WINDOW_LENGTH, 2 * REGISTER.strip_half_width))]
 
-    rows = {one: own for one in np.unique(owner).tolist() if len(own := np.flatnonzero(owner == one)) > MIN_SHARED_CELLS}
+    rows = {one: own for one in np.unique(owner).tolist() if len(own := np.flatnonzero(owner == one)) > REGISTER.min_shared_cells}
     still, found = {one: strips(own) for one, own in rows.items()}, {}
     for one, other in zip(list(rows)[:-1], list(rows)[1:]):
         move = moves.get((one, other), {}).get(number)
@@ -415,8 +387,8 @@ def _combine_windows(pair, evidence):
 
 
 def _pool(numbers, values):
-    """(N, ...) sums over each window and its neighbours, with Gaussian weights of POOLING_SIGMA."""
-    sigma = POOLING_SIGMA / WINDOW_LENGTH
+    """(N, ...) sums over each window and its neighbours, with Gaussian weights of `pooling_sigma`."""
+    sigma = REGISTER.pooling_sigma / WINDOW_LENGTH
     whole = np.zeros((numbers[-1] - numbers[0] + 1, *values.shape[1:]))
     whole[numbers - numbers[0]] = values
     return gaussian_filter1d(whole, sigma, axis=0, mode="constant")[numbers - numbers[0]] * (sigma * np.sqrt(2 * np.pi))
@@ -427,23 +399,24 @@ def best_offsets(likeness: np.ndarray, lags: np.ndarray = LAGS) -> tuple[np.ndar
 
     Correlation, unlike the mean difference, is not affected by noise, however it is distributed over the cells.
     """
-    cell = LAG_CELL * float(lags[1] - lags[0])
-    prior = PRIOR_OFFSET_SIGMA * float(lags[-1]) / float(LAGS[-1])
+    cell = REGISTER.lag_cell * float(lags[1] - lags[0])
+    prior = REGISTER.prior_offset_sigma * float(lags[-1]) / float(LAGS[-1])
     products, squares, others, counts = np.moveaxis(likeness, 1, 0)
     enough = counts[:, len(lags) // 2]
-    correlation = np.clip(products / np.sqrt(np.maximum(squares * others, 1e-12)), 0.0, MAX_CORRELATION)
-    fit = np.log(1.0 - correlation**2) * (enough / CORRELATED_CELLS)[:, None]
-    unlikely = np.where(enough[:, None] >= MIN_SHARED_CELLS, fit, 0.0) + (LAG_CELL * lags / prior) ** 2
+    correlation = np.clip(products / np.sqrt(np.maximum(squares * others, 1e-12)), 0.0, REGISTER.max_correlation)
+    fit = np.log(1.0 - correlation**2) * (enough / REGISTER.correlated_cells)[:, None]
+    unlikely = np.where(enough[:, None] >= REGISTER.min_shared_cells, fit, 0.0) + (REGISTER.lag_cell * lags / prior) ** 2
     best = np.argmin(unlikely, axis=1)
     least = unlikely.min(axis=1)
-    clear = (least < -MIN_LIKELIHOOD_RATIO) & (_second_best(unlikely, best) > MAX_RUNNER_UP * least)
+    clear = (least < -REGISTER.min_likelihood_ratio) & (_second_best(unlikely, best) > REGISTER.max_runner_up * least)
     limit = clear & ((best == 0) | (best == len(lags) - 1))
     # sub-cell position from a parabola through the best lag and its neighbours
-    k = np.clip(best, PARABOLA_CELLS, len(lags) - 1 - PARABOLA_CELLS)[:, None] + np.arange(-PARABOLA_CELLS, PARABOLA_CELLS + 1)
-    bend, slope, _ = np.polyfit(np.arange(-PARABOLA_CELLS, PARABOLA_CELLS + 1.0), np.take_along_axis(unlikely, k, 1).T, 2)
+    reach = REGISTER.parabola_cells
+    k = np.clip(best, reach, len(lags) - 1 - reach)[:, None] + np.arange(-reach, reach + 1)
+    bend, slope, _ = np.polyfit(np.arange(-reach, reach + 1.0), np.take_along_axis(unlikely, k, 1).T, 2)
     bend = np.maximum(bend, 1e-12)
-    found = LAG_CELL * lags[k[:, PARABOLA_CELLS]] + cell * np.clip(-0.5 * slope / bend, -PARABOLA_CELLS, PARABOLA_CELLS)
-    return np.where(clear & ~limit & (cell / np.sqrt(bend) < MAX_OFFSET_SIGMA * cell / LAG_CELL), found, np.nan), limit
+    offset = REGISTER.lag_cell * lags[k[:, reach]] + cell * np.clip(-0.5 * slope / bend, -reach, reach)
+    return np.where(clear & ~limit & (cell / np.sqrt(bend) < REGISTER.max_offset_sigma * cell / REGISTER.lag_cell), offset, np.nan), limit
 
 
 def _second_best(unlikely, best):
@@ -453,13 +426,12 @@ def _second_best(unlikely, best):
     """
     dips = np.zeros(unlikely.shape, bool)
     dips[:, 1:-1] = (unlikely[:, 1:-1] <= unlikely[:, :-2]) & (unlikely[:, 1:-1] <= unlikely[:, 2:])
-    dips &= np.abs(np.arange(unlikely.shape[1]) - best[:, None]) > PEAK_CELLS
+    dips &= np.abs(np.arange(unlikely.shape[1]) - best[:, None]) > REGISTER.peak_cells
     return np.where(dips, unlikely, np.inf).min(axis=1)
 
 
 # How far the middle of the passes over a road may be off, and how that travels from stage to stage with points and layers.
 
-SIGMA_REACH = 25.0           # m of road either way over which passes are compared: less would be the noise of single offsets
 SIGMA_USER_ID = "LanewrightSigma"   # of the LAS records: FIRST_RECORD and those that follow it, and ROAD_RECORD of earlier versions
 ROAD_RECORD, FIRST_RECORD = 1, 2
 NODES_PER_RECORD = 5000      # a LAS record holds 65,535 bytes
@@ -468,18 +440,10 @@ _NODE = np.dtype([("road", "<u4"), ("station", "<f4"), ("sigma", "<f4")])
 
 
 def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
-    """How far the middle of the passes over a road may be off across it, from what they differ, place by place.
+    """How far the middle of the passes over a road may be off across it, from what they differ, place by place; None where no offset was measured.
 
     Two passes with independent errors of one sigma s differ by s * sqrt(2), and the mean of n of them is off by s / sqrt(n). Single offsets
     that are far off do not count: of the RMS and the median deviation as a sigma the smaller is taken.
-
-    Parameters
-    ----------
-    offsets : PassOffsets of one road
-
-    Returns
-    -------
-    SigmaAlong; None where no offset was measured
     """
     known = [(pair, np.isfinite(pair.left)) for pair in offsets]
     stations = np.concatenate([pair.stations[own] for pair, own in known] or [np.empty(0)])
@@ -489,7 +453,7 @@ def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
     stations, left = stations[order], np.concatenate([_apart(pair)[own] for pair, own in known])[order]
     one, other = (np.concatenate([np.full(own.sum(), getattr(pair, name)) for pair, own in known])[order] for name in ("one", "other"))
     places = np.unique(stations)
-    bounds = np.searchsorted(stations, places - SIGMA_REACH), np.searchsorted(stations, places + SIGMA_REACH, side="right")
+    bounds = np.searchsorted(stations, places - REGISTER.sigma_reach), np.searchsorted(stations, places + REGISTER.sigma_reach, side="right")
     found = []
     for first, end in zip(*bounds):
         apart = min(np.sqrt(np.mean(left[first:end] ** 2)), MAD_TO_SIGMA * np.median(np.abs(left[first:end])))
@@ -500,7 +464,7 @@ def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
 def _apart(pair):
     """(N,) m across that two passes lie apart; in any direction where it is more than drift, as roads that cross are off along this one too."""
     anywhere = np.hypot(pair.left, np.nan_to_num(pair.along))
-    return np.where(anywhere > MAX_OFFSET, anywhere, pair.left)
+    return np.where(anywhere > REGISTER.max_offset, anywhere, pair.left)
 
 
 def sigma_to_record(sigma: dict[int, SigmaAlong]) -> list[laspy.VLR]:

@@ -18,28 +18,13 @@ import numpy as np
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, to_units
-from .adjust import AGREEMENT_HEIGHT, AGREEMENT_PLAN, MOVED_COLUMNS, replace_points
-from .register import (
-    CHANNELS,
-    FLAT_STEP,
-    LAG_CELL,
-    MAX_CELL_HEIGHT,
-    MAX_OFFSET,
-    MIN_CELL_HEIGHT,
-    MIN_SHARED_CELLS,
-    ROW_CELL,
-    STRIP_HALF_WIDTH,
-    WINDOW_LENGTH,
-    Strips,
-    best_offsets,
-    correlation_sums,
-    height_offset,
-)
+from ..weights import ADJUST, REGISTER
+from .adjust import MOVED_COLUMNS, replace_points
+from .register import CHANNELS, WINDOW_LENGTH, Strips, best_offsets, correlation_sums, height_offset
 from .trajectory_fit import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
 
 SIDES = "right", "left"
-SAID_AS = ("ahead", "behind"), ("left", "right"), ("above", "below")
-SAID_M = 0.005           # m; less is not named in the warning
+MOVE_WORDS = ("ahead", "behind"), ("left", "right"), ("above", "below")
 
 
 @dataclass(frozen=True)
@@ -65,8 +50,7 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
 
     Parameters
     ----------
-    survey : Survey with times; its store is replaced where points are moved
-    progress : Progress, which hears a warning then
+    survey : Survey with times; its store is replaced where points are moved, and progress hears a warning
     folder : of the moved points that are not kept in memory; None for a temporary file
 
     Returns
@@ -121,9 +105,10 @@ def _said(survey, one, sigma):
     """The warning about a scanner that lies beside the first."""
     names = f"Scanner {survey.scanners[one.scanner]} and scanner {survey.scanners[0]}"
     if one.far:
-        return (f"{names} lie more than {100 * MAX_OFFSET:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. Calibrate "
-                "the mounting of the scanners anew, or process the points of one scanner alone.")
-    right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, SAID_AS) if abs(metres) > SAID_M)
+        return (f"{names} lie more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. "
+                "Calibrate the mounting of the scanners anew, or process the points of one scanner alone.")
+    right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, MOVE_WORDS)
+                             if abs(metres) > ADJUST.least_told_move)
                    or "nothing that is measurable" for side in np.nan_to_num(-one.moves))
     return (f"{names} differ all along the survey, as with a wrong lever arm or boresight angles. On the left of the vehicle, points of the first "
             f"are displaced from those of the other by {left}, on the right by {right}. Each was moved by its share. Nothing shows which of them is "
@@ -141,7 +126,7 @@ def _filled(one):
     """(2, 3) m of moves: where one side shows nothing, the other's; where both are alike, their mean."""
     right, left = one.moves
     right, left = (np.where(np.isnan(a), np.nan_to_num(b), a) for a, b in ((right, left), (left, right)))
-    alike = np.abs(left - right) < np.array([AGREEMENT_PLAN, AGREEMENT_PLAN, AGREEMENT_HEIGHT])
+    alike = np.abs(left - right) < np.array([ADJUST.agreement_plan, ADJUST.agreement_plan, ADJUST.agreement_height])
     return np.where(alike, 0.5 * (left + right), [right, left])
 
 
@@ -159,7 +144,7 @@ def _moved(frame, moves, records):
         cos, sin = np.cos(yaw), np.sin(yaw)
         left = (records["y"].take(own) * COORDINATE_SCALE - y) * cos - (records["x"].take(own) * COORDINATE_SCALE - x) * sin
         values, beside = moves[one]
-        left = np.clip(left, -STRIP_HALF_WIDTH, STRIP_HALF_WIDTH)
+        left = np.clip(left, -REGISTER.strip_half_width, REGISTER.strip_half_width)
         ahead, aside, up = (a + (left - first) / (last - first) * (b - a) for (a, b), (first, last) in zip(values.T, beside.T))
         east, north = ahead * cos - aside * sin, ahead * sin + aside * cos
         s, d = (records[name].take(own) * COORDINATE_SCALE for name in ("s", "d"))
@@ -172,11 +157,7 @@ def _moved(frame, moves, records):
 
 
 def _scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[_ScannerOffsets]:
-    """How far the scanners of a survey lie beside the first one.
-
-    survey : Survey with times
-    windows : how many windows of road are looked at
-    """
+    """How far the scanners of a survey lie beside the first one, from so many windows of road."""
     seen: dict[int, list] = {}
     for found in ordered_map(partial(_window_evidence, survey), _windows(survey, windows)):
         for number, evidence in found.items():
@@ -199,20 +180,21 @@ def _window_evidence(survey, window):
     points = survey.window(p.road, start, start + long)
     own = np.flatnonzero(points.pass_number == p.number)
     s, d = points.s[own], points.d[own]
-    nodes = start + np.arange(int(long / ROW_CELL) + 1) * ROW_CELL
+    nodes = start + np.arange(int(long / REGISTER.row_cell) + 1) * REGISTER.row_cell
     h = points.z[own] - np.interp(s, nodes, survey.road_height(p.road, nodes))
     beside = p.direction * (d - p.at_station(s)[0])
-    near = np.flatnonzero((np.abs(beside) < STRIP_HALF_WIDTH) & (h > MIN_CELL_HEIGHT) & (h < MAX_CELL_HEIGHT))
+    near = np.flatnonzero((np.abs(beside) < REGISTER.strip_half_width) & (h > REGISTER.min_cell_height) & (h < REGISTER.max_cell_height))
     ahead = s - start if p.direction > 0 else start + long - s
-    ahead, beside, h = ahead[near], beside[near] + STRIP_HALF_WIDTH, h[near]
+    ahead, beside, h = ahead[near], beside[near] + REGISTER.strip_half_width, h[near]
     scanner, intensity = points.scanner[own[near]], points.intensity[own[near]].astype(float)
 
     def strips(number):
         rows = np.flatnonzero(scanner == number)
-        if len(rows) < MIN_SHARED_CELLS:
+        if len(rows) < REGISTER.min_shared_cells:
             return None
-        return [Strips.of(fine[rows], coarse[rows], h[rows], intensity[rows], (round(width / ROW_CELL), round(length / LAG_CELL)))
-                for fine, coarse, length, width in ((beside, ahead, 2 * STRIP_HALF_WIDTH, long), (ahead, beside, long, 2 * STRIP_HALF_WIDTH))]
+        wide = 2 * REGISTER.strip_half_width
+        return [Strips.of(fine[rows], coarse[rows], h[rows], intensity[rows], (round(width / REGISTER.row_cell), round(length / REGISTER.lag_cell)))
+                for fine, coarse, length, width in ((beside, ahead, wide, long), (ahead, beside, long, wide))]
 
     first, found = strips(0), {}
     for number in range(1, len(survey.scanners)):
@@ -227,10 +209,10 @@ def _side_evidence(first, other, side):
     half = [slice(size // 2) if side == 0 else slice(size // 2, None) for size in (first[0].heights.shape[1], first[1].heights.shape[0])]
     a, b = (strips[0].part(slice(None), half[0]) for strips in (first, other))
     along = correlation_sums(*(strips[1].part(half[1], slice(None)) for strips in (first, other)))
-    place = (np.arange(a.heights.shape[1]) + 0.5) * LAG_CELL - (STRIP_HALF_WIDTH if side == 0 else 0.0)
+    place = (np.arange(a.heights.shape[1]) + 0.5) * REGISTER.lag_cell - (REGISTER.strip_half_width if side == 0 else 0.0)
     # unknown cells are NaN, and nothing is less than that
     shown = {name: np.nansum(np.square(getattr(a, name)) * np.isfinite(getattr(b, name)), axis=0) for name in CHANNELS}
-    shown["heights"] = np.count_nonzero(np.maximum(np.abs(a.steps), np.abs(b.steps)) < FLAT_STEP, axis=0)
+    shown["heights"] = np.count_nonzero(np.maximum(np.abs(a.steps), np.abs(b.steps)) < REGISTER.flat_step, axis=0)
     weights = {name: (float(weight.sum()), float(weight @ place)) for name, weight in shown.items()}
     return correlation_sums(a, b), along, height_offset(a, b, 0), weights
 
@@ -243,7 +225,7 @@ def _offsets(number, evidence):
         moves[side], channel, at_limit = _moves_of(seen)
         for axis, name in enumerate((channel, channel, "heights")):
             total, place = (sum(weights[name][k] for *_, weights in seen) for k in (0, 1))
-            beside[side, axis] = place / total if total else STRIP_HALF_WIDTH * (side - 0.5)
+            beside[side, axis] = place / total if total else REGISTER.strip_half_width * (side - 0.5)
         if len(seen) > 1:
             left_out, _, still = zip(*(_moves_of(seen[:k] + seen[k + 1:]) for k in range(len(seen))))
             sigma[side] = _jackknife(left_out)

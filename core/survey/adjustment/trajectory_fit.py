@@ -19,11 +19,10 @@ from ..frame.road import CORRIDOR
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
 from ..las.reader import CloudHeader
-from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
+from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
 from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
-from ..weights import MIRROR, RAYS, TRACK
-from .adjust import AGREEMENT_PLAN
+from ..weights import ADJUST, LATTICE, MIRROR, RAYS, TRACK
 
 
 @dataclass(frozen=True)
@@ -372,11 +371,11 @@ def _rate(time, a, b, window, size):
         foot, ground = (np.bincount(window, weight * values, size) / np.bincount(window, weight, size) for values in (a, b))
     phasor = b - ground[window] - TRACK.usual_height + 1j * (a - foot[window])
     phasor /= np.maximum(np.abs(phasor), 1e-9)
-    piece = np.floor((time - time[0]) / ROTATION_WINDOW)
+    piece = np.floor((time - time[0]) / LATTICE.rotation_window)
     cuts = np.flatnonzero(np.r_[True, np.diff(piece) > 0, True])
     spectra = [rotation_spectrum(time[i:j], phasor[i:j]) for i, j in zip(cuts[:-1], cuts[1:]) if j - i >= MIN_TURNS_POINTS]
     rate, peak = strongest_rotation(spectra) if spectra else (0.0, 0.0)
-    return abs(rate) if peak >= MIN_ROTATION_PEAK else None
+    return abs(rate) if peak >= LATTICE.min_rotation_peak else None
 
 
 def _resected_places(a, b, since, window, middles, rate):
@@ -433,5 +432,5 @@ SIGMA_OF_OTHER_HEIGHTS = (0.15 + 0.30) / 12.0**0.5   # derived: m
 # cost: windows of the survey in which scanners are looked at, and measured, as an error of a mounting is the same in all
 LOOK_WINDOWS, SCANNER_WINDOWS = 3, 16
 # derived: m ahead, left and up that scanners may differ by without a move, as passes may; along lines nothing is drawn sharply
-MAX_SCANNER_OFFSETS = 2 * AGREEMENT_PLAN, AGREEMENT_PLAN, AGREEMENT_PLAN / 2
+MAX_SCANNER_OFFSETS = 2 * ADJUST.agreement_plan, ADJUST.agreement_plan, ADJUST.agreement_plan / 2
 SIGNIFICANT = 3.0        # derived: sigma; of a normal error one in 370 is larger

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...curves.robust import robustly_smoothed
-from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
-from ..weights import MIRROR, TRACK
+from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
+from ..weights import LATTICE, MIRROR, TRACK
 from .samples import FirstTrack, Samples, headings_of
 
 X, Y, Z, ROLL, PITCH, YAW, POSE = range(7)   # columns of the control values, and the first of the phases of the scanners
@@ -127,7 +127,7 @@ def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> 
     spectra = []
     for time, place, track in runs:
         for middle in np.linspace(track.time[0], track.time[-1], MIRROR.rotation_samples_per_drive + 2)[1:-1]:
-            own = slice(*np.searchsorted(time, [middle - ROTATION_WINDOW / 2, middle + ROTATION_WINDOW / 2]))
+            own = slice(*np.searchsorted(time, [middle - LATTICE.rotation_window / 2, middle + LATTICE.rotation_window / 2]))
             if own.stop - own.start < MIRROR.min_spectrum_samples:
                 continue
             foot, heading = track.at(time[own])
@@ -138,7 +138,7 @@ def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> 
     if not spectra:
         return None
     rate, peak = strongest_rotation(spectra)
-    return abs(rate) if peak >= MIN_ROTATION_PEAK else None
+    return abs(rate) if peak >= LATTICE.min_rotation_peak else None
 
 
 def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> _Fixes:

@@ -13,19 +13,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..trajectory.trajectory import Trajectory
+from ..weights import FRAME
 
-TRACK_STEP = 2.0           # m between the positions that are compared
-SAME_CARRIAGEWAY = 12.0    # m: parallel tracks closer than this run on the same carriageway
-LEVEL_SEPARATION = 3.0     # m of height: tracks farther apart run on different levels of a ramp or bridge
-PARALLEL_ANGLE = np.radians(30.0)
-MIN_LOOP_LENGTH = 60.0     # m driven before coming near the own track again counts as a return
-MIN_PASS_LENGTH = 10.0     # m: shorter pieces do not become a pass
 MAX_ROAD_LENGTH = 200_000.0  # m: stations have 32 bits of 0.1 mm; a longer road becomes several
-STANDSTILL_RADIUS = 0.5    # m: position noise of a standing vehicle
-TURN_ANGLE = np.radians(75.0)  # from the heading at the apex: where a turn on the spot begins and ends
-TURN_REACH = 40.0          # m either side of the apex of a turn on the spot
-TIME_TICK = 0.005          # s between the entries of the lookup tables by time
-MAX_TICKS = 20_000_000     # entries of a lookup table at most
 
 
 @dataclass(frozen=True)
@@ -46,17 +36,7 @@ class _DrivenPath:
 
 
 def decimate_by_distance(x: np.ndarray, y: np.ndarray, step: float) -> np.ndarray:
-    """Indices of positions at least `step` metres of driving apart, with the first and the last.
-
-    Parameters
-    ----------
-    x, y : (N,) metres
-    step : metres
-
-    Returns
-    -------
-    (M,) int
-    """
+    """(M,) indices of (N,) positions at least `step` metres of driving apart, with the first and the last."""
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
     if driven[-1] < step:
         return np.unique([0, len(x) - 1])
@@ -67,19 +47,10 @@ def decimate_by_distance(x: np.ndarray, y: np.ndarray, step: float) -> np.ndarra
     return keep
 
 
-def moving_rows(x: np.ndarray, y: np.ndarray, step: float = STANDSTILL_RADIUS) -> np.ndarray:
-    """Indices of positions at least `step` metres from the previous one, so that position noise adds no length.
+def moving_rows(x: np.ndarray, y: np.ndarray, step: float = FRAME.standstill_radius) -> np.ndarray:
+    """(M,) indices of (N,) positions at least `step` metres from the previous one, so that position noise adds no length.
 
     The first and the last row are included (the last replaces the one before it if that is nearer than `step`).
-
-    Parameters
-    ----------
-    x, y : (N,) metres
-    step : metres
-
-    Returns
-    -------
-    (M,) int
     """
     count = len(x)
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))].tolist()
@@ -105,22 +76,14 @@ def moving_rows(x: np.ndarray, y: np.ndarray, step: float = STANDSTILL_RADIUS) -
 
 
 def split_into_passes(trajectory: Trajectory) -> list[_DrivenPath]:
-    """Split the trajectory where it pauses, turns back, crosses itself or returns to its own track.
+    """Split the trajectory where it pauses, turns back, crosses itself or returns to its own track, in driving order.
 
     Pieces longer than MAX_ROAD_LENGTH are split into equal parts.
-
-    Parameters
-    ----------
-    trajectory : Trajectory in metres
-
-    Returns
-    -------
-    list of _DrivenPath in driving order
     """
     pieces = []
     for first, last in _split_at_pauses(trajectory):
         pieces += _split_at_returns(trajectory, first, last)
-    return [piece for piece in pieces if piece.length >= MIN_PASS_LENGTH] or \
+    return [piece for piece in pieces if piece.length >= FRAME.min_pass_length] or \
         [max(pieces, key=lambda piece: piece.length)]
 
 
@@ -139,7 +102,7 @@ def _split_at_returns(trajectory, first, last):
     x, y = trajectory.x[first:last], trajectory.y[first:last]
     rows = moving_rows(x, y)
     driven = np.interp(np.arange(last - first), rows, np.r_[0.0, np.cumsum(np.hypot(np.diff(x[rows]), np.diff(y[rows])))])
-    rows = rows[decimate_by_distance(x[rows], y[rows], TRACK_STEP)]
+    rows = rows[decimate_by_distance(x[rows], y[rows], FRAME.track_step)]
     cuts = []
     if len(rows) >= 4:
         px, py = x[rows], y[rows]
@@ -159,10 +122,10 @@ def _drop_short_pieces(cuts, driven):
     """The cuts without those that would leave too short a piece; its rows stay with the piece before."""
     kept, begins = [], 0.0
     for cut in cuts:
-        if driven[cut[0]] - begins >= MIN_PASS_LENGTH:
+        if driven[cut[0]] - begins >= FRAME.min_pass_length:
             kept.append(cut)
             begins = driven[cut[0]]
-    while kept and driven[-1] - driven[kept[-1][0]] < MIN_PASS_LENGTH:
+    while kept and driven[-1] - driven[kept[-1][0]] < FRAME.min_pass_length:
         kept.pop()
     return kept
 
@@ -182,7 +145,7 @@ def _split_long_pieces(cuts, driven):
 def _turn_ends(heading, along, apex):
     """Indices before and after the apex of a turn on the spot where the vehicle drives in the direction of its lane."""
     off = np.abs(heading - heading[apex])
-    straight = (off >= TURN_ANGLE) & (np.abs(along - along[apex]) <= TURN_REACH)
+    straight = (off >= FRAME.turn_angle) & (np.abs(along - along[apex]) <= FRAME.turn_reach)
     before, after = np.flatnonzero(straight[:apex]), np.flatnonzero(straight[apex:])
     return (before[-1] if len(before) else apex), (apex + after[0] if len(after) else apex)
 
@@ -195,15 +158,15 @@ def _apex(px, py, heading, a, b):
 
 def _return_cuts(px, py, along, heading):
     """[(index, whether it is a turn on the spot)] of the positions at which a new pass begins."""
-    pairs = cKDTree(np.c_[px, py]).query_pairs(SAME_CARRIAGEWAY, output_type="ndarray")
+    pairs = cKDTree(np.c_[px, py]).query_pairs(FRAME.same_carriageway, output_type="ndarray")
     if not len(pairs):
         return []
     i, j = pairs.min(axis=1), pairs.max(axis=1)
     apart = along[j] - along[i]
     turned = np.abs((heading[j] - heading[i] + np.pi) % (2 * np.pi) - np.pi)
-    back = (turned > np.pi - PARALLEL_ANGLE) & (apart > 4 * TRACK_STEP)
-    again = (turned < PARALLEL_ANGLE) & (apart > MIN_LOOP_LENGTH)
-    crossed = (apart > MIN_LOOP_LENGTH) & (np.hypot(px[i] - px[j], py[i] - py[j]) < TRACK_STEP)
+    back = (turned > np.pi - FRAME.parallel_angle) & (apart > 4 * FRAME.track_step)
+    again = (turned < FRAME.parallel_angle) & (apart > FRAME.min_loop_length)
+    crossed = (apart > FRAME.min_loop_length) & (np.hypot(px[i] - px[j], py[i] - py[j]) < FRAME.track_step)
     use = back | again | crossed
     order = np.flatnonzero(use)[np.lexsort((-i[use], j[use]))]
     cuts, start = [], 0
@@ -212,7 +175,7 @@ def _return_cuts(px, py, along, heading):
             continue
         # Split a turn on the spot at its apex, a return where the track is met again, and a loop that crosses itself half way
         # round, so that neither part has two stations at the crossing, also where it crosses on another level
-        is_turn = bool(is_back and path < MIN_LOOP_LENGTH + 20)
+        is_turn = bool(is_back and path < FRAME.min_loop_length + 20)
         if is_turn:
             start = _apex(px, py, heading, a, b)
         else:
@@ -258,22 +221,14 @@ class Pass:
         Pass.__init__(self, **state)
 
     def at(self, time: np.ndarray, *names: str) -> list[np.ndarray]:
-        """The state of the vehicle at given times, constant before the first and after the last sample.
+        """The state of the vehicle at (N,) times, (N,) metres for each of the `names` among "x", "y", "z", "s", "d".
 
-        Interpolated linearly in tables with a step of 5 ms, so that many times in any order are fast.
-
-        Parameters
-        ----------
-        time : (N,) s
-        names : of "x", "y", "z", "s", "d"
-
-        Returns
-        -------
-        list of (N,) metres, one per name
+        It is constant before the first and after the last sample, and interpolated linearly in tables with a step of 5 ms, so that many times in any
+        order are fast.
         """
         if not self._by_tick:
             span = self.time[-1] - self.time[0]
-            tick = max(TIME_TICK, span / MAX_TICKS)
+            tick = max(FRAME.time_tick, span / FRAME.max_ticks)
             self._by_tick["time"] = tick, self.time[0] + tick * np.arange(int(np.ceil(span / tick)) + 2)
         tick, times = self._by_tick["time"]
         at = (np.asarray(time, float) - times[0]) * (1.0 / tick)
@@ -298,7 +253,6 @@ class Pass:
         return tuple(self.at(time, "x", "y", "z"))
 
     def station_at(self, time: np.ndarray) -> np.ndarray:
-        """Station of the vehicle, (N,) m, at (N,) times."""
         return self.at(time, "s")[0]
 
     def progress_at(self, time: np.ndarray) -> np.ndarray:

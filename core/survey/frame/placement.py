@@ -10,14 +10,15 @@ import numpy as np
 import shapely
 
 from ...common.features import PASSES, Features
-from .passes import STANDSTILL_RADIUS, decimate_by_distance
+from ..weights import FRAME
+from .passes import decimate_by_distance
 from .road_frame import RoadFrame
 
 COORDINATE_DECIMALS = 4  # of coordinates in layers: 0.1 mm
 
 
 def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Stations and offsets of local places on given roads.
+    """Stations and offsets of local places on given roads, (V,) metres; NaN where a place has no foot on its road, see `Road.locate`.
 
     The places are taken as their map coordinates hold them. A layer that was written
     and read again therefore gives the same stations and offsets, and the stages give
@@ -27,10 +28,6 @@ def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) ->
     ----------
     road : (V,) int, number of the road of each place; numbers that the frame does not have are allowed
     x, y : (V,) local metres
-
-    Returns
-    -------
-    s, d : (V,) metres; NaN where a place has no foot on its road, see `Road.locate`
     """
     s, d = np.full((2, len(x)), np.nan)
     x, y = frame.to_local(x + frame.origin[0], y + frame.origin[1])
@@ -76,7 +73,6 @@ class FrameLines:
         return len(self.road)
 
     def line(self, k: int) -> slice:
-        """The vertices of line k."""
         return slice(int(self.start[k]), int(self.start[k + 1]))
 
     def __getitem__(self, rows: np.ndarray) -> FrameLines:
@@ -110,11 +106,10 @@ class FrameLines:
 
 def lines_in_frame(lines: Sequence[Any] | np.ndarray, road: Sequence[int] | np.ndarray, frame: RoadFrame,
                    spacing: float | None = LINE_VERTEX_SPACING) -> FrameLines:
-    """Lines in map coordinates as FrameLines.
+    """Shapely lines in map coordinates as FrameLines.
 
     Parameters
     ----------
-    lines : L shapely LineStrings in map coordinates
     road : (L,) int, number of the road of each; where the frame has no such road, the one that most vertices are nearest to
     spacing : m between vertices at most; None for the vertices of the lines as they are
     """
@@ -146,17 +141,11 @@ def line_parts(geometries: Sequence[Any]) -> tuple[list[Any], list[int]]:
 def passes_to_features(frame: RoadFrame, crs: str) -> Features:
     """The layer PASSES in map coordinates: where the vehicle drove, as the run used it.
 
-    Parameters
-    ----------
-    crs : WKT, "" where unknown
-
-    Returns
-    -------
-    Features, LineStringZ, one row a pass in order of time, drawn as it was driven with a vertex every half metre
+    One row a pass in order of time, drawn as it was driven with a vertex every half metre.
     """
     layer = Features("LineStringZ", list(PASSES), crs=crs)
     for one in frame.passes:
-        rows = decimate_by_distance(one.x, one.y, STANDSTILL_RADIUS)
+        rows = decimate_by_distance(one.x, one.y, FRAME.standstill_radius)
         if len(rows) < 2:
             continue
         line = shapely.linestrings(np.round(np.c_[one.x, one.y, one.z][rows] + frame.origin, COORDINATE_DECIMALS))
@@ -168,17 +157,7 @@ def passes_to_features(frame: RoadFrame, crs: str) -> Features:
 # Places by squares of the ground: those about a place are looked up there, not among all places of a whole road.
 
 class PlaceIndex:
-    """Places by squares.
-
-    Parameters
-    ----------
-    places : (N, 2) m
-    side : m, of the squares
-
-    Attributes
-    ----------
-    places, side : as given
-    """
+    """(N, 2) places in metres by squares of a side in metres."""
 
     def __init__(self, places: np.ndarray, side: float):
         self.places, self.side = places, side
@@ -196,7 +175,6 @@ class PlaceIndex:
         self._keys, self._ends = key[self._starts], np.r_[self._starts, len(key)]
 
     def __getstate__(self) -> dict:
-        """The places; the rest follows from them."""
         return dict(places=self.places, side=self.side)
 
     def __setstate__(self, state: dict) -> None:

@@ -13,7 +13,8 @@ import numpy as np
 
 from ...common.parallel import ScratchBuffers
 from ..store.records import COORDINATE_SCALE, to_units
-from .passes import MAX_TICKS, TIME_TICK, Pass
+from ..weights import FRAME
+from .passes import Pass
 from .road import NODE_SPACING, Road
 from .road_frame import RoadFrame
 
@@ -21,11 +22,7 @@ Buffers = Callable[..., np.ndarray]   # what `ScratchBuffers.of` returns
 
 NODE_UNITS = round(NODE_SPACING / COORDINATE_SCALE)  # units of 0.1 mm from node to node
 NODE_FRACTION_BITS = 4              # bits by which coordinates of nodes are finer than the unit
-MAX_NODE_STEPS = 3        # from node to node, for the few points whose node is not found in one step from the node of the vehicle
-MAX_NODE_LEAP = 300.0      # nodes per step at most
 NODE_TOLERANCE = 1e-3         # of a node spacing beyond the ends: the direction differs from that of the next node by less than 1e-6
-CLOSED_FORM_BEND = 0.55          # of the radius of a bend, to its inner side: validity of the closed form
-BEND_STRETCH = (0.4, 2.5)    # limits of the ratio of along-track distance to station difference in a bend
 
 
 class _LineLookup:
@@ -71,13 +68,12 @@ class _LineLookup:
         if not _all_within(share, -NODE_TOLERANCE, 1.0 + NODE_TOLERANCE):
             self._carry_on(k, fine_x, fine_y, found)
         near = None
-        if not (_all_within(share, -NODE_TOLERANCE, 1.0 + NODE_TOLERANCE) and _all_within(bend, -CLOSED_FORM_BEND, CLOSED_FORM_BEND)):
-            near = _beside(share) & (np.abs(bend) < CLOSED_FORM_BEND)
+        if not (_all_within(share, -NODE_TOLERANCE, 1.0 + NODE_TOLERANCE) and _all_within(bend, -FRAME.closed_form_bend, FRAME.closed_form_bend)):
+            near = _beside(share) & (np.abs(bend) < FRAME.closed_form_bend)
         with np.errstate(invalid="ignore"):  # points outside the frame
-            share *= NODE_UNITS
-            np.copyto(s, np.rint(share, out=share), casting="unsafe")
-            offset *= NODE_UNITS
-            np.copyto(d, np.rint(offset, out=offset), casting="unsafe")
+            for nodes, units in ((share, s), (offset, d)):
+                nodes *= NODE_UNITS
+                np.copyto(units, np.rint(nodes, out=nodes), casting="unsafe")
         k *= NODE_UNITS
         k += self.start
         np.add(s, k, out=s, casting="unsafe")
@@ -86,16 +82,19 @@ class _LineLookup:
             about = self._about(x, y, reach)
             if not about.all():
                 near = about if near is None else near & about
-        if near is None and _all_within(s, self.start, self.end - 1) and _all_within(d, -reach, reach):
-            return None
-        inside = (s >= self.start) & (s < self.end) & (d >= -reach) & (d <= reach)
+        inside = self._inside(s, d, reach)
         if near is not None:
-            inside &= near
+            inside = near if inside is None else inside & near
             self._follow(x, y, start, np.flatnonzero(~near & (np.abs(left) < (1.5 * corridor + 5.0) / NODE_SPACING)), corridor, s, d, inside)
         return inside
 
+    def _inside(self, s, d, reach):
+        """(N,) bool, which stations and offsets lie in the frame; None if all do."""
+        if _all_within(s, self.start, self.end - 1) and _all_within(d, -reach, reach):
+            return None
+        return (s >= self.start) & (s < self.end) & (d >= -reach) & (d <= reach)
+
     def _about(self, x, y, reach):
-        """(N,) bool: which points lie in the bounding box of the line, extended by `reach` units, where 32 bits are unique."""
         (left, right), (bottom, top) = self._box
         return (x >= left - reach) & (x <= right + reach) & (y >= bottom - reach) & (y <= top + reach)
 
@@ -120,13 +119,12 @@ class _LineLookup:
         return ahead, left, turn, np.multiply(turn, left, out=north_n)
 
     def _moved(self, k, ahead, bend, buffers):
-        """The node beside points that lie `ahead` of node k."""
         on = np.subtract(np.float32(1.0), bend, out=buffers("n", np.float32))
-        if not _all_within(on, *BEND_STRETCH):
-            np.clip(on, *BEND_STRETCH, out=on)
+        if not _all_within(on, *FRAME.bend_stretch):
+            np.clip(on, *FRAME.bend_stretch, out=on)
         np.divide(ahead, on, out=on)
-        if not _all_within(on, -MAX_NODE_LEAP, MAX_NODE_LEAP):
-            np.clip(on, -MAX_NODE_LEAP, MAX_NODE_LEAP, out=on)
+        if not _all_within(on, -FRAME.max_node_leap, FRAME.max_node_leap):
+            np.clip(on, -FRAME.max_node_leap, FRAME.max_node_leap, out=on)
         moved = buffers("moved", np.intp)
         np.copyto(moved, np.floor(on, out=on), casting="unsafe")
         moved += k
@@ -153,7 +151,7 @@ class _LineLookup:
         rows = np.flatnonzero(~_beside(share))
         bend, ahead = bend.take(rows), ahead.take(rows)
         x, y = x.take(rows), y.take(rows)
-        for _ in range(MAX_NODE_STEPS):
+        for _ in range(FRAME.max_node_steps):
             if not len(rows):
                 break
             few = self._scratch.of(len(rows))
@@ -194,17 +192,10 @@ def _beside(share):
     return (share >= -NODE_TOLERANCE) & (share <= 1.0 + NODE_TOLERANCE)
 
 
-POINTS_PER_PROJECTION = 100_000   # fewer points spend more time on Python's interpreter lock, many more on memory access
-CLOCK_SLACK = 1.0                 # s that a cloud may begin before or end after the trajectory
 
 
 class RoadProjection:
-    """Station and offset of points with times.
-
-    Parameters
-    ----------
-    corridor : metres either side
-    """
+    """Station and offset of points with times, in a corridor of some metres either side."""
 
     def __init__(self, frame: RoadFrame, corridor: float):
         self.frame, self.corridor = frame, corridor
@@ -215,17 +206,9 @@ class RoadProjection:
         self._ticks = [_PassClock(p, frame.road(p.road)) for p in frame.passes]
 
     def project(self, x: np.ndarray, y: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Pass, station and offset of local positions, rounded to 0.1 mm.
+        """Pass, station and offset of (N,) local positions in metres at (N,) times, rounded to 0.1 mm.
 
-        Parameters
-        ----------
-        x, y : (N,) local metres
-        time : (N,) s
-
-        Returns
-        -------
-        pass_number : (N,) int16; -1 where no pass was driven at the point's time
-        s, d : (N,) metres; NaN beyond the corridor or the ends of the road, as by `Road.locate`
+        The pass is -1 where none was driven at the point's time; station and offset are NaN beyond the corridor or the ends of the road.
         """
         s, d = np.empty((2, len(x)), np.int32)
         units_x, units_y = (np.rint(np.asarray(v) / COORDINATE_SCALE).astype(np.int64) for v in (x, y))
@@ -251,8 +234,8 @@ class RoadProjection:
         inside : (N,) bool, which points lie in the road frame; None if all do
         """
         passes, inside = self._owner(time), None
-        for first in range(0, len(x), POINTS_PER_PROJECTION):
-            part = slice(first, first + POINTS_PER_PROJECTION)
+        for first in range(0, len(x), FRAME.points_per_projection):
+            part = slice(first, first + FRAME.points_per_projection)
             here = self._part(passes[part], x[part], y[part], time[part], s[part], d[part])
             if here is not None:
                 inside = np.ones(len(x), bool) if inside is None else inside
@@ -273,17 +256,17 @@ class RoadProjection:
         return inside
 
     def _owner(self, time):
-        """Pass driven at each time, or within CLOCK_SLACK of it; -1 where none was."""
+        """Pass driven at each time, or within `clock_slack` of it; -1 where none was."""
         if not len(time):
             return np.empty(0, np.int16)
         low, high = time.min(), time.max()
         k = int(np.searchsorted(self.starts, low, side="right")) - 1
-        if k >= 0 and high <= self.ends[k] and (k + 1 == len(self.starts) or high < self.starts[k + 1] - CLOCK_SLACK):
+        if k >= 0 and high <= self.ends[k] and (k + 1 == len(self.starts) or high < self.starts[k + 1] - FRAME.clock_slack):
             return np.broadcast_to(np.int16(k), len(time))
-        k = np.clip(np.searchsorted(self.starts, time + CLOCK_SLACK, side="right") - 1, 0, None)
+        k = np.clip(np.searchsorted(self.starts, time + FRAME.clock_slack, side="right") - 1, 0, None)
         # within the slack of two passes, the time of the earlier one takes precedence
         k = np.where((k > 0) & (time < self.starts[k]) & (time <= self.ends[np.maximum(k - 1, 0)]), k - 1, k)
-        inside = (time >= self.starts[k] - CLOCK_SLACK) & (time <= self.ends[k] + CLOCK_SLACK)
+        inside = (time >= self.starts[k] - FRAME.clock_slack) & (time <= self.ends[k] + FRAME.clock_slack)
         return np.where(inside, k, -1).astype(np.int16)
 
     def _project_pass(self, number, x, y, time, s, d):
@@ -297,7 +280,7 @@ class _PassClock:
 
     def __init__(self, driven: Pass, road: Road):
         self.first, span = driven.time[0], driven.time[-1] - driven.time[0]
-        self.tick = max(TIME_TICK, span / MAX_TICKS)
+        self.tick = max(FRAME.time_tick, span / FRAME.max_ticks)
         times = self.first + self.tick * np.arange(int(span / self.tick) + 2)
         self.nodes = np.clip((np.interp(times, driven.time, driven.s) - road.start) / NODE_SPACING, 0, len(road.x) - 2).astype(np.int32)
 

@@ -12,7 +12,8 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
-from .passes import LEVEL_SEPARATION, SAME_CARRIAGEWAY, moving_rows
+from ..weights import FRAME
+from .passes import moving_rows
 
 CORRIDOR = 25.0               # m either side of the reference line
 
@@ -38,11 +39,10 @@ class Road:
         self._cos, self._sin = np.cos(self._heading), np.sin(self._heading)
         self._curvature = np.gradient(self._heading, NODE_SPACING)
         self.end = start + NODE_SPACING * (len(nodes_x) - 1)
-        self.length = self.end - FRAME_EXTENSION
+        self.length = self.end - FRAME.frame_extension
         self._tree: cKDTree | None = None
 
     def __getstate__(self) -> dict:
-        """What the reference line is made of; the rest follows from it."""
         return dict(number=self.number, nodes_x=self.x, nodes_y=self.y, start=self.start)
 
     def __setstate__(self, state: dict) -> None:
@@ -83,18 +83,14 @@ class Road:
 
     def locate(self, x: np.ndarray, y: np.ndarray, start: np.ndarray | None = None,
                corridor: float = CORRIDOR) -> tuple[np.ndarray, np.ndarray]:
-        """Station and offset of local positions, by Newton iteration on the along-track component.
+        """Station and offset of (N,) local positions, by Newton iteration on the along-track component.
+
+        NaN beyond the ends of the frame, outside the corridor, or on the inner side of a bend beyond 0.9 of its radius, where normals cross.
 
         Parameters
         ----------
-        x, y : (N,) local metres
         start : (N,) initial stations near the wanted nearest point (from gps_time); None for the nearest node
         corridor : largest |offset|, metres
-
-        Returns
-        -------
-        s, d : (N,) metres; NaN beyond the ends of the frame, outside the corridor, or on the inner side of a bend beyond
-            0.9 of its radius, where normals cross
         """
         x, y = np.asarray(x, float), np.asarray(y, float)
         if start is None:
@@ -145,36 +141,17 @@ class Road:
 # The reference line of a road: the smoothed track of its longest pass, continued by other passes.
 
 NODE_SPACING = 0.1     # m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
-LINE_SMOOTHING = 2.0   # m, sigma: removes noise from the heading; offsets are measured from the smoothed line
-FRAME_EXTENSION = 10.0  # m beyond the driven part: scanners measure ahead and behind
-SPARSE_TRACK_SPACING = 2.0  # m between rows: beyond it, chords would cut the bends, so a spline is used
-JUNCTION_GAP = 15.0    # m between the end of one pass and the start of the next that continues the road
-MAX_LATERAL_JUMP = 6.0  # m to the side: another lane of the same carriageway
-MAX_JUNCTION_ANGLE = np.radians(30.0)
-LANE_BLEND_LENGTH = 40.0  # m over which a continuing pass in another lane is blended into the line
 
 
 def track_line(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
     """(M, 3) positions at least half a metre apart along a track of (N,) x, y and z in metres."""
-    rows = moving_rows(x, y)
-    return np.c_[x, y, z][rows]
+    return np.c_[x, y, z][moving_rows(x, y)]
 
 
 def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes of the reference line, NODE_SPACING apart, extended by FRAME_EXTENSION at both ends.
+    """Nodes x, y (M,) of the reference line along a track, (N, 2) or (N, 3) m: NODE_SPACING apart, extended at both ends.
 
-    Parameters
-    ----------
-    line : (N, 2) or (N, 3) positions of the track, m
-
-    Returns
-    -------
-    x, y : (M,) m
-
-    Raises
-    ------
-    RoadExtractionError
-        If the track does not move.
+    A track that does not move is refused.
     """
     x, y = line[:, 0], line[:, 1]
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
@@ -183,7 +160,7 @@ def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if driven[-1] < 1.0:
         raise RoadExtractionError("The trajectory does not move: at least 1 m of driving is needed to define a road.")
     u = np.arange(0.0, driven[-1] + NODE_SPACING / 2, NODE_SPACING)
-    if np.median(np.diff(driven)) > SPARSE_TRACK_SPACING and len(driven) > 3:
+    if np.median(np.diff(driven)) > FRAME.sparse_track_spacing and len(driven) > 3:
         x, y = CubicSpline(driven, x)(u), CubicSpline(driven, y)(u)
     else:
         x, y = np.interp(u, driven, x), np.interp(u, driven, y)
@@ -195,15 +172,15 @@ def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _smooth(values):
     """Gaussian smoothing along the line, point-reflected at the end points so that these stay."""
-    pad = min(int(4 * LINE_SMOOTHING / NODE_SPACING), len(values) - 1)
+    pad = min(int(4 * FRAME.line_smoothing / NODE_SPACING), len(values) - 1)
     head = 2 * values[0] - values[1:pad + 1][::-1]
     tail = 2 * values[-1] - values[-pad - 1:-1][::-1]
-    return gaussian_filter1d(np.r_[head, values, tail], LINE_SMOOTHING / NODE_SPACING)[pad:pad + len(values)]
+    return gaussian_filter1d(np.r_[head, values, tail], FRAME.line_smoothing / NODE_SPACING)[pad:pad + len(values)]
 
 
 def _extend(x, y):
     reach = min(int(3.0 / NODE_SPACING), len(x) - 1)
-    steps = np.arange(1, int(round(FRAME_EXTENSION / NODE_SPACING)) + 1) * NODE_SPACING
+    steps = np.arange(1, int(round(FRAME.frame_extension / NODE_SPACING)) + 1) * NODE_SPACING
 
     def beyond(tip, inner):
         direction = np.array([x[tip] - x[inner], y[tip] - y[inner]])
@@ -216,15 +193,9 @@ def _extend(x, y):
 
 
 def continue_line(line: np.ndarray, track: np.ndarray) -> np.ndarray | None:
-    """A line lengthened by a track that continues it at either end, driven in either direction.
+    """A line lengthened by a track that continues it at either end, driven in either direction; None if it does not.
 
-    Parameters
-    ----------
-    line, track : (N, 3) positions as returned by `track_line`
-
-    Returns
-    -------
-    (M, 3) positions in the direction of `line`; None if the track does not continue it
+    Both are (N, 3) positions of `track_line`; the result has the direction of `line`.
     """
     for way in (track, track[::-1]):
         found = _append_track(line, way)
@@ -240,9 +211,10 @@ def _append_track(line, track):
     direction = _direction(line[::-1]) * -1.0
     ahead = (track[:, :2] - line[-1, :2]) @ direction
     aside = (track[:, :2] - line[-1, :2]) @ np.array([-direction[1], direction[0]])
-    if not (-JUNCTION_GAP < ahead[0] < JUNCTION_GAP and abs(aside[0]) < MAX_LATERAL_JUMP and abs(track[0, 2] - line[-1, 2]) < LEVEL_SEPARATION):
+    if not (abs(ahead[0]) < FRAME.junction_gap and abs(aside[0]) < FRAME.max_lateral_jump
+            and abs(track[0, 2] - line[-1, 2]) < FRAME.level_separation):
         return None
-    if np.arccos(np.clip(_direction(track) @ direction, -1, 1)) > MAX_JUNCTION_ANGLE:
+    if np.arccos(np.clip(_direction(track) @ direction, -1, 1)) > FRAME.parallel_angle:
         return None
     beyond = track[int(np.argmax(ahead > 1.0)):] if (ahead > 1.0).any() else track[:0]
     if len(beyond) < 3:
@@ -252,7 +224,7 @@ def _append_track(line, track):
         return None
     step = np.gradient(beyond[:, :2], axis=0)
     left = np.c_[-step[:, 1], step[:, 0]] / np.maximum(np.hypot(*step.T), 1e-9)[:, None]
-    share = np.clip(1.0 - driven / LANE_BLEND_LENGTH, 0.0, 1.0)
+    share = np.clip(1.0 - driven / FRAME.lane_blend_length, 0.0, 1.0)
     share = share * share * (3.0 - 2.0 * share)
     beyond = beyond.copy()
     beyond[:, :2] -= left * (aside[0] * share)[:, None]
@@ -262,8 +234,8 @@ def _append_track(line, track):
 def _comes_back(line, beyond, driven):
     """Whether a continuation approaches the line anywhere but at its end: a position would have two stations."""
     left = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line[::-1, :2], axis=0).T))][::-1]
-    for old, new in ((line[left > 3 * SAME_CARRIAGEWAY], beyond), (line, beyond[driven > 3 * SAME_CARRIAGEWAY])):
-        if len(old) and len(new) and cKDTree(old[:, :2]).query(new[:, :2])[0].min() < SAME_CARRIAGEWAY:
+    for old, new in ((line[left > 3 * FRAME.same_carriageway], beyond), (line, beyond[driven > 3 * FRAME.same_carriageway])):
+        if len(old) and len(new) and cKDTree(old[:, :2]).query(new[:, :2])[0].min() < FRAME.same_carriageway:
             return True
     return False
 

@@ -11,10 +11,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...common.arrays import mask_runs
 from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
-from .passes import LEVEL_SEPARATION, MAX_ROAD_LENGTH, TURN_REACH, Pass, decimate_by_distance, moving_rows, split_into_passes
-from .road import CORRIDOR, FRAME_EXTENSION, JUNCTION_GAP, Road, continue_line, reference_nodes, track_line
+from ..weights import FRAME
+from .passes import MAX_ROAD_LENGTH, Pass, decimate_by_distance, moving_rows, split_into_passes
+from .road import CORRIDOR, Road, continue_line, reference_nodes, track_line
 from .row_table import SigmaAlong
 
 MAX_POINT_DISTANCE = 200.0    # m from the track: exceeds the widest corridor and the extension at the ends of a road
@@ -45,11 +47,9 @@ class RoadFrame:
     way_known: bool = True
 
     def road(self, number: int) -> Road:
-        """The road of a number."""
         return self.roads[number]
 
     def passes_of(self, road: int) -> list[Pass]:
-        """The passes over a road."""
         return [p for p in self.passes if p.road == road]
 
     def passes_sigma(self, road: int, s: np.ndarray, unknown: float = 0.0) -> np.ndarray:
@@ -74,17 +74,9 @@ class RoadFrame:
         return found if z is None else found + (np.asarray(z, float) + self.origin[2],)
 
     def track_height(self, road: int, s: np.ndarray, below: dict[int, float] | None = None) -> np.ndarray:
-        """Height of the trajectory at stations of a road: the mean of the passes there, else the nearest pass.
+        """Height of the trajectory, (N,) local z in metres, at (N,) stations of a road: the mean of the passes there, else the nearest pass.
 
-        Parameters
-        ----------
-        road : number
-        s : (N,) stations, m
         below : {pass number: metres to subtract}, such as the sensor heights
-
-        Returns
-        -------
-        (N,) local z, m
         """
         s = np.asarray(s, float)
         below = below or {}
@@ -124,27 +116,14 @@ class RoadFrame:
 
 # Roads and passes of a trajectory: which parts of the drive run over the same road, and along which line.
 
-MAX_PASS_DISTANCE = 12.0      # m between two passes over one carriageway (median)
-MAX_LANE_DISTANCE = 15.0      # m between two passes over one carriageway at most
-MAX_PASS_ANGLE = np.radians(30.0)
-MIN_SHARED_LENGTH = 20.0      # m of road that two passes over it must share
 
 
 def build_frame(trajectory: Trajectory) -> RoadFrame:
-    """Roads and passes of a trajectory.
+    """Roads and passes of a trajectory in a projected CRS in metres, which is refused if it does not move.
 
     The drive is split into passes. The longest becomes the reference line of the first road, lengthened by passes that
     continue it, up to MAX_ROAD_LENGTH. Passes parallel to it within 12 m, in either direction, are further passes over
     the same road. The remaining passes make the next road.
-
-    Parameters
-    ----------
-    trajectory : Trajectory in a projected CRS in metres
-
-    Raises
-    ------
-    RoadExtractionError
-        If the trajectory does not move.
     """
     trajectory = shaped_trajectory(clean_trajectory(trajectory)).trajectory
     origin = np.floor([trajectory.x.min(), trajectory.y.min(), trajectory.z.min()])
@@ -163,7 +142,7 @@ def build_frame(trajectory: Trajectory) -> RoadFrame:
     while waiting:
         waiting = _longest_first(waiting, driven)
         longest = waiting[0]
-        if roads and _length(longest, driven) < MIN_SHARED_LENGTH:
+        if roads and _length(longest, driven) < FRAME.min_shared_length:
             break
         road, members, waiting = _grow_road(len(roads), track, turning, moved, driven, waiting)
         roads.append(road)
@@ -196,14 +175,14 @@ def _grow_road(number, track, turning, moved, driven, waiting):
     """(Road, row ranges of its passes, remaining row ranges), starting with the first of the ranges."""
     longest, line = waiting[0], _line_of(track, turning, waiting[0])
     while True:
-        road = Road(number, *reference_nodes(line), -FRAME_EXTENSION)
+        road = Road(number, *reference_nodes(line), -FRAME.frame_extension)
         members, rest = [], []
         for rows in waiting:
             shared, left = ([rows], []) if rows == longest else _shared_with(road, line, track, moved, rows)
             members += shared
             rest += left
         for rows in _longest_first(rest, driven):
-            if _length(rows, driven) >= MIN_SHARED_LENGTH and _ends_near(line, track, rows):
+            if _length(rows, driven) >= FRAME.min_shared_length and _ends_near(line, track, rows):
                 longer = continue_line(line, _line_of(track, turning, rows))
                 if longer is not None and np.hypot(*np.diff(longer[:, :2], axis=0).T).sum() <= MAX_ROAD_LENGTH:
                     line = longer
@@ -215,13 +194,13 @@ def _grow_road(number, track, turning, moved, driven, waiting):
 def _ends_near(line, track, rows):
     """Whether a range of rows begins or ends near an end of a line, within the reach of a turn on the spot."""
     ends = track[[rows[0], rows[1] - 1], None, :2] - line[None, [0, -1], :2]
-    return bool((np.hypot(ends[..., 0], ends[..., 1]) < JUNCTION_GAP + TURN_REACH).any())
+    return bool((np.hypot(ends[..., 0], ends[..., 1]) < FRAME.junction_gap + FRAME.turn_reach).any())
 
 
 def _away(line, places):
     """Whether positions lie wholly outside the bounding box of a line."""
-    return bool((places.min(axis=0) > line.max(axis=0) + MAX_LANE_DISTANCE).any()
-                or (places.max(axis=0) < line.min(axis=0) - MAX_LANE_DISTANCE).any())
+    return bool((places.min(axis=0) > line.max(axis=0) + FRAME.max_lane_distance).any()
+                or (places.max(axis=0) < line.min(axis=0) - FRAME.max_lane_distance).any())
 
 
 def _shared_with(road, line, track, moved, rows):
@@ -232,20 +211,25 @@ def _shared_with(road, line, track, moved, rows):
     kept = np.unique(np.r_[a, moved[(moved >= a) & (moved < b)], b - 1])
     kept = kept[decimate_by_distance(*track[kept, :2].T, 2.0)]
     x, y, z = track[kept].T
-    s, d = road.locate(x, y, corridor=MAX_LANE_DISTANCE)
-    level = np.abs(z - line[cKDTree(line[:, :2]).query(np.c_[x, y])[1], 2]) < LEVEL_SEPARATION
+    s, d = road.locate(x, y, corridor=FRAME.max_lane_distance)
+    level = np.abs(z - line[cKDTree(line[:, :2]).query(np.c_[x, y])[1], 2]) < FRAME.level_separation
     direction = np.arctan2(np.gradient(y), np.gradient(x)) if len(kept) > 1 else np.zeros(len(kept))
     turned = np.abs((direction - road.heading(np.where(np.isnan(s), 0, s)) + np.pi / 2) % np.pi - np.pi / 2)
-    along = np.isfinite(d) & (turned < MAX_PASS_ANGLE) & level
-    if len(kept) < MIN_SHARED_LENGTH:
+    along = np.isfinite(d) & (turned < FRAME.parallel_angle) & level
+    if len(kept) < FRAME.min_shared_length:
         along[:] = 2 * along.sum() > len(along)
-    along = _fill_runs(along, int(MIN_SHARED_LENGTH / 2))
+    along = _fill_runs(along, int(FRAME.min_shared_length / 2))
     if not along.all():
-        along = ~_fill_runs(~along, int(MIN_SHARED_LENGTH / 2))
+        along = ~_fill_runs(~along, int(FRAME.min_shared_length / 2))
     for i, j in _runs(along):
-        if along[i] and not np.nanmedian(np.abs(d[i:j])) <= MAX_PASS_DISTANCE:
+        if along[i] and not np.nanmedian(np.abs(d[i:j])) <= FRAME.same_carriageway:
             along[i:j] = False
-    shared, left = [], []
+    return _ranges_of(along, rows, kept, s)
+
+
+def _ranges_of(along, rows, kept, s):
+    """The row ranges of the kept rows that run along a road, with their stations, and those of the others."""
+    (a, b), shared, left = rows, [], []
     for i, j in _runs(along):
         ends = [int(kept[i]) if i else a, int(kept[j]) if j < len(kept) else b]
         if not along[i]:
@@ -258,9 +242,9 @@ def _shared_with(road, line, track, moved, rows):
 
 
 def _jumps(s):
-    """Indices at which the station jumps, at least half of MIN_SHARED_LENGTH from the ends and from each other."""
+    """Indices at which the station jumps, at least half of `min_shared_length` from the ends and from each other."""
     found = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
-    shortest, kept, last = int(MIN_SHARED_LENGTH / 2), [], 0
+    shortest, kept, last = int(FRAME.min_shared_length / 2), [], 0
     for k in found:
         if k - last >= shortest and len(s) - k >= shortest:
             kept.append(int(k))
@@ -277,8 +261,8 @@ def _runs(mask):
 def _fill_runs(mask, shortest):
     """Turn runs of False shorter than `shortest` into True."""
     filled = mask.copy()
-    for i, j in _runs(mask):
-        if not mask[i] and j - i < shortest:
+    for i, j in mask_runs(~mask):
+        if j - i < shortest:
             filled[i:j] = True
     return filled
 
@@ -287,7 +271,7 @@ def _make_pass(road, time, x, y, z):
     """A Pass; stations are propagated from row to row, so that they do not jump to another part of the road."""
     kept = moving_rows(x, y)
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x[kept]), np.diff(y[kept])))]
-    s, _ = road.locate(x[kept], y[kept], corridor=2 * MAX_PASS_DISTANCE)
+    s, _ = road.locate(x[kept], y[kept], corridor=2 * FRAME.same_carriageway)
     rows = np.arange(len(x))
     run = _longest_run(s)
     if run is None:
@@ -299,7 +283,7 @@ def _make_pass(road, time, x, y, z):
         before, after = driven[:i] - driven[i], driven[j:] - driven[j - 1]
         walked = np.r_[s[i] + direction * before, s[i:j], s[j - 1] + direction * after]
         hint = np.interp(rows, kept, walked)
-    s, d = road.locate(x, y, hint, corridor=2 * MAX_PASS_DISTANCE)
+    s, d = road.locate(x, y, hint, corridor=2 * FRAME.same_carriageway)
     good = np.isfinite(s)
     if not good.any():
         return Pass(0, road.number, direction, time, x, y, z, np.clip(hint, road.start, road.end), np.zeros(len(x)))

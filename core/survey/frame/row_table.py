@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from ..weights import FRAME
+
 BLOCK = 64   # stations for which the rows that are there are listed together
 
 
@@ -38,7 +40,6 @@ class RowSpans:
 
     @property
     def size(self) -> int:
-        """How many values a table holds."""
         return int(self.start[-1])
 
     @cached_property
@@ -168,34 +169,26 @@ def stacked(tables: Sequence[RowTable]) -> RowTable:
 
 # An uncertainty that changes along a road.
 
-STRETCH = 10.0         # m of road of which the mean is kept, and the least that is told apart on a line
-CUT_FACTOR = 2.0       # times the uncertainty of the stretch beside it, and
-LEAST_CHANGE = 0.010   # m more or less, that a stretch of a line is cut off for
 
 
 @dataclass(frozen=True)
 class SigmaAlong:
-    """One sigma by station of a road; it changes evenly between nodes and stays beyond them.
-
-    stations : of the nodes, m, rising
-    metres : one sigma at each
-    """
+    """One sigma by station of a road: `metres` at the rising `stations` of nodes; it changes evenly between them and stays beyond them."""
 
     stations: tuple[float, ...]
     metres: tuple[float, ...]
 
     @classmethod
     def everywhere(cls, metres: float) -> SigmaAlong:
-        """The same all along the road."""
         return cls((0.0,), (float(metres),))
 
     @classmethod
     def through(cls, stations: np.ndarray, metres: np.ndarray) -> SigmaAlong:
-        """From (N,) values in metres at (N,) stations in any order, N > 0: the RMS of every stretch of STRETCH."""
+        """From (N,) values in metres at (N,) stations in any order, N > 0: the RMS of every stretch of `sigma_stretch`."""
         stations, metres = np.asarray(stations, float), np.asarray(metres, float)
         if np.ptp(metres) == 0.0:
             return cls.everywhere(metres[0])
-        _, stretch = np.unique(np.floor(stations / STRETCH), return_inverse=True)
+        _, stretch = np.unique(np.floor(stations / FRAME.sigma_stretch), return_inverse=True)
         count = np.bincount(stretch)
         return cls(tuple((np.bincount(stretch, stations) / count).tolist()), tuple(np.sqrt(np.bincount(stretch, metres**2) / count).tolist()))
 
@@ -209,29 +202,20 @@ class SigmaAlong:
 
 
 def cuts_where_it_changes(along: np.ndarray, sigma: np.ndarray) -> np.ndarray:
-    """Where a line is cut so that one number tells how uncertain each of its stretches is.
+    """(K,) rows, without the first, that begin a stretch of a line of which one number tells how uncertain it is; empty where one tells it all.
 
-    From stretches of STRETCH on, those beside each other become one that differ least, weighted by their lengths (Ward), until every two differ by
-    CUT_FACTOR times and LEAST_CHANGE.
-
-    Parameters
-    ----------
-    along : (N,) m along the line, rising
-    sigma : (N,) m, one sigma there
-
-    Returns
-    -------
-    (K,) rows that begin a stretch, without the first; empty where one number tells it
+    From stretches of `sigma_stretch` on, those beside each other become one that differ least, weighted by their lengths (Ward), until every two
+    differ by `sigma_cut_factor` times and `least_sigma_change`. `along` : (N,) m along the line, rising; `sigma` : (N,) m, one sigma there.
     """
-    count = int((along[-1] - along[0]) / STRETCH) if len(along) else 0
-    if count < 2 or np.ptp(sigma) < LEAST_CHANGE:
+    count = int((along[-1] - along[0]) / FRAME.sigma_stretch) if len(along) else 0
+    if count < 2 or np.ptp(sigma) < FRAME.least_sigma_change:
         return np.empty(0, int)
     begin = np.unique(np.searchsorted(along, along[0] + (along[-1] - along[0]) * np.arange(count) / count))
     size = np.diff(np.append(begin, len(along))).astype(float)
     mean = np.add.reduceat(sigma, begin) / size
     while len(begin) > 1:
         change = np.abs(np.diff(mean))
-        apart = (change >= LEAST_CHANGE) & (np.maximum(mean[1:], mean[:-1]) >= CUT_FACTOR * np.minimum(mean[1:], mean[:-1]))
+        apart = (change >= FRAME.least_sigma_change) & (np.maximum(mean[1:], mean[:-1]) >= FRAME.sigma_cut_factor * np.minimum(mean[1:], mean[:-1]))
         if apart.all():
             break
         k = int(np.argmin(np.where(apart, np.inf, size[1:] * size[:-1] / (size[1:] + size[:-1]) * change**2)))

@@ -23,21 +23,9 @@ from ...common.arrays import RADIX_BITS
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, take_rows
+from ..weights import LATTICE
 
-ROTATION_SAMPLES = 6           # places along a pass at which the frequency is sought
-ROTATION_SAMPLE_PIECES = 6     # in which these are read
-ROTATION_SAMPLE_LENGTH = 30.0  # m of road about each: scan lines are oblique, and cover little of a short piece of road
-MIN_WINDOW_POINTS = 200        # points of a scanner in a window
-MIN_DISTINCT_TIMES = 0.7       # share of the points; if more share their times, the times do not give the order on the line
-MAX_POINT_STEP = 0.5           # m across, median between successive points of a line
-SAME_PLACE_STEP = 0.1          # m across, median of successive points that lie on one line, in whatever order
-MIN_ONE_WAY_SHARE = 0.75       # of the steps from point to point that go the same way across
-MEDIAN_TIME_STRIDE = 15        # every n-th point is enough for the median time of a sample
 TIME_SORT_TICK = 2.0**-22      # s: finer than the resolution of any clock
-TURNS_PER_BIN = 10             # turns whose points give one phase
-PHASE_STRETCH = 20.0           # m of road processed at a time
-MAX_POINTS_PER_TURN = 40       # that are used for the phase; more do not improve it
-MIN_AXIS_HEIGHT = 1.5          # m above the road: seen from lower, the angles of road points hardly change
 # why a scanner has no regular lines
 COARSE_TIMES = "neighbouring points share one time and so have no order"
 AT_ONCE = "points at one time lie far apart as those of many beams do or where times are very coarse"
@@ -45,9 +33,6 @@ DISORDER = "the times do not give the order of the points on a line"
 TO_AND_FRO = "points that follow each other in time lie to and fro over the road as those of many beams do or of several scanners without a field"
 TOO_THIN = "the points of a line lie too far apart as in a thinned cloud"
 NO_TURNING = "no mirror is seen to turn steadily"
-LINE_SECTORS = 36              # of a turn, in each of which lines are counted
-MAX_MOUNTING_POINTS = 10_000   # points of a window that are used for the mounting of a scanner
-MOUNTING_DIRECTIONS = 360      # about the trajectory, for which the mounting of a scanner is estimated
 
 
 @dataclass
@@ -65,13 +50,9 @@ class ScanLattice:
 
 
 def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progress = Progress()) -> ScanLattice:
-    """The scan lattice of every pass and scanner of a survey.
+    """The scan lattice of every pass and scanner of a Survey.
 
-    Parameters
-    ----------
-    survey : Survey
     rotation_frequency : Hz, turns of the mirror per second; 0 = from the data
-    progress : receives progress, and messages about what was found
     """
     lattice = ScanLattice()
     if not survey.has_time:
@@ -102,8 +83,8 @@ def _report_lattice(lattice, progress):
         rates = sorted({f"{abs(mirror.frequency) / mirror.spacing:.2f}" for mirror in found.values()}, key=float)
         progress.info(f"Scan lattice found for {len(found)} run(s) of a scanner: {', '.join(rates)} lines per second.")
     if not found and not missing:
-        lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {MIN_WINDOW_POINTS} in {ROTATION_WINDOW:g} s "
-                             "of each scanner); scanlines are made of the points near each section plane.")
+        lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {LATTICE.min_window_points} in "
+                             f"{LATTICE.rotation_window:g} s of each scanner); scanlines are made of the points near each section plane.")
         progress.warn(lattice.notes[-1])
     if missing:
         why = ", ".join(sorted(set(missing.values())))
@@ -123,16 +104,7 @@ class _RotationWindow:
 
 
 def scanner_runs(records: Any) -> list[tuple[tuple[int, int], Any]]:
-    """The first returns of each pass and scanner.
-
-    Parameters
-    ----------
-    records : (N,) of points
-
-    Returns
-    -------
-    [((pass number, scanner), records of its first returns)], ascending
-    """
+    """[((pass number, scanner), records of its first returns)] of (N,) records, ascending."""
     if not len(records):
         return []
     passes, scanner = records["pass_number"], records["scanner"]
@@ -154,7 +126,7 @@ def _phasors(survey, number, records):
     """(N,) times and exp(i angle about the trajectory) of records of one pass."""
     p = survey.frame.passes[number]
     time = np.ascontiguousarray(records["time"])
-    raised = max(MIN_AXIS_HEIGHT - survey.sensor_height.get(number, MIN_AXIS_HEIGHT), 0.0)
+    raised = max(LATTICE.min_axis_height - survey.sensor_height.get(number, LATTICE.min_axis_height), 0.0)
     across = records["d"] * COORDINATE_SCALE - np.interp(time, p.time, p.d)
     above = records["z"] * COORDINATE_SCALE - np.interp(time, p.time, p.z) - raised
     size = np.hypot(across, above)
@@ -166,51 +138,55 @@ def _sample_windows(survey, road):
     places = []
     for p in survey.frame.passes_of(road):
         first, last = p.span
-        count = int(np.clip((last - first) / ROTATION_SAMPLE_LENGTH, 1, ROTATION_SAMPLES))
+        count = int(np.clip((last - first) / LATTICE.rotation_sample_length, 1, LATTICE.rotation_samples))
         places += [(p.number, middle) for middle in first + (np.arange(count) + 0.5) * (last - first) / count]
 
-    def pieces_of(middle):
-        # a piece of road at a time: of all its points, those of half a second are used
-        bounds = np.linspace(middle - ROTATION_SAMPLE_LENGTH / 2, middle + ROTATION_SAMPLE_LENGTH / 2, ROTATION_SAMPLE_PIECES + 1)
-        for start, end in zip(bounds[:-1], bounds[1:]):
-            yield survey.window(road, start, end).records
-
-    def windows_at(place):
-        number, middle = place
-        times: dict = {}   # (pass number, scanner) -> [times of each piece]
-        for k, records in enumerate(pieces_of(middle)):
-            for key, own in scanner_runs(records):
-                if key[0] == number:
-                    times.setdefault(key, {})[k] = own["time"]
-        near = {key: _near_in_time(list(parts.values())) for key, parts in times.items()}
-        rows = {key: dict(zip(times[key], parts)) for key, parts in near.items() if sum(map(len, parts)) >= MIN_WINDOW_POINTS}
-        chosen: dict = {key: [] for key in rows}
-        for k, records in enumerate(pieces_of(middle)):
-            if any(len(parts.get(k, ())) for parts in rows.values()):
-                for key, own in scanner_runs(records):
-                    if key in rows:
-                        some = take_rows(own, rows[key][k])
-                        chosen[key].append([some[name] for name in ("time", "d", "z")])
-        found = {}
-        for key, parts in chosen.items():
-            time, d, z = (np.concatenate(column) for column in zip(*parts))
-            order = time_order(time)
-            own = dict(time=time[order], d=d[order], z=z[order])
-            found[key] = _RotationWindow(*_phasors(survey, number, own), own["d"] * COORDINATE_SCALE)
-        return found
-
     samples = {}
-    for found in ordered_map(windows_at, places):
-        for key, window in found.items():
+    for windows in ordered_map(lambda place: _windows_at(survey, road, *place), places):
+        for key, window in windows.items():
             samples.setdefault(key, []).append(window)
     return samples
+
+
+def _runs_about(survey, road, number, middle, pieces=range(LATTICE.rotation_sample_pieces)):
+    """Yield (piece, (pass number, scanner), first returns) of a pass in some pieces of the road about a station: all at once would be too many."""
+    bounds = np.linspace(middle - LATTICE.rotation_sample_length / 2, middle + LATTICE.rotation_sample_length / 2, LATTICE.rotation_sample_pieces + 1)
+    for piece in pieces:
+        for key, records in scanner_runs(survey.window(road, bounds[piece], bounds[piece + 1]).records):
+            if key[0] == number:
+                yield piece, key, records
+
+
+def _windows_at(survey, road, number, middle):
+    """{(pass number, scanner): _RotationWindow} of the scanners that measured enough in half a second of a pass about a station."""
+    times: dict = {}
+    for piece, key, records in _runs_about(survey, road, number, middle):
+        times.setdefault(key, {})[piece] = records["time"]
+    rows = {}
+    for key, parts in times.items():
+        near = _near_in_time(list(parts.values()))
+        if sum(map(len, near)) >= LATTICE.min_window_points:
+            rows[key] = dict(zip(parts, near))
+    chosen: dict = {key: [] for key in rows}
+    pieces = sorted({piece for parts in rows.values() for piece, near in parts.items() if len(near)})
+    for piece, key, records in _runs_about(survey, road, number, middle, pieces):
+        if key in rows:
+            near = take_rows(records, rows[key][piece])
+            chosen[key].append([near[name] for name in ("time", "d", "z")])
+    windows = {}
+    for key, parts in chosen.items():
+        time, d, z = (np.concatenate(column) for column in zip(*parts))
+        order = time_order(time)
+        ordered = dict(time=time[order], d=d[order], z=z[order])
+        windows[key] = _RotationWindow(*_phasors(survey, number, ordered), ordered["d"] * COORDINATE_SCALE)
+    return windows
 
 
 def _near_in_time(parts):
     """Of every part of the times of a scanner, the indices of those about the middle one."""
     begins = np.cumsum([0] + [len(time) for time in parts[:-1]])
-    middle = np.median(np.concatenate([time[-begin % MEDIAN_TIME_STRIDE::MEDIAN_TIME_STRIDE] for time, begin in zip(parts, begins)]))
-    return [np.flatnonzero(np.abs(time - middle) <= ROTATION_WINDOW / 2) for time in parts]
+    middle = np.median(np.concatenate([time[-begin % LATTICE.median_time_stride::LATTICE.median_time_stride] for time, begin in zip(parts, begins)]))
+    return [np.flatnonzero(np.abs(time - middle) <= LATTICE.rotation_window / 2) for time in parts]
 
 
 def time_order(time: np.ndarray) -> np.ndarray:
@@ -225,11 +201,11 @@ def time_order(time: np.ndarray) -> np.ndarray:
 def _rotation(windows, given):
     """(frequency, peak, "angle" or "gap") of one scanner's windows, None where there is no lattice."""
     frequency, peak = strongest_rotation([rotation_spectrum(w.time, w.phasor) for w in windows], given)
-    if peak >= MIN_ROTATION_PEAK and _on_lines(windows):
+    if peak >= LATTICE.min_rotation_peak and _on_lines(windows):
         return frequency, peak, "angle"
     times_only = [rotation_spectrum(w.time, np.ones(len(w.time), complex)) for w in windows]
     frequency, peak = strongest_rotation(times_only, given, signed=False)
-    if peak >= MIN_ROTATION_PEAK and _on_lines(windows):
+    if peak >= LATTICE.min_rotation_peak and _on_lines(windows):
         return frequency, peak, "gap"
     return None
 
@@ -237,7 +213,7 @@ def _rotation(windows, given):
 def _on_lines(windows):
     """Whether successive points have different times and lie side by side, mostly one way, as on a scan line."""
     distinct, step, one_way = _steps(windows)
-    return bool(distinct >= MIN_DISTINCT_TIMES and step < MAX_POINT_STEP and one_way > MIN_ONE_WAY_SHARE)
+    return bool(distinct >= LATTICE.min_distinct_times and step < LATTICE.max_point_step and one_way > LATTICE.min_one_way_share)
 
 
 def _steps(windows):
@@ -247,7 +223,7 @@ def _steps(windows):
     """
     later = np.concatenate([np.diff(w.time) > 0 for w in windows])
     steps = np.concatenate([np.diff(w.offset) for w in windows])[later]
-    if len(steps) < MIN_WINDOW_POINTS:
+    if len(steps) < LATTICE.min_window_points:
         return float(np.mean(later)), np.inf, 0.0
     onward = float(np.mean(steps > 0))
     return float(np.mean(later)), float(np.median(np.abs(steps))), max(onward, 1 - onward)
@@ -263,73 +239,74 @@ def _spread_at_once(window):
 def _why_none(windows):
     """What the points of a scanner without regular lines show of the reason."""
     distinct, step, one_way = _steps(windows)
-    if distinct < MIN_DISTINCT_TIMES:
-        return COARSE_TIMES if np.median(np.concatenate([_spread_at_once(w) for w in windows])) < MAX_POINT_STEP else AT_ONCE
-    if one_way <= MIN_ONE_WAY_SHARE:
-        return DISORDER if step < SAME_PLACE_STEP else TO_AND_FRO
-    return TOO_THIN if step >= MAX_POINT_STEP else NO_TURNING
+    if distinct < LATTICE.min_distinct_times:
+        return COARSE_TIMES if np.median(np.concatenate([_spread_at_once(w) for w in windows])) < LATTICE.max_point_step else AT_ONCE
+    if one_way <= LATTICE.min_one_way_share:
+        return DISORDER if step < LATTICE.same_place_step else TO_AND_FRO
+    return TOO_THIN if step >= LATTICE.max_point_step else NO_TURNING
 
 
 def _mirror_phases(survey, road, rotations, samples, progress):
     """The mirror phases of the scanners whose frequency is known, from the points of a whole road."""
     if not rotations:
         return {}
-    bins = {key: _PhasorBins(survey.frame.passes[key[0]], TURNS_PER_BIN / abs(frequency)) for key, (frequency, _, _) in rotations.items()}
+    bins = {key: _PhasorBins(survey.frame.passes[key[0]], LATTICE.turns_per_bin / abs(frequency)) for key, (frequency, _, _) in rotations.items()}
     stride = min(_stride(samples[key], frequency) for key, (frequency, _, _) in rotations.items())
     mounts = {key: _mounting(samples[key], frequency) for key, (frequency, _, origin) in rotations.items() if origin == "angle"}
 
     first, last = survey.store.span(road)
     # A length of its own, so that the points that are used do not depend on the length of sections.
-    stretches = range(int(first // PHASE_STRETCH), int(last // PHASE_STRETCH) + 1)
+    stretches = range(int(first // LATTICE.phase_stretch), int(last // LATTICE.phase_stretch) + 1)
 
-    def work(number):
-        gathered = []
-        for key, own in scanner_runs(survey.window(road, number * PHASE_STRETCH, (number + 1) * PHASE_STRETCH).records[::stride]):
-            if key not in rotations or not len(own):
-                continue
-            frequency, _, origin = rotations[key]
-            time, phasor = _phasors(survey, key[0], own)
-            # With the gap of the sky in every turn, the points' times alone have a mean phase half a turn from the zenith.
-            phasor = np.full(len(time), -1.0 + 0j) if origin == "gap" else phasor * mounts[key][_direction_number(phasor)]
-            since = time - bins[key].start
-            gathered.append((key, bins[key].sums_of(since, phasor * np.exp(-2j * np.pi * frequency * since))))
-        return gathered
+    def sums_of_stretch(number):
+        records = survey.window(road, number * LATTICE.phase_stretch, (number + 1) * LATTICE.phase_stretch).records[::stride]
+        return [(key, _phasor_sums(survey, key[0], first_returns, rotations[key], mounts.get(key), bins[key]))
+                for key, first_returns in scanner_runs(records) if key in rotations and len(first_returns)]
 
-    for gathered in ordered_map(work, stretches, progress):
+    for gathered in ordered_map(sums_of_stretch, stretches, progress):
         for key, sums in gathered:
             bins[key].add(*sums)
-    found = {}
+    phases = {}
     for key, (frequency, peak, origin) in rotations.items():
         b = bins[key]
         mirror = _mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, peak=peak, origin=origin)
         if mirror is not None:
-            found[key] = replace(mirror, **_line_properties(samples[key], mirror))
-    return found
+            phases[key] = replace(mirror, **_line_properties(samples[key], mirror))
+    return phases
+
+
+def _phasor_sums(survey, number, records, rotation, mounting, bins):
+    """Sums over the bins of the phasors of one scanner's records, relative to its even rotation."""
+    frequency, _, origin = rotation
+    time, phasor = _phasors(survey, number, records)
+    # With the gap of the sky in every turn, the points' times alone have a mean phase half a turn from the zenith.
+    phasor = np.full(len(time), -1.0 + 0j) if origin == "gap" else phasor * mounting[_direction_number(phasor)]
+    since = time - bins.start
+    return bins.sums_of(since, phasor * np.exp(-2j * np.pi * frequency * since))
 
 
 def _direction_number(phasor):
-    """(N,) number of the direction of phasors among MOUNTING_DIRECTIONS."""
-    return ((np.angle(phasor) / (2 * np.pi) + 0.5) * MOUNTING_DIRECTIONS).astype(np.int64) % MOUNTING_DIRECTIONS
+    return ((np.angle(phasor) / (2 * np.pi) + 0.5) * LATTICE.mounting_directions).astype(np.int64) % LATTICE.mounting_directions
 
 
 def _mounting(windows, frequency):
-    """(MOUNTING_DIRECTIONS,) complex: the mirror's phase minus the angle at which its points are seen, as phasors.
+    """(`mounting_directions`,) complex: the mirror's phase minus the angle at which its points are seen, as phasors.
 
     For a scanner that is rotated, tilted or mounted beside the trajectory, the angles are not proportional to the
     mirror's phase; with this correction every point gives the same phase, wherever it lies.
     """
-    total = np.zeros(MOUNTING_DIRECTIONS, complex)
-    length = TURNS_PER_BIN / abs(frequency)
+    total = np.zeros(LATTICE.mounting_directions, complex)
+    length = LATTICE.turns_per_bin / abs(frequency)
     for w in windows:
-        some = slice(None, None, max(len(w.time) // MAX_MOUNTING_POINTS, 1))
+        some = slice(None, None, max(len(w.time) // LATTICE.max_mounting_points, 1))
         time, seen = w.time[some], w.phasor[some]
         bins = _PhasorBins(w, length)
         first, count, since, phasor = bins.sums_of(time - bins.start, seen * np.exp(-2j * np.pi * frequency * (time - bins.start)))
         mirror = _mirror_phase_from_phasors(frequency, since, phasor, count, length, bins.start)
         if mirror is not None:
             ahead = np.exp(2j * np.pi * np.sign(frequency) * mirror.turns_at(time)) * np.conj(seen)
-            direction = _direction_number(seen)
-            total += np.bincount(direction, ahead.real, MOUNTING_DIRECTIONS) + 1j * np.bincount(direction, ahead.imag, MOUNTING_DIRECTIONS)
+            real, imaginary = (np.bincount(_direction_number(seen), part, LATTICE.mounting_directions) for part in (ahead.real, ahead.imag))
+            total += real + 1j * imaginary
     # directions without points take the value of their neighbours
     near = np.array([total, np.roll(total, 1), np.roll(total, -1), np.roll(total, 2), np.roll(total, -2)]).sum(axis=0)
     return np.where(near == 0, 1.0, near / np.maximum(np.abs(near), 1e-12))
@@ -361,14 +338,14 @@ class _PhasorBins:
 def _stride(windows, frequency):
     """Every how many points one is used for the phase; odd."""
     per_turn = np.median([len(w.time) / (np.ptp(w.time) * abs(frequency)) for w in windows])
-    return 2 * int(max(per_turn / MAX_POINTS_PER_TURN, 1.0) / 2) + 1
+    return 2 * int(max(per_turn / LATTICE.max_points_per_turn, 1.0) / 2) + 1
 
 
 def _turns_between_lines(line, phase):
     """(K,) turns from one line to the next in the same sector of a turn; half turns may remain of a cloud that was thinned by its times."""
     line = line - line.min()
     turns = int(line.max()) + 1
-    seen = np.unique((phase * LINE_SECTORS).astype(np.int64) * turns + line)
+    seen = np.unique((phase * LATTICE.line_sectors).astype(np.int64) * turns + line)
     return np.diff(seen)[np.diff(seen // turns) == 0]
 
 
@@ -389,11 +366,6 @@ def _line_properties(windows, mirror):
 
 # The phase of a scanner's mirror: turns as a function of time.
 
-MIN_PHASE_BIN_POINTS = 8     # points of a bin, or it gives no phase
-MIN_PHASE_BIN_SHARE = 0.3    # of the median number of points: bins that are cut off have a biased phase
-MIN_PHASE_COHERENCE = 0.3    # length of the mean phasor of a bin
-NODES_PER_BIN = 5            # of the smooth curve through the phases of the bins
-MAX_PHASE_BIN_GAP = 1.5           # bins between two phases; farther apart, the phase in between is extrapolated from the rate before
 
 
 @dataclass(frozen=True)
@@ -429,18 +401,10 @@ class MirrorPhase:
         return _interpolate(turns, self.turns, self.time, 1.0 / abs(self.frequency))
 
     def lines_and_phase(self, time: np.ndarray, angle: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Line number and mirror phase of points.
+        """Line number (N,) int64 and mirror phase (N,) in turns of points at (N,) seconds: 0 at the zenith, 0.5 below.
 
-        Parameters
-        ----------
-        time : (N,) seconds
-        angle : (N,) radians about the trajectory, 0 at the zenith. If given, it decides on which side of the
-            zenith a point lies, so that a ceiling is split exactly above the vehicle whatever the error of the phase
-
-        Returns
-        -------
-        line : (N,) int64
-        phase : (N,) float64, turns: 0 at the zenith, 0.5 below; in [0, 1) unless an angle changed the line
+        An angle about the trajectory, (N,) radians from the zenith, decides on which side of the zenith a point lies, so that a ceiling is split
+        exactly above the vehicle whatever the error of the phase; the phase may leave [0, 1) then.
         """
         turns = self.turns_at(time)
         line = np.floor(turns)
@@ -462,7 +426,7 @@ def _interpolate(x, nodes, values, rate):
 
 def _mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.ndarray, count: np.ndarray, bin_length: float,
                               start: float = 0.0, **fields: Any) -> MirrorPhase | None:
-    """The mirror phase of a pass from the mean phase of its bins.
+    """The mirror phase of a pass from the mean phase of its bins; None where no bin has a phase.
 
     frequency : Hz, signed, near the truth
     time : (B,) seconds since the start, sums over the points of each bin
@@ -470,12 +434,11 @@ def _mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.nd
     count : (B,) points
     bin_length, start : seconds
     fields : further attributes of the MirrorPhase
-    Returns: MirrorPhase, or None where no bin has a phase
     """
-    usable = np.flatnonzero((count >= MIN_PHASE_BIN_POINTS) & (np.abs(phasor) >= MIN_PHASE_COHERENCE * count))
+    usable = np.flatnonzero((count >= LATTICE.min_phase_bin_points) & (np.abs(phasor) >= LATTICE.min_phase_coherence * count))
     if not len(usable):
         return None
-    usable = usable[count[usable] >= MIN_PHASE_BIN_SHARE * np.median(count[usable])]
+    usable = usable[count[usable] >= LATTICE.min_phase_bin_share * np.median(count[usable])]
     time = time[usable] / count[usable]
     # even rotation, and what the mirror was ahead of it
     turns = np.sign(frequency) * (frequency * time + _unwrap(time, np.angle(phasor[usable]), bin_length) / (2 * np.pi))
@@ -487,10 +450,10 @@ def _mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.nd
 
 
 def _smooth_nodes(time, turns, bin_length):
-    """NODES_PER_BIN nodes per bin on a cubic spline: with linear pieces the points of neighbouring lines would not line up."""
+    """`nodes_per_bin` nodes per bin on a cubic spline: with linear pieces the points of neighbouring lines would not line up."""
     if len(time) < 4:
         return time, turns
-    steps = np.minimum(np.ceil(np.diff(time) / bin_length * NODES_PER_BIN), NODES_PER_BIN).astype(np.int64)
+    steps = np.minimum(np.ceil(np.diff(time) / bin_length * LATTICE.nodes_per_bin), LATTICE.nodes_per_bin).astype(np.int64)
     share = np.concatenate([np.arange(n) / n for n in steps])
     piece = np.repeat(np.arange(len(steps)), steps)
     fine = np.r_[time[piece] + share * np.diff(time)[piece], time[-1]]
@@ -502,7 +465,7 @@ def _unwrap(time, phase, bin_length):
     """(K,) phases, each within half a turn of the one that the rate before it predicts."""
     apart = np.diff(time)
     step = (np.diff(phase) + np.pi) % (2 * np.pi) - np.pi
-    near = apart < MAX_PHASE_BIN_GAP * bin_length
+    near = apart < LATTICE.max_phase_bin_gap * bin_length
     if near.any() and not near.all():
         before = np.maximum.accumulate(np.where(near, np.arange(len(near)), -1))
         rate = np.where(before >= 0, (step / apart)[before], 0.0)
@@ -513,65 +476,44 @@ def _unwrap(time, phase, bin_length):
 
 # The rotation rate of a scanner's mirror, from the times and angles of its points.
 
-MIN_ROTATION, MAX_ROTATION = 5.0, 400.0  # Hz
-ROTATION_WINDOW = 0.5           # s of scanning whose points are compared
 SPECTRUM_CELL = 1.0 / 2048.0    # s
 SPECTRUM_SIZE = 8192            # cells, zero-padded: a step of 0.25 Hz
-ROTATION_TOLERANCE = 0.02       # share of a frequency within which it may vary
-MIN_DIRECTION_RATIO = 1.5       # of the peak against that of the opposite rotation
-MIN_ROTATION_PEAK = 0.5
 
 
 def rotation_spectrum(time: np.ndarray, phasor: np.ndarray) -> np.ndarray:
-    """How well points fit each rotation frequency: |mean(exp(i (angle - 2 pi f t)))| (our own).
+    """How well (N,) points fit each rotation frequency: |mean(exp(i (angle - 2 pi f t)))| (our own), as (SPECTRUM_SIZE,) from 0 to 1.
 
-    Parameters
-    ----------
-    time : (N,) seconds, spanning at most ROTATION_WINDOW
-    phasor : (N,) complex, exp(i angle)
-
-    Returns
-    -------
-    (SPECTRUM_SIZE,) float64, 0 to 1, in the order of `_spectrum_frequencies`
+    The times, (N,) seconds, span at most `rotation_window`; phasors are exp(i angle). The order is that of `numpy.fft.fftfreq`.
     """
     cell = ((time - time.min()) / SPECTRUM_CELL).astype(np.int64)
     size = int(cell.max()) + 1
     total = np.bincount(cell, phasor.real, size) + 1j * np.bincount(cell, phasor.imag, size)
     # averaging over a cell attenuates high frequencies by sinc
-    return np.abs(np.fft.fft(total, SPECTRUM_SIZE)) / len(time) / np.sinc(_spectrum_frequencies() * SPECTRUM_CELL)
-
-
-def _spectrum_frequencies() -> np.ndarray:
-    """(SPECTRUM_SIZE,) frequencies of a spectrum, Hz."""
-    return np.fft.fftfreq(SPECTRUM_SIZE, SPECTRUM_CELL)
+    return np.abs(np.fft.fft(total, SPECTRUM_SIZE)) / len(time) / np.sinc(np.fft.fftfreq(SPECTRUM_SIZE, 1.0))
 
 
 def strongest_rotation(spectra: Sequence[np.ndarray], given: float = 0.0, signed: bool = True) -> tuple[float, float]:
-    """The frequency that all windows of one scanner fit best.
+    """The frequency (Hz) that all windows of one scanner fit best, and its peak: the median of the windows' peaks, 0 to 1.
+
+    The peak is 0 where the opposite rotation fits nearly as well, as for scanners that spin about the vertical.
 
     Parameters
     ----------
     spectra : (SPECTRUM_SIZE,) of each window
     given : Hz, where the user knows it; 0 = not known
     signed : whether the direction of rotation shows; otherwise the frequency is positive
-
-    Returns
-    -------
-    frequency : Hz
-    peak : median of the windows' peaks, 0 to 1; 0 where the opposite rotation fits nearly as well, as for
-        scanners that spin about the vertical
     """
-    f = _spectrum_frequencies()
-    allowed = (np.abs(f) >= MIN_ROTATION) & (np.abs(f) <= MAX_ROTATION)
+    f = np.fft.fftfreq(SPECTRUM_SIZE, SPECTRUM_CELL)
+    allowed = (np.abs(f) >= LATTICE.min_rotation) & (np.abs(f) <= LATTICE.max_rotation)
     if given:
-        allowed &= np.abs(np.abs(f) - given) <= ROTATION_TOLERANCE * given + 0.25
+        allowed &= np.abs(np.abs(f) - given) <= LATTICE.rotation_tolerance * given + 0.25
     if not signed:
         allowed &= f > 0
     mean = np.mean(spectra, axis=0)
     best = int(np.argmax(np.where(allowed, mean, -1.0)))
-    near = np.abs(f - f[best]) <= ROTATION_TOLERANCE * abs(f[best]) + 0.5
-    opposite = np.abs(f + f[best]) <= ROTATION_TOLERANCE * abs(f[best]) + 0.5
+    near = np.abs(f - f[best]) <= LATTICE.rotation_tolerance * abs(f[best]) + 0.5
+    opposite = np.abs(f + f[best]) <= LATTICE.rotation_tolerance * abs(f[best]) + 0.5
     peak = float(np.median([one[near].max() for one in spectra]))
-    if signed and peak < MIN_DIRECTION_RATIO * float(np.median([one[opposite].max() for one in spectra])):
+    if signed and peak < LATTICE.min_direction_ratio * float(np.median([one[opposite].max() for one in spectra])):
         return float(f[best]), 0.0
     return float(f[best]), peak

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ..weights import STORE
+
 ROW_CHUNK = 1 << 14    # rows that are split into columns at a time: they fit the processor's cache
-ROWS_OVERHEAD = 8      # reading some rows of a column costs as much as 1 / ROWS_OVERHEAD of the whole column, plus the rows
 
 
 class Columns:
@@ -77,45 +78,38 @@ class Columns:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the columns."""
         return self.dtype.names or ()
 
     def __getitem__(self, which: Any) -> Any:
         if isinstance(which, str):
             return self._column(which)
-        if isinstance(which, slice):
-            if self._parts is not None and not self._arrays and which.step in (None, 1):
-                return self._slice_of_parts(*which.indices(self._length)[:2])
-            if which.step not in (None, 1) and (self._load_rows or self._parts or self._source):
-                return self.take(np.arange(*which.indices(self._length)))
-            if not self._kept and self._load_rows is not None:
-                return self.take(np.arange(*which.indices(self._length)))
-            length = len(range(*which.indices(self._length)))
-            if self._load is None:
-                return Columns({name: array[which] for name, array in self._arrays.items()}, self.dtype, length)
-            return Columns({}, self.dtype, length, lambda name: self[name][which])
-        return self.take(which)
+        return self._slice(which) if isinstance(which, slice) else self.take(which)
+
+    def _slice(self, rows):
+        first, end, step = rows.indices(self._length)
+        if self._parts is not None and not self._arrays and step == 1:
+            return self._slice_of_parts(first, end)
+        if any((self._load_rows, self._parts, self._source)) if step != 1 else not self._kept and self._load_rows is not None:
+            return self.take(np.arange(first, end, step))
+        length = len(range(first, end, step))
+        if self._load is None:
+            return Columns({name: array[rows] for name, array in self._arrays.items()}, self.dtype, length)
+        return Columns({}, self.dtype, length, lambda name: self[name][rows])
 
     def _column(self, name):
-        found = self._arrays.get(name)
-        if found is None:
+        column = self._arrays.get(name)
+        if column is None:
             if name not in self.names or self._load is None:
                 raise KeyError(name)
-            found = self._load(name)
+            column = self._load(name)
             if self._read_only:
-                found.flags.writeable = False
+                column.flags.writeable = False
             if self._kept:
-                self._arrays[name] = found
-        return found
+                self._arrays[name] = column
+        return column
 
     def take(self, which: np.ndarray) -> Columns:
-        """The rows of a mask, (N,) bool, or of (M,) indices.
-
-        Raises
-        ------
-        IndexError
-            If a mask has another length than the columns.
-        """
+        """The rows of a mask, (N,) bool, which is refused with another length, or of (M,) indices."""
         which = np.asarray(which)
         if which.dtype == bool:
             if which.shape != self.shape:
@@ -127,38 +121,38 @@ class Columns:
         return Columns({}, self.dtype, len(rows), lambda name: source.column_rows(name, rows), (source, rows))
 
     def column_rows(self, name: str, rows: np.ndarray) -> np.ndarray:
-        """Some rows of one column, as cheaply as they can be read.
-
-        Parameters
-        ----------
-        name : of the column
-        rows : (M,) indices
-
-        Returns
-        -------
-        (M,) array
-        """
-        if self._load_rows is not None and name not in self._arrays:
-            cost = self._load_cost.get(name, 0) + len(rows) + self._length // ROWS_OVERHEAD if self._kept else len(rows)
-            if 2 * cost <= self._length and (not len(rows) or rows.min() >= 0 and rows.max() < self._length):
-                if self._kept:
-                    self._load_cost[name] = cost
+        """(M,) rows of one column by their indices, as cheaply as they can be read."""
+        if not len(rows):
+            return np.empty(0, self.dtype[name])
+        if name not in self._arrays:
+            if self._load_rows is not None and self._pays(name, rows):
                 return self._load_rows(name, rows)
-        # The rows are split among the parts only where they ascend within bounds.
-        if self._parts is None or name in self._arrays or not len(rows) or rows[0] < 0 or rows[-1] >= self._length \
-                or (rows[1:] < rows[:-1]).any():
-            column = self[name]
-            # A column of one repeated value has stride 0 and stays one value.
-            return column.take(rows) if column.strides[0] or not len(rows) else np.broadcast_to(column[0], len(rows))
+            # the rows are split among the parts only where they ascend within bounds
+            if self._parts is not None and rows[0] >= 0 and rows[-1] < self._length and (rows[1:] >= rows[:-1]).all():
+                return self._rows_of_parts(name, rows)
+        column = self[name]
+        # A column of one repeated value has stride 0 and stays one value.
+        return column.take(rows) if column.strides[0] else np.broadcast_to(column[0], len(rows))
+
+    def _pays(self, name, rows):
+        """Whether rows of a column are read by row: of a column that is kept, only until they have cost half as much as the whole."""
+        cost = self._load_cost.get(name, 0) + len(rows) + self._length // STORE.rows_overhead if self._kept else len(rows)
+        if 2 * cost > self._length or rows.min() < 0 or rows.max() >= self._length:
+            return False
+        if self._kept:
+            self._load_cost[name] = cost
+        return True
+
+    def _rows_of_parts(self, name, rows):
         if self._ends is None:
             self._ends = np.cumsum([len(part) for part in self._parts])
         # a marking lies in few of the parts of a long road
         first, last = np.searchsorted(self._ends, rows[[0, -1]], side="right").tolist()
         parts, ends = self._parts[first:last + 1], self._ends[first:last + 1]
         bounds = [0, *np.searchsorted(rows, ends).tolist()]
-        found = [part.column_rows(name, rows[a:b] - (end - len(part)))
-                 for part, end, a, b in zip(parts, ends, bounds[:-1], bounds[1:]) if b > a]
-        return found[0] if len(found) == 1 else np.concatenate(found)
+        pieces = [part.column_rows(name, rows[a:b] - (end - len(part)))
+                  for part, end, a, b in zip(parts, ends, bounds[:-1], bounds[1:]) if b > a]
+        return pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
 
     def row_range(self, first: int, end: int) -> Columns:
         """The rows from `first` up to `end`: a few are read by row, many by slicing the whole column."""
@@ -220,17 +214,7 @@ class Columns:
 
 
 def columns_in_order(records: np.ndarray, order: np.ndarray) -> Columns:
-    """Columns of the rows of a structured array in a given order; each row is read once.
-
-    Parameters
-    ----------
-    records : (N,) structured array
-    order : (M,) indices
-
-    Returns
-    -------
-    Columns of length M
-    """
+    """Columns of the (M,) rows of a structured array in a given order; each row is read once."""
     dtype = records.dtype
     arrays = {name: np.empty(len(order), dtype[name]) for name in dtype.names or ()}
     buffer = np.empty(min(len(order), ROW_CHUNK), dtype)

@@ -27,17 +27,7 @@ ROAD_POINT = np.dtype(SURVEY_POINT.descr + [("corrected", "f4"), ("half_width", 
 
 
 def point_dtype(dtype: np.dtype, farthest: float) -> np.dtype:
-    """The dtype of points at a distance from the origin.
-
-    Parameters
-    ----------
-    dtype : SURVEY_POINT or ROAD_POINT
-    farthest : metres, the largest x or y of the points, counted from the origin
-
-    Returns
-    -------
-    The dtype, with 64 bits for x and y beyond MAX_XY_32_BIT
-    """
+    """SURVEY_POINT or ROAD_POINT, with 64 bits for x and y of points that lie farther from the origin than MAX_XY_32_BIT; `farthest` in metres."""
     wide = {"x": "i8", "y": "i8"} if farthest > MAX_XY_32_BIT else {}
     return np.dtype([(name, wide.get(name, dtype[name])) for name in dtype.names or ()])
 
@@ -110,23 +100,9 @@ class Points:
 
 
 def take_rows(records: np.ndarray | Columns, which: Any) -> Any:
-    """Some rows of records.
+    """Some rows of (N,) records, by a mask, (M,) indices or a slice; those of Columns are read when a column is asked for.
 
-    For a structured array this is ten times as fast as records[which], which copies field by field.
-
-    Parameters
-    ----------
-    records : (N,) structured array or Columns
-    which : (N,) bool, (M,) indices, or a slice
-
-    Returns
-    -------
-    (M,) of the kind of `records`; rows of Columns are read when a column is asked for
-
-    Raises
-    ------
-    IndexError
-        If a mask has another length than the records.
+    For a structured array this is ten times as fast as records[which], which copies field by field. A mask of another length is refused.
     """
     if isinstance(which, slice) or isinstance(records, Columns):
         return records[which]

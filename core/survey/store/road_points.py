@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...execution.phase import THREADS, Executor, Recipe
+from ..weights import STORE
 from .columns import Columns
 from .records import ROAD_POINT, Points, join_columns, point_dtype
-from .section_store import ColumnOverlay, SectionStore, Stretch
-from .spill_file import Key, StoreIndex
+from .section_store import ColumnOverlay, DerivedStore, SectionStore
+from .spill_file import StoreIndex
 
 if TYPE_CHECKING:
     from ..frame.row_table import SigmaAlong
@@ -76,26 +77,21 @@ class RoadPoints:
                    pass_sigma=survey.frame.pass_sigma, survey=survey)
 
     def close(self) -> None:
-        """Release the points and their disk space."""
         self.store.close()
 
     def __len__(self) -> int:
         return self.store.count
 
     def roads(self) -> list[int]:
-        """Numbers of the roads that have points, ascending."""
         return self.store.roads()
 
     def sections(self, road: int) -> list[int]:
-        """Numbers of the sections of a road that have points, ascending."""
         return self.store.sections(road)
 
     def section(self, road: int, number: int) -> Points:
-        """Points of one section, in canonical order."""
         return Points(self.store.section(road, number))
 
     def window(self, road: int, start: float, end: float) -> Points:
-        """Points with start <= station < end (metres)."""
         return self.store.window(road, start, end)
 
     def all_sections(self) -> list[tuple[int, int]]:
@@ -122,7 +118,6 @@ def _shared_road_points(survey: Any, subset: dict[str, Any], corrected: dict[str
 
 # A subset of the points of a store, with additional columns: it stores which points are in it, not the points.
 
-SUBSET_MEMORY_LIMIT = 16 * 2**20  # bytes of masks, and as many of additional columns, in memory
 
 
 def packed_mask(rows: np.ndarray) -> np.ndarray:
@@ -132,7 +127,7 @@ def packed_mask(rows: np.ndarray) -> np.ndarray:
     return np.packbits(mask)
 
 
-class PointSubset(SectionStore):
+class PointSubset(DerivedStore):
     """Points of a store by their rows in its sections.
 
     Parameters
@@ -145,11 +140,10 @@ class PointSubset(SectionStore):
     """
 
     def __init__(self, points: SectionStore, dtype: Any, own: Sequence[str], constants: dict[str, Any], folder: Path | None = None):
-        super().__init__(dtype, points.section_length, points.memory_limit)
-        self._points = points
+        super().__init__(dtype, points)
         # What is read from these two is cached with the points.
         self._masks, self._own = (
-            SectionStore(kind, points.section_length, min(SUBSET_MEMORY_LIMIT, points.memory_limit), cache_limit=0, folder=folder)
+            SectionStore(kind, points.section_length, min(STORE.subset_memory_limit, points.memory_limit), cache_limit=0, folder=folder)
             for kind in ([("bits", "u1")], [(name, self.dtype[name]) for name in own]))
         self._constants = {name: np.array(value, self.dtype[name]) for name, value in constants.items()}
 
@@ -159,18 +153,11 @@ class PointSubset(SectionStore):
         return self._own.count
 
     def put(self, road: int, section: int, rows: np.ndarray, **columns: np.ndarray) -> None:  # type: ignore[override]
-        """Add points of a section of the store.
-
-        Parameters
-        ----------
-        road, section : numbers
-        rows : (M,) indices into the section, ascending
-        columns : (M,) values of each own column
-        """
+        """Add points of a section of the store: (M,) ascending rows of the section, and (M,) values of each own column."""
         self.put_mask(road, section, packed_mask(rows), **columns)
 
     def put_mask(self, road: int, section: int, bits: np.ndarray, **columns: np.ndarray) -> None:
-        """Add points of a section of the store; (B,) uint8 of `packed_mask`, and the own columns as in `put`."""
+        """The same with the rows as (B,) uint8 of `packed_mask`."""
         if len(bits):
             self._masks.put(road, section, Columns({"bits": bits}, self._masks.dtype))
             self._own.put(road, section, Columns(columns, self._own.dtype))
@@ -180,25 +167,11 @@ class PointSubset(SectionStore):
         return dict(masks=self._masks.index(), own=self._own.index(), folder=str(self._own.folder))
 
     def adopt_shared(self, masks: StoreIndex, own: StoreIndex, folder: str) -> None:
-        """Add the points of `shared`."""
         self._masks.adopt(masks, Path(folder))
         self._own.adopt(own, Path(folder))
 
-    def size(self, road: int, section: int) -> int:
-        return self._own.size(road, section)
-
-    def append(self, road: int, records: Any) -> None:
-        """Refused: the points are rows of another store."""
-        raise TypeError("The points of this store are rows of another; points cannot be added.")
-
-    def roads(self) -> list[int]:
-        return self._own.roads()
-
-    def sections(self, road: int) -> list[int]:
-        return self._own.sections(road)
-
-    def in_stretch(self, stretch: Stretch) -> list[Key]:
-        return self._own.in_stretch(stretch)
+    def _parts(self) -> tuple[SectionStore, ...]:
+        return self._own, self._masks, self.points
 
     def rows(self, road: int, section: int) -> np.ndarray:
         """(M,) indices into a section of the store, ascending."""
@@ -214,38 +187,23 @@ class PointSubset(SectionStore):
         def load(name):
             if name in self._constants:
                 return np.broadcast_to(self._constants[name], len(rows))
-            return own[name] if name in self._own.dtype.names else self._points.column(road, section, name, rows)
+            return own[name] if name in self._own.dtype.names else self.points.column(road, section, name, rows)
 
         def load_rows(name, some):
             if name in self._constants:
                 return np.broadcast_to(self._constants[name], len(some))
-            return own[name].take(some) if name in self._own.dtype.names else self._points.column(road, section, name, rows.take(some))
+            return own[name].take(some) if name in self._own.dtype.names else self.points.column(road, section, name, rows.take(some))
 
         return Columns({}, self.dtype, len(rows), load, load_rows=load_rows), True
-
-    def clear_cache(self) -> None:
-        super().clear_cache()
-        self._points.clear_cache()
-
-    def close(self) -> None:
-        super().close()
-        for store in (self._masks, self._own, self._points):
-            store.close()
 
 
 # The points of whole roads, read from the sections of a store whenever a column is asked for.
 
 def columns_of_roads(store: SectionStore, roads: Sequence[int], names: Sequence[str] | None = None) -> Columns:
-    """The Columns of all points of some roads, each by station.
+    """The Columns of all points of some roads, each by station; of all columns, or of some by `names`.
 
     A column is there as long as whoever asked for it uses it, and is read again when it is asked for again: of a long road, columns that are
     kept would take as much memory as the points.
-
-    Parameters
-    ----------
-    store : SectionStore, to which no points are added any more
-    roads : numbers
-    names : of the columns; all by default
     """
     sections = [(road, number) for road in roads for number in store.sections(road)]
     ends = np.cumsum([0, *(len(store.section(*key)) for key in sections)])

@@ -16,15 +16,11 @@ import numpy as np
 
 from ...common.arrays import RADIX_BITS, above_least, bucket_argsort, order_by
 from ...common.parallel import ScratchBuffers, check_cancelled, column_buffers
+from ..weights import STORE
 from .columns import Columns, columns_in_order
 from .records import COORDINATE_SCALE, Points, take_rows
 from .spill_file import Key, SpillFile, StoredColumn, StoreIndex, close_parts, new_part
 
-SECTION_LENGTH = 5.0       # m of station; results do not depend on it
-MEMORY_LIMIT = 64 * 2**20  # bytes of records in memory before they are spilled
-CACHE_LIMIT = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again
-STRIPS_PER_SECTION = 16    # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
-SECTION_LOCKS = 16         # locks that the sections share while they are read
 LEAST_UNIT, MOST_UNIT = -2**31, 2**31 - 1   # of 0.1 mm, in which stations are kept
 STRETCH_POINTS = 1_200_000   # points of a stretch that a worker process works on, about: a second of its time
 
@@ -33,13 +29,7 @@ Stretch = tuple[int, int, int]   # number of a road, first and last + 1 number o
 
 @dataclass(frozen=True)
 class PartitionedPoints:
-    """Points of one road, partitioned by section.
-
-    road : number
-    records : (N,) Columns, section by section
-    first : number of the first section
-    ends : the points of section `first + k` end before row `ends[k]`
-    """
+    """Points of one road, section by section: those of section `first + k` end before row `ends[k]` of the records."""
 
     road: int
     records: Columns
@@ -66,8 +56,8 @@ class SectionStore:
     folder : where the points go that are not kept in memory, so that others can read them; None for a temporary file without a name
     """
 
-    def __init__(self, dtype: Any, section_length: float = SECTION_LENGTH, memory_limit: int = MEMORY_LIMIT,
-                 finish: Callable[[int, Columns], np.ndarray | None] | None = None, cache_limit: int = CACHE_LIMIT, folder: Path | None = None):
+    def __init__(self, dtype: Any, section_length: float = STORE.section_length, memory_limit: int = STORE.memory_limit,
+                 finish: Callable[[int, Columns], np.ndarray | None] | None = None, cache_limit: int = STORE.cache_limit, folder: Path | None = None):
         self.dtype = np.dtype(dtype)
         self.section_length = section_length
         self.memory_limit = memory_limit
@@ -77,7 +67,7 @@ class SectionStore:
         self._cache: OrderedDict[tuple[int, int], Columns] = OrderedDict()   # the spilled sections read last
         self._cache_bytes, self._cache_limit = 0, cache_limit
         self._lock = threading.Lock()       # sections are read by several threads
-        self._section_locks = [threading.Lock() for _ in range(SECTION_LOCKS)]
+        self._section_locks = [threading.Lock() for _ in range(STORE.section_locks)]
         self._waiting_bytes = 0
         self._file: SpillFile | None = None
         self._count = 0
@@ -85,7 +75,6 @@ class SectionStore:
 
     @property
     def count(self) -> int:
-        """Points added that have a station."""
         return self._count
 
     def append(self, road: int, records: np.ndarray | Columns) -> None:
@@ -94,26 +83,18 @@ class SectionStore:
             self.add(self.partition(road, records))
 
     def partition(self, road: int, records: np.ndarray | Columns, mask: np.ndarray | None = None) -> PartitionedPoints:
-        """Partition points by section: the part of `append` that any thread may do.
-
-        Parameters
-        ----------
-        road : number
-        records : (N,) structured array or Columns, N > 0
-        mask : (N,) bool, the points to take; all by default
-        """
+        """Partition points of a road, N > 0, by section: the part of `append` that any thread may do. `mask` : (N,) bool, the points to take."""
         strip = np.multiply(records["s"], COORDINATE_SCALE, out=self._buffers.of(len(records))("strip"))
         strip /= self.section_length
         low, high = int(np.floor(strip.min())), int(np.floor(strip.max()))
-        strip *= STRIPS_PER_SECTION
+        strip *= STORE.strips_per_section
         np.floor(strip, out=strip)
-        strip -= STRIPS_PER_SECTION * low
-        order, ends = bucket_argsort(strip, STRIPS_PER_SECTION * (high + 1 - low), mask)
+        strip -= STORE.strips_per_section * low
+        order, ends = bucket_argsort(strip, STORE.strips_per_section * (high + 1 - low), mask)
         columns = records.take(order).load_all() if isinstance(records, Columns) else columns_in_order(records, order)
-        return PartitionedPoints(int(road), columns, low, ends[STRIPS_PER_SECTION - 1::STRIPS_PER_SECTION].tolist())
+        return PartitionedPoints(int(road), columns, low, ends[STORE.strips_per_section - 1::STORE.strips_per_section].tolist())
 
     def add(self, points: PartitionedPoints) -> None:
-        """Add points that were partitioned by section."""
         for k, (first, end) in enumerate(zip([0, *points.ends], points.ends)):
             if end > first:
                 self._add_part((points.road, points.first + k), points.records[first:end], False)
@@ -139,14 +120,12 @@ class SectionStore:
         self._spill()
 
     def _spill(self):
-        """Write all points in memory to the own file."""
         file = self._own_file()
         for section in self._sections.values():
             section.spill(file)
         self._waiting_bytes = 0
 
     def _own_file(self):
-        """The file of the points that are not kept in memory."""
         with self._lock:
             if self._file is None:
                 self._file = SpillFile(self.folder and self.folder / f"points-{uuid4().hex}.bin")
@@ -188,7 +167,7 @@ class SectionStore:
         """The Columns of one section in canonical order, read-only; empty where there are no points."""
         check_cancelled()
         key = (road, section)
-        with self._section_locks[hash(key) % SECTION_LOCKS]:
+        with self._section_locks[hash(key) % STORE.section_locks]:
             with self._lock:
                 records = self._cache.get(key)
                 if records is not None:
@@ -214,18 +193,7 @@ class SectionStore:
         return (records, False) if isinstance(records, Columns) else (self._columns_of_file(records), True)
 
     def column(self, road: int, section: int, name: str, rows: np.ndarray) -> np.ndarray:
-        """Some rows of one column of a section that was read before; nothing else is read or cached.
-
-        Parameters
-        ----------
-        road, section : numbers
-        name : of the column
-        rows : (M,) indices
-
-        Returns
-        -------
-        (M,) array
-        """
+        """(M,) rows of one column of a section that was read before; nothing else is read or cached."""
         part = self._sections[road, section].parts[0]
         return part[name].take(rows, mode="clip") if isinstance(part, Columns) else _from_file(part[name], rows)
 
@@ -239,7 +207,6 @@ class SectionStore:
         return unit
 
     def _columns_of_file(self, stored):
-        """Columns that are read one by one when they are asked for."""
         return Columns({}, self.dtype, stored[self.dtype.names[0]].packing.size, lambda name: _from_file(stored[name]),
                        load_rows=lambda name, rows: _from_file(stored[name], rows))
 
@@ -293,7 +260,6 @@ class SectionStore:
         return ColumnOverlay(self, name, folder)
 
     def clear_cache(self) -> None:
-        """Release the sections that are cached as last read."""
         with self._lock:
             self._cache.clear()
             self._cache_bytes = 0
@@ -315,13 +281,7 @@ class SectionStore:
         return StoreIndex.of((key, section.in_order, section.parts) for key, section in sorted(self._sections.items()))
 
     def write_in_order(self, keys: Sequence[Key], folder: Path) -> StoreIndex:
-        """Write sections, in canonical order, to a new file of a folder; this store stays as it is.
-
-        Parameters
-        ----------
-        keys : (road, section) of each
-        folder : that is there
-        """
+        """Write sections, (road, number) each, in canonical order to a new file of a folder; this store stays as it is."""
         found = []
         with new_part(folder) as file:
             for key in keys:
@@ -360,7 +320,6 @@ class SectionStore:
         self._count = count
 
     def close(self) -> None:
-        """Release all points and their disk space."""
         self._release()
         close_parts()
         if self.at_close is not None:
@@ -420,7 +379,6 @@ class _StoredSection:
         return sum(map(self._count, self.parts))
 
     def spill(self, file: SpillFile) -> None:
-        """Write the parts in memory to the file, as one part."""
         waiting = [part for part in self.parts if isinstance(part, Columns)]
         if waiting:
             stored = {name: file.put(_concatenate_into_buffer([part[name] for part in waiting])) for name in self.dtype.names or ()}
@@ -430,10 +388,7 @@ class _StoredSection:
     def sort(self, file: SpillFile | None, finish: Callable[[Columns], np.ndarray | None] | None) -> None:
         """Finish the points and sort them into one part, which is in the file if any of them were in one.
 
-        Parameters
-        ----------
-        file : that takes it
-        finish : function of Columns, in no order, which it may change; it returns a mask of the points to keep, or None for all
+        `finish` is a function of Columns, in no order, which it may change; it gives a mask of the points to keep, or None for all.
         """
         records, order = self._sorted(finish)
         spilled = [part for part in self.parts if not isinstance(part, Columns)]
@@ -453,12 +408,7 @@ class _StoredSection:
             self.parts = [stored if spilled else Columns(arrays, self.dtype)]
 
     def written_in_order(self, file: SpillFile, finish: Callable[[Columns], np.ndarray | None] | None) -> dict[str, StoredColumn] | None:
-        """Write the points, in canonical order, to a file; this section stays as it is. None where `finish` keeps no point.
-
-        Parameters
-        ----------
-        file, finish : as of `sort`
-        """
+        """Write the points, in canonical order, to a file; this section stays as it is. None where `finish`, as of `sort`, keeps no point."""
         if self.in_order:
             return {name: file.put(part[name] if isinstance(part, Columns) else part[name].file.get(part[name]))
                     for part in self.parts for name in self.dtype.names or ()} or None
@@ -498,33 +448,23 @@ def _concatenate_into_buffer(columns):
 
 # The order in which a section returns its points, each once: it does not depend on the order of the files, nor on how far these overlap.
 
-SORT_CHUNK = 1 << 15   # points sorted at a time: they fit the processor's cache
-STATION_CELL_BITS = 7  # bits of the number of a cell of stations; points are sorted into cells first (fewer than a byte holds)
 # Sort keys, the most significant last: the first set differs between nearly all points, the second between all that are not identical.
 PLACE_KEYS = "z", "d", "s"
 ALL_KEYS = "returns", "source", "y", "x", "intensity", "time", *PLACE_KEYS
 
 
 def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = None) -> np.ndarray:
-    """Indices that sort records by station, offset, height, time and the remaining columns.
+    """(M,) indices that sort (N,) records, of at least the columns `ALL_KEYS`, by station, offset, height, time and the remaining columns.
 
-    A record that is the same as another in all of them is the same point from two files, as where tiles overlap: one of them is taken.
-
-    Parameters
-    ----------
-    records : (N,) of at least the columns `ALL_KEYS`
-    mask : (N,) bool, the records to be sorted; all by default
-
-    Returns
-    -------
-    (M,) intp, no two of them of equal records
+    A record that is the same as another in all of them is the same point from two files, as where tiles overlap: one of them is taken. `mask` : (N,)
+    bool, the records to be sorted.
     """
     if not len(records):
         return np.empty(0, np.intp)
     along, across = records["s"], records["d"]
     cell = above_least(along)
-    cell >>= max(int(cell.max()).bit_length() - STATION_CELL_BITS, 0)
-    order, ends = bucket_argsort(cell, 2**STATION_CELL_BITS, mask)
+    cell >>= max(int(cell.max()).bit_length() - STORE.station_cell_bits, 0)
+    order, ends = bucket_argsort(cell, 2**STORE.station_cell_bits, mask)
     tied_parts, first = [np.empty(0, np.intp)], 0
     for end in _chunk_ends(ends):
         rows = order[first:end]
@@ -553,62 +493,87 @@ def _same_as_next(*keys):
 
 
 def _chunk_ends(ends):
-    """Where runs of cells end that hold about SORT_CHUNK points each."""
-    last = np.searchsorted(ends, np.arange(SORT_CHUNK, ends[-1] + SORT_CHUNK, SORT_CHUNK))
+    """Where runs of cells end that hold about `sort_chunk` points each."""
+    last = np.searchsorted(ends, np.arange(STORE.sort_chunk, ends[-1] + STORE.sort_chunk, STORE.sort_chunk))
     return np.unique(ends[last.clip(max=len(ends) - 1)]).tolist()
 
 
 # A store of which one column is set anew.
 
-class ColumnOverlay(SectionStore):
-    """The points of a store with one column replaced; it holds no points itself and joins two stores.
+class DerivedStore(SectionStore):
+    """Points of another store with columns of their own. They are closed with this one; no points can be appended.
+
+    points : the other store
+    """
+
+    def __init__(self, dtype: Any, points: SectionStore):
+        super().__init__(dtype, points.section_length, points.memory_limit)
+        self.points = points
+
+    def _parts(self) -> tuple[SectionStore, ...]:
+        """The stores it consists of; the first of them has the same sections."""
+        raise NotImplementedError
+
+    def append(self, road: int, records: Any) -> None:
+        raise TypeError("The points of this store are those of another; columns can be put, points cannot be added.")
+
+    def roads(self) -> list[int]:
+        return self._parts()[0].roads()
+
+    def sections(self, road: int) -> list[int]:
+        return self._parts()[0].sections(road)
+
+    def in_stretch(self, stretch: Stretch) -> list[Key]:
+        return self._parts()[0].in_stretch(stretch)
+
+    def size(self, road: int, section: int) -> int:
+        return self._parts()[0].size(road, section)
+
+    def clear_cache(self) -> None:
+        super().clear_cache()
+        for store in self._parts():
+            store.clear_cache()
+
+    def close(self) -> None:
+        super().close()
+        for store in self._parts():
+            store.close()
+
+
+class ColumnOverlay(DerivedStore):
+    """All points of a store with one column replaced; it holds no points itself and joins two stores.
 
     Parameters
     ----------
-    points : SectionStore, closed with this one; it stays an attribute
+    points : SectionStore
     name : of the column
     folder : where its values go that are not kept in memory, so that others can read them; None for a temporary file without a name
     """
 
     def __init__(self, points: SectionStore, name: str, folder: Path | None = None):
-        super().__init__(points.dtype, points.section_length, points.memory_limit)
-        self.points, self._name = points, name
+        super().__init__(points.dtype, points)
+        self._name = name
         # of as many points as the store keeps ready, not of as many bytes
         share = points.dtype[name].itemsize / points.dtype.itemsize
         self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit, folder=folder,
-                                    cache_limit=int(share * CACHE_LIMIT))
+                                    cache_limit=int(share * STORE.cache_limit))
 
     @property
     def count(self) -> int:
         return self._column.count
 
     def put(self, road: int, section: int, records: np.ndarray) -> None:
-        """Set the column of one section, (N,) in the order of its points."""
         self._column.put(road, section, Columns({self._name: records}, self._column.dtype))
 
-    def append(self, road: int, records: Any) -> None:
-        """Refused: the points are those of another store."""
-        raise TypeError("The points of this store are those of another; a column can be put, points cannot be added.")
-
-    def roads(self) -> list[int]:
-        return self.points.roads()
-
-    def sections(self, road: int) -> list[int]:
-        return self.points.sections(road)
-
-    def in_stretch(self, stretch: Stretch) -> list[Key]:
-        return self.points.in_stretch(stretch)
+    def _parts(self) -> tuple[SectionStore, ...]:
+        return self.points, self._column
 
     def shared(self) -> dict[str, Any]:
         """As `SectionStore.contents` of the column alone, and the folder that its values lie in then."""
         return dict(column=self._column.index(), folder=str(self._column.folder))
 
     def adopt_shared(self, column: StoreIndex, folder: str) -> None:
-        """Add the values of `shared`."""
         self._column.adopt(column, Path(folder))
-
-    def size(self, road: int, section: int) -> int:
-        return self.points.size(road, section)
 
     def _read(self, road, section):
         column, points = self._column.section(road, section), self.points.section(road, section)
@@ -621,12 +586,3 @@ class ColumnOverlay(SectionStore):
 
     def column(self, road: int, section: int, name: str, rows: np.ndarray) -> np.ndarray:
         return self.section(road, section).take(rows)[name]
-
-    def clear_cache(self) -> None:
-        self._column.clear_cache()
-        self.points.clear_cache()
-
-    def close(self) -> None:
-        super().close()
-        self._column.close()
-        self.points.close()

@@ -24,13 +24,11 @@ import numpy as np
 
 from ...common.parallel import column_buffers, freed_on_demand
 from ...execution.phase import checksum
+from ..weights import STORE
 
-PACKING_CHUNK = 1 << 15  # values packed at a time: they fit the processor's cache
 PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value -> bytes of its parts, lowest first
 PART_DTYPES = {width: np.dtype(f"u{width}") for width in (1, 2, 4, 8)}
 SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a part
-OPEN_PARTS = 64          # files of parts that are held open: a system lets a program open some hundred (macOS 256)
-MAX_FREE_RANGES = 64     # free ranges of the file that are remembered; of more, the smallest is forgotten
 
 
 class Packing(NamedTuple):
@@ -49,7 +47,6 @@ class Packing(NamedTuple):
 
     @property
     def nbytes(self) -> int:
-        """Packed bytes."""
         return self.size * sum(self.widths)
 
     @property
@@ -61,20 +58,13 @@ class Packing(NamedTuple):
         return np.broadcast_to(np.array(self.least % 2**(8 * itemsize), f"u{itemsize}").view(self.dtype), self.size)
 
     def unpack(self, data: np.ndarray, column: np.ndarray, rows: np.ndarray | None = None) -> None:
-        """Fill a column from its packed bytes.
-
-        Parameters
-        ----------
-        data : (B,) uint8, packed bytes
-        column : (N,) array to fill, or (M,) with `rows`
-        rows : (M,) indices of the values to unpack; all by default
-        """
+        """Fill a column, (N,) or (M,) with the indices of some `rows`, from its (B,) uint8 packed bytes."""
         bits = np.dtype(f"u{self.dtype.itemsize}")
         least, column = bits.type(self.least % 2**(8 * bits.itemsize)), column.view(bits)
         low, *high = _part_views(data, self)
-        for first in range(0, len(column), PACKING_CHUNK):
-            chunk = column[first:first + PACKING_CHUNK]
-            some = slice(first, first + PACKING_CHUNK) if rows is None else rows[first:first + PACKING_CHUNK]
+        for first in range(0, len(column), STORE.packing_chunk):
+            chunk = column[first:first + STORE.packing_chunk]
+            some = slice(first, first + STORE.packing_chunk) if rows is None else rows[first:first + STORE.packing_chunk]
             if high:
                 np.left_shift(_values_at(high[0], some), 8 * self.widths[0], out=chunk, dtype=bits)
                 chunk |= _values_at(low, some)
@@ -84,16 +74,7 @@ class Packing(NamedTuple):
 
 
 def pack(column: np.ndarray) -> tuple[Packing, np.ndarray]:
-    """Pack a column of one or more numbers.
-
-    Parameters
-    ----------
-    column : (N,) integers or floats, N > 0
-
-    Returns
-    -------
-    Packing, and (B,) uint8 packed bytes, which the next column that the same thread packs overwrites
-    """
+    """Packing and (B,) uint8 packed bytes of (N,) integers or floats, N > 0; the next column that the same thread packs overwrites the bytes."""
     column = np.ascontiguousarray(column)
     itemsize = column.dtype.itemsize
     values = column.view(f"i{itemsize}") if column.dtype.kind == "f" else column   # NaN has no order, its bits have
@@ -106,13 +87,13 @@ def pack(column: np.ndarray) -> tuple[Packing, np.ndarray]:
     offset = bits.dtype.type(least % 2**(8 * itemsize))
     data = column_buffers.of(packing.nbytes)("packed", np.uint8)
     parts = _part_views(data, packing)
-    buffer = np.empty(min(len(bits), PACKING_CHUNK), bits.dtype)
-    for first in range(0, len(bits) if parts else 0, PACKING_CHUNK):
-        chunk = bits[first:first + PACKING_CHUNK]
+    buffer = np.empty(min(len(bits), STORE.packing_chunk), bits.dtype)
+    for first in range(0, len(bits) if parts else 0, STORE.packing_chunk):
+        chunk = bits[first:first + STORE.packing_chunk]
         rest = np.subtract(chunk, offset, out=buffer[:len(chunk)])
-        parts[0][first:first + PACKING_CHUNK] = rest
+        parts[0][first:first + STORE.packing_chunk] = rest
         if len(parts) > 1:
-            parts[1][first:first + PACKING_CHUNK] = np.right_shift(rest, 8 * widths[0], out=rest)
+            parts[1][first:first + STORE.packing_chunk] = np.right_shift(rest, 8 * widths[0], out=rest)
     return packing, data
 
 
@@ -131,12 +112,7 @@ def _values_at(part, rows):
 
 
 class StoredColumn(NamedTuple):
-    """A column in a file.
-
-    place : first byte
-    packing : how it is packed
-    file : that holds it
-    """
+    """A column in a file: its first byte there, and how it is packed."""
 
     place: int
     packing: Packing
@@ -146,28 +122,15 @@ class StoredColumn(NamedTuple):
 class ColumnFile:
     """Columns in a file that is finished, read by any number of threads and processes.
 
-    Parameters
-    ----------
-    path : of the file, which is opened when it is read, and again where too many others were read meanwhile
+    The file is opened when it is read, and again where too many others were read meanwhile.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
 
     def get(self, stored: StoredColumn, out: np.ndarray | None = None, rows: np.ndarray | None = None) -> np.ndarray:
-        """Read a column, or some rows of it.
-
-        Parameters
-        ----------
-        stored : of `put`
-        out : (N,) or (M,) array to fill; a new one by default
-        rows : (M,) indices; all by default
-
-        Returns
-        -------
-        (N,) or (M,) array, read-only where all values are equal and no `out` was given
-        """
-        place, packing = stored.place, stored.packing
+        """(N,) values of a column, or (M,) at the indices of some `rows`, into `out` where it is given; else read-only where all are equal."""
+        packing = stored.packing
         count = packing.size if rows is None else len(rows)
         constant = packing.constant
         if constant is not None and out is None:
@@ -175,19 +138,25 @@ class ColumnFile:
         column = np.empty(count, packing.dtype) if out is None else out
         if constant is not None:
             column[:] = constant[:count]
-        elif packing.widths == (packing.dtype.itemsize,) and rows is None:
-            self._read(place, column)
         elif rows is not None and 2 * count > packing.size:   # for most rows, unpacking all is faster
             np.take(self.get(stored, column_buffers.of(packing.size)("column", packing.dtype)), rows, out=column, mode="clip")
         elif count:
-            first, end = (0, packing.size) if rows is None else (int(rows.min()), int(rows.max()) + 1)
-            span = packing._replace(size=end - first)
-            data, begin = column_buffers.of(span.nbytes)("packed", np.uint8), 0
-            for width in packing.widths:
-                self._read(place + first * width, data[begin:begin + span.size * width])
-                place, begin = place + packing.size * width, begin + span.size * width
-            span.unpack(data, column, rows - first if rows is not None and first else rows)
+            self._unpack(stored, column, rows)
         return column
+
+    def _unpack(self, stored, column, rows):
+        """Fill a column from the bytes between its first and its last row that is asked for."""
+        place, packing, _ = stored
+        if packing.widths == (packing.dtype.itemsize,) and rows is None:
+            self._read(place, column)
+            return
+        first, end = (0, packing.size) if rows is None else (int(rows.min()), int(rows.max()) + 1)
+        span = packing._replace(size=end - first)
+        data, begin = column_buffers.of(span.nbytes)("packed", np.uint8), 0
+        for width in packing.widths:
+            self._read(place + first * width, data[begin:begin + span.size * width])
+            place, begin = place + packing.size * width, begin + span.size * width
+        span.unpack(data, column, rows - first if rows is not None and first else rows)
 
     def release(self, stored: StoredColumn) -> None:
         """Others may read the column: it stays."""
@@ -224,23 +193,20 @@ class _OpenFile:
         """Write an array at a place."""
         data = memoryview(np.ascontiguousarray(array).view(np.uint8)) if array.nbytes else b""
         try:
-            self._write(place, data)
+            while len(data):  # a signal may shorten a write; a full disk raises
+                if hasattr(os, "pwrite"):
+                    written = os.pwrite(self.file.fileno(), data, place)
+                else:
+                    with self.lock:
+                        self.file.seek(place)
+                        written = self.file.write(data)
+                data, place = data[written:], place + written
         except OSError as error:   # which does not say where the disk is full
             name = self.file.name
             raise OSError(error.errno, error.strerror, name if isinstance(name, str) else tempfile.gettempdir()) from error
 
-    def _write(self, place, data):
-        while len(data):  # a signal may shorten a write; a full disk raises
-            if hasattr(os, "pwrite"):
-                written = os.pwrite(self.file.fileno(), data, place)
-            else:
-                with self.lock:
-                    self.file.seek(place)
-                    written = self.file.write(data)
-            data, place = data[written:], place + written
 
-
-@lru_cache(maxsize=OPEN_PARTS)
+@lru_cache(maxsize=STORE.open_parts)
 def _opened(path):
     return _OpenFile(open(path, "rb", buffering=0))
 
@@ -279,17 +245,13 @@ def parts_are_whole(folder: Path) -> bool:
 
 
 class SpillFile(ColumnFile):
-    """Columns in a file that grows.
+    """Columns in a file that grows; `end` is its length in bytes.
 
     Parameters
     ----------
     path : of the file; by default it is a temporary one without a name, which a killed run does not leave behind (on Windows it
         is deleted when it is closed)
     unfinished : its path until then
-
-    Attributes
-    ----------
-    end : bytes of the file
     """
 
     def __init__(self, path: Path | None = None, unfinished: Path | None = None) -> None:
@@ -307,7 +269,6 @@ class SpillFile(ColumnFile):
         return StoredColumn(place, packing, self)
 
     def release(self, stored: StoredColumn) -> None:
-        """Free the bytes of a column for others."""
         if not stored.packing.nbytes:
             return
         with self._lock:
@@ -319,12 +280,11 @@ class SpillFile(ColumnFile):
                     merged[-1] = before, length + nbytes
                 else:
                     merged.append((place, nbytes))
-            if len(merged) > MAX_FREE_RANGES:
+            if len(merged) > STORE.max_free_ranges:
                 merged.remove(min(merged, key=lambda free: free[1]))
             self._free = merged
 
     def _allocate(self, nbytes):
-        """The first byte of a range that is large enough."""
         if not nbytes:
             return 0
         with self._lock:
@@ -372,26 +332,20 @@ class StoreIndex:
 
     @classmethod
     def of(cls, sections: Iterable[tuple[Key, bool, Sequence[Any]]]) -> StoreIndex:
-        """The index of sections whose points lie in files with names.
-
-        Parameters
-        ----------
-        sections : key, whether its points are in order, and its parts, {name of a column: StoredColumn} each
-        """
+        """The index of sections whose points lie in files with names: key, whether its points are in order, and its parts, {column: StoredColumn}."""
         files: dict[str, int] = {}
         rows, columns = [], []
         for key, in_order, parts in sections:
-            for stored in parts:
-                some = list(stored.values())
-                number = files.setdefault(some[0].file.path.name, len(files))
-                rows.append((*key, number, some[0].packing.size, in_order))
-                columns.append([(column.place, column.packing.least, sum(column.packing.widths)) for column in some])
-        found = np.array(columns, np.int64).reshape(len(rows), len(columns[0]) if rows else 0, 3)
-        return cls(tuple(files), np.array(rows, np.int64).reshape(-1, 5), found[..., 0], found[..., 1], found[..., 2].astype(np.uint8))
+            for part in parts:
+                stored = list(part.values())
+                number = files.setdefault(stored[0].file.path.name, len(files))
+                rows.append((*key, number, stored[0].packing.size, in_order))
+                columns.append([(column.place, column.packing.least, sum(column.packing.widths)) for column in stored])
+        table = np.array(columns, np.int64).reshape(len(rows), len(columns[0]) if rows else 0, 3)
+        return cls(tuple(files), np.array(rows, np.int64).reshape(-1, 5), table[..., 0], table[..., 1], table[..., 2].astype(np.uint8))
 
     @classmethod
     def join(cls, indexes: Sequence[StoreIndex]) -> StoreIndex:
-        """Several indexes one after the other."""
         indexes = [one for one in indexes if len(one.parts)] or list(indexes[:1])
         before = np.cumsum([0, *(len(one.files) for one in indexes)])
         parts = [one.parts + np.array([0, 0, shift, 0, 0]) for one, shift in zip(indexes, before)]
@@ -404,13 +358,7 @@ class StoreIndex:
         return int(self.parts[self.parts[:, 0] >= 0, 3].sum())
 
     def stored(self, folder: Path, dtype: np.dtype) -> Iterator[tuple[Key, bool, dict[str, StoredColumn]]]:
-        """Yield (key, whether in order, {name of a column: StoredColumn}) of every part.
-
-        Parameters
-        ----------
-        folder : that has the files
-        dtype : structured dtype of the points
-        """
+        """Yield (key, whether in order, {column: StoredColumn}) of every part; the files lie in the folder, the points have the structured dtype."""
         files = [ColumnFile(folder / name) for name in self.files]
         tables = (self.parts.tolist(), self.places.tolist(), self.least.tolist(), self.widths.tolist())
         for (road, section, number, count, in_order), *columns in zip(*tables):

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from drives import write_cloud
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.adjustment.register import CORRECTION_STEP, PassCorrections
+from lanewright.core.survey.adjustment.register import PassCorrections
 from lanewright.core.survey.frame.row_table import SigmaAlong
 from lanewright.core.survey.road_points_las import read_road_points, write_road_points
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
+from lanewright.core.survey.weights import REGISTER
 
 
 def road_points(corrected=True, cluster=True, crs="EPSG:32632", count=3000):
@@ -59,7 +60,7 @@ def test_points_of_moved_passes_are_written_as_measured_and_read_as_moved(tmp_pa
     import laspy
 
     written = road_points(count=500)
-    stations = np.arange(-15.0, 300.0, CORRECTION_STEP)
+    stations = np.arange(-15.0, 300.0, REGISTER.correction_step)
     left = np.rint([200 + stations, -100 + 0 * stations, 5 * np.sin(stations)]).astype(np.int16)
     written.moves = PassCorrections({1: (-15.0, left), 4: (-15.0, -left)})
     write_road_points(written, tmp_path / "road.laz")

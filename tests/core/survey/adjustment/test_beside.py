@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
-from lanewright.core.survey.adjustment.adjust import compare_carriageways, roads_beside, said_of_levels
+from lanewright.core.survey.adjustment.adjust import compare_carriageways, roads_beside, warnings_of_levels
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
@@ -73,11 +73,11 @@ def test_roads_far_off_or_on_another_level_are_not_compared(survey):
 
 
 def test_a_street_driven_again_with_heights_of_another_kind_is_named_as_one_road():
-    (warned,) = said_of_levels(carriageways(apart=0.4, level=48.0).frame)
+    (warned,) = warnings_of_levels(carriageways(apart=0.4, level=48.0).frame)
     assert "48.00 m above" in warned and "heights of two kinds" in warned
 
 
 @pytest.mark.parametrize("survey", [carriageways(apart=0.4, level=6.0, rise=lambda x: 0.02 * x), carriageways(level=6.0)],
                          ids=["a ramp above", "a carriageway higher up the slope"])
 def test_what_climbs_above_a_road_or_runs_beside_it_is_another_road(survey):
-    assert len(survey.frame.roads) == 2 and not said_of_levels(survey.frame)
+    assert len(survey.frame.roads) == 2 and not warnings_of_levels(survey.frame)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive, joined
-from lanewright.core.survey.adjustment.adjust import continued_corrections, places_of_one_drive, said_of_one_drive
+from lanewright.core.survey.adjustment.adjust import continued_corrections, places_of_one_drive, warning_of_one_drive
 from lanewright.core.survey.adjustment.register import PassCorrections, PassOffsets
 from lanewright.core.survey.frame.road_frame import build_frame
 
@@ -59,8 +59,8 @@ def test_what_one_drive_alone_shows_is_named_with_how_far_it_was_moved():
     assert start <= 0.0 and end >= 140.0 and metres == pytest.approx(np.hypot(0.03, 0.07), abs=1e-4)
     (start, end, _), = places_of_one_drive(frame.passes_of(0), compared, whole)
     assert 200.0 <= start <= 220.0 and end >= 400.0, "the rest of the street, which the second drive left"
-    assert "220 to 400 m (by up to 7.6 cm)" in said_of_one_drive(0, [(220.0, 400.0, 0.0762)])
-    assert said_of_one_drive(0, []) == ""
+    assert "220 to 400 m (by up to 7.6 cm)" in warning_of_one_drive(0, [(220.0, 400.0, 0.0762)])
+    assert warning_of_one_drive(0, []) == ""
 
 
 def test_where_the_drives_lie_beside_each_other_nothing_is_named_but_where_none_can_be_compared():

@@ -1,7 +1,7 @@
 """Places at which passes still differ are named with how much."""
 
 import numpy as np
-from lanewright.core.survey.adjustment.adjust import remaining_places, said_of_places, solve_corrections
+from lanewright.core.survey.adjustment.adjust import remaining_places, solve_corrections, warning_of_places
 from lanewright.core.survey.adjustment.register import PassOffsets
 
 STATIONS = np.arange(5.0, 300.0, 10.0)
@@ -15,7 +15,7 @@ def apart(left, far=()):
 def test_passes_that_the_corrections_bring_together_leave_no_place():
     offsets = apart(0.08 + 0.0002 * STATIONS)
     assert remaining_places(offsets, solve_corrections(offsets)) == []
-    assert said_of_places(0, []) == ""
+    assert warning_of_places(0, []) == ""
 
 
 def test_an_offset_that_jumps_is_named_where_it_jumps():
@@ -24,7 +24,7 @@ def test_an_offset_that_jumps_is_named_where_it_jumps():
     offsets = apart(left)
     (start, end, metres), = remaining_places(offsets, solve_corrections(offsets))
     assert 80.0 <= start <= 90.0 and 110.0 <= end <= 120.0 and 0.1 < metres < 0.24
-    said = said_of_places(2, [(90.0, 110.0, 0.213)])
+    said = warning_of_places(2, [(90.0, 110.0, 0.213)])
     assert "90 to 110 m (up to 21.3 cm remain)" in said and "Road 2" in said
 
 
@@ -39,10 +39,10 @@ def test_a_jump_that_the_corrections_follow_is_named_where_it_is_as_it_is_evened
 def test_where_they_lie_too_far_apart_is_said_by_place():
     places = remaining_places(apart(NOTHING, far=(25.0, 35.0, 105.0)), {})
     assert places == [(20.0, 40.0, np.inf), (100.0, 110.0, np.inf)]
-    assert "20 to 40 m (more than 30 cm apart" in said_of_places(0, places)
+    assert "20 to 40 m (more than 30 cm apart" in warning_of_places(0, places)
 
 
 def test_unknown_offsets_are_no_place_and_many_places_are_counted():
     assert remaining_places(apart(np.full(len(STATIONS), np.nan)), {}) == []
     places = remaining_places(apart(np.where(np.arange(len(STATIONS)) % 2, 0.1, 0.0)), {})
-    assert "at 3 further places" in said_of_places(0, places)
+    assert "at 3 further places" in warning_of_places(0, places)

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from lanewright.core.survey.store.spill_file import PACKING_CHUNK, SpillFile, pack
+from lanewright.core.survey.store.spill_file import SpillFile, pack
+from lanewright.core.survey.weights import STORE
 
 RNG = np.random.default_rng(3)
-COUNT = 2 * PACKING_CHUNK + 17
+COUNT = 2 * STORE.packing_chunk + 17
 COLUMNS = {
     "stations of a section": RNG.integers(5_000_000, 5_050_000, COUNT).astype(np.int32),
     "offsets of either side": RNG.integers(-300_000, 300_000, COUNT).astype(np.int32),
