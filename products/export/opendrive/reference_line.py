@@ -24,7 +24,6 @@ SAME_DIRECTION = 1e-7   # rad
 PLAINER_REACH = 0.7     # of a spiral's length from which an arc or a line is taken in its place
 MOST_ANGLE = 2.0        # rad between the ends of an element and its chord
 NEWTON_ROUNDS = 8
-ROUNDED = 1e-14         # what sums of so many places are rounded by
 FIRST_STEP = 4          # places by which the search for the farthest one begins
 
 
@@ -239,7 +238,7 @@ class _Fit:
         for power in range(1, degree + 1):
             powers[power] = powers[power - 1] * s
         square = powers @ powers.T
-        square.flat[::degree + 2] += ROUNDED * count   # places may coincide
+        square.flat[::degree + 2] += np.finfo(float).eps * count   # places may coincide
         found = np.linalg.solve(square, powers @ away)
         dx, dy = found[1]
         aside = np.array([-dy, dx]) / max(np.hypot(dx, dy), 1e-12)
