@@ -19,7 +19,8 @@ from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.columns import Columns
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
-from .asphalt_model import INTENSITY_LEVELS, MIN_ASPHALT_POINTS, PASS_MARGIN, asphalt_of_histograms, is_logarithmic, to_level, weighted_median
+from .asphalt_model import INTENSITY_LEVELS, asphalt_of_histograms, is_logarithmic, to_level, weighted_median
+from .weights import ASPHALT
 
 LOWEST_ELEVATION = -45.0        # degrees; elevations of road reach from here to 0
 ELEVATION_BIN = 0.05            # degrees
@@ -124,7 +125,7 @@ class _ElevationModel:
             middle = self.turns.middle[points.source]
             time = np.where(np.isfinite(middle), middle, time)
         for p in self.passes:
-            rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - PASS_MARGIN) & (time <= p.time[-1] + PASS_MARGIN))
+            rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - ASPHALT.pass_margin) & (time <= p.time[-1] + ASPHALT.pass_margin))
             if len(rows):
                 yield rows, _BeamGeometry.of(p, points[rows], time[rows])
 
@@ -262,7 +263,7 @@ def _samples_of_window(road_points, road, s, scanners):
     of = points.scanner
     for scanner in range(scanners):
         rows = np.flatnonzero(of == scanner)
-        if len(rows) >= MIN_ASPHALT_POINTS:
+        if len(rows) >= ASPHALT.min_asphalt_points:
             some = points[rows[::-(-len(rows) // MAX_SAMPLE_POINTS)]].records
             # copies of the columns, so that the memory of the sections is freed
             own = Columns({name: some[name] for name in SAMPLE_COLUMNS}, np.dtype([(name, some.dtype[name]) for name in SAMPLE_COLUMNS]))

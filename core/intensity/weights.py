@@ -1,0 +1,30 @@
+"""The weights of the room: our own estimates, rounded. What a standard says or what follows from other numbers stands where it is used."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class _AsphaltWeights:
+    """The intensity of asphalt by scanner and distance, and its correction."""
+
+    vehicle_tick: float = 5e-4   # s between the times at which the vehicle's position is tabulated: 1 cm of driving
+    pass_margin: float = 1.0   # s before and after a pass in which its points may still have been measured
+    distance_bin: float = 0.5   # m
+    max_distance: float = 30.0   # m; farther road counts with the last bin
+    min_asphalt_points: int = 200   # points of a bin, below which its asphalt is unknown
+    max_joined_bins: int = 10   # 5 m of neighbouring bins with fewer points are taken together
+    mixed_bin_spread: float = 1.5   # times the spread of its neighbours: a bin of paint and asphalt, left out
+    mixed_bin_neighbours: int = 4   # bins either side that a bin is compared with
+    paint_sigmas: float = 3.0   # lower spreads above the median of asphalt: what is brighter is taken for paint
+    dark_sigmas: float = 4.0   # standard deviations below the median of asphalt: what is darker is something else
+    cleaning_rounds: int = 4   # of taking the median and leaving out paint and what is dark
+    points_at_once: int = 1 << 15   # points corrected or counted at a time: what fits the processor's cache
+    max_share_at_highest: float = 0.05   # share of points at their scanner's highest intensity: more than paint covers of most roads
+    enough_points_per_metre: int = 6_000   # of road: more do not improve the estimate of asphalt
+    sample_stripe_length: int = 100   # units of 0.1 mm along the road: of denser roads, stripes of this length are sampled
+    max_share_without_vehicle: float = 0.2   # of the points, whose vehicle position is unknown: beyond it nothing is corrected
+
+
+ASPHALT = _AsphaltWeights()
