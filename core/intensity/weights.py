@@ -28,3 +28,21 @@ class _AsphaltWeights:
 
 
 ASPHALT = _AsphaltWeights()
+
+
+@dataclass(frozen=True)
+class _BeamWeights:
+    """The beams of spinning scanners."""
+
+    lowest_elevation: float = -45.0   # degrees; elevations of road reach from here to 0
+    elevation_bin: float = 0.05   # degrees
+    min_sharpness: float = 1.5   # times as full as the mean of a degree around them: bins that are rings of beams
+    unequal_beams: float = 0.05   # of asphalt's level: beams that differ less from their neighbours are alike
+    neighbour_beams: int = 3   # beams either side
+    sample_windows: int = 12   # windows of each road that are searched for beams; their length, m
+    sample_window: float = 5.0   # windows of each road that are searched for beams; their length, m
+    max_sample_points: int = 8_000   # points of one scanner in a window that are examined
+    max_turn_time: float = 1.0   # s, the longest turn of a spinning scanner
+
+
+BEAMS = _BeamWeights()
