@@ -26,15 +26,8 @@ from ..common.parallel import POLL_INTERVAL
 from ..common.progress import Progress
 from .phase import Executor, Phase, name_of, read_plain, write_plain
 from .tasks import BEAT, NEEDED, ShippedPhase, items_done, items_together, look_around, raise_answer, sees_files, versions
+from .weights import EXECUTION
 from .work_folder import WorkFolder, code_digest
-
-BEAT_TIME = 2.0         # s between two signs of life of the caller
-CALLER_LOST = 300.0     # s without one after which workers remove the caller's folder; a computer may be suspended for a while
-SCHEDULER_LOST = 15.0   # s without a connection to the scheduler after which the run ends
-CLOSE_TIME = 5.0        # s for the last tasks to let go of the folder
-PAUSED_TIME = 20.0      # s without a result after which is looked whether memory makes all workers pause: they may do so for ever
-ITEMS_PER_TASK = 4      # usually: a task costs caller, scheduler and worker 11 ms of the processor, an item of road 50 ms or more
-RESULT_TIME = 30.0      # s until a result written by another machine is seen here: network file systems remember that it was not there
 
 
 def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: Progress = Progress()) -> Cluster:
@@ -99,7 +92,7 @@ class Cluster(Executor):
         self.folder: Path = Path(tempfile.mkdtemp(prefix="lanewright-")) if work is None else work / f"run-{uuid4().hex[:8]}"
         self.folder.mkdir(exist_ok=True)
         self._left = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
-        (self.folder / BEAT).write_text(str(CALLER_LOST), encoding="utf-8")
+        (self.folder / BEAT).write_text(str(EXECUTION.caller_lost), encoding="utf-8")
         self._numbers, self._closed = count(), threading.Event()
         threading.Thread(target=_beat, args=(self.folder / BEAT, self._closed), daemon=True).start()
 
@@ -116,7 +109,7 @@ class Cluster(Executor):
         try:
             write_plain(shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
             parts = [_Part(item, keep[k] if keep else self.new_file(), phase.size(item)) for k, item in enumerate(items)]
-            work.submit(parts, items_together(phase, len(parts), self.threads, ITEMS_PER_TASK))
+            work.submit(parts, items_together(phase, len(parts), self.threads, EXECUTION.items_per_task))
             for part in parts:
                 while not part.done:
                     progress.report(work.done / len(parts))
@@ -147,7 +140,7 @@ class Cluster(Executor):
         self._closed.set()
         self.client.close()
         self._left.detach()
-        until = time.monotonic() + CLOSE_TIME
+        until = time.monotonic() + EXECUTION.close_time
         while self.folder.exists() and time.monotonic() < until:
             shutil.rmtree(self.folder, ignore_errors=True)
 
@@ -241,7 +234,7 @@ class _Work:
         self._finish(part)
 
     def result(self, part):
-        until = time.monotonic() + RESULT_TIME
+        until = time.monotonic() + EXECUTION.result_time
         while not part.file.exists() and time.monotonic() < until:
             time.sleep(POLL_INTERVAL)
         return read_plain(part.file)
@@ -252,12 +245,12 @@ class _Work:
             self._check_workers()
             return
         self.lost_since = self.lost_since or time.monotonic()
-        if self.client.status == "closed" or time.monotonic() - self.lost_since > SCHEDULER_LOST:
+        if self.client.status == "closed" or time.monotonic() - self.lost_since > EXECUTION.scheduler_lost:
             raise self._lost()
 
     def _check_workers(self):
         """Refuse to wait for workers that all pause, and go on doing so."""
-        if time.monotonic() - self.heard < PAUSED_TIME:
+        if time.monotonic() - self.heard < EXECUTION.paused_time:
             return
         paused = _all_paused(self.client)
         if paused and self.paused:
@@ -283,7 +276,7 @@ class _Work:
 
 
 def _beat(file, closed):
-    while not closed.wait(BEAT_TIME):
+    while not closed.wait(EXECUTION.beat_time):
         try:
             os.utime(file)
         except OSError:
@@ -300,9 +293,6 @@ def _disk_error(folder, error):
 # Dask sends pickled functions, and whoever can talk to a scheduler can run programs as its workers. So a connection that leaves this computer is
 # encrypted, with certificates that Dask's own configuration names, unless the user says otherwise.
 
-CONNECT_TIME = 20.0      # s for a scheduler to answer
-WORKERS_TIME = 60.0      # s for the first worker to come
-LEAST_MEMORY = 1 << 30   # bytes: a section of a dense survey, its surroundings and what is imported (about 0.5 GB, measured) twice
 ADDRESS = re.compile(r"([a-z]+://)?(?P<host>\[[0-9a-fA-F:.%]+\]|[^\s:/@?#\[\]]+):[0-9]+/?")
 PACKAGE = "lanewright"
 INSTALL = 'pip install "lanewright[cluster]"'
@@ -360,7 +350,7 @@ def client_of(address: str, insecure: bool = False) -> Any:
             "client.cert and client.key there, or the variables DASK_DISTRIBUTED__COMM__TLS__CA_FILE, …__CLIENT__CERT and …__CLIENT__KEY.")
     try:
         _check_greeting(address, security)
-        return Client(address, timeout=CONNECT_TIME, security=security, set_as_default=False, name=PACKAGE)
+        return Client(address, timeout=EXECUTION.connect_time, security=security, set_as_default=False, name=PACKAGE)
     # of wrong certificates, names and ports, each library has errors of its own
     except Exception as error:
         raise RoadExtractionError(
@@ -377,7 +367,7 @@ def _check_greeting(address, security):
     if scheme not in ("", "tcp", "tls"):
         return
     try:
-        connection = socket.create_connection((host.strip("[]"), int(port)), CONNECT_TIME)
+        connection = socket.create_connection((host.strip("[]"), int(port)), EXECUTION.connect_time)
     except OSError:
         return
     with connection:
@@ -395,7 +385,7 @@ def _check_greeting(address, security):
 
 def wait_for_workers(client: Any, progress: Progress) -> dict[str, int]:
     """{address: threads} of the workers, as soon as there is one; refused if none came within WORKERS_TIME."""
-    until = time.monotonic() + WORKERS_TIME
+    until = time.monotonic() + EXECUTION.workers_time
     while not (workers := client.nthreads()):
         if time.monotonic() > until:
             raise RoadExtractionError(f"The scheduler {client.scheduler.address} has no workers. Start some: dask worker {client.scheduler.address}.")
@@ -441,9 +431,9 @@ def _check_workers(client: Any, folder: Path, word: str, named: bool, progress: 
                                           "see under the same path and may write to.")
             raise RoadExtractionError(f"The worker {worker} cannot use the folder {folder}: {problem}. Where workers are on other computers, or "
                                       "belong to another user, WORK_FOLDER must name a folder that all of them see.")
-        if 0 < found["memory"] < LEAST_MEMORY:
+        if 0 < found["memory"] < EXECUTION.least_memory:
             progress.warn(f"The worker {worker} may take {found['memory'] / 2**20:.0f} MiB of memory; a dense survey needs about "
-                          f"{LEAST_MEMORY / 2**20:.0f}. Start it with a higher --memory-limit if workers end.")
+                          f"{EXECUTION.least_memory / 2**20:.0f}. Start it with a higher --memory-limit if workers end.")
     threads = max(client.nthreads().values())
     if threads > 1:
         progress.warn(f"Workers have up to {threads} threads, which wait for each other in Python. Workers of one thread are faster: start more of "
