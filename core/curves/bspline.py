@@ -181,7 +181,7 @@ def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[
     """Fit a penalised cubic B-spline to each line, from its first point to its last, by robust least squares.
 
     The penalty is on the third derivative: arcs are not affected, only changes of
-    curvature are smoothed. The bandwidth is selected by BIC among BANDWIDTHS, with the effective number of parameters of a smoothing spline of
+    curvature are smoothed. The bandwidth is selected by BIC among those of FITS, with the effective number of parameters of a smoothing spline of
     this order, L / (3 bandwidth) + 3 per coordinate [1]_; one coordinate is counted, since
     only the deviation across the line is an observation.
 
@@ -209,7 +209,7 @@ def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[
 
 
 def _next_batch(waiting):
-    """[(line, number of its bandwidths)] that are fitted together: SPLINE_POINTS_PER_BATCH points, but at least one bandwidth of the first line."""
+    """[(line, number of its bandwidths)] that are fitted together: `spline_points_per_batch`, but at least one bandwidth of the first line."""
     batch, size = [], 0
     for line in waiting:
         count = min(max((FITS.spline_points_per_batch - size) // len(line.t), 0 if batch else 1), len(line.waiting))

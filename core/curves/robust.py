@@ -18,7 +18,7 @@ MAD_TO_SIGMA = 1.4826  # standard deviation of a normal distribution / its media
 def robust_weights(residuals: np.ndarray) -> np.ndarray:
     """Weights of soft L1, ``1 / sqrt(1 + (r / c)^2)``, of (..., N) residuals in metres.
 
-    The scale c of each row is 1.4826 times the median of ``|r|``, at least `SOFT_L1_SCALE`.
+    The scale c of each row is 1.4826 times the median of ``|r|``, at least `soft_l1_scale`.
     """
     residuals = np.asarray(residuals)
     scale = np.maximum(FITS.soft_l1_scale, MAD_TO_SIGMA * row_medians(np.abs(residuals)))

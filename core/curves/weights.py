@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 
 @dataclass(frozen=True)
 class _FitWeights:
@@ -14,7 +16,7 @@ class _FitWeights:
     projection_tolerance: float = 1e-9   # m; a shorter step ends the projection
     end_tolerance: float = 1e-6   # m; farther beyond an end, a tabulated curve is straight
     noise_floor: float = 0.004   # m; a residual below it does not justify a more complex curve
-    bandwidths: tuple[float, float, float, float, float, float, float, float, float, float, float] = (1.0, 1.4, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)   # m; waves shorter than six of them are smoothed away
+    bandwidths: tuple[float, ...] = (1.0, 1.4, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)   # m; waves shorter than six of them are smoothed away
     spline_points_per_batch: int = 4096   # points of a line times bandwidths; fits the processor's cache
     max_reweightings: int = 8   # of a spline in the plane,
     max_profile_reweightings: int = 6   # and of a profile
@@ -41,7 +43,9 @@ class _FitWeights:
     min_element_length: float = 8.0   # m
     max_element_length: float = 1000.0   # m; longer elements are found in parts
     min_element_sigma: float = 0.008   # m; no line is known better, when evidence is counted
-    element_cost_factor: float = 2.0   # Each element costs its free parameters and its end. The factor accounts for correlated errors of neighbouring points (worn paint, trajectory drift), which plain BIC mistakes for shape.
+    # Each element costs its free parameters and its end. The factor accounts for correlated errors of neighbouring points (worn paint,
+    # trajectory drift), which plain BIC mistakes for shape.
+    element_cost_factor: float = 2.0
     cost_margin: float = 1.0   # of cost, beyond all rounding
     min_ellipse_turn: float = np.radians(60.0)   # on a shorter arc an ellipse cannot be distinguished from a circle
     polynomial_reweightings: int = 15

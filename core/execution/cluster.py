@@ -384,7 +384,7 @@ def _check_greeting(address, security):
 
 
 def wait_for_workers(client: Any, progress: Progress) -> dict[str, int]:
-    """{address: threads} of the workers, as soon as there is one; refused if none came within WORKERS_TIME."""
+    """{address: threads} of the workers, as soon as there is one; refused if none came within `workers_time`."""
     until = time.monotonic() + EXECUTION.workers_time
     while not (workers := client.nthreads()):
         if time.monotonic() > until:

@@ -50,7 +50,7 @@ class WorkerProcesses(Executor):
         Raises
         ------
         RoadExtractionError
-            Of the phase; or if a worker process ended TRIALS times at one item, ran out of memory, or the folder is full.
+            Of the phase; or if a worker process ended `trials` times at one item, ran out of memory, or the folder is full.
         """
         items = list(items)
         shipped = f"phase{next(self._numbers)}.plain"

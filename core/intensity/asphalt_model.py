@@ -57,7 +57,7 @@ class VehicleDistances:
 
 
 class _PassTable:
-    """Positions of the vehicle during a part of one pass, at every VEHICLE_TICK."""
+    """Positions of the vehicle during a part of one pass, at every `vehicle_tick`."""
 
     def __init__(self, driven: Pass, first: float, last: float):
         self.driven, self.begin = driven, driven.time[0]
@@ -105,7 +105,7 @@ INTENSITY_LEVELS = 1024     # logarithmic, 64 to a doubling: 1.1 % each
 LEVELS_PER_DOUBLING = 64
 LOWER_QUANTILE = 0.5 - 0.3413  # one standard deviation below the median of a normal distribution
 INNER_QUANTILE, INNER_SIGMAS = 0.30, 0.5244    # of a normal distribution: so many standard deviations below the median
-# corrections are looked up in steps of 2**4 units of 0.1 mm, 52 m to either side; beyond MAX_DISTANCE they are all alike
+# corrections are looked up in steps of 2**4 units of 0.1 mm, 52 m to either side; beyond `max_distance` they are all alike
 LOOKUP_SHIFT, LOOKUP_STEPS = 4, 2**16
 LOOKUP_HALF = LOOKUP_STEPS << LOOKUP_SHIFT >> 1
 LEVEL_OF_COUNT = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * LEVELS_PER_DOUBLING), 0, INTENSITY_LEVELS - 1).astype(np.int32)
@@ -295,7 +295,7 @@ class AsphaltTable:
     def lookup(self) -> np.ndarray:
         """Corrections at each distance: (scanners, LOOKUP_STEPS + 1) float32 factors, or summands where `logarithmic`.
 
-        Asphalt farther away than MAX_DISTANCE is taken for that at MAX_DISTANCE, on either side. NaN for a scanner whose
+        Asphalt farther away than `max_distance` is taken for that there, on either side. NaN for a scanner whose
         asphalt is unknown, and in the last column, which is that of UNKNOWN_DISTANCE.
         """
         distance = (((np.arange(LOOKUP_STEPS) << LOOKUP_SHIFT) - LOOKUP_HALF) + (1 << LOOKUP_SHIFT) / 2) * COORDINATE_SCALE

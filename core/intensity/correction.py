@@ -325,7 +325,8 @@ def _stripes(points, step):
     s = points.records["s"]
     if step == 1 or not len(s):
         return points
-    first = np.arange(s[0] // (ASPHALT.sample_stripe_length * step), s[-1] // (ASPHALT.sample_stripe_length * step) + 1) * (ASPHALT.sample_stripe_length * step)
+    period = ASPHALT.sample_stripe_length * step
+    first = np.arange(s[0] // period, s[-1] // period + 1) * period
     begins, ends = np.searchsorted(s, first), np.searchsorted(s, first + ASPHALT.sample_stripe_length)
     count = ends - begins
     return points[np.repeat(begins - (np.cumsum(count) - count), count) + np.arange(count.sum())]
@@ -333,8 +334,8 @@ def _stripes(points, step):
 
 def _points_by_scanner(points):
     """(256,) how many points each scanner has."""
-    scanner = points.scanner
-    return sum((np.bincount(scanner[k:k + ASPHALT.points_at_once], minlength=SCANNER_NUMBERS) for k in range(0, len(scanner), ASPHALT.points_at_once)),
+    scanner, many = points.scanner, ASPHALT.points_at_once
+    return sum((np.bincount(scanner[k:k + many], minlength=SCANNER_NUMBERS) for k in range(0, len(scanner), many)),
                np.zeros(SCANNER_NUMBERS, np.int64))
 
 

@@ -416,7 +416,7 @@ def _points_of(road_points, road, number):
 def _sampling_step(points: Points, settings: ImageSettings) -> int:
     """n, where one of n points of a piece weighs on cells farther than the next, for all n.
 
-    Points in the order of station and offset are evenly spread: one of n leaves FAR_POINTS_PER_CELL in a cell.
+    Points in the order of station and offset are evenly spread: one of n leaves `far_points_per_cell` in a cell.
     """
     d = points[::IMAGE.width_sample_step].records["d"]
     width = max((int(d.max()) - int(d.min())) * COORDINATE_SCALE, settings.cell_size)
