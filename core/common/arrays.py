@@ -12,7 +12,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 FEW = 500        # numbers that numpy's lexsort takes less time for
-RADIX_BITS = 16  # numpy sorts integers of up to 16 bits in linear time (radix sort)
+RADIX_BITS = 16  # derived: numpy sorts integers of up to 16 bits in linear time (radix sort)
 
 
 def order_by(*keys: np.ndarray) -> np.ndarray:

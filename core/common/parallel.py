@@ -190,7 +190,7 @@ def trim_heap() -> None:
             trim(0)
 
 
-M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3   # parameters of glibc's mallopt
+M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3   # source: glibc, malloc.h: parameters of glibc's mallopt
 LARGEST_REUSED = 32 * 2**20                    # bytes of an array whose memory is used again; glibc takes no more on 64 bits
 
 

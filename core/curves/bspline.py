@@ -18,7 +18,7 @@ from .base import CurveFit, TabulatedCurve, bic_lower_bound, checked_points
 from .robust import MAD_TO_SIGMA, batches, median, row_medians
 from .weights import FITS
 
-SPLINE_DEGREE = 3
+SPLINE_DEGREE = 3   # derived: cubic, as the penalty is on the third derivative
 
 
 def _knot_intervals(length: float, bandwidth: float) -> int:

@@ -18,8 +18,8 @@ from .simple_curves import fit_circles, fit_ellipse, fit_lines, fit_polynomial
 from .weights import FITS
 
 CURVES = ("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")
-MIN_CURVE_PARAMETERS = 3  # of any curve but a straight line
-MAX_MISFIT = 10 * FITS.max_residual_p95  # m; a curve farther off is not fitted to the millimetre
+MIN_CURVE_PARAMETERS = 3  # derived: of any curve but a straight line
+MAX_MISFIT = 10 * FITS.max_residual_p95  # derived: m; a curve farther off is not fitted to the millimetre
 
 
 def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: int = 2) -> CurveFit:

@@ -12,7 +12,7 @@ from ..common.arrays import quantile_in_order
 from ..common.parallel import check_cancelled
 from .weights import FITS
 
-MAD_TO_SIGMA = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
+MAD_TO_SIGMA = 1.4826  # derived: standard deviation of a normal distribution / its median absolute deviation
 
 
 def robust_weights(residuals: np.ndarray) -> np.ndarray:

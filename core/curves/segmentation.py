@@ -12,7 +12,7 @@ from .bspline import fit_splines
 from .robust import MAD_TO_SIGMA, median
 from .weights import FITS
 
-ELEMENT_DEGREES = {"line": 1, "circle": 2, "clothoid": 3}  # of the polynomial of arc length that stands for the element
+ELEMENT_DEGREES = {"line": 1, "circle": 2, "clothoid": 3}  # derived: of the polynomial of arc length that stands for the element
 _EXPONENTS, _DIAGONAL = np.arange(7), np.arange(4)
 _EXPONENT_SUMS = np.add.outer(_DIAGONAL, _DIAGONAL)
 

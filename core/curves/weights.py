@@ -16,7 +16,7 @@ class _FitWeights:
     projection_tolerance: float = 1e-9   # m; a shorter step ends the projection
     end_tolerance: float = 1e-6   # m; farther beyond an end, a tabulated curve is straight
     noise_floor: float = 0.004   # m; a residual below it does not justify a more complex curve
-    bandwidths: tuple[float, ...] = (1.0, 1.4, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)   # m; waves shorter than six of them are smoothed away
+    bandwidths: tuple[float, ...] = (1.0, 1.4, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)   # m; six of them: the shortest wave that stays
     spline_points_per_batch: int = 4096   # points of a line times bandwidths; fits the processor's cache
     max_reweightings: int = 8   # of a spline in the plane,
     max_profile_reweightings: int = 6   # and of a profile

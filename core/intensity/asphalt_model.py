@@ -14,7 +14,7 @@ from .weights import ASPHALT
 
 # Where points lie relative to the vehicle at the time they were measured, looked up in small tables.
 
-UNKNOWN_DISTANCE = np.int32(2**30)   # of a point during whose time no pass drove
+UNKNOWN_DISTANCE = np.int32(2**30)   # derived: of a point during whose time no pass drove
 ACROSS_TRACK, FROM_VEHICLE = 0, 1    # kinds of distance: across the vehicle's track, or horizontally from the vehicle
 
 
@@ -100,10 +100,10 @@ class _PassTable:
         return np.subtract(units.astype(np.int32, copy=False), vehicle, out=vehicle)
 
 
-DISTANCE_BINS = int(2 * ASPHALT.max_distance / ASPHALT.distance_bin)   # both sides of the vehicle
-INTENSITY_LEVELS = 1024     # logarithmic, 64 to a doubling: 1.1 % each
+DISTANCE_BINS = int(2 * ASPHALT.max_distance / ASPHALT.distance_bin)   # derived: both sides of the vehicle
+INTENSITY_LEVELS = 1024     # derived: logarithmic, 64 to a doubling: 1.1 % each
 LEVELS_PER_DOUBLING = 64
-LOWER_QUANTILE = 0.5 - 0.3413  # one standard deviation below the median of a normal distribution
+LOWER_QUANTILE = 0.5 - 0.3413  # derived: one standard deviation below the median of a normal distribution
 INNER_QUANTILE, INNER_SIGMAS = 0.30, 0.5244    # of a normal distribution: so many standard deviations below the median
 # corrections are looked up in steps of 2**4 units of 0.1 mm, 52 m to either side; beyond `max_distance` they are all alike
 LOOKUP_SHIFT, LOOKUP_STEPS = 4, 2**16

@@ -22,8 +22,8 @@ from ..survey.store.road_points import RoadPoints
 from .asphalt_model import INTENSITY_LEVELS, asphalt_of_histograms, is_logarithmic, to_level, weighted_median
 from .weights import ASPHALT, BEAMS
 
-ELEVATION_BINS = 900
-SOURCE_IDS = 2**16      # numbers that point_source_id may have
+ELEVATION_BINS = round(-BEAMS.lowest_elevation / BEAMS.elevation_bin)
+SOURCE_IDS = 2**16      # source: LAS 1.4, numbers that point_source_id may have
 SAMPLE_COLUMNS = "time", "x", "y", "z", "source", "pass_number"   # needed for the elevation seen from the vehicle
 ANGLE_SIGNS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # sign conventions of roll and pitch that are tried; 0 ignores them
 

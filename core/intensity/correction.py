@@ -35,9 +35,9 @@ from .weights import ASPHALT
 
 # Saturated intensities: values that a scanner or an export cut off at an end of their range.
 
-MAX_SHARE_AT_LOWEST = LOWER_QUANTILE   # share at its lowest: the quantile from which asphalt's spread is taken
+MAX_SHARE_AT_LOWEST = LOWER_QUANTILE   # derived: share at its lowest: the quantile from which asphalt's spread is taken
 REMEDY = "Export the cloud with the scanner's full intensities (16 bits, not stretched)."
-SCANNER_NUMBERS = 256   # numbers that a scanner may have
+SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from ..weights import FRAME
 from .passes import decimate_by_distance
 from .road_frame import RoadFrame
 
-COORDINATE_DECIMALS = 4  # of coordinates in layers: 0.1 mm
+COORDINATE_DECIMALS = 4  # derived: of coordinates in layers: 0.1 mm
 
 
 def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

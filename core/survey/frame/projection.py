@@ -20,9 +20,9 @@ from .road_frame import RoadFrame
 
 Buffers = Callable[..., np.ndarray]   # what `ScratchBuffers.of` returns
 
-NODE_UNITS = round(NODE_SPACING / COORDINATE_SCALE)  # units of 0.1 mm from node to node
-NODE_FRACTION_BITS = 4              # bits by which coordinates of nodes are finer than the unit
-NODE_TOLERANCE = 1e-3         # of a node spacing beyond the ends: the direction differs from that of the next node by less than 1e-6
+NODE_UNITS = round(NODE_SPACING / COORDINATE_SCALE)  # derived: units of 0.1 mm from node to node
+NODE_FRACTION_BITS = 4              # derived: bits by which coordinates of nodes are finer than the unit
+NODE_TOLERANCE = 1e-3         # derived: of a node spacing beyond the ends: the direction differs from that of the next node by less than 1e-6
 
 
 class _LineLookup:

@@ -140,7 +140,7 @@ class Road:
 
 # The reference line of a road: the smoothed track of its longest pass, continued by other passes.
 
-NODE_SPACING = 0.1     # m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
+NODE_SPACING = 0.1     # derived: m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
 
 
 def track_line(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
