@@ -45,15 +45,10 @@ def ordered_map(function: Callable[[Item], Result], items: Iterable[Item], progr
     interpreter lock in their heavy loops, which is where most of the time is spent. Whatever the function raises is raised, and the remaining items
     are dropped.
 
-    Parameters
-    ----------
     progress : reports the share of the items that are done
     threads : number of threads; by default one per processor core, at most four
 
-    Raises
-    ------
-    Cancelled
-        If the user cancelled; the worker threads end at their next `check_cancelled`.
+    Raises Cancelled if the user cancelled; the worker threads end at their next `check_cancelled`.
     """
     items = list(items)
     threads = threads or min(MAX_WORKERS, os.cpu_count() or 1)

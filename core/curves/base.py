@@ -46,8 +46,6 @@ class Curve:
     def project(self, x: np.ndarray, y: np.ndarray, near: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Orthogonal projection of (N,) points onto the curve, by Newton's method.
 
-        Parameters
-        ----------
         near : (N,) arc lengths near the projections, if known; else the nearest points of the curve are searched
 
         Returns
@@ -298,10 +296,7 @@ def bic_lower_bound(points: int, parameters: float) -> float:
 def checked_points(x: np.ndarray, y: np.ndarray, min_points: int) -> tuple[np.ndarray, np.ndarray]:
     """The points of a line, x and y (N,) metres, as float64; `min_points` is how many the curve needs.
 
-    Raises
-    ------
-    ValueError
-        If the arrays differ in shape or are too short: a mistake of the caller, not of the data.
+    Raises ValueError if the arrays differ in shape or are too short: a mistake of the caller, not of the data.
     """
     check_cancelled()  # every fit begins here, and a long drive has hundreds
     x, y = np.asarray(x, float), np.asarray(y, float)

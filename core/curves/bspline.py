@@ -32,8 +32,6 @@ class _SplineBasis:
     Each pair of a line and a bandwidth is a block. The equations of all blocks are solved as one banded system in which they are independent: most
     lines have a few hundred points, for which the overhead of a numpy call exceeds its work.
 
-    Parameters
-    ----------
     lines : list of (t, bandwidths): (N,) metres rising from 0, and (B,) metres
     """
 
@@ -185,8 +183,6 @@ def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[
     this order, L / (3 bandwidth) + 3 per coordinate [1]_; one coordinate is counted, since
     only the deviation across the line is an observation.
 
-    Parameters
-    ----------
     lines : list of (x, y), each (N,) metres, N >= 4, ordered along the line; gaps are allowed
     along : for each line its (N,) rising distances, metres, such as stations, or None for the chord lengths of its points
     bandwidth : metres, or None to select it for each line

@@ -87,8 +87,6 @@ def fit_clothoids(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: fl
     The start is a parabola through the headings of chords between bins of points (theta is a parabola of u on a clothoid); the unknowns are those
     at the middle, where they are correlated least.
 
-    Parameters
-    ----------
     lines, max_misfit : as of `fit_batch`, N >= 5
     """
     return fit_batch([checked_points(x, y, 5) for x, y in lines], _ClothoidProblem, max_misfit)

@@ -90,8 +90,6 @@ def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
                 kinds: Sequence[tuple[str, int, Callable[..., Any]]] = ALIGNMENT_CURVES, max_residual: float = np.inf) -> list[_ModelSelection]:
     """Select the kind of curve of each of many lines; kinds that cannot change a selection are not fitted.
 
-    Parameters
-    ----------
     lines : list of (x, y), each (N,) metres, ordered along the line
     kinds : as ALIGNMENT_CURVES, simplest first
     max_residual : metres; largest acceptable 95th percentile of the residuals

@@ -104,8 +104,6 @@ def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callab
 
     Each curve is fitted to a subsample of its line first, which takes most of the steps, then to all points, unless its misfit is too large.
 
-    Parameters
-    ----------
     lines : list of (x, y), each (N,) metres, ordered along the line
     problem_of : makes a problem for `_minimise_batch` from PointGroups, x and y; it also has `start()`, (L, P), `scale`,
         `fit(k, unknown, x, y, residuals, state)`, which gives what is returned for line k, and
@@ -275,15 +273,11 @@ class _SingleCurve:
 def robustly_smoothed(values: np.ndarray, weight: np.ndarray, stiffness: float) -> np.ndarray:
     """Smooth columns of values by a penalty on their second differences (Whittaker's smoother), outliers weighted down.
 
-    Parameters
-    ----------
     values : (N, C), evenly spaced; those of no weight may be anything finite
     weight : (N,) 0 for gaps, which are bridged; ends without weight are extrapolated
     stiffness : weight of a squared second difference against that of a squared deviation
 
-    Returns
-    -------
-    (N, C) float64
+    Returns (N, C) float64.
     """
     values = np.asarray(values, float)
     if len(values) < 3:

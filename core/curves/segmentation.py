@@ -24,13 +24,9 @@ def element_ranges(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> list[list[
     arc length, an arc of degree 2 and a clothoid of degree 3 (to first order in the few centimetres of residual). The best of all divisions at
     nodes 4 m apart is found by dynamic programming with a BIC cost per element.
 
-    Parameters
-    ----------
     lines : list of (x, y), each (N,) metres, ordered, one point per 0.25 to 1 m
 
-    Returns
-    -------
-    of each line: first and last arc length, m, and kind of its elements, in order and without gaps
+    Returns of each line: first and last arc length, m, and kind of its elements, in order and without gaps.
     """
     ranges = []
     points = [checked_points(x, y, 4) for x, y in lines]

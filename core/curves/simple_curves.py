@@ -24,8 +24,6 @@ def fit_circles(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: floa
     The unknowns are heading, offset and curvature at the points' middle, so that a nearly straight line is as easy as a tight bend. Kasa's simpler
     fit is not used: it is biased towards small radii on short arcs.
 
-    Parameters
-    ----------
     lines, max_misfit : as of `fit_batch`, N >= 3
 
     References

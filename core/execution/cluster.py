@@ -33,15 +33,10 @@ from .work_folder import WorkFolder, code_digest
 def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: Progress = Progress()) -> Cluster:
     """The cluster of a running scheduler, checked and ready for work; close it at the end.
 
-    Parameters
-    ----------
     address, insecure : as of `client_of`
     work : folder of the user's that all machines see; None takes one for temporary files, which all workers on this computer see
 
-    Raises
-    ------
-    RoadExtractionError
-        If the cluster cannot be used: see `client_of`, `_check_versions` and `_check_workers`.
+    Raises RoadExtractionError if the cluster cannot be used: see `client_of`, `_check_versions` and `_check_workers`.
     """
     client = client_of(address, insecure)
     cluster = None
@@ -76,8 +71,6 @@ class _Part:
 class Cluster(Executor):
     """Executor that uses the workers of a Dask cluster, whose memory is theirs.
 
-    Parameters
-    ----------
     client : distributed.Client, closed at the end
     work : folder that all workers see; None takes one for temporary files
     threads : of all workers together, as far as they are there already
@@ -99,10 +92,7 @@ class Cluster(Executor):
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order; see `Executor`. Successive ones go to one worker together, the largest of these begin.
 
-        Raises
-        ------
-        RoadExtractionError
-            Of the phase; or if workers ended at half an item, the scheduler is lost, or a folder cannot be used.
+        Raises RoadExtractionError of the phase; or if workers ended at half an item, the scheduler is lost, or a folder cannot be used.
         """
         shipped = self.folder / f"phase{next(self._numbers)}.plain"
         work = _Work(self, phase, shipped)
@@ -312,10 +302,7 @@ def is_loopback(address: str) -> bool:
 def check_address(address: str, insecure: bool) -> None:
     """Refuse an address to which the connection would not be encrypted.
 
-    Raises
-    ------
-    RoadExtractionError
-        If it is none, or does not begin with tls://, leaves this computer, and `insecure` is not set.
+    Raises RoadExtractionError if it is none, or does not begin with tls://, leaves this computer, and `insecure` is not set.
     """
     if not ADDRESS.fullmatch(address):
         raise RoadExtractionError(
@@ -331,10 +318,7 @@ def check_address(address: str, insecure: bool) -> None:
 def client_of(address: str, insecure: bool = False) -> Any:
     """A distributed.Client of a running scheduler at tls://host:port, or tcp:// on this computer; elsewhere only where `insecure` is set.
 
-    Raises
-    ------
-    RoadExtractionError
-        If dask.distributed is missing, the address is not safe, certificates are missing, or nothing answers there.
+    Raises RoadExtractionError if dask.distributed is missing, the address is not safe, certificates are missing, or nothing answers there.
     """
     check_address(address, insecure)
     try:

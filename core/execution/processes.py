@@ -28,8 +28,6 @@ class WorkerProcesses(Executor):
     Workers are started when they are first needed and kept until `close`. What a phase reads from is put into a folder, once;
     each result is written there by its worker under a temporary name, renamed, and read and removed by the caller.
 
-    Parameters
-    ----------
     interpreter : path of a Python interpreter that `find_interpreter` tried
     workers : number of processes
     """
@@ -47,10 +45,7 @@ class WorkerProcesses(Executor):
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order; see `Executor`. Nothing is kept by it.
 
-        Raises
-        ------
-        RoadExtractionError
-            Of the phase; or if a worker process ended `trials` times at one item, ran out of memory, or the folder is full.
+        Raises RoadExtractionError of the phase; or if a worker process ended `trials` times at one item, ran out of memory, or the folder is full.
         """
         items = list(items)
         shipped = f"phase{next(self._numbers)}.plain"

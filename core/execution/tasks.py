@@ -61,15 +61,11 @@ class Tasks:
     def answer(self, phase: Path, item: Path, result: Path) -> dict[str, str]:
         """Compute one item.
 
-        Parameters
-        ----------
         phase : file of a ShippedPhase
         item : file of the item
         result : file that the result is written to; unfinished, it lies beside the phase
 
-        Returns
-        -------
-        empty, or what went wrong: one of the keys "refused", "cancelled", "memory", "disk" and "bug", and words
+        Returns empty, or what went wrong: one of the keys "refused", "cancelled", "memory", "disk" and "bug", and words.
         """
         try:
             function, source, arguments = self._phase(phase)
@@ -104,14 +100,8 @@ class Tasks:
 def raise_answer(answer: dict[str, str], phase: Phase, item: Any, worker: str) -> None:
     """Raise what went wrong with an item, by the answer of `Tasks.answer`; `worker` is what messages call the worker.
 
-    Raises
-    ------
-    RoadExtractionError
-        Of the phase, or if the worker ran out of memory.
-    OSError
-        If a file could not be read or written.
-    RuntimeError
-        Of a bug, with its traceback.
+    Raises RoadExtractionError of the phase, or if the worker ran out of memory. OSError if a file could not be read or written. RuntimeError of a bug,
+    with its traceback.
     """
     if "refused" in answer:
         raise RoadExtractionError(answer["refused"])
@@ -138,8 +128,6 @@ _lock = threading.Lock()
 def look_around(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
     """What the caller must know of a worker, which Dask gives as `dask_worker`.
 
-    Parameters
-    ----------
     folder : of the caller
     word : file in it that the worker must see
 

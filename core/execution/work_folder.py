@@ -25,10 +25,7 @@ from .weights import EXECUTION
 class WorkFolder:
     """A folder for finished work, which is made where it is missing.
 
-    Raises
-    ------
-    RoadExtractionError
-        If nothing can be written there.
+    Raises RoadExtractionError if nothing can be written there.
     """
 
     def __init__(self, path: str):

@@ -25,8 +25,6 @@ class VehicleDistances:
     scanner, even one yawed by 45 degrees, meets each distance across the road once per turn, at one range. A spinning scanner with many beams meets
     it at many ranges, but there the horizontal distance from the scanner determines the range.
 
-    Parameters
-    ----------
     passes : of the road frame
     time : (N,) s, of all points that will be asked for; the ticks are those of a pass, whatever points are asked for
     """
@@ -172,8 +170,6 @@ class IntensityHistograms:
               kinds: Sequence[int] = (ACROSS_TRACK, FROM_VEHICLE)) -> list[BinCounts]:
         """Counts of some points, to be added with `add`; a point whose distance or intensity is not known counts nowhere.
 
-        Parameters
-        ----------
         scanner : (N,) int
         distances : for each of `kinds` (N,) int32 of `VehicleDistances.of`
         intensity : (N,) NaN where it could not be corrected

@@ -257,8 +257,6 @@ def levels_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequenc
                       step: int) -> tuple[list[BinCounts], list[BinCounts], int, np.ndarray]:
     """The phase that counts intensities.
 
-    Parameters
-    ----------
     beams : Beams whose brightness is made equal, None for none
     scanners : their numbers are below this
     step : points in every step-th centimetre of the road are counted
@@ -286,15 +284,11 @@ def corrected_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequ
                          lookup: np.ndarray, kinds: list[int], step: int) -> tuple[int, list[tuple[int, np.ndarray]], list[BinCounts]]:
     """The phase that corrects intensities.
 
-    Parameters
-    ----------
     passes, beams, step : as of `levels_of_stretch`
     table, lookup : AsphaltTable and its `lookup`
     kinds : kinds of distance that it needs
 
-    Returns
-    -------
-    the road, (number of a section, (N,) float32 corrected intensity) of each section, and counts of the corrected intensities
+    Returns the road, (number of a section, (N,) float32 corrected intensity) of each section, and counts of the corrected intensities.
     """
     histograms, found, counts = IntensityHistograms(len(table.distance_kind)), [], []
     for key in road_points.store.in_stretch(stretch):

@@ -96,8 +96,6 @@ def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nd
     and sums are in single precision, far finer than intensities are. A cell and a half away or farther, weights are so small that a share of the
     points gives the same result.
 
-    Parameters
-    ----------
     points : Points, at least one
     brightness : function of (N,) float32 intensities that returns (N,) float32 factors of the points' weights
     origin : (2,) or more, map coordinates that x and y of the points leave out, m
@@ -243,8 +241,6 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
                          path: str | PathLike | None = None, memory_limit: int = TILE_MEMORY) -> TiledImage:
     """The image of `write_intensity_image` in memory, to be read at once like an IntensityImage, and in a GeoTIFF too where a path is given.
 
-    Parameters
-    ----------
     memory_limit : bytes of pixels kept in memory; the others go to a temporary file, and all where other processes work on the points
     """
     grid, tiles = _interpolate(road_points, settings, progress)
@@ -481,10 +477,7 @@ class _Grid:
 def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     """Refuse an image of another road, and the 8-bit picture for viewing.
 
-    Raises
-    ------
-    RoadExtractionError
-        If fewer than half of the sample_road_points road points lie on pixels with a value, or the image is of 8 bits.
+    Raises RoadExtractionError if fewer than half of the sample_road_points road points lie on pixels with a value, or the image is of 8 bits.
     """
     if image.eight_bit:
         raise RoadExtractionError(

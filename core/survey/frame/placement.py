@@ -24,8 +24,6 @@ def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) ->
     and read again therefore gives the same stations and offsets, and the stages give
     the same results in one call and one by one.
 
-    Parameters
-    ----------
     road : (V,) int, number of the road of each place; numbers that the frame does not have are allowed
     x, y : (V,) local metres
     """
@@ -108,8 +106,6 @@ def lines_in_frame(lines: Sequence[Any] | np.ndarray, road: Sequence[int] | np.n
                    spacing: float | None = LINE_VERTEX_SPACING) -> FrameLines:
     """Shapely lines in map coordinates as FrameLines.
 
-    Parameters
-    ----------
     road : (L,) int, number of the road of each; where the frame has no such road, the one that most vertices are nearest to
     spacing : m between vertices at most; None for the vertices of the lines as they are
     """

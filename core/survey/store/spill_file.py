@@ -247,8 +247,6 @@ def parts_are_whole(folder: Path) -> bool:
 class SpillFile(ColumnFile):
     """Columns in a file that grows; `end` is its length in bytes.
 
-    Parameters
-    ----------
     path : of the file; by default it is a temporary one without a name, which a killed run does not leave behind (on Windows it
         is deleted when it is closed)
     unfinished : its path until then
