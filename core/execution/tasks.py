@@ -100,8 +100,8 @@ class Tasks:
 def raise_answer(answer: dict[str, str], phase: Phase, item: Any, worker: str) -> None:
     """Raise what went wrong with an item, by the answer of `Tasks.answer`; `worker` is what messages call the worker.
 
-    Raises RoadExtractionError of the phase, or if the worker ran out of memory. OSError if a file could not be read or written. RuntimeError of a bug,
-    with its traceback.
+    Raises RoadExtractionError of the phase, or if the worker ran out of memory; OSError if a file could not be read or written; RuntimeError of a
+    bug, with its traceback.
     """
     if "refused" in answer:
         raise RoadExtractionError(answer["refused"])
