@@ -11,7 +11,7 @@ setup: ## install what is missing (QGIS too, on Debian) and prepare build/
 demo: setup ## a sample survey with known truth through the whole chain, into build/demo/
 	@tools/demo.sh
 
-test: setup ## tests of core and library without QGIS, then the plugin in QGIS with real qgis_process calls
+test: setup ## tests of core, products and library without QGIS, then the plugin in QGIS with real qgis_process calls
 	@tools/test.sh
 
 bench: setup ## time and memory of every stage beside PCL, Open3D, GDAL and laspy's read, into docs/benchmarks.md

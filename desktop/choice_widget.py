@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtWidgets import QComboBox
-
 from ..algorithms.choice_words import choice_word
 from .dialog_wrapper import DialogWrapper
+from .widgets import choices
 
 
 class ChoiceWrapper(DialogWrapper):
     """A box with the choices of an enumeration in words."""
 
     def createWidget(self, **more):
-        widget = QComboBox()
-        for choice in self.parameterDefinition().options():
-            widget.addItem(choice_word(choice), choice)
+        widget = choices((choice_word(choice), choice) for choice in self.parameterDefinition().options())
         widget.setCurrentIndex(widget.findData(self.parameterDefinition().defaultValue()))
-        widget.currentIndexChanged.connect(lambda index: self.widgetValueHasChanged.emit(self))
+        widget.currentIndexChanged.connect(self.announce)
         return widget
-
-    def setWidgetValue(self, value, context):
-        self.setValue(value)
 
     def setValue(self, value):
         self.widget.setCurrentIndex(self.widget.findData(value))

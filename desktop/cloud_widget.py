@@ -9,14 +9,14 @@ from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsMimeDataUtils, QgsP
 from qgis.gui import QgsProcessingGui
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QDragEnterEvent, QDropEvent
-from qgis.PyQt.QtWidgets import QFileDialog, QHBoxLayout, QLabel, QLineEdit, QMenu, QToolButton, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QMenu, QToolButton, QVBoxLayout, QWidget
 
 from ..algorithms.cloud_files import SUFFIXES, cloud_files
 from ..core.common.errors import RoadExtractionError
 from ..processing_provider.texts import tr
 from .dialog_wrapper import DialogWrapper
+from .widgets import LAST_INPUT, wrapped
 
-LAST_FOLDER = "/Processing/LastInputPath"  # QGIS's own setting
 FILTER = "LAS, LAZ, COPC (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
 SEPARATOR = ";"
 MEGABYTE = 1e6
@@ -45,7 +45,7 @@ class PointCloudsWidget(QWidget):
         self.menu = QMenu(self)
         self.menu.aboutToShow.connect(self._fill_menu)
         self.button.setMenu(self.menu)
-        self.told = QLabel() if told else None
+        self.told = wrapped() if told else None
         if self.told is not None:  # what stands below does not move when the first file is named
             policy = self.told.sizePolicy()
             policy.setRetainSizeWhenHidden(True)
@@ -91,12 +91,12 @@ class PointCloudsWidget(QWidget):
                 self.menu.addAction(name, lambda source=source: self.add([source]))
 
     def choose_files(self) -> None:
-        files, _ = QFileDialog.getOpenFileNames(self, tr("Point clouds"), QgsSettings().value(LAST_FOLDER, ""), FILTER)
+        files, _ = QFileDialog.getOpenFileNames(self, tr("Point clouds"), QgsSettings().value(LAST_INPUT, ""), FILTER)
         if files:
             self.add(files)
 
     def choose_folder(self) -> None:
-        folder = QFileDialog.getExistingDirectory(self, tr("Folder of point clouds"), QgsSettings().value(LAST_FOLDER, ""))
+        folder = QFileDialog.getExistingDirectory(self, tr("Folder of point clouds"), QgsSettings().value(LAST_INPUT, ""))
         if folder:
             self.add([folder])
 
@@ -105,12 +105,11 @@ class PointCloudsWidget(QWidget):
         paths = [Path(name) for name in self.value()[:1]]
         folders = [path if path.is_dir() else path.parent for path in paths]
         if folders and folders[0].is_absolute() and folders[0].is_dir():
-            QgsSettings().setValue(LAST_FOLDER, str(folders[0]))
+            QgsSettings().setValue(LAST_INPUT, str(folders[0]))
 
     def _tell(self) -> None:
         if self.told is not None:
             self.told.setText(described(self.value()))
-            self.told.setWordWrap(True)
             self.told.setVisible(bool(self.value()))
         self.names.setToolTip("\n".join(self.value()))
 
@@ -218,7 +217,7 @@ class PointCloudsWrapper(DialogWrapper):
 
     def createWidget(self, **more):
         widget = PointCloudsWidget(told=self.dialogType == QgsProcessingGui.WidgetType.Standard)
-        widget.changed.connect(lambda: self.widgetValueHasChanged.emit(self))
+        widget.changed.connect(self.announce)
         return widget
 
     def setValue(self, value):

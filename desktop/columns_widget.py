@@ -6,12 +6,13 @@ import math
 
 from qgis.gui import QgsProcessingGui
 from qgis.PyQt.QtCore import QSignalBlocker, pyqtSignal
-from qgis.PyQt.QtWidgets import QComboBox, QHeaderView, QLabel, QLineEdit, QTableWidget, QTableWidgetItem, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QComboBox, QHeaderView, QLineEdit, QTableWidget, QTableWidgetItem, QVBoxLayout, QWidget
 
 from ..algorithms.trajectory_source import trajectory_path
 from ..core.common.errors import RoadExtractionError
 from ..processing_provider.texts import told, tr
 from .dialog_wrapper import DialogWrapper
+from .widgets import choices, wrapped
 
 ROWS = 4            # of the file that are shown
 SKIPPED = "-"
@@ -38,8 +39,7 @@ class ColumnsWidget(QWidget):
         self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
         self.table.verticalHeader().hide()
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        self.told = QLabel()
-        self.told.setWordWrap(True)
+        self.told = wrapped()
         self.boxes: list[QComboBox] = []
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -105,9 +105,7 @@ class ColumnsWidget(QWidget):
         self.table.setHorizontalHeaderLabels([title or tr("Column {number}").format(number=k + 1) for k, title in enumerate(found.titles)])
         self.boxes = []
         for k, role in enumerate(roles):
-            box = QComboBox()
-            for name, title in ROLE_TITLES.items():
-                box.addItem(title, name)
+            box = choices((title, name) for name, title in ROLE_TITLES.items())
             box.setCurrentIndex(box.findData(role))
             box.activated.connect(lambda index: self._assigned())
             self.table.setCellWidget(0, k, box)
@@ -147,12 +145,9 @@ class ColumnsWrapper(DialogWrapper):
     """The widget in QGIS's dialogs; a batch has the line alone."""
 
     def createWidget(self, **more):
-        if self.dialogType != QgsProcessingGui.WidgetType.Standard:
-            widget = QLineEdit()
-            widget.textChanged.connect(lambda: self.widgetValueHasChanged.emit(self))
-            return widget
-        widget = ColumnsWidget()
-        widget.changed.connect(lambda: self.widgetValueHasChanged.emit(self))
+        whole = self.dialogType == QgsProcessingGui.WidgetType.Standard
+        widget = ColumnsWidget() if whole else QLineEdit()
+        (widget.changed if whole else widget.textChanged).connect(self.announce)
         return widget
 
     def postInitialize(self, wrappers):
@@ -167,9 +162,6 @@ class ColumnsWrapper(DialogWrapper):
         source = value.source.staticValue() if hasattr(value, "source") and hasattr(value.source, "staticValue") else value
         path = trajectory_path(source)
         self.widget.show_file(str(path) if path is not None and path.is_file() else "")
-
-    def setWidgetValue(self, value, context):
-        self.setValue(value)
 
     def setValue(self, value):
         if isinstance(self.widget, ColumnsWidget):

@@ -15,3 +15,10 @@ class DialogWrapper(WidgetWrapper):
         wrapper = QgsGui.processingGuiRegistry().createModelerParameterWidget(dialog.model, dialog.childId, parameter, dialog.context)
         wrapper.setDialog(dialog)
         return wrapper
+
+    def announce(self, *changed):
+        """Tell QGIS that the value is another."""
+        self.widgetValueHasChanged.emit(self)
+
+    def setWidgetValue(self, value, context):
+        self.setValue(value)

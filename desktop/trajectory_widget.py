@@ -31,7 +31,7 @@ class TrajectoryWrapper(DialogWrapper):
             owner is not None and owner.parameterDefinition("POINT_CLOUDS") is not None
         shown.setFlags(shown.flags() | Qgis.ProcessingParameterFlag.Optional)
         widget = QgsProcessingMapLayerComboBox(shown, self.dialogType)
-        widget.valueChanged.connect(lambda: self.widgetValueHasChanged.emit(self))
+        widget.valueChanged.connect(self.announce)
         return widget
 
     def setWidgetContext(self, context):

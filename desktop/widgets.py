@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsCsException, QgsProject, QgsRectangle
+from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsCsException, QgsProject, QgsRectangle, QgsSettings
 from qgis.gui import QgsMapCanvas
-from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QHBoxLayout, QLabel, QPushButton, QWidget
+from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFileDialog, QHBoxLayout, QLabel, QPushButton, QWidget
+
+from ..processing_provider.texts import tr
+
+LAST_INPUT, LAST_OUTPUT = "/Processing/LastInputPath", "/Processing/LastOutputPath"  # QGIS's own settings
 
 
 def button(text: str, what: Callable[[], object] | None = None, tip: str = "") -> QPushButton:
@@ -54,6 +58,15 @@ def answers(dialog: QDialog, *others: QPushButton) -> QDialogButtonBox:
     for other in others:
         box.addButton(other, QDialogButtonBox.ButtonRole.ResetRole)
     return box
+
+
+def folder_for_results(parent: QWidget) -> str:
+    """The folder that the user names for all results, "" for none; the next time it is offered."""
+    settings = QgsSettings()
+    folder = QFileDialog.getExistingDirectory(parent, tr("Folder for all results"), settings.value(LAST_OUTPUT, "") or settings.value(LAST_INPUT, ""))
+    if folder:
+        settings.setValue(LAST_OUTPUT, folder)
+    return folder
 
 
 def brought_to(extent: QgsRectangle, source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem) -> QgsRectangle:

@@ -17,7 +17,7 @@ from ..algorithms.texts import told, tr
 from ..core.common.errors import Cancelled, RoadExtractionError
 from .call import FileCall
 from .progress import TextProgress, cancelled_by_signals
-from .run import algorithms, speak
+from .run import algorithm_named, algorithms, speak
 
 # What a value looks like in the help
 METAVARS = {"layer": "LAYER", "folder": "FOLDER", "crs": "EPSG:NUMBER", "flag": "true|false", "expression": "CONDITION", "text": "TEXT",
@@ -86,31 +86,27 @@ def _tell_failure(sentence, as_json):
 
 
 def _main(arguments, as_json):
-    known = algorithms()
-    first = arguments[0] if arguments else "--help"
+    first, *options = arguments or ["--help"]
     if first in ("-h", "--help", "help"):
-        print(overview(known))
-        return 0
-    if first == "--version":
+        print(overview(algorithms()))
+    elif first == "--version":
         print(f"lanewright {own_version()}")
-        return 0
-    if first == "list":
-        for algorithm in known.values():
-            print(f"{algorithm.ID:24}{algorithm.summary()}")
-        return 0
-    algorithm = known.get(first.partition("lanewright:")[2] or first)
-    if algorithm is None:
-        raise RoadExtractionError(f"There is no algorithm {first}. There are: {', '.join(known)}.")
-    given = {name: value for name, value in vars(parser_of(algorithm).parse_args(arguments[1:])).items() if value is not None}
+    elif first == "list":
+        print("\n".join(f"{algorithm.ID:24}{algorithm.summary()}" for algorithm in algorithms().values()))
+    else:
+        _run(algorithm_named(first), options, as_json)
+    return 0
+
+
+def _run(algorithm, options, as_json):
+    given = {name: value for name, value in vars(parser_of(algorithm).parse_args(options)).items() if value is not None}
     progress = TextProgress()
     with cancelled_by_signals(progress):
         results = run(FileCall(algorithm, given, progress), progress)
     if as_json:
         print(json.dumps({"results": results}, ensure_ascii=False, default=str))
-        return 0
-    for name, value in results.items():
-        print(f"{name}: {value}")
-    return 0
+    else:
+        print("\n".join(f"{name}: {value}" for name, value in results.items()))
 
 
 def overview(known):
@@ -154,7 +150,3 @@ def explained(spec):
     elif not spec.optional:
         notes.append(tr("necessary"))
     return f"{spec.label}. {spec.help}" + (f" [{', '.join(notes)}]" if notes else "")
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -15,13 +15,9 @@ from .gdal_module import check_gdal
 DRIVERS = {".gpkg": "GPKG", ".shp": "ESRI Shapefile"}  # formats that keep measures
 
 
-def available():
-    return find_spec("osgeo") is not None
-
-
 def may_have_measures(path, table):
     """Whether a layer of lines has measures; where GDAL's Python module is missing, also True where nobody can tell."""
-    if available():
+    if find_spec("osgeo") is not None:
         from osgeo import ogr
 
         dataset = open_vector(path)

@@ -30,10 +30,11 @@ class TextProgress(Progress):
     def report(self, fraction):
         self.check_cancelled()
         left = self._remaining.after(fraction)
+        said = "" if left is None else time_left(left)
         percent = PERCENT_STEP * int(100 * fraction / PERCENT_STEP)
         if percent > self._written or left is not None:
             self._written = max(percent, self._written)
-            self._write(f"{100 * fraction:.0f} %" + ("" if left is None else f", {_within_a_line(time_left(left))}"))
+            self._write(f"{100 * fraction:.0f} %" + (said and f", {said[0].lower()}{said[1:]}"))
 
     def info(self, text):
         self._write(told(text))
@@ -43,11 +44,6 @@ class TextProgress(Progress):
 
     def _write(self, text):
         print(text, file=self.stream, flush=True)
-
-
-def _within_a_line(text):
-    """Without the capital letter that a line begins with."""
-    return text[:1].lower() + text[1:]
 
 
 @contextmanager

@@ -19,6 +19,15 @@ def algorithms():
     return {declared.ID: declared() for declared in ALGORITHMS}
 
 
+def algorithm_named(name):
+    """The algorithm of an id; raises RoadExtractionError where there is none."""
+    known = algorithms()
+    algorithm = known.get(name.partition("lanewright:")[2] or name)
+    if algorithm is None:
+        raise RoadExtractionError(f"There is no algorithm {name}. There are: {', '.join(known)}.")
+    return algorithm
+
+
 def run(name, progress=None, **parameters):
     """Run an algorithm on files, as QGIS Processing would.
 
@@ -41,12 +50,8 @@ def run(name, progress=None, **parameters):
     Cancelled
         If `progress` said so; no result is written then.
     """
-    known = algorithms()
-    algorithm = known.get(name.partition("lanewright:")[2] or name)
-    if algorithm is None:
-        raise RoadExtractionError(f"There is no algorithm {name}. There are: {', '.join(known)}.")
     progress = progress or Progress()
-    return run_call(FileCall(algorithm, parameters, progress), progress)
+    return run_call(FileCall(algorithm_named(name), parameters, progress), progress)
 
 
 def speak(language="en"):

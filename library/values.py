@@ -56,6 +56,8 @@ def parsed(spec, value):
     """The value of one parameter; raises RoadExtractionError where it is none that the parameter takes."""
     if spec.is_output:
         return _destination(spec, value)
+    if spec.kind == "clouds":
+        return [_text(spec, path) for path in (value if isinstance(value, list) else [value])]
     return PARSERS.get(spec.kind, _text)(spec, value)
 
 
@@ -71,10 +73,6 @@ def _destination(spec, value):
         raise RoadExtractionError(
             f"{spec.label} ({spec.name}) is {text}, which only QGIS can write to. Outside QGIS name a file, such as {spec.name.lower()}.gpkg.")
     return text
-
-
-def _texts(spec, value):
-    return [_text(spec, path) for path in (value if isinstance(value, list) else [value])]
 
 
 def _choice(spec, value):
@@ -101,4 +99,4 @@ def _number(spec, value):
     return int(number) if spec.kind == "whole" else number
 
 
-PARSERS = {"choice": _choice, "flag": _flag, "whole": _number, "number": _number, "clouds": _texts}
+PARSERS = {"choice": _choice, "flag": _flag, "whole": _number, "number": _number}

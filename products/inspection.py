@@ -83,23 +83,13 @@ class Inspection:
 
 def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = None,
                    settings: InspectionSettings = InspectionSettings(), crs: str = "", progress: Progress = Progress()) -> Inspection:
-    """Read every point once and gather statistics.
+    """Read every point of LAS, LAZ or COPC files once and gather statistics.
 
-    Parameters
-    ----------
-    paths : LAS, LAZ or COPC files
-    trajectory : Trajectory in any known CRS and time system, or None
+    The `notes` of the Inspection name what the road map would refuse (a geographic CRS, no overlap, no time, no intensity) and what to try.
+    Raises RoadExtractionError if a file is missing, damaged, or all are empty.
+
+    trajectory : in any known CRS and time system, or None
     crs : WKT for clouds that carry none
-
-    Returns
-    -------
-    Inspection. Its `notes` name what the road map would refuse (a geographic CRS, no overlap, no time, no intensity) and
-    what to try.
-
-    Raises
-    ------
-    RoadExtractionError
-        If a file is missing, damaged, or all are empty.
     """
     copies: list[str] = []
     files = without_copies(read_headers(paths, copies.append, crs), copies.append)
@@ -228,14 +218,8 @@ class _Tally:
 
     def add(self, keys):
         new, counts = np.unique(keys, return_counts=True)
-        place = np.searchsorted(self.keys, new)
-        known = place < len(self.keys)
-        known[known] = self.keys[place[known]] == new[known]
-        self.counts[place[known]] += counts[known]
-        self.keys = np.r_[self.keys, new[~known]]
-        self.counts = np.r_[self.counts, counts[~known]]
-        order = np.argsort(self.keys, kind="stable")
-        self.keys, self.counts = self.keys[order], self.counts[order]
+        self.keys, place = np.unique(np.r_[self.keys, new], return_inverse=True)
+        self.counts = np.bincount(place.ravel(), np.r_[self.counts, counts]).astype(np.int64)
 
 
 def _copy_samples(place, time, every):
@@ -353,12 +337,7 @@ def _profile(driven, track_z, at, heights, drops, height):
 
 @gdal_exceptions()
 def write_density(found: Inspection, path: str | Path) -> None:
-    """Write the density of an Inspection: float32 points per m², NaN where no point lies.
-
-    Parameters
-    ----------
-    path : of the .tif
-    """
+    """Write the density of an Inspection to a GeoTIFF: float32 points per m², NaN where no point lies."""
     from osgeo import gdal
 
     density, (west, north) = found.density

@@ -14,10 +14,8 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ..core.common.arrays import linked_groups
-from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import ordered_map
 from ..core.common.progress import Progress
-from ..core.common.setting import check_limits, setting
 from ..core.intensity.asphalt_model import asphalt_statistics
 from ..core.markings.paint.asphalt_level import otsu
 from ..core.markings.paint.settings import PaintMethod
@@ -46,21 +44,13 @@ class IntensityPeaks:
     shortest : m, least length of a chain
     """
 
-    profile_length: float = setting(0.20, 0.02, 2.0, "The length of a profile", "m")
-    prominence: float = setting(7.0, 0.5, 100.0, "The prominence of a peak")
-    narrowest: float = setting(0.08, 0.0, 1.95, "The narrowest line", "m")
-    widest: float = setting(0.35, 0.02, 2.0, "The widest line", "m")
-    jump: float = setting(0.15, 0.01, 1.0, "The shift between profiles", "m")
-    gap: float = setting(0.60, 0.02, 10.0, "The gap along a line", "m")
-    shortest: float = setting(1.0, 0.0, 50.0, "The shortest line", "m")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
-        if not self.narrowest < self.widest:
-            raise RoadExtractionError(f"Peaks are {self.narrowest} to {self.widest} m wide; the first must be below the second.")
-        if self.gap < self.profile_length:
-            raise RoadExtractionError(f"Peaks are linked over {self.gap} m along the road; it must be at least the length of a "
-                                      f"profile ({self.profile_length} m).")
+    profile_length: float = 0.20
+    prominence: float = 7.0
+    narrowest: float = 0.08
+    widest: float = 0.35
+    jump: float = 0.15
+    gap: float = 0.60
+    shortest: float = 1.0
 
     def paint_of(self, road_points: RoadPoints, road: int, progress: Progress) -> Iterator[Columns]:
         """Yield the records of one road's points that lie on painted lines, window by window; points corrected or not.
@@ -103,16 +93,9 @@ def _window(road_points, road, first, last, profile):
 
 
 def profile_peaks(records: Columns, row: np.ndarray, settings: IntensityPeaks) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Peaks of I(d) in the profiles of one window.
+    """Peaks of I(d) in the profiles of one window, from (N,) records of points and the profile that each lies in.
 
-    Parameters
-    ----------
-    records : (N,) columns of road points
-    row : (N,) int, the profile that each lies in
-
-    Returns
-    -------
-    row, left, right : (P,) int, the profile of each peak and its borders at half its height, units of 0.1 mm
+    Returns the profile of each peak and its left and right border at half its height, units of 0.1 mm, (P,) each.
     """
     from scipy.signal import find_peaks  # slow to load, and this method alone uses it
 
@@ -157,13 +140,7 @@ def _profiles(value, row, column):
 
 
 def in_chains(row: np.ndarray, middle: np.ndarray, settings: IntensityPeaks) -> np.ndarray:
-    """(P,) bool, the peaks that belong to a chain of sufficient length.
-
-    Parameters
-    ----------
-    row : (P,) int, profile of each peak
-    middle : (P,) its offset, units of 0.1 mm
-    """
+    """(P,) bool, the peaks that belong to a chain of sufficient length, from the profile of each and its offset, units of 0.1 mm."""
     if not len(row):
         return np.zeros(0, bool)
     steps = max(1, int(round(settings.gap / settings.profile_length)))
@@ -209,13 +186,10 @@ class PointSegments:
     radius : m around a bright point in which its bright neighbours are counted
     """
 
-    length: float = setting(10.0, 0.5, 200.0, "The length of a segment", "m")
-    width: float = setting(1.0, 0.1, 50.0, "The width of a segment", "m")
-    separation: float = setting(3.0, 0.0, 50.0, "The distance of paint from asphalt", "spreads")
-    radius: float = setting(0.12, 0.01, 1.0, "The radius in which neighbours are counted", "m")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
+    length: float = 10.0
+    width: float = 1.0
+    separation: float = 3.0
+    radius: float = 0.12
 
     def paint_of(self, road_points: RoadPoints, road: int, progress: Progress) -> Iterator[Columns]:
         """Yield the records of one road's points that are paint, segment row by segment row; points corrected or not.
@@ -258,16 +232,7 @@ def _segments(records, settings):
 
 
 def segment_thresholds(records: Columns, settings: PointSegments) -> dict[int, float]:
-    """The least intensity of paint in the segments of one row across the road.
-
-    Parameters
-    ----------
-    records : (N,) columns of road points
-
-    Returns
-    -------
-    threshold by number of the segment, infinite where there is no paint
-    """
+    """The least intensity of paint by number of the segment, in one row of segments across the road; infinite where there is no paint."""
     value, segment = Points(records).value, _segments(records, settings)
     order = np.argsort(segment, kind="stable")
     numbers, starts = np.unique(segment[order], return_index=True)
@@ -302,17 +267,7 @@ def _bright(records, length, limits, settings):
 
 
 def dense_enough(records: Columns, own: np.ndarray, settings: PointSegments) -> np.ndarray:
-    """Points with as many bright neighbours as paint has.
-
-    Parameters
-    ----------
-    records : (N,) columns of bright road points
-    own : (N,) bool, the points to decide on; the others only count as neighbours
-
-    Returns
-    -------
-    (N,) bool, a subset of `own`
-    """
+    """(N,) bool, those of the points `own`, (N,) bool, that have as many bright neighbours as paint has; the others only count as neighbours."""
     keep = np.zeros(len(records), bool)
     if not own.any():
         return keep

@@ -37,34 +37,21 @@ WKB_HEADER = np.dtype([("order", "u1"), ("type", "<u4"), ("count", "<u4")])
 class ScanlineLayerSettings:
     """How scanlines are written.
 
-    Attributes
-    ----------
     simplify : m by which a simplified line may deviate from the measured one; 0 = not simplified
     """
 
     simplify: float = setting(0.002, 0.0, 1.0, "The simplification", "m")
 
     def __post_init__(self):
-        """Check the limits of all settings."""
         check_limits(self)
 
 
 def write_scanlines(survey: Survey, settings: ScanlineSettings = ScanlineSettings(), layer: ScanlineLayerSettings | None = None,
                     points: ResampledPoints | None = None, progress: Progress = Progress()) -> tuple[LineSpool, int]:
-    """Write the scanlines of a survey to a layer, and evenly spaced points of them to a cloud, section by section.
+    """(LineSpool with the fields SCANLINES, number of scanlines) of a survey, and evenly spaced points of them in a cloud, section by section.
 
-    Parameters
-    ----------
-    survey : Survey
-    settings : ScanlineSettings
-    layer : ScanlineLayerSettings, or None for no layer
+    layer : None for an empty LineSpool
     points : ResampledPoints open for writing, or None for no cloud
-    progress : Progress
-
-    Returns
-    -------
-    lines : LineSpool with the fields SCANLINES, empty without a layer
-    count : number of scanlines
     """
     lattice = find_lattice(survey, settings.rotation_frequency, progress.part(0.0, 0.2))
     spool, count = LineSpool("LineStringZM", SCANLINES, survey.crs), 0
@@ -84,17 +71,7 @@ def write_scanlines(survey: Survey, settings: ScanlineSettings = ScanlineSetting
 
 
 def _add_to_layer(spool: LineSpool, lines: Scanlines, frame: RoadFrame, road: int, interval: float, simplify: float) -> None:
-    """Append scanlines of a road to a LineSpool.
-
-    Parameters
-    ----------
-    spool : LineSpool
-    lines : Scanlines
-    frame : RoadFrame
-    road : number of the road
-    interval : m between section planes
-    simplify : m, as in ScanlineLayerSettings
-    """
+    """Append scanlines of a road, which lie in planes `interval` m apart, to a LineSpool."""
     length = line_lengths(lines)
     lines, length = lines[length >= MIN_LAYER_LINE], length[length >= MIN_LAYER_LINE]
     lines = simplified_lines(lines, simplify)
@@ -105,16 +82,7 @@ def _add_to_layer(spool: LineSpool, lines: Scanlines, frame: RoadFrame, road: in
 
 
 def line_lengths(lines: Scanlines) -> np.ndarray:
-    """Lengths of scanlines.
-
-    Parameters
-    ----------
-    lines : L Scanlines
-
-    Returns
-    -------
-    (L,) m
-    """
+    """(L,) m, lengths of L scanlines."""
     step = np.hypot(np.diff(lines.d), np.diff(lines.z))
     step[lines.first[1:-1] - 1] = 0.0
     along = np.r_[0.0, np.cumsum(step)]
@@ -122,17 +90,7 @@ def line_lengths(lines: Scanlines) -> np.ndarray:
 
 
 def simplified_lines(lines: Scanlines, tolerance: float) -> Scanlines:
-    """Scanlines simplified by the algorithm of Douglas and Peucker (1973).
-
-    Parameters
-    ----------
-    lines : Scanlines
-    tolerance : m from the simplified line to the vertices left out; 0 returns the lines themselves
-
-    Returns
-    -------
-    Scanlines
-    """
+    """Scanlines without vertices nearer than `tolerance` m to the simplified line, by the algorithm of Douglas and Peucker (1973); 0 keeps all."""
     if tolerance <= 0 or not len(lines):
         return lines
     number = np.arange(len(lines.d), dtype=np.float64)
@@ -145,22 +103,9 @@ def simplified_lines(lines: Scanlines, tolerance: float) -> Scanlines:
 
 
 def scanlines_from_features(features: Features, frame: RoadFrame) -> tuple[dict[int, Scanlines], float]:
-    """The scanlines of a layer that Lanewright wrote, in the road frame of its trajectory.
+    """({road: Scanlines}, m between section planes) of a layer that Lanewright wrote, ISO WKB, in the road frame of its trajectory.
 
-    Parameters
-    ----------
-    features : Features SCANLINES whose geometries are LineStringZM as ISO WKB
-    frame : RoadFrame
-
-    Returns
-    -------
-    lines : dict of road number to Scanlines
-    interval : m between section planes
-
-    Raises
-    ------
-    RoadExtractionError
-        If there are none, their intervals differ, or they do not lie across the roads of the trajectory.
+    Raises RoadExtractionError if there are none, their intervals differ, or they do not lie across the roads of the trajectory.
     """
     intervals = set(features.column("interval_m"))
     if len(intervals) != 1:
@@ -204,8 +149,6 @@ class LineSpool:
 
     Iterating gives (WKB, row) pairs.
 
-    Parameters
-    ----------
     geometry_type, schema, crs : as in Features
     """
 
@@ -215,11 +158,8 @@ class LineSpool:
         self._chunks: list[tuple[np.ndarray, dict[str, np.ndarray]]] = []
 
     def add(self, coordinates: np.ndarray, first: np.ndarray, **columns: Any) -> None:
-        """Append L lines with V vertices.
+        """Append L lines with V vertices, (V, 4) map x, y, z in m, and M.
 
-        Parameters
-        ----------
-        coordinates : (V, 4) map x, y, z in m, and M
         first : (L + 1,) int, vertices first[i]:first[i + 1] belong to line i
         columns : by field name, (L,) values or one for all
         """
@@ -246,17 +186,7 @@ class LineSpool:
 
 
 def _lines_as_wkb(coordinates: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """The ISO WKB of L lines, one after the other.
-
-    Parameters
-    ----------
-    coordinates : (V, 4) x, y, z, M
-    first : (L + 1,) int, vertices first[i]:first[i + 1] belong to line i
-
-    Returns
-    -------
-    (B,) uint8
-    """
+    """(B,) uint8, the ISO WKB of L lines one after the other; parameters as of `LineSpool.add`."""
     counts = np.diff(first)
     headers = np.empty(len(counts), WKB_HEADER)
     headers["order"], headers["type"], headers["count"] = 1, WKB_TYPE, counts
@@ -271,21 +201,7 @@ def _lines_as_wkb(coordinates: np.ndarray, first: np.ndarray) -> np.ndarray:
 
 
 def coordinates_of(wkb: bytes) -> np.ndarray:
-    """Vertices of a line from its WKB.
-
-    Parameters
-    ----------
-    wkb : little-endian ISO WKB of a LineString with Z and M, as QGIS and LineSpool write it
-
-    Returns
-    -------
-    (V, 4) x, y, z, M
-
-    Raises
-    ------
-    ValueError
-        If it is another geometry.
-    """
+    """(V, 4) x, y, z, M of the little-endian ISO WKB of a LineString with Z and M, as QGIS and LineSpool write it; ValueError for another."""
     header = np.frombuffer(wkb, WKB_HEADER, 1)[0]
     if header["order"] != 1 or header["type"] != WKB_TYPE:
         raise ValueError(f"not a LineString with Z and M: WKB type {header['type']}")
@@ -302,31 +218,18 @@ SCANLINE_DIMENSIONS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pas
 class ResamplingSettings:
     """Points along scanlines.
 
-    Attributes
-    ----------
     spacing : m between points along a scanline
     """
 
     spacing: float = setting(0.05, 0.005, 5.0, "The point spacing", "m")
 
     def __post_init__(self):
-        """Check the limits of all settings."""
         check_limits(self)
 
 
 def resample_scanlines(lines: Scanlines, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Points at equal steps along every scanline, from its first vertex.
-
-    Parameters
-    ----------
-    lines : Scanlines
-    spacing : m along the line
-
-    Returns
-    -------
-    line : (N,) int, number of the line
-    d, z : (N,) m, offset and local height
-    intensity : (N,) raw counts
+    """Points at equal steps of `spacing` m along every scanline, from its first vertex: (N,) number of the line, offset and local height, m,
+    and raw intensity.
     """
     if not len(lines):
         return np.empty(0, np.int64), np.empty(0), np.empty(0), np.empty(0)
@@ -348,8 +251,6 @@ class ResampledPoints:
 
     The file appears when it is complete, and not at all after an error.
 
-    Parameters
-    ----------
     path : of the file
     origin : (3,) m, map coordinates of the local origin
     crs : WKT, "" where unknown
@@ -377,14 +278,7 @@ class ResampledPoints:
         return self
 
     def add(self, lines: Scanlines, frame: RoadFrame, road: int) -> None:
-        """Append points of the scanlines of a road.
-
-        Parameters
-        ----------
-        lines : Scanlines
-        frame : RoadFrame
-        road : number of the road
-        """
+        """Append points of the scanlines of a road."""
         import laspy
 
         line, d, z, intensity = resample_scanlines(lines, self.settings.spacing)

@@ -20,8 +20,6 @@ _LENS = (0.0016, -0.0009)   # distortion with the second and fourth power of the
 class Camera:
     """A vertical image whose rows lie along the chord of the road.
 
-    Attributes
-    ----------
     middle : (2,) m, local coordinates of the middle of the image
     heading : radians, direction of the rows, counter-clockwise from east
     width, height : pixels
@@ -40,18 +38,10 @@ class Camera:
         return float(np.hypot(self.width, self.height)) / 2.0
 
     def to_map(self, pixel: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Ground coordinates of places in the image.
+        """x and y, m, local, on the ground of (N,) places in the image; 0, 0 is the outer corner of the first pixel.
 
         With u, v the place relative to the middle in half diagonals, and r its distance from the middle, the ground lies at
         (u, v)(1 + a u + b v + c r² + d r⁴): tilt and lens distortion.
-
-        Parameters
-        ----------
-        pixel, line : (N,); 0, 0 is the outer corner of the first pixel
-
-        Returns
-        -------
-        x, y : (N,) m, local
         """
         u, v = (pixel - self.width / 2) / self.half_diagonal, (line - self.height / 2) / self.half_diagonal
         square = u * u + v * v
@@ -61,16 +51,7 @@ class Camera:
         return self.middle[0] + along * cos - across * sin, self.middle[1] + along * sin + across * cos
 
     def to_pixel(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Places in the image of ground coordinates, to a millionth of a pixel.
-
-        Parameters
-        ----------
-        x, y : (N,) m, local
-
-        Returns
-        -------
-        pixel, line : (N,)
-        """
+        """Pixel and line in the image of (N,) places x and y, m, local, to a millionth of a pixel."""
         cos, sin = np.cos(self.heading), np.sin(self.heading)
         dx, dy = np.asarray(x) - self.middle[0], np.asarray(y) - self.middle[1]
         goal = (dx * cos + dy * sin) / GROUND_PIXEL + self.width / 2, -(dy * cos - dx * sin) / GROUND_PIXEL + self.height / 2
@@ -83,17 +64,7 @@ class Camera:
         return pixel, line
 
     def to_road(self, scene: Scene, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Station and offset of places in the image.
-
-        Parameters
-        ----------
-        scene : Scene
-        x, y : (N,) m, local
-
-        Returns
-        -------
-        s, d : (N,) m
-        """
+        """Station and offset, (N,) m, of (N,) places x and y, m, local, in the image."""
         stations = np.arange(max(scene.axis.start, -30.0), min(scene.axis.end, self.stations[1] + 30.0), 1.0)
         axis_x, axis_y = scene.axis.to_map(stations, np.zeros(len(stations)))
         cos, sin = np.cos(self.heading), np.sin(self.heading)
@@ -103,16 +74,7 @@ class Camera:
 
 
 def camera_over(scene: Scene) -> Camera:
-    """The Camera over the first 150 m of a road.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Camera
-    """
+    """The Camera over the first 150 m of a road."""
     length = min(scene.length, MAX_IMAGE_LENGTH)
     s = np.linspace(0.0, length, 200)
     x, y = scene.axis.to_map(s, np.zeros(200))

@@ -15,17 +15,9 @@ _NORTH_STEP = 0.001          # degrees
 
 
 def camera_tags(camera: Camera, origin: tuple[float, float, float], crs: str) -> str:
-    """The XMP packet of the image of a camera, with the errors that such tags have.
+    """The XMP packet of the image of a camera, with the errors that such tags have; "" where the CRS knows no latitude and longitude.
 
-    Parameters
-    ----------
-    camera : Camera
-    origin : m, map coordinates of local 0, 0
-    crs : WKT of the map
-
-    Returns
-    -------
-    XMP text; "" where the CRS knows no latitude and longitude
+    `origin`: m, map coordinates of local 0, 0. `crs`: WKT of the map.
     """
     from pyproj import Transformer
     from pyproj.exceptions import CRSError, ProjError

@@ -21,7 +21,7 @@ from ..core.lazy import cv2
 from .camera import GROUND_PIXEL, Camera
 from .camera_tags import camera_tags
 from .parts.materials import LABEL
-from .parts.obstacles import Car, Crown, Post
+from .parts.obstacles import Crown, Post
 from .streets.street import Scene
 
 if TYPE_CHECKING:
@@ -52,17 +52,7 @@ _LEAVES = np.array([62.0, 92.0, 44.0])
 
 
 def plates(scene: Scene, camera: Camera) -> list[tuple[float, float, float]]:
-    """Signalised plates along both borders of the image, off the carriageway.
-
-    Parameters
-    ----------
-    scene : Scene
-    camera : Camera
-
-    Returns
-    -------
-    list of (x, y, rotation): m, local, and radians
-    """
+    """Signalised plates along both borders of the image, off the carriageway: (x, y, rotation) of each, m, local, and radians."""
     count = max(3, int(round(camera.width * GROUND_PIXEL / _PLATE_EVERY)) + 1)
     found = []
     for share in np.linspace(0.025, 0.975, count):
@@ -128,18 +118,10 @@ def _apart(x, y, count):
 
 
 def uav_control_points(survey: SampleSurvey) -> Features:
-    """Ground control points as a surveyor measures them.
+    """Ground control points as a surveyor measures them: Features CONTROL_POINTS in map coordinates.
 
     Map coordinates have a standard deviation of 8 mm, places in the image one of a quarter of a pixel. Every third corner of a
     marking is a check point.
-
-    Parameters
-    ----------
-    survey : SampleSurvey
-
-    Returns
-    -------
-    Features CONTROL_POINTS, PointZ in map coordinates
     """
     from shapely import Point
 
@@ -166,8 +148,6 @@ def uav_control_points(survey: SampleSurvey) -> Features:
 class _StreetColours:
     """Colours of the ground and of the objects on it.
 
-    Parameters
-    ----------
     scene : Scene
     camera : Camera
     seed : of the random numbers
@@ -224,8 +204,7 @@ class _StreetColours:
 
     def _shade(self, colours, obstacle, x, y, z):
         """Darken the ground where an obstacle hides the sun."""
-        top = obstacle.z + obstacle.top if isinstance(obstacle, Car) else obstacle.top
-        throw = (top - z.min()) / _SUN[2] * _SUN[:2]
+        throw = (obstacle.top - z.min()) / _SUN[2] * _SUN[:2]
         middle = obstacle.x - throw[0] / 2, obstacle.y - throw[1] / 2
         near = _within(x, y, *middle, obstacle.reach + np.hypot(*throw) / 2)
         if len(near) == 0:
@@ -246,7 +225,7 @@ class _StreetColours:
         down = np.repeat(np.array([[0.0], [0.0], [-1.0]]), len(near), axis=1)
         hit, cosine, brightness = obstacle.hits(origin, down, self._chance(obstacle, x))
         visible = np.flatnonzero(np.isfinite(hit) & (cosine > 0))
-        if isinstance(obstacle, Car):
+        if obstacle.label == LABEL["car"]:
             lacquer = _LACQUERS[number % len(_LACQUERS)]
             glass = (np.abs(brightness[visible] - 0.12) < 1e-9)[:, None]
             colours[near[visible]] = np.where(glass, _GLASS, lacquer) * (0.45 + 0.55 * cosine[visible])[:, None]
@@ -270,9 +249,7 @@ def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress
 
     Parameters
     ----------
-    survey : SampleSurvey
     path : of the TIFF, which appears when it is complete
-    progress : Progress
 
     Raises
     ------

@@ -65,19 +65,5 @@ def length_of(name: str, length: float) -> float:
 
 
 def build_scene(name: str, length: float, seed: int, radius: float, curb_height: float, gutter: float) -> AnyScene:
-    """Build a scene.
-
-    Parameters
-    ----------
-    name : one of SCENES
-    length : m of road
-    seed : of all random numbers
-    radius : m, of the bends
-    curb_height : m
-    gutter : m, width of a concrete gutter along the curbs
-
-    Returns
-    -------
-    Scene or PlanScene
-    """
+    """The scene of a name in SCENES, of a length (m), with bends of a radius, curbs of a height and a concrete gutter of a width, m."""
     return _SCENES[name].build(length, seed, radius, curb_height, gutter)

@@ -47,8 +47,6 @@ SAMPLE_POINT = np.dtype([("x", "f8"), ("y", "f8"), ("z", "f8"), ("time", "f8"), 
 class SampleSettings:
     """What is surveyed, and how densely.
 
-    Attributes
-    ----------
     scene : one of SCENES
     length : m of road; 0 becomes the usual length of the scene
     seed : of all random numbers
@@ -79,22 +77,12 @@ class SampleSettings:
     origin: tuple[float, float, float] = (610400.0, 2710200.0, 20.0)
 
     def __post_init__(self):
-        """Check the limits of all settings, and the name of the scene."""
         check_limits(self)
         object.__setattr__(self, "length", length_of(self.scene, self.length))
 
 
 def make_sample_survey(settings: SampleSettings | None = None, progress: Progress | None = None) -> SampleSurvey:
     """Simulate a street and its truth; points are computed on demand.
-
-    Parameters
-    ----------
-    settings : SampleSettings
-    progress : Progress
-
-    Returns
-    -------
-    SampleSurvey
 
     Raises
     ------
@@ -113,8 +101,6 @@ def make_sample_survey(settings: SampleSettings | None = None, progress: Progres
 class SampleSurvey:
     """The simulated survey.
 
-    Attributes
-    ----------
     settings : SampleSettings
     crs : WKT
     scene : Scene, in local coordinates (map minus settings.origin)
@@ -172,7 +158,6 @@ class SampleSurvey:
         Parameters
         ----------
         noise : whether ranges and intensities are noisy and pulses are lost; else every point lies where its pulse met the street
-        progress : Progress
 
         Yields
         ------
@@ -255,7 +240,6 @@ class SampleSurvey:
         Parameters
         ----------
         path : of the file; LAZ where it ends in .laz
-        progress : Progress
         noise : as in `blocks`
 
         Returns

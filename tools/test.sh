@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tests, in two parts: the core and the library where qgis cannot be imported, then the plugin inside QGIS with calls of
+# The tests, in two parts: core, products, simulator and library where qgis cannot be imported, then the plugin inside QGIS with calls of
 # the real qgis_process; between them, where no tests are chosen, broken files of `make fuzz`, the same every
 # time. Each part is spread over the processor's cores, one file of tests at a time, those with slow tests first. Arguments go to pytest, for example: tools/test.sh -k curbs, or
 # tools/test.sh -m 'not slow'. LANEWRIGHT_TEST_WORKERS=0 runs everything in one process, for a debugger.
@@ -31,7 +31,7 @@ run() {
   return "$code"
 }
 
-echo "== core and library, where qgis cannot be imported"
+echo "== core, products, simulator and library, where qgis cannot be imported"
 LANEWRIGHT_WITHOUT_QGIS=1 run "${part[@]}" -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/core tests/products tests/simulator tests/library "$@"
 if [ "$chosen" -eq 0 ]; then
   echo "== readers fed with broken files"

@@ -31,7 +31,7 @@ NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
 NAMED = {"FAULTS", "title", "signed"}  # tables and attributes of the core whose shortest texts are shown too
 UNSAID = {"_WORDS"}  # tables of the core that hold what other software says
 # Texts that stand in a class or a table and are translated where they are shown
-IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS"}
+IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS", "CHOICES"}
 
 
 def texts():

@@ -9,6 +9,7 @@ from .inputs import (
     add_excluded,
     add_tolerances,
     area_of,
+    compared_lines,
     found_numbers,
     frame_of_drive,
     layer_and_excluded,
@@ -69,27 +70,13 @@ class AssessBoundaries(Algorithm):
 
     def work(self, call, progress):
         from ...products.assess.boundaries import assess_boundaries
-        from ...products.assess.inputs import (
-            along_the_road_only,
-            bottoms_only,
-            check_kind,
-            check_overlap,
-            check_reference,
-            common_crs,
-            edges_that_compare,
-            in_crs,
-            without_stray_vertices,
-        )
+        from ...products.assess.inputs import along_the_road_only, bottoms_only, check_reference, edges_that_compare
         from ...products.assess.layers import boundary_layer
         from ...products.report.assessment import boundary_report
 
         settings = call.settings(BOUNDARY_SETTINGS, tolerances=tolerances(call))
-        result, (reference, excluded, kinds) = layer_of(call, "INPUT"), layer_and_excluded(call, "REFERENCE")
-        for layer in (result, reference):
-            check_kind(layer, ("LineString", "Polygon"), tr("lines"))
-        crs = common_crs((reference, result))
-        result, reference = (without_stray_vertices(in_crs(layer, crs, progress.warn), progress.warn) for layer in (result, reference))
-        check_overlap(result, reference)
+        reference, excluded, kinds = layer_and_excluded(call, "REFERENCE")
+        result, reference, crs = compared_lines(layer_of(call, "INPUT"), reference, progress)
         progress.report(0.2)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
         for choose in (bottoms_only, along_the_road_only):

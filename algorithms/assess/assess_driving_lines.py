@@ -6,7 +6,7 @@ from ...core.common.features import ASSESSED_DRIVING_LINES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec, settings_class
 from ..texts import tr
-from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, layer_of, shares_of, tolerances
+from .inputs import add_area, add_tolerances, area_of, compared_lines, found_numbers, frame_of_drive, layer_of, shares_of, tolerances
 
 LINES = "products.assess.driving_lines:LineAccuracySettings"
 WIDTHS = ("half-width", "total-width")
@@ -59,18 +59,13 @@ class AssessDrivingLines(Algorithm):
 
     def work(self, call, progress):
         from ...products.assess.driving_lines import match_lines
-        from ...products.assess.inputs import check_kind, check_overlap, check_reference, common_crs, in_crs, without_stray_vertices
+        from ...products.assess.inputs import check_reference
         from ...products.assess.layers import driving_line_layer
         from ...products.assess.matching import stations_of_match
         from ...products.report.assessment import driving_report
 
         settings = self._settings(call)
-        result, reference = layer_of(call, "INPUT"), layer_of(call, "REFERENCE")
-        for layer in (result, reference):
-            check_kind(layer, ("LineString", "Polygon"), tr("lines"))
-        crs = common_crs((reference, result))
-        result, reference = (without_stray_vertices(in_crs(layer, crs, progress.warn), progress.warn) for layer in (result, reference))
-        check_overlap(result, reference)
+        result, reference, crs = compared_lines(layer_of(call, "INPUT"), layer_of(call, "REFERENCE"), progress)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
         check_reference(reference, result, frame, area, warn=progress.warn)
         progress.report(0.3)

@@ -77,6 +77,18 @@ def _read(source):
     return layer, places
 
 
+def compared_lines(result, reference, progress):
+    """(result, reference, their CRS) of two layers of lines, in one CRS and without stray vertices; refused where they do not overlap."""
+    from ...products.assess.inputs import check_kind, check_overlap, common_crs, in_crs, without_stray_vertices
+
+    for layer in (result, reference):
+        check_kind(layer, ("LineString", "Polygon"), tr("lines"))
+    crs = common_crs((reference, result))
+    result, reference = (without_stray_vertices(in_crs(layer, crs, progress.warn), progress.warn) for layer in (result, reference))
+    check_overlap(result, reference)
+    return result, reference, crs
+
+
 def painted_of(call, name, progress):
     """(AssessedLayer of polygons and lines, whether it was a raster) of a vector or raster layer."""
     import shapely

@@ -3,7 +3,7 @@
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..texts import told, tr
-from .inputs import add_road_map_layers, road_map_source
+from .inputs import add_road_map_layers, fault_table, lanes_with_borders, warn_of_faults
 
 LANELETS = "products.export.lanelet_export:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
@@ -42,13 +42,11 @@ class ExportLanelet2(Algorithm):
         from pathlib import Path
 
         from ...products.export.check.lanelets import check_lanelets
-        from ...products.export.inferred_ways import with_inferred_ways
         from ...products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
         from ...products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
-        from ...products.export.shared_borders import with_shared_borders
         from ...products.report.hd_map import map_export_report
 
-        source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))
+        source = lanes_with_borders(call, progress.part(0.0, 0.2))
         progress.report(0.2)
         draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.value("LOCATION")))
         degrees = to_degrees(draft.nodes, source.lanes.crs)
@@ -62,10 +60,7 @@ class ExportLanelet2(Algorithm):
                                   for kind, count in draft.skipped.items())]
         if degrees.local:
             notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
-        for note in notes:
-            progress.warn(note)
-        for fault, count in found.counts().items():
-            progress.warn(tr("{fault}: {count}").format(fault=told(fault), count=count))
+        warn_of_faults(notes, found, progress)
         numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
                    "SUCCESSORS": float(found.successors), "FINDINGS": float(len(found.found))}
         progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=told(degrees.way)))
@@ -75,8 +70,6 @@ class ExportLanelet2(Algorithm):
                      (tr("Pairs of lanes side by side"), found.neighbours), (tr("Ways"), len(whole.ways)), (tr("Nodes"), len(whole.node_ids)),
                      (tr("Transformation to latitude and longitude"), told(degrees.way)), (tr("Accuracy of the transformation"), accuracy),
                      (tr("Heights"), told(degrees.vertical))]
-            counts = [(told(fault), count) for fault, count in sorted(found.counts().items())]
-            faults = [(tr("Findings of the check"), (tr("Fault"), tr("Count")), counts)] if counts else []
-            call.text("REPORT", map_export_report(tr("Lanelet2 map"), call.layer_name("LANES"), facts, faults, notes,
+            call.text("REPORT", map_export_report(tr("Lanelet2 map"), call.layer_name("LANES"), facts, fault_table(found), notes,
                                                   layers_of_lanelets(whole, source.lanes.crs)))
         return numbers

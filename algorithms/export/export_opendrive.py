@@ -2,8 +2,8 @@
 
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
-from ..texts import told, tr
-from .inputs import add_road_map_layers, road_map_source
+from ..texts import tr
+from .inputs import add_road_map_layers, fault_table, lanes_with_borders, warn_of_faults
 
 ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
 VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
@@ -45,14 +45,12 @@ class ExportOpenDrive(Algorithm):
         from pathlib import Path
 
         from ...products.export.check.roads import check_opendrive
-        from ...products.export.inferred_ways import with_inferred_ways
         from ...products.export.map_layers import border_misses, driving_line_misses, reference_of_crs
         from ...products.export.opendrive.exporter import draft_opendrive
         from ...products.export.opendrive.layers import layers_of_opendrive
         from ...products.export.opendrive.xodr import opendrive_text, read_opendrive
-        from ...products.export.shared_borders import with_shared_borders
 
-        source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))
+        source = lanes_with_borders(call, progress.part(0.0, 0.2))
         settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
         draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
         draft.map.reference = reference_of_crs(source.lanes.crs)
@@ -70,10 +68,7 @@ class ExportOpenDrive(Algorithm):
         if across.largest > settings.tolerance or rise.largest > settings.tolerance:
             notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
                             "tolerance.").format(across=across.largest, rise=rise.largest))
-        for note in notes:
-            progress.warn(note)
-        for fault, count in found.counts().items():
-            progress.warn(tr("{fault}: {count}").format(fault=told(fault), count=count))
+        warn_of_faults(notes, found, progress)
         progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
             roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
         if call.wants("REPORT"):
@@ -106,7 +101,4 @@ def _report(call, whole, found, shown, misses, notes):
         (tr("Elements of the reference lines"), (tr("Element"), tr("Length (m)")),
          [(word(kind, "element"), round(metres, 1)) for kind, metres in sorted(lengths.items())]),
     ]
-    if found.found:
-        counts = [(told(fault), count) for fault, count in sorted(found.counts().items())]
-        tables.append((tr("Findings of the check"), (tr("Fault"), tr("Count")), counts))
-    return map_export_report(tr("OpenDRIVE map"), call.layer_name("LANES"), facts, tables, notes, shown)
+    return map_export_report(tr("OpenDRIVE map"), call.layer_name("LANES"), facts, tables + fault_table(found), notes, shown)

@@ -3,7 +3,7 @@
 from ...core.common.features import DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ..call import existing_file
 from ..survey_input import road_points_of
-from ..texts import tr
+from ..texts import told, tr
 
 OPENDRIVE_FILTER = "OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)"
 LANELET_FILTER = "Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)"
@@ -88,3 +88,23 @@ def road_map_source(call, progress):
         progress.info(tr("{share:.0f} % of the border vertices have heights of road points.").format(share=100 * share))
         source = replace(source, lanes=lanes)
     return source
+
+
+def lanes_with_borders(call, progress):
+    """The same with ways through junctions, and borders that neighbours share."""
+    from ...products.export.inferred_ways import with_inferred_ways
+    from ...products.export.shared_borders import with_shared_borders
+
+    return with_shared_borders(with_inferred_ways(road_map_source(call, progress)))
+
+
+def warn_of_faults(notes, found, progress):
+    """Say what a map lacks, and what the check of its file found."""
+    for text in (*notes, *(tr("{fault}: {count}").format(fault=told(fault), count=count) for fault, count in found.counts().items())):
+        progress.warn(text)
+
+
+def fault_table(found):
+    """The table of a report on what the check of a file found; none where it found nothing."""
+    counts = [(told(fault), count) for fault, count in sorted(found.counts().items())]
+    return [(tr("Findings of the check"), (tr("Fault"), tr("Count")), counts)] if counts else []

@@ -26,9 +26,7 @@ if TYPE_CHECKING:
 class LineKind(ABC):
     """What is the same in all corrections of one kind of line.
 
-    frame : RoadFrame
-    reach : m beside a correction within which it is about such a line
-    known : (K, 3) local places whose heights are known
+    reach : m beside a correction within which it is about such a line; known : (K, 3) local places whose heights are known
     """
 
     reach = 0.5
@@ -144,19 +142,9 @@ def _distance_of(correction: Correction, reach: float) -> float:
 
 
 def spans_along(lines: Sequence[np.ndarray], correction: Correction, reach: float) -> list[Span]:
-    """The stretches of lines that a correction is about.
+    """The stretches of lines, (V, 2 or more) each, local x, y, ..., that a correction is about, within `reach` m beside it.
 
     Of lines beside each other it is the nearest. A point is about the whole of the nearest line.
-
-    Parameters
-    ----------
-    lines : (V, 2 or more) each, local x, y, ...
-    correction : Correction
-    reach : m beside it
-
-    Returns
-    -------
-    list of Span
     """
     places = correction.places[:, :2]
     low, high = places.min(0) - reach, places.max(0) + reach
@@ -206,10 +194,7 @@ def _arcs(line):
 
 
 def cut(columns: np.ndarray, start: float, end: float) -> np.ndarray:
-    """(K, C) the rows of (V, C) columns, of which the first two are x and y, from one place along them to another.
-
-    Columns are interpolated at both ends, given in metres along the line.
-    """
+    """(K, C) the rows of (V, C) columns, x and y first, from one place to another, m along them; columns are interpolated at both ends."""
     arcs = _arcs(columns)
     inside = (arcs > start + 1e-6) & (arcs < end - 1e-6)
     at = np.r_[start, arcs[inside], end]
@@ -229,14 +214,7 @@ def pieces_of(length: float, spans: Sequence[tuple[float, float]]) -> list[tuple
 
 
 def _heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
-    """(N,) z of (N, 3) places: their own where they have one, else that of the map's vertices near them.
-
-    Parameters
-    ----------
-    places : (N, 3) local metres, z NaN where there is none
-    known : (K, 3) vertices of the map
-    otherwise : (N,) z where there is no vertex near
-    """
+    """(N,) z of (N, 3) places: their own where they have one, else that of the (K, 3) vertices of the map near them, else another."""
     z, known = places[:, 2].copy(), known[np.isfinite(known).all(1)]
     lacking = np.flatnonzero(~np.isfinite(z))
     if not len(lacking):
@@ -255,6 +233,7 @@ def _heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -
 
 
 # Road edges as an analyst corrected them.
+
 
 class _Edges(LineKind):
     """Pieces hold what EdgePiece holds."""
@@ -275,18 +254,7 @@ class _Edges(LineKind):
 
 
 def correct_edges(edges: RoadEdges, frame: RoadFrame, corrections: Corrections) -> RoadEdges:
-    """Road edges with the corrections of the target edge; those that something was found for are noted in `corrections`.
-
-    Parameters
-    ----------
-    edges : RoadEdges
-    frame : RoadFrame
-    corrections : Corrections
-
-    Returns
-    -------
-    RoadEdges; the same object where there is nothing to correct
-    """
+    """Road edges with the corrections of the target edge, which are noted where something was found for them; the same object without any."""
     wanted = corrections.of("edge")
     if not wanted:
         return edges
@@ -340,19 +308,10 @@ class _Lines(LineKind):
 
 
 def correct_markings(markings: MarkingObjects, corrections: Corrections) -> MarkingObjects:
-    """Markings less those that were deleted: lines are then not made of them either.
+    """Markings less those that were deleted: lines are then not made of them either; the same object where there are none.
 
     A correction is about the markings whose middle lies within 0.5 m of its line, or of which its point lies within 0.5 m.
     Corrections that something was found for are noted; to accept a marking changes nothing of it.
-
-    Parameters
-    ----------
-    markings : MarkingObjects
-    corrections : Corrections
-
-    Returns
-    -------
-    MarkingObjects; the same object where nothing was deleted
     """
     wanted = [one for one in corrections.of("marking") if one.action in ("accept", "delete")]
     if not wanted or not len(markings):
@@ -376,18 +335,9 @@ def _about(correction: Correction, polygons: np.ndarray, middles: np.ndarray) ->
 
 
 def correct_marking_lines(lines: PaintedLines, frame: RoadFrame, corrections: Corrections, known: np.ndarray) -> PaintedLines:
-    """Marking lines with the corrections of the target marking; those that something was found for are noted in `corrections`.
+    """Marking lines with the corrections of the target marking, which are noted where something was found for them; the same object without any.
 
-    Parameters
-    ----------
-    lines : PaintedLines with `fitted`
-    frame : RoadFrame
-    corrections : Corrections
-    known : (K, 3) further local places whose heights are known, as the vertices of road edges
-
-    Returns
-    -------
-    PaintedLines, lines that were drawn with no `kind` unless the correction says one; the same object where there is nothing to correct
+    Lines that were drawn have no `kind` unless the correction says one. `known` : (K, 3) further local places whose heights are known.
     """
     wanted = corrections.of("marking")
     if not wanted or lines.fitted is None:

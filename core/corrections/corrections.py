@@ -28,29 +28,21 @@ ACCEPTED, DRAWN = "accepted", "drawn"   # status of what an analyst confirmed, a
 class Correction:
     """One row of the layer.
 
-    row : its number in the layer, from 1
-    action : one of ACTIONS; target : one of TARGETS
-    places : (V, 3) local metres, z is NaN where the row has none; one place for a point
-    road : number of the road that it lies on in this run, -1 for none
-    station, offset : metres of its middle on that road, NaN for none
-    kind, pattern : of a marking line that is drawn, "" where not said
-    note : the analyst's words
     lanes : of a second reading that is taken, offset on the road and width, m, and direction of each lane that then lies there
-    width : m of a lane that is drawn, NaN where not said
     """
 
-    row: int
-    action: str
-    target: str
-    places: np.ndarray
-    road: int = -1
-    station: float = np.nan
+    row: int   # its number in the layer, from 1
+    action: str   # one of ACTIONS
+    target: str   # one of TARGETS
+    places: np.ndarray   # (V, 3) local metres, z is NaN where the row has none; one place for a point
+    road: int = -1   # number of the road that it lies on in this run, -1 for none
+    station: float = np.nan   # metres of its middle on that road, NaN for none
     offset: float = np.nan
-    kind: str = ""
+    kind: str = ""   # of a marking line that is drawn, "" where not said
     pattern: str = ""
-    note: str = ""
+    note: str = ""   # the analyst's words
     lanes: tuple[tuple[float, float, int], ...] = ()
-    width: float = np.nan
+    width: float = np.nan   # m of a lane that is drawn, NaN where not said
 
     @property
     def draws(self) -> bool:
@@ -140,15 +132,7 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
 
 
 def taken_reading(row: dict[str, Any], target: str) -> dict[str, str] | None:
-    """The fields of a correction that takes the second reading of a piece, in place of the first; None where it has none.
-
-    The correction lies along the piece, as one that accepts it.
-
-    Parameters
-    ----------
-    row : fields of the piece, of which `other` counts
-    target : what the piece is, one of TARGETS
-    """
+    """The fields of a correction that takes the second reading of a piece, in its field `other`, in place of the first; None where it has none."""
     other = str(row.get("other") or "")
     return {"action": "take", "target": target, "other": other} if other.startswith("{") else None
 

@@ -84,24 +84,11 @@ class _Lanes(LineKind):
 
 def correct_lanes(lines: DrivingLines, elements: CurveElements, lanes: Lanes, frame: RoadFrame, corrections: Corrections, lane_width: float,
                   known: np.ndarray) -> tuple[DrivingLines, CurveElements, Lanes]:
-    """Driving lines, curve elements and lanes with the corrections of the target lane; those that something was found for are noted.
+    """Driving lines, curve elements and lanes with the corrections of the target lane; the same objects without any.
 
-    Lanes that are cut have as many ids as pieces, and what follows each is found anew on their roads. Where half of a curve was taken
-    away its elements go too.
-
-    Parameters
-    ----------
-    lines : DrivingLines
-    elements : CurveElements
-    lanes : Lanes
-    frame : RoadFrame
-    corrections : Corrections
-    lane_width : m of a lane that is drawn where its road has none
-    known : (K, 3) further local places whose heights are known
-
-    Returns
-    -------
-    DrivingLines, CurveElements, Lanes; the same objects where there is nothing to correct
+    Corrections that something was found for are noted. Lanes that are cut have as many ids as pieces, and what follows each is found anew on their
+    roads. Where half of a curve was taken away its elements go too. `lane_width` : m of a lane that is drawn where its road has none; `known` :
+    (K, 3) further local places whose heights are known.
     """
     wanted = corrections.of("lane")
     if not wanted:

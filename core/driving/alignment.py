@@ -21,45 +21,26 @@ from ..io.crs import FOOT
 from ..markings.cross_section.sections import STATION_STEP
 from ..survey.frame.road import Road
 from .lane_track import BRIDGED, LANE_STATUS, LaneTrack, spans_of
-from .settings import MIN_PLACES_PER_FIT
-
-MAX_PARALLEL_DEVIATION = 0.06  # m: 95 % of a lane's places are nearer than this to a parallel of the others
-MIN_SHARED_LANE_LENGTH = 10.0       # m that a lane must share with others to be compared
-MIN_ARC_LENGTH = 25.0          # m: a shorter arc may be a stair of a transition
-MAX_TRANSITION_MISFIT = 0.02   # m
-DIVISION_SPACING = 1.0         # m between places that are divided: fitted lines err alike over metres
+from .weights import ALIGNMENT
 
 
 @dataclass(frozen=True)
 class Element:
-    """An arc or a straight of one lane, from station `start` to `end`.
-
-    arc : Arc in the road's direction, local metres; rmse : of the lane's places to it, metres
-    complete : False where the lane or the road's lines end before the element does
-    """
+    """An arc or a straight of one lane, from station `start` to `end`."""
 
     start: float
     end: float
-    arc: Arc
-    rmse: float
-    complete: bool
+    arc: Arc   # Arc in the road's direction, local metres
+    rmse: float   # of the lane's places to it, metres
+    complete: bool   # False where the lane or the road's lines end before the element does
 
 
 def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[list[Element]]:
-    """Arcs and straights of every lane.
+    """Arcs and straights of every lane, in order of station.
 
     Lanes of a road run parallel, so that their bends are concentric: what they have in common (the mean of their offsets, each less its own) is
     divided into elements once, with all of their evidence, and each lane's elements are the parallels. A lane that is not parallel to the others is
     divided alone.
-
-    Parameters
-    ----------
-    tracks : list of LaneTrack
-    s : (K,) grid stations
-
-    Returns
-    -------
-    list, for every track, of lists of Element in order of station
     """
     found: list[list[Element]] = [[] for _ in tracks]
     groups: list[tuple[list[tuple[int, float]], np.ndarray, int]] = []
@@ -80,10 +61,7 @@ def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[li
 def _parallel_lanes(longest, tracks, waiting, spans):
     """The longest waiting lane of some in order of length, and all that are parallel to it, directly or through others; they wait no longer.
 
-    Returns
-    -------
-    members : list of (index, offset from the axis)
-    axis : (N,) offset of the common axis from the grid station `first` on
+    Returns (index, offset from the axis) of each, (N,) offset of the common axis, and the grid station that this begins at.
     """
     common = _CommonAxis(tracks[longest])
     members = [(longest, common.offset)]
@@ -144,11 +122,11 @@ class _CommonAxis:
         begin, end = max(track.first, self.first), min(track.last + 1, self.first + len(self.total))
         own, there = slice(begin - self.first, end - self.first), slice(begin - track.first, end - track.first)
         shared = self.weight[own] > 0
-        if shared.sum() * STATION_STEP < min(MIN_SHARED_LANE_LENGTH, 0.5 * len(track) * STATION_STEP):
+        if shared.sum() * STATION_STEP < min(ALIGNMENT.min_shared_lane_length, 0.5 * len(track) * STATION_STEP):
             return None
         apart = track.d[there][shared] - self.total[own][shared] / self.weight[own][shared]
         offset = float(np.median(apart))
-        return None if np.percentile(np.abs(apart - offset), 95) > MAX_PARALLEL_DEVIATION else offset
+        return None if np.percentile(np.abs(apart - offset), 95) > ALIGNMENT.max_parallel_deviation else offset
 
 
 @dataclass(frozen=True)
@@ -169,7 +147,7 @@ class _Axis:
     @property
     def thinned(self):
         """x, y of places a metre apart."""
-        rows = np.unique(np.r_[np.arange(0, len(self.x), int(DIVISION_SPACING / STATION_STEP)), len(self.x) - 1])
+        rows = np.unique(np.r_[np.arange(0, len(self.x), int(ALIGNMENT.division_spacing / STATION_STEP)), len(self.x) - 1])
         return self.x[rows], self.y[rows]
 
     def part(self, first, last):
@@ -180,7 +158,7 @@ class _Axis:
 
 def _divided(axes):
     """[(start station, end station, curve)] of each of some axes, whose parts are fitted together."""
-    long = [k for k, axis in enumerate(axes) if len(axis.at) >= MIN_PLACES_PER_FIT]
+    long = [k for k, axis in enumerate(axes) if len(axis.at) >= ALIGNMENT.min_places_per_fit]
     cuts = element_ranges([axes[k].thinned for k in long])
     parts = [(k, first, last) for k, bounds in zip(long, cuts) for first, last, _ in bounds]
     choices = select_each([axes[k].part(first, last) for k, first, last in parts])
@@ -212,7 +190,7 @@ def _without_steps(axes, found):
         new, merging, open_ones = [], open_ones, []
         for k in merging:
             least = min(missed[k], default=np.inf)
-            if least < MAX_TRANSITION_MISFIT:
+            if least < ALIGNMENT.max_transition_misfit:
                 j = missed[k].index(least)
                 found[k][j:j + 2] = [(found[k][j][0], found[k][j + 1][1], joints[k][j])]
                 del joints[k][j], missed[k][j]
@@ -227,8 +205,8 @@ def _without_steps(axes, found):
 def _is_step(one, other):
     """Whether an element may, with the next, be half a transition each."""
     (first, middle, a), (_, last, b) = one, other
-    short = any(q.curve.kind == "circle" and length < MIN_ARC_LENGTH for q, length in ((a, middle - first), (b, last - middle)))
-    return short and not ({a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * MIN_ARC_LENGTH)
+    short = any(q.curve.kind == "circle" and length < ALIGNMENT.min_arc_length for q, length in ((a, middle - first), (b, last - middle)))
+    return short and not ({a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * ALIGNMENT.min_arc_length)
 
 
 def _of_lane(track, offset, divided, s, road):
@@ -242,7 +220,7 @@ def _of_lane(track, offset, divided, s, road):
             break
         a, b = max(start, at[0]), min(end, at[-1])
         inside = slice(np.searchsorted(at, a), np.searchsorted(at, b, side="right"))
-        if not isinstance(curve, Arc) or inside.stop - inside.start < MIN_PLACES_PER_FIT:
+        if not isinstance(curve, Arc) or inside.stop - inside.start < ALIGNMENT.min_places_per_fit:
             continue
         u, e = curve.parallel(offset).project(x[inside], y[inside])
         arc = curve.parallel(offset + float(np.median(e)))
@@ -259,40 +237,20 @@ def _cut(arc, first, last):
 
 # The smooth course of a lane, its pieces by status, and the arcs in it.
 
-MIN_STATUS_LENGTH = 5.0     # m: a shorter change of status is not worth a piece
-MIN_ELEMENT_SHARE = 0.9     # share of a piece that one element must cover to give it its name
-ARC_BLEND_LENGTH = 5.0      # m at its ends over which an arc passes into what comes before and after
-MAX_SHARED_ARC_RMSE = 0.02  # m: RMSE below which a lane is taken to be the arc it shares with its neighbours
-
 
 @dataclass
 class Course:
-    """A lane's line.
+    """A lane's line."""
 
-    x, y, s : (V,) vertices in local metres and their stations, s rising
-    curve : the fitted curve; rmse : of the lane's places to it, metres
-    """
-
-    x: np.ndarray
+    x: np.ndarray   # (V,) vertices in local metres and their stations, s rising
     y: np.ndarray
     s: np.ndarray
-    curve: object
-    rmse: float
+    curve: object   # the fitted curve
+    rmse: float   # of the lane's places to it, metres
 
 
 def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: list[list[Element]]) -> list[Course]:
-    """Fit the courses of the lanes of a road, together.
-
-    Parameters
-    ----------
-    tracks : list of LaneTrack
-    s : (K,) grid stations
-    elements : Elements of each lane; on them the course is the arc or straight itself, so that lanes of one bend are concentric
-
-    Returns
-    -------
-    list of Course
-    """
+    """The courses of the lanes of a road, fitted together; on an Element its arc or straight itself, so that lanes of a bend are concentric."""
     fits = fit_curves([_known_places(track, s, road) for track in tracks])
     drawn = [fit.curve.sample(STATION_STEP) for fit in fits]
     stations = road.locate(*np.concatenate(drawn).T)[0] if drawn else np.empty(0)
@@ -304,7 +262,7 @@ def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: l
         good[good] &= station[good] > np.r_[-np.inf, np.maximum.accumulate(station[good])[:-1]]
         places, station = places[good], station[good]
         for element in of_lane:
-            if element.rmse < MAX_SHARED_ARC_RMSE:
+            if element.rmse < ALIGNMENT.max_shared_arc_rmse:
                 _draw_to(element, places, station)
         check_cancelled()
         found.append(Course(places[:, 0], places[:, 1], station, fit.curve, fit.rmse))
@@ -314,7 +272,7 @@ def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: l
 def _known_places(track, s, road):
     """x, y of a lane where it is not bridged, of all of it where little is known."""
     known = track.status != BRIDGED
-    if known.sum() < MIN_PLACES_PER_FIT:
+    if known.sum() < ALIGNMENT.min_places_per_fit:
         known = np.ones(len(track), bool)
     return road.to_map(s[track.first:track.last + 1][known], track.d[known])
 
@@ -327,9 +285,9 @@ def _draw_to(element, places, station):
         return
     share = np.ones(len(at))
     if element.start - station[0] > STATION_STEP:
-        share = np.minimum(share, (at - element.start) / ARC_BLEND_LENGTH)
+        share = np.minimum(share, (at - element.start) / ALIGNMENT.arc_blend_length)
     if station[-1] - element.end > STATION_STEP:
-        share = np.minimum(share, (element.end - at) / ARC_BLEND_LENGTH)
+        share = np.minimum(share, (element.end - at) / ALIGNMENT.arc_blend_length)
     u, e = element.arc.project(places[inside, 0], places[inside, 1])
     heading = element.arc.heading(u)
     places[inside] -= (np.clip(share, 0.0, 1.0) * e)[:, None] * np.c_[-np.sin(heading), np.cos(heading)]
@@ -348,7 +306,7 @@ def without_short_status(status: np.ndarray) -> np.ndarray:
         length, begin = heappop(queue)
         if ends.get(begin, -1) - begin != length:
             continue
-        if length >= int(MIN_STATUS_LENGTH / STATION_STEP):
+        if length >= int(ALIGNMENT.min_status_length / STATION_STEP):
             break
         end = ends.pop(begin)
         beside = [status[k] for k in (begin - 1, end) if 0 <= k < len(status)]
@@ -382,20 +340,16 @@ def element_of(elements: list[Element], start: float, end: float) -> Element | N
     for element in elements[bisect_left([one.end for one in elements], start):]:
         if element.start > end:
             break
-        if min(end, element.end) - max(start, element.start) >= MIN_ELEMENT_SHARE * (end - start):
+        if min(end, element.end) - max(start, element.start) >= ALIGNMENT.min_element_share * (end - start):
             return element
     return None
 
 
 # Elements of the curves along driving lines, in metres and feet, and their check against the design code.
 
-MAX_CURVE_RADIUS = 5000.0    # m: flatter arcs are straights to any driver
-MIN_TURN = np.radians(1.0)
-MAX_TURN = np.pi * 0.95   # the tangents of a half circle do not meet
-
 
 def circular_curve_elements(radius: float, delta: float) -> dict[str, float]:
-    """The elements of a circular curve.
+    """The elements of a circular curve of `radius`, m, and deflection angle `delta`, radians between 0 and pi, as fields of CURVE_ELEMENTS.
 
     ::
 
@@ -404,15 +358,6 @@ def circular_curve_elements(radius: float, delta: float) -> dict[str, float]:
         D = 5729.578 / R         (arc definition: degrees per 100 m or per 100 ft)
 
     so that M = E cos(delta/2) < E.
-
-    Parameters
-    ----------
-    radius : metres, > 0
-    delta : deflection angle, radians, 0 < delta < pi
-
-    Returns
-    -------
-    dict of the fields of CURVE_ELEMENTS that follow from them
     """
     half = delta / 2
     lengths = dict(radius=radius, length=radius * delta, tangent=radius * np.tan(half),
@@ -428,19 +373,9 @@ def circular_curve_elements(radius: float, delta: float) -> dict[str, float]:
 
 
 def curve_points(start: Sequence[float], heading: float, radius: float, delta: float, left: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points of curvature, of intersection and of tangency of a circular curve.
+    """Points of curvature, of intersection and of tangency of a circular curve, (2,) m each.
 
-    Parameters
-    ----------
-    start : (2,) metres, where the curve begins
-    heading : radians counter-clockwise from east, its direction there
-    radius : metres
-    delta : radians, its deflection angle
-    left : whether it turns left
-
-    Returns
-    -------
-    PC, PI, PT : (2,) metres each
+    `heading` : radians counter-clockwise from east, its direction where it begins; `delta` : radians, its deflection angle.
     """
     turn = delta if left else -delta
     tangent = radius * np.tan(delta / 2)
@@ -451,18 +386,9 @@ def curve_points(start: Sequence[float], heading: float, radius: float, delta: f
 
 
 def design_check(radius: float, length: float, complete: bool = True, code: Country = NEUTRAL) -> tuple[int | None, str]:
-    """Check a curve against the design code of a country.
+    """The highest design speed, km/h, that the design code of a country allows for a curve, None where it allows none, and a sentence on it.
 
-    Parameters
-    ----------
-    radius, length : metres
-    complete : False where the arc runs on beyond the line, so that its length is not known
-    code : Country, whose `design_speeds` are asked, slowest first
-
-    Returns
-    -------
-    speed : the highest design speed that the code allows, km/h; None where it allows none
-    text : a sentence that names the code
+    `complete` : False where the arc runs on beyond the line, so that its length is not known.
     """
     slowest = code.design_speeds[0]
     by_radius = max((row.speed for row in code.design_speeds if radius >= row.radius), default=0)
@@ -482,23 +408,13 @@ def design_check(radius: float, length: float, complete: bool = True, code: Coun
 
 def is_curve(arc: Arc) -> bool:
     """Whether an arc is a curve with elements: no straight, and no turn so small or so large that its elements mean nothing."""
-    return bool(arc.bend and arc.radius <= MAX_CURVE_RADIUS and MIN_TURN < abs(arc.bend) * arc.length < MAX_TURN)
+    return bool(arc.bend and arc.radius <= ALIGNMENT.max_curve_radius and ALIGNMENT.min_turn < abs(arc.bend) * arc.length < ALIGNMENT.max_turn)
 
 
 def element_row(arc: Arc, complete: bool, rmse: float, origin: np.ndarray, code: Country = NEUTRAL) -> dict[str, Any]:
-    """Fields of CURVE_ELEMENTS of an arc.
+    """Fields of CURVE_ELEMENTS of an arc for which `is_curve` holds, local metres, in the direction of travel.
 
-    Parameters
-    ----------
-    arc : Arc for which `is_curve` holds, local metres, in the direction of travel
-    complete : False where the arc runs on beyond the line
-    rmse : metres, of the line from the arc
-    origin : (2,) or (3,) map coordinates of the local origin
-    code : Country, whose design code the curve is checked against
-
-    Returns
-    -------
-    dict of field name to value
+    `complete` : False where the arc runs on beyond the line; `rmse` : m, of the line from the arc; `origin` : map coordinates of the local origin.
     """
     delta, left = abs(arc.bend) * arc.length, arc.bend > 0
     pc, pi, pt = curve_points((arc.x + origin[0], arc.y + origin[1]), arc.direction, arc.radius, delta, left)

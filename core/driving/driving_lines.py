@@ -28,6 +28,7 @@ from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
 from .lanes import estimated_lanes, laid_out
 from .layers import CurveElements, DrivingLines, Lanes
 from .settings import DrivingSettings
+from .weights import SIGMA
 
 __all__ = ["DrivingSettings", "make_driving_lines"]
 
@@ -212,44 +213,21 @@ def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:
 # A piece of a line says the mean along it, and a line is cut where it changes much. It holds against the points of the survey: what they are off as
 # a whole, with their trajectory, is in it only where the accuracy of the trajectory was told, since one pass does not show it.
 
-BORDER_SHARE = 0.13            # of the RMS distance of a border's paint from its curve, that the border is off by
-USUAL_SCATTER = 0.010          # m, of paint about its curve, where no border says it
-BORDER_SIGMA = 0.0008          # m, of a painted border, however many points show it
-SPACING_SHARE = 0.028          # of the spacing of the points, that a painted border is off by
-USUAL_SPACING = 0.03           # m, where there are no points to say it
-GAP_SHARE = 0.003              # m per m to the next place where a border is painted, or, without borders, where the lane is measured
-HATCHING_SIGMA = 0.03          # m, of a hatched area's border: outlines are of image cells, and its line's breadth is not known
-WIDTH_SIGMA = 0.007            # m, of the middle of a lane beside one border alone: half of what its width is off by
-BETWEEN_BORDERS, OWN_BORDER, FAR_BORDER = 0.5, 0.75, 0.25   # of the error of a border, that the middle of a lane is off by
-MAX_GAP_DISTANCE = 50.0        # m, beyond which a painted place says nothing
-MISFIT_WINDOW = 2.5            # m along the lane, over which its places are averaged
-MISFIT_SHARE = 0.8             # of the RMS of what they lie beside the line over
-MISFIT_REACH = 5.0             # m either way: where the line passes what was measured, which of the two is off is open, and so is how far beyond
-ARC_REACH = 3.9                # m, either way, over which the line is as good as an arc
-CURVATURE_SIGMA = 1.0          # m, of the Gaussian that smooths heading and curvature
-CURVATURE_WINDOW = 10.0        # m along the lane, of the RMS of the change of curvature
-
 
 def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoad, paint: dict[int, float], passes: np.ndarray | float = 0.0,
                spacing: np.ndarray | None = None) -> np.ndarray:
-    """One sigma across a driving line at each place of its lane.
+    """(N,) m, one sigma across a driving line at each place of its lane.
 
     Parameters
     ----------
-    track : LaneTrack of N places
-    course : Course of the lane
     known : EstimatedRoad of the road's lines, on whose stations the track runs, and of its boundaries, between which it lies
     paint : {number of a line: m, RMS distance of its paint from its curve}
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`: one for all, or (N,)
     spacing : (K,) m between points at the stations of `known`, NaN where unknown; None if nothing says it
-
-    Returns
-    -------
-    (N,) m
     """
     lines = known.lines
     apart = np.full(len(track), np.nan) if spacing is None else spacing[track.first:track.last + 1]
-    apart = np.where(np.isnan(apart), USUAL_SPACING, apart)
+    apart = np.where(np.isnan(apart), SIGMA.usual_spacing, apart)
     return np.sqrt(_mean_square_of_borders(track, known, paint, apart) + _mean_square_misfit(track, course, road, lines)
                    + _mean_square_bias(track, course, lines) + _mean_square_guess(track) + passes**2)
 
@@ -262,15 +240,15 @@ def _mean_square_of_borders(track, known, paint, spacing):
     bounding = painted | hatched
     told = np.isfinite(square)
     mean = np.where(told, square, 0.0).sum(axis=0) / np.maximum(told.sum(axis=0), 1)
-    usual = np.median(mean[told.any(axis=0)]) if told.any() else USUAL_SCATTER**2
+    usual = np.median(mean[told.any(axis=0)]) if told.any() else SIGMA.usual_scatter**2
     scatter = np.where(told, square, np.where(told.any(axis=0), mean, usual))
-    seen = BORDER_SIGMA**2 + (SPACING_SHARE * spacing) ** 2 + BORDER_SHARE**2 * scatter
-    off = np.where(hatched, HATCHING_SIGMA**2, seen + (GAP_SHARE * away) ** 2)
-    share = np.where(bounding.sum(axis=0) == 1, np.where(bounding, OWN_BORDER, FAR_BORDER), BETWEEN_BORDERS)
+    seen = SIGMA.border_sigma**2 + (SIGMA.spacing_share * spacing) ** 2 + SIGMA.border_share**2 * scatter
+    off = np.where(hatched, SIGMA.hatching_sigma**2, seen + (SIGMA.gap_share * away) ** 2)
+    share = np.where(bounding.sum(axis=0) == 1, np.where(bounding, SIGMA.own_border, SIGMA.far_border), SIGMA.between_borders)
     share = np.where(track.offset & bounding.any(axis=0), bounding / np.maximum(bounding.sum(axis=0), 1), share)
     measured = track.status == MEASURED
-    unbounded = np.where(bounding.any(axis=0), 0.0, GAP_SHARE * _distance_to(measured))
-    beside = np.where(~measured & track.offset, WIDTH_SIGMA, 0.0)
+    unbounded = np.where(bounding.any(axis=0), 0.0, SIGMA.gap_share * _distance_to(measured))
+    beside = np.where(~measured & track.offset, SIGMA.width_sigma, 0.0)
     return (share**2 * off).sum(axis=0) + unbounded**2 + beside**2
 
 
@@ -278,8 +256,8 @@ def _mean_square_misfit(track, course, road, lines):
     """(N,) m², of the smooth line from the mean of the lane's places over MISFIT_WINDOW, over MISFIT_REACH either way."""
     s = lines.s[track.first:track.last + 1]
     drawn = road.locate(np.interp(s, course.s, course.x), np.interp(s, course.s, course.y), s)[1]
-    beside = uniform_filter1d(np.nan_to_num(drawn - track.d), int(MISFIT_WINDOW / STATION_STEP), mode="nearest")
-    return MISFIT_SHARE**2 * uniform_filter1d(beside**2, int(2 * MISFIT_REACH / STATION_STEP), mode="nearest")
+    beside = uniform_filter1d(np.nan_to_num(drawn - track.d), int(SIGMA.misfit_window / STATION_STEP), mode="nearest")
+    return SIGMA.misfit_share**2 * uniform_filter1d(beside**2, int(2 * SIGMA.misfit_reach / STATION_STEP), mode="nearest")
 
 
 def _mean_square_bias(track, course, lines):
@@ -293,11 +271,11 @@ def _mean_square_bias(track, course, lines):
         return np.zeros(len(s))
     dx, dy = (np.gradient(np.interp(s, course.s, places)) for places in (course.x, course.y))
     step = np.maximum(np.hypot(dx, dy), 0.1 * STATION_STEP)
-    smooth = CURVATURE_SIGMA / STATION_STEP
+    smooth = SIGMA.curvature_sigma / STATION_STEP
     heading = gaussian_filter1d(np.unwrap(np.arctan2(dy, dx)), smooth, mode="nearest")
     change = np.gradient(gaussian_filter1d(np.gradient(heading) / step, smooth, mode="nearest")) / step
-    square = np.maximum(uniform_filter1d(change**2, int(CURVATURE_WINDOW / STATION_STEP) + 1, mode="nearest"), 0.0)
-    return square * (ARC_REACH**3 / (15.0 * np.sqrt(7.0))) ** 2
+    square = np.maximum(uniform_filter1d(change**2, int(SIGMA.curvature_window / STATION_STEP) + 1, mode="nearest"), 0.0)
+    return square * (SIGMA.arc_reach**3 / (15.0 * np.sqrt(7.0))) ** 2
 
 
 def _mean_square_guess(track):
@@ -335,9 +313,9 @@ def _distance_to_paint(seen, row, first, end):
     """(N,) m from the stations `first` to `end` (exclusive) to the nearest one at which a line is seen, as `_distance_to`."""
     if not seen.row(row).any():
         return np.zeros(end - first)
-    low = max(first - int(MAX_GAP_DISTANCE / STATION_STEP), 0)
-    known = seen[row, low:end + int(MAX_GAP_DISTANCE / STATION_STEP)]
-    away = _distance_to(known) if known.any() else np.full(len(known), MAX_GAP_DISTANCE)
+    low = max(first - int(SIGMA.max_gap_distance / STATION_STEP), 0)
+    known = seen[row, low:end + int(SIGMA.max_gap_distance / STATION_STEP)]
+    away = _distance_to(known) if known.any() else np.full(len(known), SIGMA.max_gap_distance)
     return away[first - low:end - low]
 
 
@@ -345,4 +323,4 @@ def _distance_to(known):
     """(N,) m to the nearest of the grid stations that are known, MAX_GAP_DISTANCE at most; 0 where none is."""
     if not known.any():
         return np.zeros(len(known))
-    return np.minimum(distance_transform_edt(~known) * STATION_STEP, MAX_GAP_DISTANCE)
+    return np.minimum(distance_transform_edt(~known) * STATION_STEP, SIGMA.max_gap_distance)

@@ -15,14 +15,11 @@ from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..survey.store.records import COORDINATE_SCALE
 from ..survey.store.road_points import RoadPoints
 from .lane_track import LaneTrack, spans_of
+from .weights import HEIGHTS
 
-HEIGHT_REACH = 0.3        # m either side of the driving line
-MIN_POINTS_PER_HEIGHT = 3
-DENSE_SLICE, DENSE_COUNT = 0.05, 200  # m before and after a place: with so many points there, no others are looked at
-OFFSET_GRAIN_BITS = 4                 # bits: points are sorted by offset to 1.6 mm
-HEIGHT_SMOOTHING_SIGMA = 2.0          # m: a car does not follow a pothole
-HEIGHT_WINDOW = 20.0                  # m of road points in memory at a time
-HEIGHT_POINTS = 500_000               # road points that a worker process looks at, about: 30 ms of its time
+OFFSET_GRAIN_BITS = 4   # derived: bits: points are sorted by offset to 1.6 mm
+HEIGHT_WINDOW = 20.0   # derived: m of road points in memory at a time
+HEIGHT_POINTS = 500_000   # derived: road points that a worker process looks at, about: 30 ms of its time
 
 
 def _road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack],
@@ -51,17 +48,10 @@ def _road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: lis
 
 
 def heights_of_windows(road_points: RoadPoints, item: list[tuple[Any, ...]], road: int) -> list[list[np.ndarray]]:
-    """The phase that measures heights along lanes.
+    """The phase that measures heights along lanes: of each window the (M,) heights of each lane.
 
-    Parameters
-    ----------
-    item : of each window the first and the last section that it lies in, (K,) m its stations, and of each lane (M,) int those that it has, and
-        (M,) m its offsets there
-    road : number
-
-    Returns
-    -------
-    of each window the (M,) heights of each lane
+    `item` : of each window the first and the last section that it lies in, (K,) m its stations, and of each lane (M,) int those that it has, and
+    (M,) m its offsets there.
     """
     found = []
     for (first, last), s, lanes in item:
@@ -74,20 +64,20 @@ def heights_of_windows(road_points: RoadPoints, item: list[tuple[Any, ...]], roa
 def _heights(sections, s, lanes):
     """Median heights along lanes, each (cells, offsets), of sections of road points about grid stations s."""
     # where points are dense, those right beside the grid stations are enough
-    beside = _Near(sections, s, np.arange(len(s)), DENSE_SLICE, lanes)
-    found = beside.medians(lanes) if beside.most >= DENSE_COUNT else [(np.full(len(d), np.nan), np.zeros(len(d), int)) for _, d in lanes]
-    few = [np.flatnonzero(count < DENSE_COUNT) for _, count in found]
+    beside = _Near(sections, s, np.arange(len(s)), HEIGHTS.dense_slice, lanes)
+    found = beside.medians(lanes) if beside.most >= HEIGHTS.dense_count else [(np.full(len(d), np.nan), np.zeros(len(d), int)) for _, d in lanes]
+    few = [np.flatnonzero(count < HEIGHTS.dense_count) for _, count in found]
     lacking = [(cells[which], d[which]) for (cells, d), which in zip(lanes, few)]
     cells = np.unique(np.concatenate([cells for cells, _ in lacking]))
     if len(cells):
         for (z, _), which, (more, count) in zip(found, few, _Near(sections, s, cells, STATION_STEP / 2, lacking).medians(lacking)):
-            z[which] = np.where(count >= MIN_POINTS_PER_HEIGHT, more, np.nan)
+            z[which] = np.where(count >= HEIGHTS.min_points_per_height, more, np.nan)
     return [z for z, _ in found]
 
 
 def _beside(lanes):
     """A table by offset, in grains, of what lies within reach of lanes (offsets in metres): its first grain, and the table."""
-    spans = np.array([(d.min() - HEIGHT_REACH, d.max() + HEIGHT_REACH) for d in lanes]) / COORDINATE_SCALE
+    spans = np.array([(d.min() - HEIGHTS.height_reach, d.max() + HEIGHTS.height_reach) for d in lanes]) / COORDINATE_SCALE
     spans = np.stack([np.floor(spans[:, 0]), np.ceil(spans[:, 1])], axis=1).astype(np.int32) >> OFFSET_GRAIN_BITS
     first = np.int32(spans[:, 0].min() - 1)
     table = np.zeros(spans[:, 1].max() - first + 2, bool)
@@ -130,7 +120,7 @@ class _Near:
         self.across, self.offset, self.cell, self.height = (values.take(order) for values in (across, self.offset, self.cell, self.height))
 
     def _medians(self, cells, d):
-        middle, reach = np.rint(d / COORDINATE_SCALE).astype(np.int32), int(HEIGHT_REACH / COORDINATE_SCALE)
+        middle, reach = np.rint(d / COORDINATE_SCALE).astype(np.int32), int(HEIGHTS.height_reach / COORDINATE_SCALE)
         low, high = np.array([middle.min() - reach, middle.max() + reach], np.int32) >> OFFSET_GRAIN_BITS
         near = slice(np.searchsorted(self.across, low), np.searchsorted(self.across, high, side="right"))
         at = np.full(int(cells[-1]) + 2, -1)
@@ -175,11 +165,11 @@ def _smooth_heights(z: np.ndarray) -> np.ndarray:
     z = np.interp(rows, rows[known], z[known])
     z = median_filter(z, size=min(7, len(z)), mode="nearest")
     # slopes go on beyond the ends
-    pad = min(int(4 * HEIGHT_SMOOTHING_SIGMA / STATION_STEP), len(z) - 1)
+    pad = min(int(4 * HEIGHTS.height_smoothing_sigma / STATION_STEP), len(z) - 1)
     if pad < 1:
         return z
     head, tail = 2 * z[0] - z[1:pad + 1][::-1], 2 * z[-1] - z[-pad - 1:-1][::-1]
-    return gaussian_filter1d(np.r_[head, z, tail], HEIGHT_SMOOTHING_SIGMA / STATION_STEP)[pad:pad + len(z)]
+    return gaussian_filter1d(np.r_[head, z, tail], HEIGHTS.height_smoothing_sigma / STATION_STEP)[pad:pad + len(z)]
 
 
 def lane_heights(lines: CrossSections, road_points: RoadPoints | None, road: int, tracks: list[LaneTrack],

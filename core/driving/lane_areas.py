@@ -18,6 +18,7 @@ from ..survey.frame.road_frame import RoadFrame
 from .alignment import track_pieces
 from .lane_track import LANE_STATUS, LaneTrack, spans_of
 from .layers import Lanes
+from .weights import AREAS
 
 KIND_OF_BORDER = {LANE_LINE: "lane", CENTRE_LINE: "centre", EDGE_LINE: "edge", OTHER_LINE: "edge"}
 
@@ -26,13 +27,8 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
                number: int, pavement: CrossSections | None = None) -> list[dict[str, Any]]:
     """The rows of Lanes of one road: its lanes by piece, connectors along the drive where lanes end and begin again, and shoulders.
 
-    Parameters
-    ----------
-    curbs : CrossSections of the road edges that were given to the estimate, or None
-    tracks : list of LaneTrack; lanes are numbered from 1 in their order
-    heights : local z along each track
-    number : of the road
-    pavement : CrossSections of the edges of the pavement without a curb, or None
+    `curbs`, `pavement` : edges of the pavement with and without a curb that were given to the estimate, or None. Lanes are numbered from 1 in the
+    order of the tracks; `heights` : local z along each.
     """
     rows = []
     for lane, (track, z) in enumerate(zip(tracks, heights), start=1):
@@ -109,11 +105,11 @@ def follow(rows: list[dict[str, Any]]) -> None:
         if not (way := row["direction"]):
             continue
         at, d = (row["end"], row["last"]) if way > 0 else (row["station"], row["first"])
-        (stations, of), reach = begins[way], NEXT_LANE_GAP + STATION_STEP
+        (stations, of), reach = begins[way], AREAS.next_lane_gap + STATION_STEP
         near = [rows[k] for k in sorted(of[slice(*np.searchsorted(stations, [at - reach, at + reach]))])]
         row["successors"] = tuple(
             other["lane_id"] for other in near if other is not row
-            and -STATION_STEP <= way * ((other["station"] if way > 0 else other["end"]) - at) <= NEXT_LANE_GAP
+            and -STATION_STEP <= way * ((other["station"] if way > 0 else other["end"]) - at) <= AREAS.next_lane_gap
             and abs((other["first"] if way > 0 else other["last"]) - d) < max(row["width"], other["width"]) / 2)
 
 
@@ -134,27 +130,15 @@ def make_lanes(rows: list[dict[str, Any]], crs: str) -> Lanes:
 
 # Shoulders: the paved strips between the edge line of the outermost lane and the edge of the pavement.
 
-STRIP_WIDTH = 0.3, 4.0       # m of a strip at any place: the widest paved shoulders are 12 ft (AASHTO, A Policy on Geometric Design, 4.4.2)
-LEAST_SHOULDER = 1.0         # m, median: what is narrower is the marginal strip of the carriageway (0.5 to 0.75 m, RAA)
-SHORTEST_SHOULDER = 10.0     # m
+STRIP_WIDTH = 0.3, 4.0   # source: m of a strip at any place: the widest paved shoulders are 12 ft (AASHTO, A Policy on Geometric Design, 4.4.2)
 
 
 def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[np.ndarray]], pavement: CrossSections, frame: RoadFrame,
               number: int) -> list[dict[str, Any]]:
-    """Areas between the edge lines of lanes and the edges of the pavement beside them.
+    """Rows of Lanes without numbers between the edge lines of lanes and the edges of the pavement beside them, with the vertices of the lane beside.
 
     Where a curb bounds the road the strip beside the line may be for parking, cycling or nothing, so it is not named.
-
-    Parameters
-    ----------
-    tracks : list of LaneTrack
-    borders : the left and the right border of each track along the road, (N, 3) local metres each
-    pavement : CrossSections of the edges of the pavement without a curb
-    number : of the road
-
-    Returns
-    -------
-    rows of Lanes without numbers, left and right along the road; each has the vertices of the lane beside it
+    `borders` : the left and the right border of each track along the road, (N, 3) local m; `pavement` : edges of the pavement without a curb.
     """
     s, lines = road.lines.s, road.lines
     shift = int(np.rint((s[0] - pavement.s[0]) / STATION_STEP))   # stations by which the grid of the lines begins behind that of the pavement
@@ -167,7 +151,7 @@ def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[n
             others = [tracks[k] for k in spans.near(track.first, track.last).tolist()]
             wide = np.isfinite(width) & (use == EDGE_LINE) & (own >= 0) & (own < len(lines.d)) & ~_taken(others, track, inner, sign)
             for a, b in mask_runs(wide):
-                if (b - a - 1) * STATION_STEP < SHORTEST_SHOULDER or np.median(width[a:b]) < LEAST_SHOULDER:
+                if (b - a - 1) * STATION_STEP < AREAS.shortest_shoulder or np.median(width[a:b]) < AREAS.least_shoulder:
                     continue
                 part, edge = slice(a, b), nearest[a:b]
                 places = columns[part] + shift
@@ -221,10 +205,6 @@ def _taken(tracks, own, inner, sign):
 # Connectors: where the vehicle drove on from the end of a lane to the beginning of the next, over a junction or from one road to another.
 
 NO_BORDER = "none", "none", ""        # line, kind and pattern
-NEXT_LANE_GAP = 3.0                   # m between the end of a lane and the beginning of what follows it
-LONGEST_CONNECTOR = 150.0             # m between the end of a lane and the beginning of the one that the vehicle drove on to
-CONNECTOR_CONFIDENCE = 0.5            # where the way is known from the drive alone
-DRIVEN_ON = 2.0                       # s between two passes of one drive at most: it went on without a stop between them
 
 
 def _connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.ndarray], frame: RoadFrame, number: int) -> list[dict[str, Any]]:
@@ -235,14 +215,14 @@ def _connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np
         ends = [(track, z, track.last if way > 0 else track.first) for track, z in zip(tracks, heights) if track.direction == way]
         begins = [(track, z, track.first if way > 0 else track.last) for track, z in zip(tracks, heights) if track.direction == way]
         by_station = sorted(range(len(begins)), key=lambda k: begins[k][2])
-        stations, reach = [begins[k][2] for k in by_station], int(LONGEST_CONNECTOR / STATION_STEP)
+        stations, reach = [begins[k][2] for k in by_station], int(AREAS.longest_connector / STATION_STEP)
         for before, z_before, a in ends:
             for p in np.flatnonzero(directions == way).tolist():
                 if not abs(driven[p, a] - before.at(a)[0]) < before.at(a)[1] / 2:
                     continue
                 near = sorted(by_station[slice(bisect_left(stations, a - reach), bisect_right(stations, a + reach))])
                 found = [(way * (b - a), after, z, b) for after, z, b in map(begins.__getitem__, near)
-                         if NEXT_LANE_GAP < way * (b - a) * STATION_STEP < LONGEST_CONNECTOR
+                         if AREAS.next_lane_gap < way * (b - a) * STATION_STEP < AREAS.longest_connector
                          and abs(driven[p, b] - after.at(b)[0]) < after.at(b)[1] / 2]
                 if not found:
                     continue
@@ -280,7 +260,7 @@ def _eased(share):
 def _row(road, before, after, sides, half, **places):
     """The row of Lanes of an area from one lane to another; `half` of its width at each place, `places` along and across the road."""
     return dict(road=road, type="connector", direction=before.direction, left=sides[0], right=sides[1], about=[NO_BORDER, NO_BORDER],
-                confidence=CONNECTOR_CONFIDENCE * float(min(before.confidence.mean(), after.confidence.mean())), status="inferred",
+                confidence=AREAS.connector_confidence * float(min(before.confidence.mean(), after.confidence.mean())), status="inferred",
                 width=float(np.median(2 * half)), **places)
 
 
@@ -302,23 +282,16 @@ class _LaneEnd(NamedTuple):
 
 
 def connectors_between_roads(lanes: dict[int, RoadLanes], frame: RoadFrame, rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Areas along the drive from the end of a lane of one road to the beginning of a lane of another, as where the vehicle turned.
+    """Rows of Lanes along the drive from the end of a lane of one road to the beginning of a lane of another, as where the vehicle turned.
 
-    Parameters
-    ----------
-    lanes : {number of the road: RoadLanes}
-    rows : rows of Lanes of all roads; `successors` of the lanes that are left name the connectors afterwards
-
-    Returns
-    -------
-    rows of Lanes, each of the road that is left; a connector names the piece of lane that it leads to
+    Each is of the road that is left, and names the piece of lane that it leads to; among `rows`, `successors` of the lane that is left name it.
     """
     found: dict[tuple[int, int, int, int], dict[str, Any]] = {}
     rows_of: dict[int, dict[int, list[dict[str, Any]]]] = {}   # by road and lane
     for row in rows:
         rows_of.setdefault(row["road"], {}).setdefault(row["lane"], []).append(row)
     for before, after in zip(frame.passes[:-1], frame.passes[1:]):
-        on = 0 <= after.time[0] - before.time[-1] <= DRIVEN_ON
+        on = 0 <= after.time[0] - before.time[-1] <= AREAS.driven_on
         if not on or before.road == after.road or before.road not in lanes or after.road not in lanes:
             continue
         left, entered = _lane_end(lanes[before.road], before, leaving=True), _lane_end(lanes[after.road], after, leaving=False)
@@ -371,7 +344,7 @@ def _turn(left, entered, before, after, lanes, frame):
     if len(places) < 3:
         return None
     along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(places, axis=0).T))]
-    if not NEXT_LANE_GAP < along[-1] < LONGEST_CONNECTOR:
+    if not AREAS.next_lane_gap < along[-1] < AREAS.longest_connector:
         return None
     share = _eased(along / along[-1])
     ahead = np.gradient(places, along, axis=0)

@@ -14,48 +14,33 @@ from ..common.parallel import check_cancelled
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import SAME_LANE, EstimateWeights, Reading, confidence_of
 from ..survey.frame.row_table import RowSpans
+from .weights import TRACKS
 
 MEASURED, INFERRED, BRIDGED = 0, 1, 2
 LANE_STATUS = ("measured", "inferred", "bridged")
-MAX_LANE_JUMP_SHARE = 0.35       # share of a lane's width by which it may jump from one stretch to the next
-GAP_NEIGHBOURHOOD = 10.0         # m around a gap within which other lanes tell of a split or merge
-MIN_LANE_SEPARATION_SHARE = 0.6  # share of a lane's width that lanes keep from each other
-MIN_SHOWN_SHARE = 0.5            # of a gap in which lines are seen
-NEAR_DOUBT = 20.0                # m between two stretches in doubt that are one: what neighbouring metres show is not independent
-BRIDGED_TRUST = 0.7              # share of the probability at both ends of a gap that is left between them
-LEAST_PROBABILITY_OF_END = 0.25, 0.8   # of a lane at its end, between two borders and beside one: with less it is wrong mostly
-END_WIDTH_LENGTH = 10.0          # m over which a lane's width at its end is taken
-LEAST_JUMP = 0.02     # m across from which a border that goes on as another line is led over
-JUMP_LEAD = 30.0      # m along for each m across: at 1 in 20 at its steepest, a lane can be followed without braking
-LONGEST_LEAD = 20.0   # m
-MOST_ASKEW_BORDER = 0.3        # m across for each m along: no border is painted or built more askew, not even at a bus bay
 
 
 @dataclass
 class LaneTrack:
     """A lane from grid station `first` on.
 
-    d, width : (N,) metres; status : (N,) of MEASURED, INFERRED, BRIDGED; offset : (N,) True
-    where the place comes from one line only; left, right : (N,) rows of Boundaries that it lies between, -1 where nothing is painted
-    left_use, right_use : (N,) what these separate, LANE_LINE ... OTHER_LINE, -1 where unknown
-    probability, confidence, directed : (N,) 0 to 1, as of LaneSpan; direction : 1 along the road's reference line, -1 against it
     second : (N,) object, the second Reading of each place, None where none is known
     aside : (N,) metres that the lane was moved across from where its own borders show it, to meet a surer stretch
     """
 
     first: int
-    d: np.ndarray
+    d: np.ndarray   # (N,) metres
     width: np.ndarray
-    status: np.ndarray
-    offset: np.ndarray
-    left: np.ndarray
+    status: np.ndarray   # (N,) of MEASURED, INFERRED, BRIDGED
+    offset: np.ndarray   # (N,) True where the place comes from one line only
+    left: np.ndarray   # (N,) rows of Boundaries that it lies between, -1 where nothing is painted
     right: np.ndarray
-    left_use: np.ndarray
+    left_use: np.ndarray   # (N,) what these separate, LANE_LINE ... OTHER_LINE, -1 where unknown
     right_use: np.ndarray
-    probability: np.ndarray
+    probability: np.ndarray   # (N,) 0 to 1, as of LaneSpan
     confidence: np.ndarray
     directed: np.ndarray
-    direction: int
+    direction: int   # 1 along the road's reference line, -1 against it
     second: np.ndarray = None  # type: ignore[assignment]  # filled on construction
     aside: np.ndarray = None  # type: ignore[assignment]
 
@@ -111,7 +96,7 @@ class LaneTrack:
         return np.nan, np.nan
 
     def end_width(self, head: bool) -> float:
-        rows = int(END_WIDTH_LENGTH / STATION_STEP)
+        rows = int(TRACKS.end_width_length / STATION_STEP)
         return float(np.median(self.width[:rows] if head else self.width[-rows:]))
 
     def in_doubt(self, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
@@ -119,7 +104,7 @@ class LaneTrack:
         behind = np.array([np.inf if one is None else one.nats for one in self.second])
         found = (behind < weights.doubt) | (np.abs(self.aside) > SAME_LANE)
         for first, end in mask_runs(~found):
-            if first and end < len(found) and (end - first) * STATION_STEP < NEAR_DOUBT:
+            if first and end < len(found) and (end - first) * STATION_STEP < TRACKS.near_doubt:
                 found[first:end] = True
         return found
 
@@ -155,32 +140,24 @@ class LaneTrack:
     def without_doubtful_ends(self) -> LaneTrack | None:
         """The track less stretches at its ends that only led over a gap, or are improbable; None if nothing is left."""
         led_over = (self.status == BRIDGED) | self.offset & (self.left < 0) & (self.right < 0)
-        least = np.array(LEAST_PROBABILITY_OF_END)[self.offset.astype(int)]
+        least = np.array(TRACKS.least_probability_of_end)[self.offset.astype(int)]
         known = np.flatnonzero(~led_over & (self.probability >= least))
         return self.part(known[0], known[-1] + 1) if len(known) else None
 
 
 def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """A border without jumps, as where it goes on as another line beside the first.
+    """(N,) m, a border at `offset` along `s`, m, without jumps, as where it goes on as another line, `rows`, beside the first; -1 where it is none.
 
-    Parameters
-    ----------
-    s : (N,) metres along the road
-    offset : (N,) metres across it
-    rows : (N,) which line the border is, -1 where it is none
-
-    Returns
-    -------
-    (N,) metres: each jump is spread over JUMP_LEAD times its size, LONGEST_LEAD at most, half of it on either side; less where the lane ends before,
-    and places aside at its very end are led on with the others
+    Each jump is spread over `jump_lead` times its size, `longest_lead` at most, half of it on either side; less where the lane ends before, and
+    places aside at its very end are led on with the others.
     """
     found, jumps, steps = offset.copy(), np.diff(offset), np.diff(s)
-    sudden = (np.diff(rows) != 0) & (np.abs(jumps) > LEAST_JUMP) | (np.abs(jumps) > MOST_ASKEW_BORDER * steps)
+    sudden = (np.diff(rows) != 0) & (np.abs(jumps) > TRACKS.least_jump) | (np.abs(jumps) > TRACKS.most_askew_border * steps)
     for k in np.flatnonzero(sudden):
         at = (s[k] + s[k + 1]) / 2
         room = 2 * min(at - s[0], s[-1] - at)
         if room > 2 * STATION_STEP:
-            lead = min(max(JUMP_LEAD * abs(jumps[k]), 2 * STATION_STEP), LONGEST_LEAD, room)
+            lead = min(max(TRACKS.jump_lead * abs(jumps[k]), 2 * STATION_STEP), TRACKS.longest_lead, room)
             near = slice(*np.searchsorted(s, [at - lead, at + lead]))
             share = np.clip((s[near] - at) / lead + 0.5, 0.0, 1.0)
             found[near] += jumps[k] * (share**2 * (3 - 2 * share) - (s[near] > at))
@@ -195,7 +172,7 @@ def _between(a, b, d, width):
     """A bridged LaneTrack between two others."""
     nothing = np.full(len(d), -1)
     ends = (a.probability, b.probability), (a.confidence, b.confidence)
-    sure = (np.full(len(d), BRIDGED_TRUST * min(before[-1], after[0])) for before, after in ends)
+    sure = (np.full(len(d), TRACKS.bridged_trust * min(before[-1], after[0])) for before, after in ends)
     directed = np.full(len(d), min(a.directed[-1], b.directed[0]))
     # what leads from one to the other is moved as far as either, and as doubtful
     aside = a.aside[-1] + (b.aside[0] - a.aside[-1]) * np.arange(1, len(d) + 1) / (len(d) + 1)
@@ -210,13 +187,7 @@ def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, 
 
     Without a gap they are joined where they meet; across a gap where one lane faces exactly one other: never across a split or merge. Where a
     measured line or another lane leads through the gap its course is followed (inferred, or as the other lane was found), elsewhere the gap is
-    bridged.
-
-    Parameters
-    ----------
-    tracks : list of LaneTrack
-    most_bridged, most_inferred : metres, the longest gap without and with such a guide
-    shown : (K,) bool, whether any line is seen at a grid station
+    bridged. `most_bridged`, `most_inferred` : m, the longest gap without and with such a guide; `shown` : (K,) bool, whether any line is seen.
     """
     while True:
         count = len(tracks)
@@ -228,7 +199,7 @@ def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, 
 
 def _connected(tracks, lines, most_bridged, most_inferred, shown):
     tracks = sorted(tracks, key=lambda t: (t.first, float(t.d[0])))
-    reach, near = int(max(most_bridged, most_inferred) / STATION_STEP), int(GAP_NEIGHBOURHOOD / STATION_STEP)
+    reach, near = int(max(most_bridged, most_inferred) / STATION_STEP), int(TRACKS.gap_neighbourhood / STATION_STEP)
     spans = spans_of(tracks)
     firsts = np.array([track.first for track in tracks])
     pairs = []
@@ -271,12 +242,12 @@ def _join(a, b, tracks, lines, most_bridged, most_inferred, shown):
     wa, wb = a.end_width(False), b.end_width(True)
     course, status = _guide(a, b, lines, [t for t in tracks if t is not a and t is not b]) if count else (None, None)
     # where lines are seen and no lane was found among them there is none, but for short gaps
-    seen = count > 0 and shown[a.last + 1:b.first].mean() > MIN_SHOWN_SHARE
+    seen = count > 0 and shown[a.last + 1:b.first].mean() > TRACKS.min_shown_share
     if count * STATION_STEP > (most_bridged if course is None or seen else most_inferred):
         return None
     path = course if course is not None else np.zeros(count + 2)
     jump = (b.d[0] - path[-1]) - (a.d[-1] - path[0])
-    if abs(jump) > MAX_LANE_JUMP_SHARE * min(wa, wb) or abs(wa - wb) > 2 * MAX_LANE_JUMP_SHARE * max(wa, wb):
+    if abs(jump) > TRACKS.max_lane_jump_share * min(wa, wb) or abs(wa - wb) > 2 * TRACKS.max_lane_jump_share * max(wa, wb):
         return None
     if not _one_to_one(a, b, wa, wb, tracks):
         return None
@@ -294,7 +265,7 @@ def _join(a, b, tracks, lines, most_bridged, most_inferred, shown):
 
 
 def _hermite(a, b, count):
-    rows = int(END_WIDTH_LENGTH / STATION_STEP)
+    rows = int(TRACKS.end_width_length / STATION_STEP)
     slopes = [np.polyfit(np.arange(len(v)), v, 1)[0] if len(v) > 4 else 0.0 for v in (a.d[-rows:], b.d[:rows])]
     span = count + 1
     t = np.arange(1, count + 1) / span
@@ -320,7 +291,7 @@ def _guide(a, b, lines, others):
 
 
 def _one_to_one(a, b, wa, wb, tracks):
-    near = int(GAP_NEIGHBOURHOOD / STATION_STEP)
+    near = int(TRACKS.gap_neighbourhood / STATION_STEP)
     starts = [t.d[max(b.first - t.first, 0)] for t in tracks
               if t is not a and a.last < t.first <= b.first + near and t.last >= b.first]
     ends = [t.d[min(a.last - t.first, len(t) - 1)] for t in tracks
@@ -335,4 +306,4 @@ def _crowded(track, other):
     if a > b:
         return False
     apart = np.abs(track.d[a - track.first:b - track.first + 1] - other.d[a - other.first:b - other.first + 1])
-    return bool((apart < MIN_LANE_SEPARATION_SHARE * track.width[a - track.first:b - track.first + 1]).any())
+    return bool((apart < TRACKS.min_lane_separation_share * track.width[a - track.first:b - track.first + 1]).any())

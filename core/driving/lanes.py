@@ -12,21 +12,17 @@ from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import LaneSpan, RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.sequence import beside_island, beside_surface_end, lane_places
-from .lane_track import BRIDGED, END_WIDTH_LENGTH, INFERRED, MAX_LANE_JUMP_SHARE, MEASURED, LaneTrack, spans_of
+from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
+from .weights import TRACKS
 
 BESIDE_ONE, BETWEEN_WORN, DIVIDED, BETWEEN_LINES = 1, 2, 3, 4   # ranks of lanes by how sure their place is; those between two lines are not moved
-FULL_ROOM = 0.05        # m: less of a strip than that is not left over
-STEP_LENGTH = 10.0      # m along which a step between two stretches of a lane is evened out
-STATIONS_OF_STEP = int(STEP_LENGTH / STATION_STEP) + STATIONS_OF_CELL   # of a lane's end that are looked at where it goes on
+STATIONS_OF_STEP = int(TRACKS.step_length / STATION_STEP) + STATIONS_OF_CELL   # derived: of a lane's end that are looked at where it goes on
 
 
 def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: float, line_distance: float = 0.0) -> list[LaneTrack]:
     """The lanes of a road, each from where it begins to where it ends or its interval has no lanes.
 
-    Parameters
-    ----------
-    estimate : RoadEstimate over them
-    lane_width : metres, of a lane beside which only one line is painted; line_distance : metres from that line to its middle, 0 for half of its width
+    `lane_width` : m, of a lane beside which only one line is painted; `line_distance` : m from that line to its middle, 0 for half of its width.
     """
     open_tracks: list[_OpenLane] = []
     closed: list[LaneTrack] = []
@@ -160,7 +156,7 @@ def _held(rank):
 
 def _evened(rank):
     """(N,) the same of a step that is evened out where it is."""
-    return np.minimum(_held(rank), np.clip(1 - np.arange(len(rank)) * STATION_STEP / STEP_LENGTH, 0, None))
+    return np.minimum(_held(rank), np.clip(1 - np.arange(len(rank)) * STATION_STEP / TRACKS.step_length, 0, None))
 
 
 def _part(boundaries, span, first, last, lane_width, line_distance):
@@ -175,7 +171,8 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     # a lane that has all the room between a line and the curb of an island is placed by both
     seen = [boundaries.seen[row, rows] for row in sides]
     left_over = float(np.median(np.abs(left - right - span.count * width)))
-    both = all(painted) or bool(beside_island(*made_of)) and min(one.mean() for one in seen) > 0.5 and left_over < FULL_ROOM and not line_distance
+    both = all(painted) or bool(beside_island(*made_of)) and min(one.mean() for one in seen) > 0.5 and left_over < TRACKS.full_room \
+        and not line_distance
     beside_one = any(painted) and not both
     if beside_one and (line_distance or beside_surface_end(*made_of)):
         # the end of the surface is ragged, a lane is not
@@ -201,7 +198,7 @@ def _filled(values):
 def _followed(found, parts, first):
     """{part: track} of the parts that go on as a track which ends right before them, one to one, the nearest first.
 
-    found : list of _OpenLane. An end that was moved to meet a surer stretch before it is no farther from what follows than where it was seen
+    An end that was moved to meet a surer stretch before it is no farther from what follows than where it was seen.
     """
     pairs = []
     for k, part in enumerate(parts):
@@ -209,7 +206,7 @@ def _followed(found, parts, first):
             track = one.parts[-1]
             step = min(abs(part.d[0] - track.d[-1]), abs(part.d[0] - track.d[-1] + one.moved[0]))
             if track.last == first - 1 and track.direction == part.direction \
-                    and step < MAX_LANE_JUMP_SHARE * min(part.width[0], track.width[-1]):
+                    and step < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
                 pairs.append((step, k, j))
     follows, used = {}, set()
     for _, k, j in sorted(pairs):
@@ -223,13 +220,6 @@ def _followed(found, parts, first):
 #
 # A lane that opens is driven from where it has its full width; up to there traffic stays in the lane beside it, which keeps its width although the
 # line along its side has moved away already (as exit and turning lanes are laid out, e.g. RAA 6.4, RASt 6.3, AASHTO Green Book 9.7 and 10.9).
-
-LONGEST_TAPER = 100.0     # m
-SHOWN_TAPER = 8.0         # m of a taper that show its course where the survey ends before it does
-FULL_SHARE = 0.9          # of a lane's width: from there on it is taken to have its full width
-LEAST_WIDENING = 0.05     # m: less is how lines are painted
-BORDER_BEFORE_LANE = 30.0  # m by which the line between the two may begin before the lane is broad enough to be one: 2 m at one in ten, and a gap
-MISSING_SHARE = 0.25      # of a lane's width by which two lanes beside each other may be apart or overlap
 
 
 def laid_out(tracks: list[LaneTrack]) -> list[LaneTrack]:
@@ -260,7 +250,7 @@ def _opening(lane, other, head):
         return None
     for at in range(end, end + step * min(STATIONS_OF_CELL + 1, len(lane)), step):
         (d, width), (d_other, width_other) = lane.at(at), other.at(at)
-        if abs(abs(d - d_other) - (width + width_other) / 2) < MISSING_SHARE * width_other:
+        if abs(abs(d - d_other) - (width + width_other) / 2) < TRACKS.missing_share * width_other:
             return at
     return None
 
@@ -269,15 +259,15 @@ def _keep_width(track, opens, at, head):
     """Make a through lane, in place, that before (or behind) the grid station at which another one lies beside it first no wider than beside that."""
     side = np.sign(opens.at(at)[0] - track.at(at)[0])
     at -= track.first
-    near, reach = int(END_WIDTH_LENGTH / STATION_STEP), int(LONGEST_TAPER / STATION_STEP)
+    near, reach = int(TRACKS.end_width_length / STATION_STEP), int(TRACKS.longest_taper / STATION_STEP)
     beside = track.width[at:at + near] if head else track.width[max(at - near + 1, 0):at + 1]
     width = float(np.median(beside))
     ahead = np.arange(at - 1, max(at - reach, 0) - 1, -1) if head else np.arange(at + 1, min(at + reach, len(track) - 1) + 1)
-    wider = track.width[ahead] > width + LEAST_WIDENING
+    wider = track.width[ahead] > width + TRACKS.least_widening
     begin = int(np.argmax(wider))
     as_wide = np.flatnonzero(~wider[begin:])
     # a lane that is as wide all along divides into two, and has no taper
-    if not wider[:int(BORDER_BEFORE_LANE / STATION_STEP)].any() or not (len(as_wide) or _narrows(track.width[ahead[begin:]] - width)):
+    if not wider[:int(TRACKS.border_before_lane / STATION_STEP)].any() or not (len(as_wide) or _narrows(track.width[ahead[begin:]] - width)):
         return
     ahead = ahead[begin:begin + int(as_wide[0])] if len(as_wide) else ahead[begin:]
     track.d[ahead] -= side * (track.width[ahead] - width) / 2
@@ -288,16 +278,16 @@ def _keep_width(track, opens, at, head):
 def _narrows(excess):
     """Whether a lane that is wider by (N,) m as far as it is known becomes narrower all along, as beside a taper that ends farther on."""
     along = STATION_STEP * np.arange(len(excess))
-    if len(excess) < 2 or along[-1] < SHOWN_TAPER:
+    if len(excess) < 2 or along[-1] < TRACKS.shown_taper:
         return False
     slope = np.polyfit(along, excess, 1)[0]
-    return slope < 0.0 and along[-1] + excess[-1] / -slope <= LONGEST_TAPER
+    return slope < 0.0 and along[-1] + excess[-1] / -slope <= TRACKS.longest_taper
 
 
 def _from_full_width(track, head):
     """A lane less what it is narrower than its full width at its beginning (or end)."""
-    reach = int(LONGEST_TAPER / STATION_STEP)
+    reach = int(TRACKS.longest_taper / STATION_STEP)
     width = track.width[:reach] if head else track.width[::-1][:reach]
-    full = np.flatnonzero(width >= FULL_SHARE * np.median(width))
+    full = np.flatnonzero(width >= TRACKS.full_share * np.median(width))
     first = int(full[0])
     return track.part(first, len(track)) if head else track.part(0, len(track) - first)

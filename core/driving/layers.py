@@ -26,47 +26,33 @@ LANE_TYPES = ("driving", "shoulder", "parking", "bicycle", "hatched", "median", 
 class Lanes(LayerRows):
     """Lanes in P pieces. Left and right are seen in the direction of travel, along the road where nobody drives.
 
-    road, lane : (P,) int; lanes of a road are numbered from 1
-    lane_id : (P,) str objects, "road.lane.piece", each once
-    type : (P,) str objects, one of LANE_TYPES
-    direction : (P,) int, 1 along the road's reference line, -1 against it, 0 where nobody drives
-    left_line, right_line : (P,) str objects, what the border is: "line 12" by `line` of the marking lines, "edge 3" by
-        `chain` of the road edges, or "none"
-    left_kind, right_kind : (P,) str objects, edge, lane, centre, curb, pavement, hatch or none
-    left_pattern, right_pattern : (P,) str objects, as in DRIVING_LINES, "" where there is none
-    successors : P tuples of lane_ids, what follows in the direction of travel
-    status : (P,) str objects, measured, inferred or bridged
-    confidence : (P,) float, 0 to 1
-    station, end : (P,) metres along the road
-    left, right : (V, 3) local metres, the borders in the direction of travel, piece after piece, cut at the same places
-    start : (P + 1,) int, first vertex of each piece, and V
-    crs : WKT, "" where unknown
-    other : (P,) str objects, the second reading as JSON, as of DrivingLines
+    left_line, right_line : (P,) str objects, what the border is: "line 12" by `line` of the marking lines, "edge 3" by `chain` of the road edges, or
+        "none"
     """
 
     GEOMETRY_TYPE, SCHEMA = "PolygonZ", LANES
 
-    road: np.ndarray = field(metadata=column(unknown=1))
+    road: np.ndarray = field(metadata=column(unknown=1))   # (P,) int; lanes of a road are numbered from 1
     lane: np.ndarray = field(metadata=column(unknown=0))
-    lane_id: np.ndarray = field(metadata=column(unknown=""))
-    type: np.ndarray = field(metadata=column(unknown="driving"))
-    direction: np.ndarray = field(metadata=column(unknown=1))
+    lane_id: np.ndarray = field(metadata=column(unknown=""))   # (P,) str objects, "road.lane.piece", each once
+    type: np.ndarray = field(metadata=column(unknown="driving"))   # (P,) str objects, one of LANE_TYPES
+    direction: np.ndarray = field(metadata=column(unknown=1))   # (P,) int, 1 along the road's reference line, -1 against it, 0 where nobody drives
     left_line: np.ndarray = field(metadata=column(unknown="none"))
     right_line: np.ndarray = field(metadata=column(unknown="none"))
-    left_kind: np.ndarray = field(metadata=column(unknown="none"))
+    left_kind: np.ndarray = field(metadata=column(unknown="none"))   # (P,) str objects, edge, lane, centre, curb, pavement, hatch or none
     right_kind: np.ndarray = field(metadata=column(unknown="none"))
-    left_pattern: np.ndarray = field(metadata=column("left_patt", unknown=""))
+    left_pattern: np.ndarray = field(metadata=column("left_patt", unknown=""))   # (P,) str objects, as in DRIVING_LINES, "" where there is none
     right_pattern: np.ndarray = field(metadata=column("right_patt", unknown=""))
-    successors: list[tuple[str, ...]]
-    status: np.ndarray = field(metadata=column(unknown="measured"))
-    confidence: np.ndarray = field(metadata=column(unknown=1.0))
-    station: np.ndarray = field(metadata=column("station_m", unknown=0.0))
+    successors: list[tuple[str, ...]]   # P tuples of lane_ids, what follows in the direction of travel
+    status: np.ndarray = field(metadata=column(unknown="measured"))   # (P,) str objects, measured, inferred or bridged
+    confidence: np.ndarray = field(metadata=column(unknown=1.0))   # (P,) float, 0 to 1
+    station: np.ndarray = field(metadata=column("station_m", unknown=0.0))   # (P,) metres along the road
     end: np.ndarray = field(metadata=column("end_m", unknown=0.0))
-    other: np.ndarray = field(metadata=column())
-    left: np.ndarray
+    other: np.ndarray = field(metadata=column())   # (P,) str objects, the second reading as JSON, as of DrivingLines
+    left: np.ndarray   # (V, 3) local metres, the borders in the direction of travel, piece after piece, cut at the same places
     right: np.ndarray
-    start: np.ndarray
-    crs: str = ""
+    start: np.ndarray   # (P + 1,) int, first vertex of each piece, and V
+    crs: str = ""   # WKT, "" where unknown
 
     @staticmethod
     def of_pieces(pieces: Sequence[Mapping[str, Any]], crs: str = "") -> Lanes:
@@ -107,17 +93,10 @@ class Lanes(LayerRows):
 
     @staticmethod
     def from_features(features: Features, frame: RoadFrame | None = None) -> Lanes:
-        """Read the layer LANES.
+        """Read the layer LANES: polygons in map coordinates whose ring runs along the left border and back along the right one.
 
-        Parameters
-        ----------
-        features : Features of polygons in map coordinates whose ring runs along the left border and back along the right one. `lane_id` is
-            needed; other fields have the defaults of `of_pieces`
-        frame : RoadFrame whose origin is taken from map coordinates; None for lanes in map coordinates
-
-        Returns
-        -------
-        Lanes; rows without geometry are left out
+        `lane_id` is needed; other fields have the defaults of `of_pieces`; rows without geometry are left out. Without a frame lanes stay in map
+        coordinates.
 
         Raises
         ------
@@ -164,50 +143,36 @@ def _check_names(names: np.ndarray, types: np.ndarray) -> None:
         raise RoadExtractionError(f"The type {unknown[0]!r} of a lane is not known; it must be one of {', '.join(LANE_TYPES)}.")
 
 
-LONG_LIST = 4   # numbers: longer parameters of splines are written to 0.1 mm
+LONG_LIST = 4   # derived: numbers: longer parameters of splines are written to 0.1 mm
 
 
 @dataclass(frozen=True)
 class DrivingLines(LayerRows):
     """Driving lines in P pieces, each of one lane and status.
 
-    road, lane : (P,) int; lanes of a road are numbered from 1
     pattern : (P,) str objects, the lines to its left and right in the direction of travel, as "dashed|solid"
-    direction : (P,) int, 1 along the road's reference line, -1 against it
-    source : (P,) str objects, pair or offset: between two lines or beside one
-    status : (P,) str objects, measured, inferred, bridged
-    confidence : (P,) 0 to 1
-    curve : P Curve in local coordinates, along the road: the arc or straight that the piece is on, else the curve of the whole lane
-    rmse : (P,) metres, of the lane's places from its curve
-    station, end : (P,) metres along the road
-    offset, width : (P,) metres, medians along the piece
-    sigma : (P,) metres, uncertainty of the place across the line, one sigma, see `driving_lines.py`
-    vertices : (V, 3) local metres in the direction of travel, one piece after the other
-    start : (P + 1,) int, first vertex of each piece, and V
-    crs : WKT, "" where unknown
-    other : (P,) str objects, the second reading as JSON, see `LaneTrack.said`; "" where there is none
     """
 
     GEOMETRY_TYPE, SCHEMA = "LineStringZ", DRIVING_LINES
 
-    road: np.ndarray = field(metadata=column(unknown=-1))
+    road: np.ndarray = field(metadata=column(unknown=-1))   # (P,) int; lanes of a road are numbered from 1
     lane: np.ndarray = field(metadata=column(unknown=-1))
     pattern: np.ndarray = field(metadata=column(unknown=""))
-    direction: np.ndarray = field(metadata=column(unknown=1))
-    source: np.ndarray = field(metadata=column(unknown=""))
-    status: np.ndarray = field(metadata=column(unknown=""))
-    confidence: np.ndarray = field(metadata=column())
-    curve: list[Curve]
-    rmse: np.ndarray = field(metadata=column("rmse_m"))
-    station: np.ndarray = field(metadata=column("station_m"))
+    direction: np.ndarray = field(metadata=column(unknown=1))   # (P,) int, 1 along the road's reference line, -1 against it
+    source: np.ndarray = field(metadata=column(unknown=""))   # (P,) str objects, pair or offset: between two lines or beside one
+    status: np.ndarray = field(metadata=column(unknown=""))   # (P,) str objects, measured, inferred, bridged
+    confidence: np.ndarray = field(metadata=column())   # (P,) 0 to 1
+    curve: list[Curve]   # P Curve in local coordinates, along the road: the arc or straight that the piece is on, else the curve of the whole lane
+    rmse: np.ndarray = field(metadata=column("rmse_m"))   # (P,) metres, of the lane's places from its curve
+    station: np.ndarray = field(metadata=column("station_m"))   # (P,) metres along the road
     end: np.ndarray = field(metadata=column("end_m"))
-    offset: np.ndarray = field(metadata=column("offset_m"))
+    offset: np.ndarray = field(metadata=column("offset_m"))   # (P,) metres, medians along the piece
     width: np.ndarray = field(metadata=column("width_m"))
-    sigma: np.ndarray = field(metadata=column("sigma_m"))
-    other: np.ndarray = field(metadata=column())
-    vertices: np.ndarray
-    start: np.ndarray
-    crs: str = ""
+    sigma: np.ndarray = field(metadata=column("sigma_m"))   # (P,) metres, uncertainty of the place across the line, one sigma, see `driving_lines.py`
+    other: np.ndarray = field(metadata=column())   # (P,) str objects, the second reading as JSON, see `LaneTrack.said`; "" where there is none
+    vertices: np.ndarray   # (V, 3) local metres in the direction of travel, one piece after the other
+    start: np.ndarray   # (P + 1,) int, first vertex of each piece, and V
+    crs: str = ""   # WKT, "" where unknown
 
     @staticmethod
     def of_pieces(pieces: Sequence[Mapping[str, Any]], crs: str) -> DrivingLines:
@@ -242,28 +207,19 @@ class DrivingLines(LayerRows):
 
 @dataclass(frozen=True)
 class CurveElements(LayerRows):
-    """C circular curves of lanes.
-
-    road, lane : (C,) int
-    station, end : (C,) metres along the road
-    arc : C Arc in local coordinates, in the direction of travel
-    complete : (C,) bool, False where the arc runs on beyond the lane
-    rmse : (C,) metres, of the lane's places from the arc
-    crs : WKT, "" where unknown
-    country : whose design code they are checked against
-    """
+    """C circular curves of lanes."""
 
     GEOMETRY_TYPE, SCHEMA = "None", CURVE_ELEMENTS
 
-    road: np.ndarray = field(metadata=column(unknown=-1))
+    road: np.ndarray = field(metadata=column(unknown=-1))   # (C,) int
     lane: np.ndarray = field(metadata=column(unknown=-1))
-    station: np.ndarray = field(metadata=column("station_m"))
+    station: np.ndarray = field(metadata=column("station_m"))   # (C,) metres along the road
     end: np.ndarray = field(metadata=column("end_m"))
-    arc: list[Arc]
-    complete: np.ndarray
-    rmse: np.ndarray = field(metadata=column("rmse_m"))
-    crs: str = ""
-    country: str = NEUTRAL.name
+    arc: list[Arc]   # C Arc in local coordinates, in the direction of travel
+    complete: np.ndarray   # (C,) bool, False where the arc runs on beyond the lane
+    rmse: np.ndarray = field(metadata=column("rmse_m"))   # (C,) metres, of the lane's places from the arc
+    crs: str = ""   # WKT, "" where unknown
+    country: str = NEUTRAL.name   # whose design code they are checked against
 
     def on_map(self, frame: RoadFrame) -> list[None]:
         """A table has no geometries."""

@@ -8,7 +8,6 @@ from ..countries.catalogue import country
 from ..countries.neutral import NEUTRAL
 
 MIN_LANE_WIDTH, MAX_LANE_WIDTH = NEUTRAL.narrowest_lane, NEUTRAL.widest_lane  # m between the lines of a lane, in any country
-MIN_PLACES_PER_FIT = 8    # grid stations of a lane that a curve is fitted to
 TRAFFIC_SIDES = ("automatic", "right", "left")
 
 

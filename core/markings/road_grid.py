@@ -17,11 +17,12 @@ from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.columns import Columns
 from ..survey.store.records import COORDINATE_SCALE, Points
 from ..survey.store.road_points import RoadPoints
+from .weights import TRACKS
 
-CELL_SIZE = 0.04  # m, along and across the road: the cells in which points and paint are put
-CELL_UNITS = 400  # the same in units of 0.1 mm
-ROWS_PER_PIECE = 125             # rows of cells: 5 m of road at a time
-POINTS_PER_CELL_BLOCK = 1 << 15  # points put into cells at a time: what fits the processor's cache
+CELL_SIZE = 0.04   # derived: m, along and across the road: the cells in which points and paint are put
+CELL_UNITS = 400   # derived: the same in units of 0.1 mm
+ROWS_PER_PIECE = 125   # derived: rows of cells: 5 m of road at a time
+POINTS_PER_CELL_BLOCK = 1 << 15   # derived: points put into cells at a time: what fits the processor's cache
 
 
 class RoadGrid:
@@ -48,20 +49,13 @@ class RoadGrid:
 
 @dataclass(frozen=True)
 class PieceOfRoad:
-    """The points of a few metres of road in cells.
+    """The N points of a few metres of road in cells."""
 
-    grid : RoadGrid of these rows alone, as wide as the points lie
-    cell : (N,) int32 flat number in it of each point
-    occupied : (rows, columns) bool, cells that points lie in
-    half_width : (2, rows) uint16, mm to the road's edge on the left and on the right, 0 where it is not known
-    offsets : (M,) int32, units of 0.1 mm, of an evenly spaced sample of the points
-    """
-
-    grid: RoadGrid
-    cell: np.ndarray
-    occupied: np.ndarray
-    half_width: np.ndarray
-    offsets: np.ndarray
+    grid: RoadGrid   # of these rows alone, as wide as the points lie
+    cell: np.ndarray   # (N,) int32 flat number in it
+    occupied: np.ndarray   # (rows, columns) bool, cells that points lie in
+    half_width: np.ndarray   # (2, rows) uint16, mm to the road's edge on the left and on the right, 0 where it is not known
+    offsets: np.ndarray   # (M,) int32, units of 0.1 mm, of an evenly spaced sample of the points
 
     @classmethod
     def of(cls, points: Points, first: int, last: int, step: int = 1) -> PieceOfRoad:
@@ -109,12 +103,7 @@ def cells_of_road(road_points: RoadPoints, road: int, first: int, last: int, ste
 
 @dataclass(frozen=True)
 class RoadCells:
-    """A window of the road in cells.
-
-    grid : RoadGrid
-    occupied : (rows, columns) bool, cells that points lie in
-    half_width : (2, rows) uint16, mm to the road's edge on the left and on the right, 0 where it is not known
-    """
+    """A window of the road in cells; columns as of PieceOfRoad."""
 
     grid: RoadGrid
     occupied: np.ndarray
@@ -177,18 +166,9 @@ def _half_widths(records, first, last):
 
 # Which occupied cells of a grid belong together: those that touch, and those whose points lie near enough.
 
+
 def occupied(row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The cells that points lie in.
-
-    Parameters
-    ----------
-    row, column : (N,) int32
-
-    Returns
-    -------
-    cells : (K, 2) int64, different ones, sorted
-    member : (N,) int, the cell of each point
-    """
+    """The cells (K, 2) int64 that points lie in, different ones in order, and (N,) int the cell of each point; `row`, `column` : (N,) int32."""
     if not len(row):
         return np.empty((0, 2), np.int64), np.empty(0, np.int64)
     order = order_by(column, row)
@@ -200,23 +180,16 @@ def occupied(row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def components(cells: np.ndarray, places: np.ndarray, size: tuple[float, float], distance: float) -> np.ndarray:
-    """Connected components of cells whose places lie within a distance.
+    """(K,) int32, connected components of cells whose places lie within a distance, numbered in the order of the cells.
+
+    Exact, and without measuring every pair: where places of cells that touch are near enough wherever they lie, an image of the cells gives the
+    patches that are connected, and pairs are measured between patches only.
 
     Parameters
     ----------
-    cells : (K, 2) int, row and column, different ones, sorted
-    places : (K, 2) m, a place in each cell
+    cells : (K, 2) int, row and column, different ones, sorted; places : (K, 2) m, a place in each
     size : (2,) m, of a cell in the units of the places
     distance : m between places that belong together
-
-    Returns
-    -------
-    (K,) int32 component of each cell, numbered in the order of the cells
-
-    Notes
-    -----
-    Exact, and without measuring every pair: where places of cells that touch are near enough wherever they lie, an image of the cells gives the
-    patches that are connected, and pairs are measured between patches only.
     """
     if not len(cells):
         return np.empty(0, np.int32)
@@ -261,10 +234,7 @@ def _patches(at, shape):
 # Between two tracks of the scan, which may lie three decimetres apart, no gap was seen where both show paint: the cells between them belong to the
 # marking.
 
-TRACK_WIDTH = 0.03       # m that points may lie farther apart than the middles of their tracks
-MIN_TRACK_GAP = 0.10     # m: points so near across the road are of one marking in any case
-MAX_GAP_ON_TRACK = 0.40  # m along the road between points on one track
-ROWS_AT_ONCE = 2500      # of cells, along the road, that are filled together: 100 m
+ROWS_AT_ONCE = 2500   # derived: of cells, along the road, that are filled together: 100 m
 
 
 def fill_gaps(mask: np.ndarray, limit: int, axis: int = 0) -> np.ndarray:
@@ -282,32 +252,19 @@ def fill_gaps(mask: np.ndarray, limit: int, axis: int = 0) -> np.ndarray:
 
 
 def track_reach(spacing: np.ndarray) -> np.ndarray:
-    """How far apart across the road points of one marking may lie for the spacing of the scan alone, m.
+    """(N,) m that points of one marking may lie apart across the road for the spacing of the scan alone, 0 where points lie close together.
 
-    Parameters
-    ----------
-    spacing : (N,) int, mm across the road between the tracks of the scan
-
-    Returns
-    -------
-    (N,) float, 0 where points lie close together
+    `spacing` : (N,) int, mm across the road between the tracks of the scan.
     """
-    reach = spacing * 1e-3 + TRACK_WIDTH
-    return np.where(reach > MIN_TRACK_GAP, reach, 0.0)
+    reach = spacing * 1e-3 + TRACKS.track_width
+    return np.where(reach > TRACKS.min_track_gap, reach, 0.0)
 
 
 def filled_between_tracks(cells: np.ndarray, reach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Cells of a marking with those between neighbouring tracks of the scan.
 
-    Parameters
-    ----------
-    cells : (K, 2) int, along the road and across it, different ones
-    reach : (K,) m of `track_reach`
-
-    Returns
-    -------
-    mask : (A, B) bool, first axis along the road, with a rim of cells that are off
-    first : (2,) int, the cell of mask[0, 0]
+    `cells` : (K, 2) int, along the road and across it, different ones; `reach` : (K,) m of `track_reach`. Returns an (A, B) bool mask, first axis
+    along the road, with a rim of cells that are off, and the (2,) int cell of mask[0, 0].
     """
     first = cells.min(axis=0) - 1
     shape = cells.max(axis=0) - first + 2
@@ -320,7 +277,7 @@ def filled_between_tracks(cells: np.ndarray, reach: np.ndarray) -> tuple[np.ndar
     (row, column), gaps = (cells[wide] - first).T, gaps[wide]
     order = np.argsort(row, kind="stable")
     row, column, gaps = np.ascontiguousarray(row[order]), column[order], gaps[order]
-    longest = int(round(MAX_GAP_ON_TRACK / CELL_SIZE))
+    longest = int(round(TRACKS.max_gap_on_track / CELL_SIZE))
     # a marking may be as long as the road
     for begin in range(0, len(mask), ROWS_AT_ONCE):
         near = stretch_of(row, begin - longest, begin + ROWS_AT_ONCE + longest - 1)

@@ -82,52 +82,31 @@ class RoadMapSettings:
 
 @dataclass
 class RoadMap:
-    """All results of the chain.
-
-    frame : RoadFrame
-    crs : WKT, "" where unknown
-    curb_points : CurbPoints
-    edges : RoadEdges
-    surface : SurfaceOutlines
-    markings, marking_lines, driving_lines, lanes, curve_elements : layers; None where not made
-    road_points : RoadPoints; `road_points.close()` frees the disk space of the store
-    boundary_differences : RoadEdges, where the two boundary methods disagree; None if one method was used
-    length_by_method : {method: metres of measured edges}
-    intensity_report : of the correction, None without it
-    image : IntensityImage, None without intensity
-    without_paint : the reason why there are no markings, "" where there are
-    seconds : {stage: run time in s}
-    counts : numbers of curb points, road points and marking points
-    survey_facts : numbers of files, scanners, passes, roads and points, and the sensor heights
-    density : CubeDensity of the points near the road and of the road points
-    marking_curvature : MarkingCurvature, None without lines
-    country : whose design code the curves are checked against
-    corrections : of an analyst, and which of them something was found for
-    """
+    """All results of the chain."""
 
     frame: RoadFrame
-    crs: str
+    crs: str   # WKT, "" where unknown
     curb_points: CurbPoints
     edges: RoadEdges
     surface: SurfaceOutlines
-    road_points: Any
-    boundary_differences: RoadEdges | None = None
-    length_by_method: dict = field(default_factory=dict)
-    intensity_report: Any = None
-    image: Any = None
-    markings: Features | None = None
+    road_points: Any   # RoadPoints; `road_points.close()` frees the disk space of the store
+    boundary_differences: RoadEdges | None = None   # RoadEdges, where the two boundary methods disagree; None if one method was used
+    length_by_method: dict = field(default_factory=dict)   # {method: metres of measured edges}
+    intensity_report: Any = None   # of the correction, None without it
+    image: Any = None   # IntensityImage, None without intensity
+    markings: Features | None = None   # layers; None where not made
     marking_lines: Features | None = None
     driving_lines: Features | None = None
     lanes: Features | None = None
     curve_elements: Features | None = None
-    without_paint: str = ""
-    seconds: dict = field(default_factory=dict)
-    counts: dict = field(default_factory=dict)
-    survey_facts: dict = field(default_factory=dict)
-    density: tuple[CubeDensity, ...] = ()
-    marking_curvature: Any = None
-    country: str = DrivingSettings.country
-    corrections: Corrections = field(default_factory=Corrections)
+    without_paint: str = ""   # the reason why there are no markings, "" where there are
+    seconds: dict = field(default_factory=dict)   # {stage: run time in s}
+    counts: dict = field(default_factory=dict)   # numbers of curb points, road points and marking points
+    survey_facts: dict = field(default_factory=dict)   # numbers of files, scanners, passes, roads and points, and the sensor heights
+    density: tuple[CubeDensity, ...] = ()   # CubeDensity of the points near the road and of the road points
+    marking_curvature: Any = None   # MarkingCurvature, None without lines
+    country: str = DrivingSettings.country   # whose design code the curves are checked against
+    corrections: Corrections = field(default_factory=Corrections)   # of an analyst, and which of them something was found for
 
     def layer(self, name: str) -> Features | None:
         """The result of a name, such as "edges", as a layer in map coordinates; None where it was not made."""
@@ -270,34 +249,24 @@ def _paint(result, image_path, settings, stages, executor):
 
 # The stages of the road map, run one after the other: their shares of the progress bar and their run times.
 
-# Relative run time of each stage (per million points, per kilometre of road), measured by `make bench`
+# source: `make bench`: relative run time of each stage (per million points, per kilometre of road)
 STAGE_COSTS = dict(survey=(0.31, 0.1), profiles=(0.105, 4.6), scanlines=(0.2, 8.0), edges=(0.0, 0.04), surface=(0.05, 1.5), intensity=(0.037, 0.7),
              image=(0.047, 1.1), markings=(0.017, 2.4), outliers=(0.018, 0.26), clusters=(0.019, 1.1), lines=(0.007, 0.6), driving=(0.005, 0.85))
-MIN_STAGE_COST = 0.01  # of a stage without work
-LAZ_READ_COST, LAS_READ_COST = 1.0, 0.42  # relative run time of reading a point of a LAZ and of a LAS file
+MIN_STAGE_COST = 0.01   # derived: of a stage without work
+LAZ_READ_COST, LAS_READ_COST = 1.0, 0.42   # source: relative run time of reading a point of a LAZ and of a LAS file
 
 
 @dataclass(frozen=True)
 class Extent:
-    """The amount of work, as far as it is known.
+    """The amount of work, as far as it is known."""
 
-    points : millions of points
-    length : kilometres of road
-    plain : share of the points in uncompressed files
-    """
-
-    points: float
-    length: float
-    plain: float = 0.0
+    points: float   # millions of points
+    length: float   # kilometres of road
+    plain: float = 0.0   # share of the points in uncompressed files
 
     @classmethod
     def expected(cls, paths: Sequence[str | Path], trajectory: Trajectory, crs: str = "") -> Extent:
-        """The extent by file headers and trajectory, before any point is read.
-
-        Parameters
-        ----------
-        paths : point cloud files
-        crs : WKT for clouds that carry none
+        """The extent by file headers and trajectory, before any point is read; `crs` is that of clouds that carry none.
 
         Raises
         ------
@@ -329,19 +298,9 @@ STAGE_NAMES = ("survey", "curbs", "edges", "surface", *INTENSITY_STAGES)
 
 
 class Stages:
-    """Runs the stages of a road map one after the other and measures their run times.
+    """Runs the stages of a road map one after the other, measures their run times, s, and moves the bar, of which the fraction `done` is done.
 
-    Parameters
-    ----------
-    progress : Progress of the whole run
-    extent : Extent
-    method : of boundary detection: profiles, scanlines or both
-    left_out : names of stages that will not run
-
-    Attributes
-    ----------
-    done : fraction of the bar that is done
-    seconds : {stage: run time in s}
+    `method` : of boundary detection; `left_out` : stages that will not run.
     """
 
     def __init__(self, progress: Progress, extent: Extent, method: str, left_out: Sequence[str] = ()):

@@ -17,11 +17,12 @@ from ..common.progress import Progress
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import find_lattice
 from .common.curb_limits import CurbSettings
-from .common.curb_points import CurbPoints, curb_points_at
+from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
 from .common.occlusion import OcclusionGrid
+from .common.side_curbs import SideChains, points_of_rows
 from .common.sides import SIDE_SIGNS, expected_height, hidden_beside
-from .common.tracking import PieceInLine, SideChains, StepsByStation, pieces_between
+from .common.tracking import PieceInLine, StepsByStation, pieces_between
 from .curb_returns.detect import with_curb_returns
 from .curb_returns.main_curbs import main_curbs_of
 from .edges.fit import EdgeSettings, fit_road_edges
@@ -85,12 +86,6 @@ class RoadBoundaries:
 
 def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettings(), progress: Progress = Progress()) -> dict[str, CurbPoints]:
     """Curb points of the methods that the settings name.
-
-    Parameters
-    ----------
-    survey : Survey
-    settings : BoundarySettings
-    progress : Progress
 
     Returns
     -------
@@ -165,14 +160,7 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
     Parameters
     ----------
     found : result of `find_curb_points`
-    frame : RoadFrame
-    settings : EdgeSettings
-    progress : Progress
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
-
-    Returns
-    -------
-    RoadBoundaries
     """
     boundaries = _drawn(found, frame, settings, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
     if survey is not None:
@@ -208,8 +196,6 @@ SECOND_METHOD_CHAIN_OFFSET = 100_000   # derived: more chains than a method find
 class CurbEvidence:
     """What a method saw beside the roads.
 
-    Attributes
-    ----------
     chains : (number of the road, side) -> SideChains
     beside : number of the road -> side -> OcclusionGrid
     """
@@ -222,8 +208,6 @@ class CurbEvidence:
 class _EdgeSamples:
     """The edges of one side of a road at N places BOUNDARY.comparison_step apart.
 
-    Attributes
-    ----------
     s : (N,) m, station
     d, z : (N,) m, offset and local height, NaN where there is no edge
     measured : (N,) bool
@@ -240,11 +224,6 @@ class _EdgeSamples:
 def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> _EdgeSamples:
     """The edges of one side of a road at regular stations.
 
-    Parameters
-    ----------
-    edges : RoadEdges
-    frame : RoadFrame
-    road : number of the road
     side : "left" or "right"
     """
     line = frame.road(road)
@@ -278,16 +257,9 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
     takes the points that scatter less about their line. Where they found different curbs,
     those of the first method are taken.
 
-    Parameters
-    ----------
     points, others : CurbPoints of two methods, the one with the stricter model of a curb first
     edges, other_edges : RoadEdges fitted through each
-    frame : RoadFrame
     seen, others_seen : what each method saw beside the roads
-
-    Returns
-    -------
-    CurbPoints
     """
     # the chains of both methods keep apart
     others = replace(others, chain=np.where(others.chain < 0, others.chain, others.chain + SECOND_METHOD_CHAIN_OFFSET))
@@ -365,11 +337,8 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
     The number is the distance that 95 % of the piece does not exceed, NaN where one of the
     two sets has no line. It is measured across the road, every BOUNDARY.comparison_step metres.
 
-    Parameters
-    ----------
     edges : RoadEdges that are drawn
     first_edges, second_edges : RoadEdges of two methods
-    frame : RoadFrame
 
     Returns
     -------
@@ -396,7 +365,7 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
                 x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])
                 differences.append(EdgePiece(
                     np.c_[x, y, z], road.number, side, "measured", len(differences), float(first.s[a]), float(first.s[b - 1]),
-                    float(np.hypot(np.diff(x), np.diff(y)).sum()), agree=100 * float(apart[a:b].max())))
+                    agree=100 * float(apart[a:b].max())))
     return replace(edges, agree=agree), joined_pieces(differences, frame, edges.crs)
 
 
@@ -423,12 +392,9 @@ def with_pieces_of_both(points: CurbPoints, chains: Sequence[Mapping[tuple[int, 
                         beside: Mapping[int, Mapping[str, OcclusionGrid]], survey: Survey) -> CurbPoints:
     """The curb points, and between them pieces of chains that lie in their line, with the places beside these that are hidden.
 
-    Parameters
-    ----------
     points : CurbPoints of the main curbs
     chains : of each method, (number of the road, side) -> SideChains
     beside : number of the road -> side -> OcclusionGrid
-    survey : Survey
     """
     found = [points]
     for road in survey.store.roads():
@@ -466,6 +432,4 @@ def _pieces_of_side(points, chains, survey, road, side, number):
             if all(piece.end < other.start or piece.start > other.end for other in chosen):
                 chosen.append(piece)
                 rows += known.points(piece.steps, number + len(rows))
-    s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))
-    places = frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))
-    return curb_points_at(frame, road, places, [row["fields"] for row in rows], points.crs, side=side, station=s, offset=sign * u)
+    return points_of_rows(survey, road, side, rows, points.crs)

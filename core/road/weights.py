@@ -108,6 +108,14 @@ class _CurbWeights:
     max_look_along: float = 4.0   # m along the road from the vehicle to a point that is used, plus as much as it lies across
     min_hidden_gap: float = 2.0   # m between curb points from which one may be hidden: as far apart as points of automatic blocks lie
     max_hidden_gap: float = 30.0   # m between curbs within which hidden curb is reported
+    # blocks of a side
+    pass_merge_across: float = 0.12   # m across, and
+    pass_merge_height: float = 0.10   # m of height between the same step seen in two passes
+    max_block_length: float = 2.0   # m, automatic blocks on straight road, and
+    min_block_length: float = 0.5   # m, in sharp bends
+    max_block_turn: float = np.radians(1.0)   # turn of the road within a block
+    max_block_bend: float = 0.015   # m off its own straight line above which a block is divided
+    chain_end_steps: int = 3   # profiles that give the end point of a chain
     # chains
     max_link_length: float = 1.0   # m along the road that a link may span
     link_drift: float = 0.20   # m across per m along that a link may differ from the faces' own direction
@@ -157,15 +165,7 @@ CURBS = _CurbWeights()
 class _ProfileWeights:
     """How steps are found on profiles."""
 
-    # points of a curb
     min_track_distance: float = 0.6   # m from the track: no curb is nearer
-    pass_merge_across: float = 0.12   # m across, and
-    pass_merge_height: float = 0.10   # m of height between the same step seen in two passes
-    max_block_length: float = 2.0   # m, automatic blocks on straight road, and
-    min_block_length: float = 0.5   # m, in sharp bends
-    max_block_turn: float = np.radians(1.0)   # turn of the road within a block
-    max_block_bend: float = 0.015   # m off its own straight line above which a block is divided
-    chain_end_steps: int = 3   # profiles that give the end point of a chain
     main_curb_progress: float = 0.6   # share of the work
     # single profiles
     max_rise_width: float = 0.15   # m across within which the whole rise must lie

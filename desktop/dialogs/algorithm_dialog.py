@@ -8,7 +8,7 @@ from pathlib import Path
 from processing.gui.AlgorithmDialog import AlgorithmDialog
 from qgis import utils
 from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsSettings
-from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QTextBrowser, QWidget
+from qgis.PyQt.QtWidgets import QDialogButtonBox, QInputDialog, QMenu, QTextBrowser, QWidget
 
 from ...algorithms.cloud_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
@@ -16,13 +16,12 @@ from ...processing_provider.results.run_table import last_run
 from ...processing_provider.texts import tr
 from ..messages import tell_result
 from ..review.corrections_layer import SURVEY, corrections_layers
-from ..widgets import button
+from ..widgets import button, folder_for_results
 from .batch_dialog import BatchAlgorithmDialog
 from .database_dialog import DatabaseDialog, database_destinations
-from .destinations import LAST_OUTPUT, destinations, outputs_by_default
+from .destinations import destinations, outputs_by_default
 from .stage_inputs import name_by_survey, presets
 
-LAST_INPUT = "/Processing/LastInputPath"  # QGIS's own setting
 PRESETS = "lanewright/presets"
 SETTINGS = ("number", "enum", "boolean", "string", "crs", "expression", "distance")  # what a preset holds: no data, no destination
 FEWEST_OUTPUTS = 3  # that are worth one place for all
@@ -99,9 +98,8 @@ class LanewrightDialog(AlgorithmDialog):
     # -- everything to one place ----------------------------------------------------------------
 
     def choose_folder(self) -> None:
-        folder = QFileDialog.getExistingDirectory(self, tr("Folder for all results"), QgsSettings().value(LAST_OUTPUT, "") or _folder_of_inputs())
+        folder = folder_for_results(self)
         if folder:
-            QgsSettings().setValue(LAST_OUTPUT, folder)
             self.save_everything_to(folder)
 
     def save_everything_to(self, folder: str) -> None:
@@ -173,10 +171,6 @@ class LanewrightDialog(AlgorithmDialog):
     def _defaults(self):
         self.setParameters({definition.name(): definition.defaultValue() for definition in self.algorithm().parameterDefinitions()
                             if definition.type() in SETTINGS})
-
-
-def _folder_of_inputs():
-    return QgsSettings().value(LAST_INPUT, "")
 
 
 def presets_of(algorithm: str) -> dict[str, dict]:

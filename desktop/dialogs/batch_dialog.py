@@ -15,11 +15,10 @@ from ...algorithms.cloud_files import SUFFIXES, cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.texts import tr
 from ..trajectory_widget import trajectory_beside
-from ..widgets import button
-from .destinations import LAST_OUTPUT, destinations, outputs_by_default
+from ..widgets import LAST_INPUT, button, folder_for_results
+from .destinations import destinations, outputs_by_default
 
 CLOUDS = "POINT_CLOUDS"
-LAST_INPUT = "/Processing/LastInputPath"  # QGIS's own setting
 PATH_WIDTH = 330  # px
 
 
@@ -77,9 +76,8 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
         self.messageBar().pushMessage("", tr("{count} surveys in {folder}.").format(count=len(found), folder=folder), level=Qgis.MessageLevel.Info)
 
     def choose_folder(self) -> None:
-        folder = QFileDialog.getExistingDirectory(self, tr("Folder for all results"), QgsSettings().value(LAST_OUTPUT, ""))
+        folder = folder_for_results(self)
         if folder:
-            QgsSettings().setValue(LAST_OUTPUT, folder)
             self.save_everything_to(folder)
 
     def save_everything_to(self, folder: str) -> None:

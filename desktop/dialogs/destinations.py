@@ -8,8 +8,6 @@ from qgis.core import QgsProcessingAlgorithm, QgsProcessingParameterDefinition
 
 from ...algorithms.destinations import table_of
 
-LAST_OUTPUT = "/Processing/LastOutputPath"  # QGIS's own setting
-
 
 def outputs_by_default(algorithm: QgsProcessingAlgorithm) -> list[QgsProcessingParameterDefinition]:
     """The results that are made unless one is left out."""

@@ -33,6 +33,14 @@ STYLES = (QgsLegendStyle.Style.Title, QgsLegendStyle.Style.Group, QgsLegendStyle
           QgsLegendStyle.Style.SymbolLabel)
 
 
+def text_format(size: float) -> QgsTextFormat:
+    """The letters of a layout, in points."""
+    style = QgsTextFormat()
+    style.setFont(QFont(FONT))
+    style.setSize(size)
+    return style
+
+
 def as_it_stands(text: str) -> str:
     """A text of others, such as the name of a survey or a CRS, for a layout, which would evaluate expressions between [% and %] in it."""
     return text.replace("[%", "[% '[%' %]")
@@ -129,8 +137,5 @@ def _set_sizes(legend, title, entry, symbol):
     legend.setSymbolHeight(symbol)
     for style in STYLES:
         one = legend.style(style)
-        text = QgsTextFormat()
-        text.setFont(QFont(FONT))
-        text.setSize(entry if style == QgsLegendStyle.Style.SymbolLabel else title)
-        one.setTextFormat(text)
+        one.setTextFormat(text_format(entry if style == QgsLegendStyle.Style.SymbolLabel else title))
         legend.setStyle(style, one)

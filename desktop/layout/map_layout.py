@@ -24,14 +24,13 @@ from qgis.core import (
     QgsProject,
     QgsProperty,
     QgsRectangle,
-    QgsTextFormat,
     QgsVectorLayer,
 )
 from qgis.PyQt.QtCore import QRectF, Qt
-from qgis.PyQt.QtGui import QColor, QFont
+from qgis.PyQt.QtGui import QColor
 
 from ...processing_provider.texts import tr
-from .layout_legend import add_legend, as_it_stands, legend_height
+from .layout_legend import add_legend, as_it_stands, legend_height, text_format
 from .page_series import MapPage, pages_along
 
 PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0)}  # mm, landscape
@@ -182,11 +181,19 @@ def _place(layout, item, x, y, width=None, height=None):
         item.attemptResize(QgsLayoutSize(width, height, Qgis.LayoutUnit.Millimeters))
 
 
-def _text(size: float) -> QgsTextFormat:
-    style = QgsTextFormat()
-    style.setFont(QFont("DejaVu Sans"))
-    style.setSize(size)
-    return style
+def _boxed(item, opacity):
+    """A white box behind an item."""
+    item.setBackgroundEnabled(True)
+    item.setBackgroundColor(QColor(255, 255, 255, opacity))
+
+
+def _label(layout, text, size, side=Qt.AlignmentFlag.AlignLeft):
+    label = QgsLayoutItemLabel(layout)
+    label.setText(text)
+    label.setTextFormat(text_format(size))
+    label.setHAlign(side)
+    label.setVAlign(Qt.AlignmentFlag.AlignVCenter)
+    return label
 
 
 def _add_map(layout, layers, crs, frame, centre, angle, scale):
@@ -209,12 +216,7 @@ def _add_heading(layout, title, crs, frame, atlas):
     page = ", " + tr("page") + " [% @atlas_featurenumber %] / [% @atlas_totalfeatures %]" if atlas else ""
     right = as_it_stands(crs.userFriendlyIdentifier()) + page
     for text, size, side in ((as_it_stands(title), 13, Qt.AlignmentFlag.AlignLeft), (right, 8, Qt.AlignmentFlag.AlignRight)):
-        heading = QgsLayoutItemLabel(layout)
-        heading.setText(text)
-        heading.setHAlign(side)
-        heading.setVAlign(Qt.AlignmentFlag.AlignVCenter)
-        heading.setTextFormat(_text(size))
-        _place(layout, heading, BORDER, BORDER - 1, frame.map_width, HEADING - 1)
+        _place(layout, _label(layout, text, size, side), BORDER, BORDER - 1, frame.map_width, HEADING - 1)
 
 
 def _add_scale_bar(layout, chart, frame, scale):
@@ -229,22 +231,16 @@ def _add_scale_bar(layout, chart, frame, scale):
     # Four segments in an eighth to a quarter of the page
     least = frame.map_width / 1000 * scale / 40
     bar.setUnitsPerSegment(next(step * 10**power for power in range(7) for step in (1, 2, 5) if step * 10**power >= least))
-    bar.setTextFormat(_text(7))
+    bar.setTextFormat(text_format(7))
     bar.setHeight(2)
-    bar.setBackgroundEnabled(True)
-    bar.setBackgroundColor(QColor(255, 255, 255, 225))
+    _boxed(bar, 225)
     bar.update()
     bottom = BORDER + HEADING + frame.map_height
     _place(layout, bar, BORDER + frame.map_width - bar.rect().width() - 3, bottom - bar.rect().height() - 3)
-    number = QgsLayoutItemLabel(layout)
+    number = _label(layout, "1 : [% format_number(round(item_variables('Map')['map_scale'] / 10) * 10, 0) %]", 8, Qt.AlignmentFlag.AlignRight)
     number.setId("Scale")
-    number.setText("1 : [% format_number(round(item_variables('Map')['map_scale'] / 10) * 10, 0) %]")
-    number.setTextFormat(_text(8))
-    number.setHAlign(Qt.AlignmentFlag.AlignRight)
-    number.setBackgroundEnabled(True)
-    number.setBackgroundColor(QColor(255, 255, 255, 225))
+    _boxed(number, 225)
     number.setMarginX(2.0)
-    number.setVAlign(Qt.AlignmentFlag.AlignVCenter)
     _place(layout, number, bar.pos().x(), bottom - bar.rect().height() - 8, bar.rect().width(), 5.0)
 
 
@@ -255,8 +251,7 @@ def _add_north_arrow(layout, chart, frame):
     arrow.setPicturePath(NORTH_ARROW)
     arrow.setSvgFillColor(QColor(40, 40, 40))
     arrow.setSvgStrokeColor(QColor(40, 40, 40))
-    arrow.setBackgroundEnabled(True)
-    arrow.setBackgroundColor(QColor(255, 255, 255, 200))
+    _boxed(arrow, 200)
     arrow.setLinkedMap(chart)
     arrow.setNorthMode(QgsLayoutItemPicture.NorthMode.GridNorth)
     _place(layout, arrow, BORDER + frame.map_width - ARROW - 3, BORDER + HEADING + 3, ARROW, ARROW)
@@ -264,12 +259,10 @@ def _add_north_arrow(layout, chart, frame):
 
 def _add_credit(layout, frame, credit):
     """In the lower left corner of the map."""
-    label = QgsLayoutItemLabel(layout)
+    label = _label(layout, as_it_stands(credit), 6.5)
+    label.setVAlign(Qt.AlignmentFlag.AlignTop)
     label.setId("Credit")
-    label.setText(as_it_stands(credit))
-    label.setTextFormat(_text(6.5))
-    label.setBackgroundEnabled(True)
-    label.setBackgroundColor(QColor(255, 255, 255, 200))
+    _boxed(label, 200)
     label.setMarginX(1.0)
     label.setMarginY(0.5)
     size, widest = label.sizeForText(), 0.5 * frame.map_width

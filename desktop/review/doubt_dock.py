@@ -17,8 +17,9 @@ from ...processing_provider.results.road_maps import RoadMap, clouds_of
 from ...processing_provider.texts import tr
 from ..widgets import button, choices, row, say, show_extent, wrapped
 from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
-from .doubtful import Doubt, DoubtfulPiece, doubts_of
+from .doubtful import Doubt, doubts_of
 from .line_tool import LineTool
+from .missing_parts import DoubtfulPiece
 
 LEAST_VIEW = 30.0   # m of ground shown about a place
 FILE = "corrections.gpkg"

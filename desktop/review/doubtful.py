@@ -11,7 +11,7 @@ from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsGeometry, QgsLineSt
 from ...processing_provider.results.attributes import second_reading
 from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.texts import tr
-from .missing_parts import Missing, grown_surface, lane_ends, missing_edges, warned_places
+from .missing_parts import DoubtfulPiece, grown_surface, lane_ends, missing_edges, warned_places
 from .section import title_of
 
 TARGETS = {"ROAD_EDGES": "edge", "MARKING_LINES": "marking", "DRIVING_LINES": "lane", "LANES": "lane"}  # what a correction calls them
@@ -25,35 +25,6 @@ SAME_PLACE = 10.0   # m of station within which doubts are looked at together
 # Share of a piece that is likely to be wrong, by which places are ranked. Of a piece with a confidence it is 1 - confidence.
 # Methods that differ: one of the two is wrong. Bridged and inferred pieces without a confidence: as an unsure one.
 LIKELY_WRONG = {"apart": 0.5, "guessed": 1.0 - UNSURE}
-
-
-@dataclass(frozen=True)
-class DoubtfulPiece:
-    """One piece of a line or lane, or something that is not there.
-
-    text : what is doubtful
-    kind : edge, marking, lane, surface or warning
-    target : what a correction calls it; "" where there is nothing that a correction could be about
-    line : its course
-    road, station, offset : where it begins along the road
-    doubt : m of it that are likely to be wrong
-    other : the second reading of the program, as the layer holds it; "" where there is none
-    """
-
-    text: str
-    kind: str
-    target: str
-    line: QgsGeometry
-    road: int
-    station: float
-    offset: float | None
-    doubt: float = 0.0
-    other: str = ""
-
-    @property
-    def key(self) -> str:
-        """By which the piece is known when the places are made again."""
-        return f"{self.kind} {self.road} {self.station:.1f} {'' if self.offset is None else f'{self.offset:.1f}'}"
 
 
 @dataclass(frozen=True)
@@ -89,7 +60,7 @@ def doubts_of(road_map: RoadMap, kinds: Iterable[str] = ()) -> list[Doubt]:
     if road_map.layer("DRIVING_LINES") is None or not seen:
         pieces += _doubtful_rows(road_map, "LANES")
     for found in (missing_edges(road_map), grown_surface(road_map), lane_ends(road_map), warned_places(road_map)):
-        pieces += [_missing_piece(missing) for missing in found]
+        pieces += found
     wanted = set(kinds)
     crs = road_map.vectors[0].crs()
     return _gathered(sorted((piece for piece in pieces if not wanted or piece.kind in wanted), key=lambda piece: (piece.road, piece.station)), crs)
@@ -107,14 +78,10 @@ def _doubtful_rows(road_map, output):
             other = str(row.get("other") or "")
             if other:
                 why += tr("; almost as likely: {reading}").format(reading=second_reading(other))
-            found.append(DoubtfulPiece(f"{title_of(layer, feature)}: {why}", target, target, course_of(feature.geometry()),
-                                       int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0, _number(row.get("offset_m")),
-                                       (_number(row.get("length_m")) or 0.0) * _share_wrong(row), other))
+            found.append(DoubtfulPiece(f"{title_of(layer, feature)}: {why}", target, course_of(feature.geometry()),
+                                       int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0,
+                                       (_number(row.get("length_m")) or 0.0) * _share_wrong(row), target, _number(row.get("offset_m")), other))
     return found
-
-
-def _missing_piece(missing: Missing):
-    return DoubtfulPiece(missing.text, missing.kind, "", missing.line, missing.road, missing.station, None, missing.doubt)
 
 
 def reason(row: dict) -> str:

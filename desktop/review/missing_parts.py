@@ -23,8 +23,18 @@ LIKELY_WRONG = {"gap": 0.5, "grown": 0.5, "lane_end": 5.0, "warning": 1.0}
 
 
 @dataclass(frozen=True)
-class Missing:
-    """Something that is not there or not known: in words, edge, surface, lane or warning, where, and m that are likely to be wrong."""
+class DoubtfulPiece:
+    """One piece of a line or lane that is doubtful, or something that is not there.
+
+    text : what is doubtful
+    kind : edge, marking, lane, surface or warning
+    line : its course
+    road, station : where it begins along the road
+    doubt : m of it that are likely to be wrong
+    target : what a correction calls it; "" where there is nothing that a correction could be about
+    offset : where it begins across the road
+    other : the second reading of the program, as the layer holds it; "" where there is none
+    """
 
     text: str
     kind: str
@@ -32,9 +42,17 @@ class Missing:
     road: int
     station: float
     doubt: float
+    target: str = ""
+    offset: float | None = None
+    other: str = ""
+
+    @property
+    def key(self) -> str:
+        """By which the piece is known when the places are made again."""
+        return f"{self.kind} {self.road} {self.station:.1f} {'' if self.offset is None else f'{self.offset:.1f}'}"
 
 
-def missing_edges(road_map: RoadMap) -> Iterator[Missing]:
+def missing_edges(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
     """Stretches along which one side of a road has no edge."""
     covered = defaultdict(list)
     for feature, road, start, end in _rows(road_map.layer("ROAD_EDGES"), "side"):
@@ -46,20 +64,20 @@ def missing_edges(road_map: RoadMap) -> Iterator[Missing]:
                 line = along(road_map, road, first, last) if last - first >= LEAST_GAP else None
                 if line is not None:
                     text = tr("No road edge on the {side} for {length:.0f} m").format(side=WORDS["side"][side], length=last - first)
-                    yield Missing(text, "edge", line, road, first, LIKELY_WRONG["gap"] * (last - first))
+                    yield DoubtfulPiece(text, "edge", line, road, first, LIKELY_WRONG["gap"] * (last - first))
 
 
-def grown_surface(road_map: RoadMap) -> Iterator[Missing]:
+def grown_surface(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
     """Surface that ends at no edge."""
     for feature, road, start, end in _rows(road_map.layer("ROAD_SURFACE"), "status"):
         if feature["status"] == "grown" and end - start >= LEAST_GAP:
             geometry = feature.geometry()  # its parts live no longer than it
             rim = QgsGeometry(next(geometry.constParts()).exteriorRing().clone())
             text = tr("Road surface, {length:.0f} m: grown, no edge was found on one side at least").format(length=end - start)
-            yield Missing(text, "surface", rim, road, start, LIKELY_WRONG["grown"] * (end - start))
+            yield DoubtfulPiece(text, "surface", rim, road, start, LIKELY_WRONG["grown"] * (end - start))
 
 
-def lane_ends(road_map: RoadMap) -> Iterator[Missing]:
+def lane_ends(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
     """Driven lanes that end before their road does."""
     roads = _roads(road_map)
     for feature, road, start, end in _rows(road_map.layer("LANES"), "direction", "successors", "type", "lane"):
@@ -70,17 +88,17 @@ def lane_ends(road_map: RoadMap) -> Iterator[Missing]:
         line = along(road_map, road, at - 1.0, at + 1.0) if left > ROAD_END else None
         if line is not None:
             text = tr("Lane {lane} ends here, {left:.0f} m before the end of the road").format(lane=feature["lane"], left=left)
-            yield Missing(text, "lane", line, road, at, LIKELY_WRONG["lane_end"])
+            yield DoubtfulPiece(text, "lane", line, road, at, LIKELY_WRONG["lane_end"])
 
 
-def warned_places(road_map: RoadMap) -> Iterator[Missing]:
+def warned_places(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
     """Places that the warnings of the run name."""
     for text in road_map.provenance.warnings:
         for place in places_in(text):
             line = along(road_map, place.road, place.start, max(place.end, place.start + 1.0))
             if line is not None:
-                yield Missing(tr("Warning: {text}").format(text=told(text)), "warning", line, place.road, place.start,
-                              LIKELY_WRONG["warning"] * max(place.end - place.start, 1.0))
+                yield DoubtfulPiece(tr("Warning: {text}").format(text=told(text)), "warning", line, place.road, place.start,
+                                    LIKELY_WRONG["warning"] * max(place.end - place.start, 1.0))
 
 
 def along(road_map: RoadMap, road: int, start: float, end: float) -> QgsGeometry | None:

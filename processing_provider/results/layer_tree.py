@@ -99,5 +99,3 @@ def _overlap(one, other, project):
     except QgsCsException:
         return False
     return QgsRectangle(extent).intersects(other.extent())
-
-

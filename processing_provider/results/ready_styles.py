@@ -14,6 +14,7 @@ from qgis.core import (
 from qgis.PyQt.QtGui import QColor
 
 from ..texts import tr
+from .attributes import WORDS
 
 STATUS = (("measured", "#1a9850"), ("bridged", "#fdae61"), ("inferred", "#d73027"), ("occluded", "#7b3294"), ("grown", "#b8860b"),
           ("accepted", "#4393c3"), ("drawn", "#2166ac"))
@@ -39,11 +40,9 @@ def add_ready_styles(layer: QgsVectorLayer) -> None:
 
 
 def _by_status(layer):
-    words = {"measured": tr("measured"), "bridged": tr("bridged"), "inferred": tr("inferred"), "occluded": tr("hidden"), "grown": tr("grown"),
-             "accepted": tr("accepted"), "drawn": tr("drawn")}
     found = layer.uniqueValues(layer.fields().lookupField("status"))
-    return QgsCategorizedSymbolRenderer("status", [QgsRendererCategory(value, _symbol(layer, colour), words[value]) for value, colour in STATUS
-                                                   if value in found or not found])
+    return QgsCategorizedSymbolRenderer("status", [QgsRendererCategory(value, _symbol(layer, colour), WORDS["status"][value])
+                                                   for value, colour in STATUS if value in found or not found])
 
 
 def _by_confidence(layer):

@@ -42,7 +42,7 @@ class RoadMap:
     @property
     def survey(self) -> str:
         """What the survey is called, "" where none is known."""
-        return survey_of(self.provenance)
+        return survey_name(_named(self.provenance))
 
     @property
     def name(self) -> str:
@@ -144,11 +144,6 @@ def _road_map(found, project):
 
 
 # -- point clouds -------------------------------------------------------------------------------
-
-
-def survey_of(provenance: Provenance) -> str:
-    """What the survey of a run is called, "" where it names no point clouds."""
-    return survey_name(_named(provenance))
 
 
 def _named(provenance):

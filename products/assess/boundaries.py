@@ -143,16 +143,10 @@ def assess_boundaries(result: Sequence[Any], reference: Sequence[Any], settings:
     ----------
     result, reference : lists of shapely lines in one metric CRS, single or multi-part, 2D or 3D, drawn in either
         direction; one line per side, such as the curb bottoms
-    settings : BoundaryAccuracySettings
     frame : RoadFrame of the trajectory in that CRS; None measures along the reference lines
     excluded, reasons : reference lines along which nothing is judged, such as dropped curbs, and why
     area : shapely polygon; what lies outside is not judged, or None
     sides : "left", "right" or None of each reference geometry, used without a frame
-    progress : Progress
-
-    Returns
-    -------
-    BoundaryAccuracy
     """
     result_lines, result_owner = single_lines(result)
     reference_lines, reference_owner = single_lines(reference)
@@ -283,18 +277,9 @@ def _summary(table, result_group, nearest, signed, settings):
 
 
 def interval_lines(accuracy: BoundaryAccuracy, tolerance: float) -> Iterator[tuple[str, int, Any]]:
-    """The intervals as lines, by outcome at one of the tolerances.
+    """(outcome, row of `accuracy.intervals`, LineString or MultiLineString) of the intervals at one of the tolerances of its settings, m.
 
-    Parameters
-    ----------
-    accuracy : BoundaryAccuracy
-    tolerance : metres, one of those of its settings
-
-    Yields
-    ------
-    outcome : "correct", "missed", "excluded" (drawn along the reference) or "false" (along the result)
-    interval : row of `accuracy.intervals`
-    geometry : LineString or MultiLineString
+    The outcome is correct, missed, excluded (drawn along the reference) or false (along the result).
     """
     table, k = accuracy.intervals, accuracy.settings.tolerances.index(tolerance)
     outcome = np.where(table.excluded != "", "excluded", np.where(table.hit[:, k], "correct", np.where(table.judged, "missed", "")))

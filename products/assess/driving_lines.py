@@ -38,13 +38,7 @@ class LineAccuracySettings:
 
 
 def checked_tolerances(tolerances: Sequence[float], one: float, largest: float) -> tuple[float, ...]:
-    """All tolerances with the one that is drawn, sorted, metres.
-
-    Raises
-    ------
-    RoadExtractionError
-        If one is below a millimetre or above `largest` metres.
-    """
+    """All tolerances with the one that is drawn, sorted, metres; RoadExtractionError where one is below a millimetre or above `largest`."""
     found = tuple(sorted({*tolerances, one}))
     if not all(0.001 <= t <= largest for t in found):
         said = ", ".join(f"{t:g}" for t in found)
@@ -148,14 +142,9 @@ class LineMatch:
         return length[(missing[first] == 1) & (length >= MIN_REFERENCE_GAP)] if len(first) else np.empty(0)
 
     def pieces(self, tolerance: float) -> Iterator[tuple[str, int, Any, int, int]]:
-        """The lines cut by outcome.
+        """(outcome, index of the input geometry, piece, indices of its first and last point) of the lines cut by outcome.
 
-        Yields
-        ------
-        outcome : "correct" or "false" for the result, "missed" for the reference
-        owner : index of the input geometry
-        geometry : the piece
-        first, last : indices of its points among those of the result or the reference
+        The outcome is correct or false for pieces of the result, missed for those of the reference.
         """
         wrong = (self.to_reference > tolerance).astype(int)
         first, last = constant_runs(self.result_points, wrong)
@@ -172,17 +161,10 @@ def match_lines(result: Sequence[Any], reference: Sequence[Any], area: Any = Non
                 progress: Progress = Progress()) -> LineMatch:
     """Match two sets of lines in plan.
 
-    Parameters
-    ----------
     result, reference : lists of shapely lines (also multi-part, and outlines of polygons), with Z or
         without, in one metric CRS; the direction in which they are drawn is ignored
     area : shapely polygon; what lies outside is left out of both, or None
     max_angle : degrees; lines that cross at a larger angle do not match
-    progress : Progress
-
-    Returns
-    -------
-    LineMatch
     """
     result, result_owner = single_lines([g for g in result if g is not None])
     reference, reference_owner = single_lines([g for g in reference if g is not None])

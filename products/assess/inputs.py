@@ -53,19 +53,7 @@ class AssessedLayer:
 
 
 def check_kind(layer: AssessedLayer, kinds: Sequence[str], needed: str) -> None:
-    """Refuse a layer with geometries of another kind.
-
-    Parameters
-    ----------
-    layer : AssessedLayer
-    kinds : names of the single geometries that are allowed, such as "LineString"
-    needed : what is needed, for the message
-
-    Raises
-    ------
-    RoadExtractionError
-        If the layer holds geometries of another kind.
-    """
+    """Refuse, with RoadExtractionError, a layer with other geometries than these kinds, such as "LineString"; `needed` says what they are."""
     names = {"Point": "points", "LineString": "lines", "Polygon": "polygons"}
     found = {g.geom_type.removeprefix("Multi") for g in layer.geometries}
     wrong = sorted(names.get(kind, kind) for kind in found - set(kinds))
@@ -76,10 +64,7 @@ def check_kind(layer: AssessedLayer, kinds: Sequence[str], needed: str) -> None:
 def common_crs(layers: Sequence[AssessedLayer]) -> str:
     """WKT of the CRS to work in: that of the first layer with one in metres and true to scale; "" if no layer has a CRS.
 
-    Raises
-    ------
-    RoadExtractionError
-        If no layer is in metres, by its CRS or, where it has none, by its coordinates.
+    Raises RoadExtractionError if no layer is in metres, by its CRS or, where it has none, by its coordinates.
     """
     refused = None
     for layer in layers:
@@ -104,22 +89,9 @@ def common_crs(layers: Sequence[AssessedLayer]) -> str:
 
 
 def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
-    """The layer in a CRS.
+    """The layer in a CRS, as it is for ""; without a CRS it is assumed to be in this one, with a warning.
 
-    Parameters
-    ----------
-    layer : AssessedLayer; without a CRS it is assumed to be in this one, with a warning
-    wkt : the CRS; "" leaves the layer as it is
-    warn : called with a sentence
-
-    Returns
-    -------
-    AssessedLayer
-
-    Raises
-    ------
-    RoadExtractionError
-        If it has no CRS but coordinates in degrees, or cannot be transformed.
+    Raises RoadExtractionError if it has no CRS but coordinates in degrees, or cannot be transformed.
     """
     source, target = parse_crs(layer.crs), parse_crs(wkt)
     if target is None or not len(layer.geometries):
@@ -145,13 +117,7 @@ def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore
 
 
 def without_stray_vertices(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
-    """A layer of lines without the vertices that lie on another continent than most: the work goes with the length of lines.
-
-    Parameters
-    ----------
-    layer : AssessedLayer in metres
-    warn : called with a sentence
-    """
+    """A layer of lines, m, without the vertices that lie on another continent than most: the work goes with the length of lines."""
     places = shapely.get_coordinates(layer.geometries)
     middle = np.median(places, axis=0) if len(places) else np.zeros(2)
     far = np.hypot(*(places - middle).T) > TRAJECTORY.longest_step
@@ -172,13 +138,7 @@ def _lines_near(shape, middle):
 
 
 def check_overlap(result: AssessedLayer, reference: AssessedLayer) -> None:
-    """Refuse a result far from the reference.
-
-    Raises
-    ------
-    RoadExtractionError
-        If their extents are more than 100 m apart.
-    """
+    """Refuse, with RoadExtractionError, a result whose extent is more than 100 m from that of the reference."""
     if not result.geometries or not reference.geometries:
         return
     a, b = (shapely.total_bounds(np.asarray(layer.geometries, object)) for layer in (result, reference))
@@ -231,12 +191,9 @@ def edges_that_compare(result: AssessedLayer, reference: AssessedLayer, edges: s
                        warn: Callable[[str], None] = _ignore) -> tuple[AssessedLayer, AssessedLayer, list[int]]:
     """(the result, the reference, and the rows of it that remain) with edges of the same kinds: curbs are not judged by edges of the pavement.
 
-    Parameters
-    ----------
-    result, reference : AssessedLayer; the field `edge`, else `kind`, says what a line is
-    edges : "all" keeps both layers as they are; "curbs" leaves edges of the pavement out of both; "automatic" leaves them out of the result
-        where the reference says of its lines that they are curbs, and of none that it is an edge of the pavement
-    warn : called with a sentence
+    The field `edge`, else `kind`, says what a line is. Edges "all" keeps both layers as they are; "curbs" leaves edges of the pavement out of
+    both; "automatic" leaves them out of the result where the reference says of its lines that they are curbs, and of none that it is an edge
+    of the pavement.
     """
     named = [_what_edges_are(layer) for layer in (result, reference)]
     pavement = [names == PAVEMENT for names in named]
@@ -270,20 +227,8 @@ def _length(layer, mask):
 
 def check_reference(reference: AssessedLayer, result: AssessedLayer, frame: Any = None, area: Any = None, corridor: float = MAX_ROAD_DISTANCE,
                     warn: Callable[[str], None] = _ignore) -> None:
-    """Refuse reference lines with nothing to judge; warn if the result has no line.
-
-    Parameters
-    ----------
-    reference, result : AssessedLayer
-    frame : RoadFrame, or None
-    area : shapely polygon outside of which nothing is judged, or None
-    corridor : metres to either side of the trajectory
-    warn : called with a sentence
-
-    Raises
-    ------
-    RoadExtractionError
-        If the reference has no line, none in the area, or none beside the trajectory.
+    """Refuse, with RoadExtractionError, reference lines of which none lies in the area, a polygon or None, or within `corridor` metres of the
+    trajectory, whose RoadFrame is given or None; warn if the result has no line.
     """
     lines, _ = single_lines(reference.geometries)
     if not lines:
@@ -302,13 +247,7 @@ def check_reference(reference: AssessedLayer, result: AssessedLayer, frame: Any 
 
 
 def check_marking_reference(reference: AssessedLayer, result: AssessedLayer, area: Any = None, warn: Callable[[str], None] = _ignore) -> None:
-    """Refuse reference polygons with nothing to judge; warn if the result has no polygon. Parameters as of `check_reference`.
-
-    Raises
-    ------
-    RoadExtractionError
-        If the reference has no area, or none inside the area given.
-    """
+    """Refuse, with RoadExtractionError, reference polygons of which none has an area or lies in the area given; warn if the result has none."""
     shapes = np.asarray(reference.geometries, object)
     if not len(shapes) or not (shapely.area(shapes) > 0).any():
         raise RoadExtractionError(
@@ -325,21 +264,9 @@ def widened_lines(lines: Sequence[Any], widths: Sequence[float] | np.ndarray) ->
 
 
 def marking_polygons(layer: AssessedLayer, line_width: float) -> AssessedLayer:
-    """The layer with its lines widened to polygons.
+    """The layer with its lines widened to polygons, to `line_width` metres where they have no field `width_m` or `width`.
 
-    Parameters
-    ----------
-    layer : AssessedLayer of lines and polygons
-    line_width : metres, for lines without a field `width_m` or `width`
-
-    Returns
-    -------
-    AssessedLayer of polygons
-
-    Raises
-    ------
-    RoadExtractionError
-        If it holds points.
+    Raises RoadExtractionError if it holds points.
     """
     check_kind(layer, ("LineString", "Polygon", "GeometryCollection"), "polygons, lines or a mask")
     shapes = list(layer.geometries)
@@ -378,23 +305,9 @@ RASTER_READ_SIZE = 2048  # pixels, side of the pieces in which a raster is read
 
 @gdal_exceptions()
 def polygons_of_raster(path: str, progress: Progress = Progress()) -> tuple[list[shapely.Geometry], np.ndarray, str]:
-    """The painted patches of a raster: 8-connected cells of the same value, other than 0 and no-data.
+    """(polygons in the raster's CRS, (N,) int values, WKT or "") of its painted patches: 8-connected cells of one value, neither 0 nor no-data.
 
-    Parameters
-    ----------
-    path : a raster file; values outside 1 to 65534 and fractions below 1 count as 1
-    progress : Progress
-
-    Returns
-    -------
-    polygons : list in the raster's CRS
-    values : (N,) int
-    crs : WKT, "" if it has none
-
-    Raises
-    ------
-    RoadExtractionError
-        If GDAL cannot read the file.
+    Values outside 1 to 65534 and fractions below 1 count as 1. Raises RoadExtractionError if GDAL cannot read the file.
     """
     from osgeo import gdal, ogr
 

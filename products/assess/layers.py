@@ -81,19 +81,7 @@ def _why_piece(outcome, distance, settings):
 
 def marking_layer(accuracy: MarkingAccuracy, result: Sequence[Any], reference: Sequence[Any], result_classes: Sequence[Any] | None,
                   reference_classes: Sequence[Any] | None, crs: str) -> Features:
-    """All objects of the reference (correct or missed) and the false objects of the result.
-
-    Parameters
-    ----------
-    accuracy : MarkingAccuracy of these polygons
-    result, reference : polygons as given to `assess_markings`
-    result_classes, reference_classes : class of every polygon, or None
-    crs : WKT
-
-    Returns
-    -------
-    Features
-    """
+    """All objects of the reference (correct or missed) and the false objects of the result, as given to `assess_markings`. `crs`: WKT."""
     layer = Features("MultiPolygonZ", ASSESSED_MARKINGS, crs=crs)
     of_reference, of_result = accuracy.outcomes()
     size = accuracy.settings.cell_size**2

@@ -113,16 +113,10 @@ def assess_markings(result: Sequence[Any], reference: Sequence[Any], settings: M
     Parameters
     ----------
     result, reference : lists of shapely polygons in one metric CRS (`inputs` makes them from lines and rasters)
-    settings : MarkingAccuracySettings
     result_classes, reference_classes : class of every polygon, or None
     area : shapely polygon; what lies outside is not judged, or None
     seen : path of a raster in the same CRS whose empty cells are not judged, or None
     outcome_raster : object with `write(tile, values)`, called with (BURN_TILE, BURN_TILE) uint8 of HIT and so on, or None
-    progress : Progress
-
-    Returns
-    -------
-    MarkingAccuracy
     """
     classes = sorted({str(name) for name in (*(result_classes or ()), *(reference_classes or ())) if name is not None})
     counts = _CellCounts(len(result), len(reference), _numbers(result_classes, len(result), classes),
@@ -251,17 +245,7 @@ class _PolygonRasteriser:
 
     @gdal_exceptions()
     def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
-        """Rasterise the polygons.
-
-        Parameters
-        ----------
-        bounds : (min x, min y, max x, max y), metres
-        shape : (rows, columns)
-
-        Returns
-        -------
-        (rows, columns) int32 numbers of polygons, from 1 on; 0 elsewhere. The later of two overlapping polygons wins.
-        """
+        """(rows, columns) int32 numbers of polygons, from 1 on, 0 elsewhere, within (min x, min y, max x, max y); the later of two that overlap."""
         from osgeo import gdal
 
         rows, columns = shape
@@ -337,8 +321,6 @@ def _tile_bounds(tile: tuple[int, int], cell_size: float, margin: int = 0) -> tu
 class OutcomeRaster:
     """A GeoTIFF of the outcomes of `assess_markings`: HIT and so on, 0 where neither side is painted.
 
-    Parameters
-    ----------
     path : of the .tif
     polygons : of result and reference together; the raster covers their extent
     cell_size : metres

@@ -185,17 +185,9 @@ def _sides_of(lines: Sequence[shapely.LineString]) -> np.ndarray:
 
 
 def stations_of_match(match: Any, frame: Any = None) -> tuple[tuple[np.ndarray, np.ndarray], str]:
-    """Stations of the points of a LineMatch.
+    """((N,) stations of the result's points, (M,) of the reference's, m, NaN where unknown; what they are measured along) of a LineMatch.
 
-    Parameters
-    ----------
-    match : LineMatch
-    frame : RoadFrame, or None to measure along the reference lines
-
-    Returns
-    -------
-    stations : (N,) of the result's points and (M,) of the reference's, metres, NaN where unknown
-    along : what they are measured along
+    `frame`: RoadFrame, or None to measure along the reference lines.
     """
     if frame is not None:
         along = TrajectoryStationing(frame, MAX_ROAD_DISTANCE)
@@ -205,18 +197,7 @@ def stations_of_match(match: Any, frame: Any = None) -> tuple[tuple[np.ndarray, 
 
 
 def stations_of_blocks(blocks: np.ndarray, frame: Any = None) -> tuple[np.ndarray, str]:
-    """Stations of points, along the trajectory or, without one, along their longer principal axis.
-
-    Parameters
-    ----------
-    blocks : (N, 2+) x and y, metres; further columns are ignored
-    frame : RoadFrame or None
-
-    Returns
-    -------
-    station : (N,) metres
-    along : what they are measured along
-    """
+    """((N,) stations, m, of (N, 2+) x and y; what they are measured along): a RoadFrame or, without one, their longer principal axis."""
     if not len(blocks):
         return np.empty(0), TrajectoryStationing.title
     xy = blocks[:, :2]

@@ -77,11 +77,6 @@ def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSet
     Parameters
     ----------
     source : RoadMapSource, checked
-    settings : LaneletSettings
-
-    Returns
-    -------
-    LaneletDraft
     """
     return _Drafting(source, settings).run()
 
@@ -215,10 +210,7 @@ class Degrees:
 def to_degrees(places: np.ndarray, crs: str) -> Degrees:
     """Latitude and longitude of (N, 2+) places; those without CRS about the origin of their coordinates become a local map about 0, 0.
 
-    Raises
-    ------
-    RoadExtractionError
-        If the CRS is unknown and the coordinates are not local, or the places lie outside of the CRS.
+    Raises RoadExtractionError if the CRS is unknown and the coordinates are not local, or the places lie outside of the CRS.
     """
     from pyproj.transformer import Transformer, TransformerGroup
 
@@ -239,13 +231,9 @@ def to_degrees(places: np.ndarray, crs: str) -> Degrees:
 
 
 def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) -> str:
-    """The file as text.
+    """The file as text, of a draft and the degrees of its nodes.
 
-    Parameters
-    ----------
-    draft : LaneletDraft
-    degrees : of its nodes
-    local : also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them
+    `local`: also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them.
     """
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<osm version="0.6" generator="Lanewright" upload="false">']
     if local := local or degrees.local:

@@ -78,13 +78,9 @@ NEVER_DRIVEN = ("crosswalk", "walkway", "stairs")
 class LaneletNetwork:
     """Lanelets with borders in the direction of travel.
 
-    Parameters
-    ----------
     whole : LaneletMap
     places : (N, 3) metres of its nodes
 
-    Attributes
-    ----------
     left, right : id -> rows of nodes, in the direction of travel
     reversed_left, reversed_right : id -> whether the way runs against the direction of travel
     """
@@ -169,22 +165,7 @@ ALL_IDS = 2**64   # of 64 bits; without a sign, as some programs write them, the
 
 
 def read_lanelet2(path: str, progress: Progress = Progress()) -> LaneletMap:
-    """Read a file.
-
-    Parameters
-    ----------
-    path : of the .osm file
-    progress : told of the share that was read
-
-    Returns
-    -------
-    LaneletMap
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file is no map of this kind, hostile, or has no lanelet.
-    """
+    """Read an .osm file; RoadExtractionError if it is no map of this kind, hostile, or has no lanelet."""
     found = _lanelets_of(read_xml(path, "osm", OSM_KIND, progress))
     if not found.lanelets:
         raise RoadExtractionError(f"{path} has no relation of type lanelet. Maps of OpenStreetMap have roads without lanes; choose a Lanelet2 map.")
@@ -285,7 +266,6 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
 
     Parameters
     ----------
-    whole : LaneletMap
     crs : WKT or EPSG:n to compute them in; "" takes the UTM zone of the map
 
     Returns
@@ -321,23 +301,10 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
 
 
 def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
-    """Lanes, painted borders and edges of a map.
+    """Lanes, painted borders and edges of a map in a CRS, WKT or EPSG:n; "" takes the UTM zone of the map.
 
-    Parameters
-    ----------
-    whole : LaneletMap
-    crs : WKT or EPSG:n of the layers; "" takes the UTM zone of the map
-    progress : told of the share of the lanelets
-
-    Returns
-    -------
-    MapLayers. `lane_id` of a lane is the lanelet's id; footways are left out; a way of the type of a line is a marking line, curbs and
-    borders of the road are edges
-
-    Raises
-    ------
-    RoadExtractionError
-        As `node_places`.
+    `lane_id` of a lane is the lanelet's id; footways are left out; a way of the type of a line is a marking line, curbs and borders of the road
+    are edges. Raises RoadExtractionError as `node_places`.
     """
     places, crs = node_places(whole, crs)
     network, rows = LaneletNetwork(whole, places), []

@@ -104,22 +104,9 @@ LOCAL_CRS = "+proj=tmerc +lat_0=0 +lon_0=0 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +unit
 
 
 def crs_of_reference(text: str, given: str) -> tuple[str, str]:
-    """The CRS of an OpenDRIVE file.
+    """(WKT, "" where unknown; a sentence for the user or "") of an OpenDRIVE file with a geoReference (PROJ, WKT, EPSG:n or "").
 
-    Parameters
-    ----------
-    text : of its geoReference: PROJ, WKT or EPSG:n; "" where it has none
-    given : WKT or EPSG:n that the user gave, "" for none
-
-    Returns
-    -------
-    crs : WKT, "" where unknown
-    note : a sentence for the user, "" where there is nothing to note
-
-    Raises
-    ------
-    RoadExtractionError
-        If what the user gave is not a CRS in metres.
+    A CRS that the user gave, not "", overrules it; RoadExtractionError if that is none in metres.
     """
     if given:
         return metric_wkt(given, "The chosen CRS"), ""

@@ -174,8 +174,6 @@ def wrapped(angle: Any) -> Any:
 class NearestValues:
     """A number of the line or area of a layer that is nearest to a place.
 
-    Parameters
-    ----------
     layer : Features, or None
     name : of the field; features without a value are left out
     """
@@ -211,7 +209,6 @@ def sigma_of_lanes(lanes: Lanes, driving_lines: Features | None) -> np.ndarray:
 
     Parameters
     ----------
-    lanes : Lanes
     driving_lines : Features DRIVING_LINES with `sigma_m`, or None
 
     Returns

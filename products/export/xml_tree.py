@@ -129,7 +129,6 @@ def read_xml(path: str, root_tag: str, kind: str, progress: Progress = Progress(
     path : of the file
     root_tag : name that its first element must have
     kind : what the file should be, for messages
-    progress : told of the share that was read
 
     Returns
     -------

@@ -9,7 +9,6 @@ import numpy as np
 COLLINEAR_RATIO = 0.01         # extent across over extent along, below which points lie on a line
 MIN_INVERSE_CONDITION = 1e-3   # smallest over largest singular value, below which the points do not determine the coefficients
 MIN_CONTROL_POINTS = (1, 3, 6, 10)  # by order: a shift needs one point, order t needs (t + 1)(t + 2) / 2
-NEWTON_STEPS = 30              # of the inverse; it converges in a few
 
 
 def term_powers(order: int) -> np.ndarray:
@@ -60,31 +59,6 @@ class ImagePolynomial:
             slopes.append(powers[:, axis] * u[:, :1] ** lower[:, 0] * u[:, 1:] ** lower[:, 1])
         inner = np.stack([slope @ self.coefficients for slope in slopes], axis=2)
         return np.einsum("nij,kj->nik", inner, self.whiten)
-
-    def to_pixel(self, easting: np.ndarray, northing: np.ndarray, steps: int = NEWTON_STEPS) -> tuple[np.ndarray, np.ndarray]:
-        """Places in the image by Newton's method, started from the affine part.
-
-        easting, northing : (N,) m
-        steps : of the iteration, at most
-        Returns pixel, line: (N,); NaN where the iteration does not converge, because the polynomial has no unique inverse
-        """
-        target = np.column_stack([np.asarray(easting, float), np.asarray(northing, float)])
-        affine = self.jacobian(self.centre[:1], self.centre[1:])[0]
-        middle = np.column_stack(self.to_map(self.centre[:1], self.centre[1:]))
-        place = self.centre + (target - middle) @ np.linalg.inv(affine).T
-        moved = np.full(len(place), np.inf)
-        for _ in range(steps):
-            error = target - np.column_stack(self.to_map(place[:, 0], place[:, 1]))
-            slope = self.jacobian(place[:, 0], place[:, 1])
-            with np.errstate(all="ignore"):
-                step = np.stack([slope[:, 1, 1] * error[:, 0] - slope[:, 0, 1] * error[:, 1],
-                                 slope[:, 0, 0] * error[:, 1] - slope[:, 1, 0] * error[:, 0]], axis=1)
-                step /= (slope[:, 0, 0] * slope[:, 1, 1] - slope[:, 0, 1] * slope[:, 1, 0])[:, None]
-            place, moved = place + step, np.abs(step).max(axis=1)
-            if not (moved > 1e-9).any():
-                break
-        place[~(moved < 1e-6)] = np.nan
-        return place[:, 0], place[:, 1]
 
     def _scaled(self, pixel, line):
         return (np.column_stack([pixel, line]).astype(float) - self.centre) @ self.whiten

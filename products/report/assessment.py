@@ -29,15 +29,7 @@ ERROR_CLASSES = 41        # of the histogram of errors
 
 
 def boundary_report(accuracy: BoundaryAccuracy, layer: Features, names: tuple[str, str], notes: Sequence[str] = ()) -> str:
-    """The report of a BoundaryAccuracy as HTML.
-
-    Parameters
-    ----------
-    accuracy : BoundaryAccuracy
-    layer : Features of `boundary_layer`
-    names : (result, reference) as the user calls them
-    notes : further sentences
-    """
+    """The report of a BoundaryAccuracy as HTML. `layer`: of `boundary_layer`; `names`: result and reference as the user calls them."""
     settings, table, judged = accuracy.settings, accuracy.intervals, accuracy.result_group
     along, signed, weights = told(accuracy.along.title), told(accuracy.along.signed), judged.points.length
     hit = np.append(table.hit[:, settings.tolerances.index(settings.tolerance)], False)[judged.interval]
@@ -64,16 +56,11 @@ def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccur
                    station: tuple[np.ndarray, np.ndarray], along: str, total_width: bool = False, notes: Sequence[str] = ()) -> str:
     """The report of a LineAccuracy as HTML.
 
-    Parameters
-    ----------
-    match, accuracy : LineMatch and its LineAccuracy
-    settings : LineAccuracySettings
     layer : Features of `driving_line_layer`
     names : (result, reference) as the user calls them
     station : (N,) metres along the road of the result's places and (M,) of the reference's
     along : what that is measured along
     total_width : whether the user gave tolerances as the whole width of the buffer
-    notes : further sentences
     """
     along, length = told(along), match.result_points.length
     wrong, missed = match.to_reference > settings.tolerance, match.to_result > settings.tolerance
@@ -94,15 +81,10 @@ def marking_report(accuracy: MarkingAccuracy, layer: Features, names: tuple[str,
                    image: str | None = None, notes: Sequence[str] = ()) -> str:
     """The report of a MarkingAccuracy as HTML.
 
-    Parameters
-    ----------
-    accuracy : MarkingAccuracy
     layer : Features of `marking_layer`
     names : (result, reference) as the user calls them
-    station : (N,) metres along the road of `accuracy.blocks`
-    along : what that is measured along
+    station : (N,) metres along the road of `accuracy.blocks`; `along` is what that is measured along
     image : path of a raster to draw the map over, or None
-    notes : further sentences
     """
     outcomes = ("correct", "missed", "false")
     areas = {name: accuracy.blocks[:, 2 + k] * accuracy.settings.cell_size**2 for k, name in enumerate(outcomes)}
@@ -198,17 +180,7 @@ def _outcomes_along_road(stations: Mapping[str, np.ndarray], lengths: Mapping[st
 
 
 def bins_of(station: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Bins along the road.
-
-    Parameters
-    ----------
-    station : (N,) metres
-
-    Returns
-    -------
-    edges : (B + 1,) metres, multiples of 10 m, B at most about 180
-    number : (N,) index of the bin of each station
-    """
+    """((B + 1,) edges, multiples of 10 m, of at most about 180 bins; (N,) bin of each station) of (N,) stations along the road, m."""
     low, high = float(station.min()), float(station.max())
     step = MIN_BAR_LENGTH * max(1.0, np.ceil((high - low) / MIN_BAR_LENGTH / MAX_BARS))
     edges = np.arange(np.floor(low / step), np.floor(high / step) + 2) * step

@@ -22,8 +22,6 @@ MIN_LABEL_DISTANCE = 12  # px between the labels of two levels
 class Chart:
     """A chart; its parts are drawn in the order of the calls.
 
-    Parameters
-    ----------
     x_range, y_range : (lowest, highest) of the axes
     x_label, y_label : with units
     height : pixels
@@ -50,19 +48,9 @@ class Chart:
 
     def bars(self, left: np.ndarray | Sequence[float], right: np.ndarray | Sequence[float], values: np.ndarray | Sequence[float], colour: str,
              base: float | np.ndarray = 0.0, title: str = "") -> np.ndarray:
-        """Draw bars.
+        """Draw bars between (N,) left and right, of (N,) heights above `base`, none where NaN; `title` is shown under the pointer.
 
-        Parameters
-        ----------
-        left, right : (N,) x of their sides
-        values : (N,) heights above `base`; no bar where NaN
-        colour : CSS colour
-        base : (N,) or one; y of their lower ends
-        title : text shown under the pointer
-
-        Returns
-        -------
-        (N,) y of their upper ends, on which further bars can be stacked
+        Returns the (N,) y of their upper ends, on which further bars can be stacked.
         """
         base = np.broadcast_to(np.asarray(base, float), np.shape(values))
         for a, b, low, high in zip(self._x(left), self._x(right), base, np.asarray(values, float) + base):

@@ -21,15 +21,9 @@ Table = tuple[str, Sequence[str], Sequence[Sequence[Any]]]
 
 def map_export_report(title: str, subtitle: str, facts: Iterable[tuple[str, Any]], tables: Sequence[Table] = (), notes: Sequence[str] = (),
                       shown: MapLayers | None = None) -> str:
-    """An HTML page.
+    """An HTML page with (name, value) facts, and tables of (heading, names of the columns, rows).
 
-    Parameters
-    ----------
-    title, subtitle : of the page
-    facts : (name, value)
-    tables : (heading, names of the columns, rows)
-    notes : sentences to highlight
-    shown : what the file holds as our own reader sees it, for a picture; None for none
+    `shown`: what the file holds as our own reader sees it, for a picture; None for none.
     """
     types = set() if shown is None else set(shown.lanes.type)
     return html_page("map_export", title=title, subtitle=subtitle, notes=notes, rows=list(facts), tables=tables,
@@ -63,14 +57,7 @@ def _lanes_and_lines(shown: MapLayers) -> str:
 
 
 def map_check_report(found: Findings, path: str, notes: Sequence[str] = ()) -> str:
-    """The findings of a map as HTML.
-
-    Parameters
-    ----------
-    found : Findings
-    path : of the file
-    notes : further sentences
-    """
+    """The findings of a map in the file of a path, as HTML."""
     groups, _ = found.groups()
     return html_page("map_check", found=found, file=Path(path).name, notes=notes, faults=FAULTS, count=len(groups),
                   groups=[(row, places_of_findings(one, MOST_ROWS // 10), one) for row, one in enumerate(groups[:MOST_ROWS], start=1)])

@@ -48,13 +48,7 @@ def _limit_titles():
 
 
 def cross_section_report(sections: RoadSections, table: Features) -> str:
-    """The report as HTML.
-
-    Parameters
-    ----------
-    sections : RoadSections
-    table : Features of `sections_to_features`, the rows of all sections
-    """
+    """The report as HTML. `table`: Features of `sections_to_features`, the rows of all sections."""
     limits, interval = sections.settings.limits(), sections.settings.interval
     exceeded = _exceeded(table.rows)
     by_road = defaultdict(list)
@@ -169,13 +163,7 @@ def _with_gaps(stations, values, interval):
 
 
 def roadside_report(found: Roadside, lines: Features, points: Features) -> str:
-    """The report as HTML.
-
-    Parameters
-    ----------
-    found : Roadside
-    lines, points : Features of `roadside_to_features`
-    """
+    """The report as HTML. `lines`, `points`: Features of `roadside_to_features`."""
     lengths: dict[tuple[str, str], float] = defaultdict(float)
     for row in lines.rows:
         lengths[row["kind"], row["side"]] += row["length_m"]

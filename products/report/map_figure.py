@@ -36,18 +36,7 @@ MAP_STYLE = (
 
 @gdal_exceptions()
 def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndarray, tuple[float, float, float, float]]:
-    """A small grey copy of a raster, with stretched contrast.
-
-    Parameters
-    ----------
-    path : of a raster file
-    longest : pixels of the longer side
-
-    Returns
-    -------
-    grey : (H, W) uint8, 0 where there is no data
-    extent : (min x, min y, max x, max y)
-    """
+    """((H, W) uint8 grey, 0 where there is no data; its (min x, min y, max x, max y)) of a raster file, small, with stretched contrast."""
     from osgeo import gdal
 
     dataset = open_raster(path)
@@ -96,20 +85,13 @@ def _averaged(dataset, columns, rows, nodata):
 
 def draw_map(layers: Mapping[str, Any], background: tuple[np.ndarray, Sequence[float]] | None = None, bounds: Sequence[float] | None = None,
              longest: int = MAP_LONGEST_SIDE, style: Sequence[tuple[Any, ...]] = MAP_STYLE, paper: int = 28) -> np.ndarray | None:
-    """Draw layers over an image.
+    """(H, W, 3) uint8 picture of layers over an image, None if there is nothing to draw.
 
-    Parameters
-    ----------
-    layers : Features by the names in `style`; missing ones are left out
+    layers : Features by the names in `style`, which is like MAP_STYLE; missing ones are left out
     background : (grey image (H, W) uint8 with 0 where empty, (min x, min y, max x, max y)) or None
     bounds : (min x, min y, max x, max y); by default those of the layers with a margin of 3 m
     longest : pixels of the longer side
-    style : what is drawn and how, as MAP_STYLE
     paper : grey level where neither a layer nor the image covers the map
-
-    Returns
-    -------
-    (H, W, 3) uint8, or None if there is nothing to draw
     """
     shapes = [g for features in layers.values() if features is not None for g in features.geometries if g is not None]
     if bounds is None:

@@ -32,11 +32,7 @@ _ACCEPTED, _REFUSED = (80, 150, 40), (50, 50, 210)  # blue, green, red
 def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -> str:
     """The report of a Georeferencing as HTML.
 
-    Parameters
-    ----------
-    found : Georeferencing
-    drawn : path of the GeoTIFF that was drawn
-    departure : pixels between the drawn image and the polynomial, from `draw_image`
+    `drawn`: path of the GeoTIFF that was drawn. `departure`: pixels between it and the polynomial, from `draw_image`.
     """
     points, crs = found.points, found.points.crs
     control, check = points.having(CONTROL), points.having(CHECK)
@@ -56,18 +52,7 @@ def _largest(vectors):
 
 
 def _residual_picture(found: Georeferencing, drawn: str) -> tuple[np.ndarray, float]:
-    """The drawn image with the residuals as arrows.
-
-    Parameters
-    ----------
-    found : Georeferencing
-    drawn : path of the GeoTIFF that was drawn
-
-    Returns
-    -------
-    picture : (H, W, 3) uint8, blue, green, red
-    magnification : of the residuals, relative to the ground
-    """
+    """((H, W, 3) uint8, blue, green, red; magnification) of the drawn image, a GeoTIFF, with the residuals as arrows."""
     canvas, scale, corner = _reduced_copy(drawn)
     points = found.points
 

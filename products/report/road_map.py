@@ -22,13 +22,7 @@ LINE_COLOUR, ELEMENT_COLOUR, CODE_COLOUR = "#2b6ca3", "#009e73", "#d55e00"  # of
 
 
 def road_map_report(road_map: Any, image_path: str | None = None) -> str:
-    """The report of a RoadMap as HTML.
-
-    Parameters
-    ----------
-    road_map : RoadMap of core.pipeline.road_map
-    image_path : of the intensity image, which is drawn below the map, or None
-    """
+    """The report of a RoadMap of core.pipeline as HTML, its map over the intensity image of a path, or over nothing."""
     edges, surface, corrections = road_map.edges, road_map.surface, road_map.corrections
     lost = {one.row for one in corrections.unmatched}
     values = dict(
@@ -153,19 +147,9 @@ def _joined(pieces):
 
 
 def curvature_along(line: shapely.LineString, step: float = CURVATURE_STEP, base: float = CURVATURE_BASE) -> tuple[np.ndarray, np.ndarray]:
-    """Curvature along a line, in the direction it is drawn.
+    """((N,) m along a line, every `step`; (N,) curvature there, 1/m, positive where it turns left) in the direction it is drawn.
 
-    Parameters
-    ----------
-    line : shapely LineString
-    step : metres between the values
-    base : metres, length of the chords
-
-    Returns
-    -------
-    station : (N,) metres along the line
-    curvature : (N,) 1/m, positive where it turns left: change of heading between the chords of `base` metres
-        behind and ahead. Empty where the line is shorter than two chords.
+    The curvature is the change of heading between the chords of `base` metres behind and ahead; there is none where a line is shorter than both.
     """
     length = line.length
     station = np.arange(base, length - base + 1e-9, step)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 DENSITY_PICTURE_SIDE = 1400  # px
 NO_DATA_COLOUR = (28, 28, 30)  # blue, green, red
 PLACE_COLOUR, HEIGHT_COLOUR = "#1f6feb", "#c2410c"
+TRACK_COLOUR, ROAD_COLOUR, BAR_COLOUR = "#e63c3c", "#787878", "#3c6e96"
 CHART_COLUMNS = 600   # of the chart: each shows the worst of its time
 LEAST_CHART_TOP = 0.02  # m
 
@@ -31,16 +32,17 @@ def inspection_report(found: Inspection) -> str:
     # seconds beyond a week are no seconds of a week, whatever the header says of them
     start = datetime(1980, 1, 6) + timedelta(seconds=first + 1e9) if first > timedelta(weeks=1).total_seconds() else None
     if found.drive is not None:
-        image, low, high = _profile_picture(found.drive.profile)
-        profile = dict(image=image, low=low, high=high)
+        heights = found.drive.profile[:, 1:]
+        low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
+        profile = dict(chart=_profile_chart(found.drive.profile, low, high), low=low, high=high)
     values = np.flatnonzero(found.intensity)
     quantiles = [int(np.searchsorted(np.cumsum(found.intensity) / found.count, q)) for q in (0.01, 0.5, 0.99)]
-    histogram = _histogram_picture(found.intensity, quantiles[0], quantiles[2]) if len(values) > 1 else None
+    histogram = _histogram(found.intensity, quantiles[0], quantiles[2]) if len(values) > 1 else ""
     return html_page(
         "inspection", found=found, notes=found.notes, crs_name=_crs_name, size=found.maximum - found.minimum, density=_density_picture(found),
         profile=profile, start=start and f"{start:%Y-%m-%d %H:%M:%S}",
         driven=None if track is None else float(np.hypot(np.diff(track.x), np.diff(track.y)).sum()),
-        intensity=dict(lowest=values[0], highest=values[-1], number=len(values), quantiles=quantiles, image=histogram))
+        intensity=dict(lowest=values[0], highest=values[-1], number=len(values), quantiles=quantiles, chart=histogram))
 
 
 def _density_picture(found: Inspection) -> dict[str, Any]:
@@ -62,50 +64,21 @@ def _density_picture(found: Inspection) -> dict[str, Any]:
     return dict(image=image, most=top, with_track=with_track)
 
 
-def _profile_picture(profile: np.ndarray, width: int = 900, height: int = 220) -> tuple[np.ndarray, float, float]:
-    """Heights along the drive.
-
-    Parameters
-    ----------
-    profile : (N, 3) distance driven, height of the trajectory and of the road under it (NaN where unknown), metres
-    width, height : pixels
-
-    Returns
-    -------
-    picture : (height, width, 3) uint8
-    low, high : lowest and highest height, metres
-    """
-    known = profile[:, 1:][np.isfinite(profile[:, 1:])]
-    low, high = float(known.min()), float(known.max())
-    spread = max(high - low, 0.1)
-    image = np.full((height, width, 3), 255, np.uint8)
-    across = profile[:, 0] / max(profile[-1, 0], 1e-9) * (width - 1)
-
-    def at(z):
-        return height - 6 - (z - low) / spread * (height - 12)
-
-    seen = np.isfinite(profile[:, 2])
-    runs = np.split(np.arange(len(profile)), np.flatnonzero(np.diff(seen.astype(int))) + 1)
-    for run in runs:
-        if seen[run[0]]:
-            line = np.rint(np.c_[across[run], at(profile[run, 2])]).astype(np.int32)
-            cv2.polylines(image, [line], False, (120, 120, 120), 2, cv2.LINE_AA)
-    cv2.polylines(image, [np.rint(np.c_[across, at(profile[:, 1])]).astype(np.int32)], False, (60, 60, 230), 2, cv2.LINE_AA)
-    return image, low, high
+def _profile_chart(profile, low, high):
+    """SVG of the heights along the drive: (N, 3) distance driven, height of the trajectory and of the road under it, m, NaN where unknown."""
+    chart = Chart((0.0, float(profile[-1, 0])), (low, high), "m", "m")
+    for row, colour in ((2, ROAD_COLOUR), (1, TRACK_COLOUR)):
+        chart.curve(profile[:, 0], profile[:, row], colour, width=2.0)
+    return chart.svg()
 
 
-def _histogram_picture(counts: np.ndarray, low: int, high: int, width: int = 900, height: int = 220) -> np.ndarray:
-    """(height, width, 3) uint8 picture of the histogram of the values low to high, from the counts (M,) of the values from 0 on."""
-    high = max(high, low + 1)
-    edges = np.linspace(low, high + 1, min(width // 3, high - low + 1) + 1)
-    place = np.clip(np.searchsorted(edges, np.arange(low, high + 1), side="right") - 1, 0, len(edges) - 2)
-    bars = np.bincount(place, weights=counts[low:high + 1], minlength=len(edges) - 1) / np.diff(edges)
-    image = np.full((height, width, 3), 255, np.uint8)
-    tops = height - 4 - (height - 14) * bars / bars.max()
-    left = np.linspace(0, width, len(bars) + 1)
-    for start, end, top in zip(left[:-1], left[1:], tops):
-        cv2.rectangle(image, (int(start), int(top)), (max(int(end) - 2, int(start)), height - 4), (150, 110, 60), -1)
-    return image
+def _histogram(counts, low, high):
+    """SVG of how often the values from low to high occur, from the counts (M,) of the values from 0 on."""
+    edges = np.linspace(low, high + 1, min(CHART_COLUMNS, high - low + 1) + 1)
+    each = np.histogram(np.arange(low, high + 1), edges, weights=counts[low:high + 1])[0] / np.diff(edges)
+    chart = Chart((low, high + 1), (0.0, float(each.max())), tr("Intensity"), "")
+    chart.bars(edges[:-1], edges[1:], each, BAR_COLOUR)
+    return chart.svg()
 
 
 def _crs_name(wkt):

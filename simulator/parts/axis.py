@@ -15,8 +15,6 @@ class RoadAxis:
     The axis passes through (0, 0) at station 0. Evaluation and its inverse agree to a few micrometres for
     offsets below 0.6 of the radius.
 
-    Parameters
-    ----------
     elements : list of (length, curvature at start, curvature at end), m and 1/m, left positive
     start : m, station at which the first element begins (may be negative)
     heading : radians counter-clockwise from east, at `start`
@@ -72,18 +70,10 @@ class RoadAxis:
         return self._x[k] + ahead * cos - aside * sin, self._y[k] + ahead * sin + aside * cos
 
     def locate(self, x: np.ndarray, y: np.ndarray, s: np.ndarray, steps: int = 2) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Station and offset of points whose approximate station is known.
+        """Station and offset, (N,) m, and cosine and sine of the direction of the axis there, of (N,) places x and y, m, local.
 
-        Parameters
-        ----------
-        x, y : (N,) m, local
         s : (N,) m, approximate stations
         steps : of the iteration; one is enough within half a metre, two within 30 m
-
-        Returns
-        -------
-        s, d : (N,) m
-        cos, sin : (N,) of the direction of the axis there
         """
         for _ in range(steps):
             k = self._node(s)
@@ -99,20 +89,10 @@ class RoadAxis:
 
 def winding_road(length: float, radius: float, straight: float = 30.0, transition: float = 20.0, arc: float = 45.0,
                  run_in: float = 70.0) -> list[tuple[float, float, float]]:
-    """Elements of a road with left and right bends in turn, of any length.
+    """(length, curvature at start and end), m and 1/m, left positive, of the elements of a road of any length with bends to both sides in turn.
 
-    It begins with a straight of `run_in` + `straight` metres, followed by clothoid, arc, clothoid, half a straight, and the
-    same to the other side. The heading returns to its first value, so that the road never meets itself.
-
-    Parameters
-    ----------
-    length : m from station 0
-    radius : m of the arcs
-    straight, transition, arc, run_in : m, lengths of the elements
-
-    Returns
-    -------
-    list of (length, curvature at start, curvature at end), m and 1/m, left positive
+    It begins with a straight of `run_in` + `straight` metres, followed by clothoid, arc of `radius`, clothoid, half a straight, and the same to
+    the other side. The heading returns to its first value, so that the road never meets itself.
     """
     elements, reached, sign = [(run_in + straight, 0.0, 0.0)], straight, 1.0
     while reached < length + run_in:

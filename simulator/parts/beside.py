@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .materials import LABEL
-from .obstacles import Body, Post, Rail, body, entered
+from .obstacles import Post, Rail, Solid, body
 
 PIECE, RAIL_PIECE = 2.0, 4.0  # m, length of the straight pieces that a thing along the road and a guard rail consist of
 _BURIED = 0.3  # m of a thing below the ground
@@ -30,8 +30,6 @@ _LEAVES = 0.10  # m that a pulse travels between the leaves of a hedge, on avera
 class RunningThing:
     """Something that runs along the road, as the truth tells it.
 
-    Attributes
-    ----------
     kind : guard_rail, or one of USUAL
     foot : (N, 3) m, local, on the ground along its face towards the road
     height, low : m above the ground, of its top and of its lower edge
@@ -48,55 +46,6 @@ class RunningThing:
         """The fields of the truth that are known of it."""
         start, end = self.stations or (None, None)
         return dict(kind=self.kind, height_m=self.height, foot_m=self.low, station_m=start, end_m=end)
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A straight piece of a wall, barrier, fence, hedge or building, which climbs with the ground.
-
-    Attributes
-    ----------
-    x, y, z : m, local place of the ground below its middle
-    heading : radians counter-clockwise from east
-    slope : m per m, of its climb ahead
-    bodies : Body parts, upright on level ground
-    reach : m, radius of the circle around it
-    top : m, local z of its upper edge
-    label : of its points
-    returned : 0 to 1, share of the pulses that it returns; the others go through
-    depth : m that a pulse travels in it on average
-    """
-
-    x: float
-    y: float
-    z: float
-    heading: float
-    slope: float
-    bodies: tuple[Body, ...]
-    reach: float
-    top: float
-    label: int
-    returned: float = 1.0
-    depth: float = 0.0
-
-    def hits(self, origin: np.ndarray, direction: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Distance, cosine of incidence and brightness of each ray; `rng` decides which pulses go through wires or between leaves."""
-        cos, sin = np.cos(self.heading), np.sin(self.heading)
-        # what climbs is upright where heights count from the climbing line
-        turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [-self.slope * cos, -self.slope * sin, 1.0]])
-        o = turn @ (origin - np.array([[self.x], [self.y], [self.z]]))
-        v = turn @ direction
-        distance, cosine, brightness = (np.full(v.shape[1], value) for value in (np.inf, 0.0, 0.0))
-        for part in self.bodies:
-            t, c = entered(part, o, v)
-            first = t < distance
-            distance[first], cosine[first], brightness[first] = t[first], c[first], part.brightness
-        if self.returned < 1.0:
-            distance[rng.random(len(distance)) >= self.returned] = np.inf
-        if self.depth:
-            distance += rng.exponential(self.depth, len(distance))
-            cosine = np.where(cosine > 0, rng.uniform(0.3, 1.0, len(cosine)), 0.0)
-        return distance, cosine, brightness
 
 
 def rail_of(foot: np.ndarray) -> Iterable[Any]:
@@ -126,18 +75,11 @@ def _layer(length, low, high, brightness):
 
 
 def straight_pieces(kind: str, foot: np.ndarray, side: int, height: float) -> Iterable[Any]:
-    """The obstacles of a thing along the road.
+    """The obstacles, Solid and Post, of a thing of USUAL along the road.
 
-    Parameters
-    ----------
-    kind : one of USUAL
     foot : (N, 3) m, local, on the ground along its face towards the road, PIECE apart
     side : 1 where it stands left of the direction of `foot`, -1 right
     height : m; of a barrier that of NEW_JERSEY whatever is given
-
-    Yields
-    ------
-    Piece and Post
     """
     _, thick, brightness = USUAL[kind]
     label = LABEL[kind]
@@ -153,7 +95,7 @@ def straight_pieces(kind: str, foot: np.ndarray, side: int, height: float) -> It
             bodies = (_box(length, -thick / 2, thick / 2, -_BURIED, 0.0, brightness),
                       *(_layer(length, low, high, brightness) for low, high in zip(NEW_JERSEY[:-1], NEW_JERSEY[1:])))
         x, y, z = middle.tolist()
-        yield Piece(x, y, z, heading, float(ahead[2] / length), bodies, float(np.hypot(length / 2, thick)), z + height, label,
+        yield Solid(x, y, z, heading, bodies, float(np.hypot(length / 2, thick)), z + height, label, float(ahead[2] / length),
                     _MESH if kind == "fence" else 1.0, _LEAVES if kind == "hedge" else 0.0)
         if kind == "fence":
             x, y, z = start.tolist()

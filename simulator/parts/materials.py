@@ -16,8 +16,6 @@ CARRIAGEWAY_LABELS = tuple(LABEL[name] for name in ("road", "paint", "worn paint
 class Texture:
     """Deterministic smooth noise of mean 0 and standard deviation about 1, for worn paint and patchy asphalt.
 
-    Parameters
-    ----------
     seed : equal seeds give equal noise
     """
 
@@ -25,17 +23,7 @@ class Texture:
         self._tile = np.random.default_rng([seed, 7]).standard_normal((_SIZE, _SIZE)).astype(np.float32).ravel()
 
     def at(self, s: np.ndarray, d: np.ndarray, cell: float) -> np.ndarray:
-        """Noise at places, bilinear between nodes.
-
-        Parameters
-        ----------
-        s, d : (N,) m, stations and offsets
-        cell : m between nodes
-
-        Returns
-        -------
-        (N,) float32
-        """
+        """(N,) float32 noise at (N,) places s, d, bilinear between nodes `cell` apart, m."""
         u, v = s / cell, d / cell + 131.7
         left, low = np.floor(u), np.floor(v)
         fu, fv = (u - left).astype(np.float32), (v - low).astype(np.float32)

@@ -15,11 +15,9 @@ from .materials import LABEL
 
 
 @dataclass(frozen=True)
-class Body:
+class _Body:
     """A convex body: the points p with normals @ p <= limits, in the frame of the object (x ahead, y left, z up).
 
-    Attributes
-    ----------
     normals : (F, 3) outward unit normals of the faces
     limits : (F,) m
     brightness : 0 to 1, reflectance
@@ -33,56 +31,57 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Car:
-    """A parked car.
+class Solid:
+    """A car, or a straight piece of a wall, barrier, fence, hedge or building, which climbs with the ground.
 
-    Attributes
-    ----------
     x, y, z : m, local place of the ground below its middle
     heading : radians counter-clockwise from east
-    bodies : Body parts of the car
+    bodies : its parts, upright on level ground
     reach : m, radius of the circle around it
-    top : m above the ground
-    label : of its points
+    top : m, local z of its upper edge
+    slope : m per m, of its climb ahead
+    returned : 0 to 1, share of the pulses that it returns; the others go through
+    depth : m that a pulse travels in it on average
     """
 
     x: float
     y: float
     z: float
     heading: float
-    bodies: tuple[Body, ...]
-    reach: float = 2.6
-    top: float = 1.6
-    label: int = LABEL["car"]
+    bodies: tuple[_Body, ...]
+    reach: float
+    top: float
+    label: int
+    slope: float = 0.0
+    returned: float = 1.0
+    depth: float = 0.0
 
     def hits(self, origin: np.ndarray, direction: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Distance, cosine of incidence and brightness of each ray; `rng` decides which pulses pass through glass."""
+        """Distance, cosine of incidence and brightness of each ray; `rng` decides which pulses go through glass, wires or between leaves."""
         cos, sin = np.cos(self.heading), np.sin(self.heading)
-        turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+        # what climbs is upright where heights count from the climbing line
+        turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [-self.slope * cos, -self.slope * sin, 1.0]])
         o = turn @ (origin - np.array([[self.x], [self.y], [self.z]]))
         v = turn @ direction
-        distance = np.full(v.shape[1], np.inf)
-        cosine, brightness = np.zeros(v.shape[1]), np.zeros(v.shape[1])
+        distance, cosine, brightness = (np.full(v.shape[1], value) for value in (np.inf, 0.0, 0.0))
         for part in self.bodies:
-            t, c = entered(part, o, v)
+            t, c = _entered(part, o, v)
             if part.transparency:
                 c = np.where(rng.random(len(t)) < part.transparency, 0.0, c)
             first = t < distance
             distance[first], cosine[first], brightness[first] = t[first], c[first], part.brightness
+        if self.returned < 1.0:
+            distance[rng.random(len(distance)) >= self.returned] = np.inf
+        if self.depth:
+            distance += rng.exponential(self.depth, len(distance))
+            cosine = np.where(cosine > 0, rng.uniform(0.3, 1.0, len(cosine)), 0.0)
         return distance, cosine, brightness
 
 
-def entered(body: Body, o: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distance (m; inf where the ray passes) and cosine of incidence where rays enter a convex body: the last of the planes crossed inward.
+def _entered(body: _Body, o: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distance (m; inf where the ray passes) and cosine of incidence, (N,) each, where rays enter a convex body: the last plane crossed inward.
 
-    Parameters
-    ----------
-    body : Body
-    o, v : (3, N) origins, m, and directions in the frame of the object
-
-    Returns
-    -------
-    (N,), (N,)
+    `o`, `v`: (3, N) origins, m, and directions in the frame of the object.
     """
     toward = body.normals @ v
     clearance = body.limits[:, None] - body.normals @ o
@@ -99,25 +98,15 @@ def entered(body: Body, o: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.nd
     return np.where(hit, start, np.inf), np.where(hit, -toward[plane, each], 0.0)
 
 
-def body(faces: Sequence[Sequence[float]], brightness: float, transparency: float = 0.0) -> Body:
-    """A Body from rows (nx, ny, nz, point x, y, z on the face)."""
+def body(faces: Sequence[Sequence[float]], brightness: float, transparency: float = 0.0) -> _Body:
+    """A _Body from rows (nx, ny, nz, point x, y, z on the face)."""
     rows = np.array(faces, dtype=float)
     normals = rows[:, :3] / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
-    return Body(normals, np.sum(normals * rows[:, 3:], axis=1), brightness, transparency)
+    return _Body(normals, np.sum(normals * rows[:, 3:], axis=1), brightness, transparency)
 
 
-def car_bodies(length: float, width: float, height: float, brightness: float) -> tuple[Body, ...]:
-    """Body parts of a car: a shell with rounded corners, a cabin with inclined screens, a roof and four wheels.
-
-    Parameters
-    ----------
-    length, width, height : m
-    brightness : 0 to 1, reflectance of the paint
-
-    Returns
-    -------
-    tuple of Body
-    """
+def _car_bodies(length: float, width: float, height: float, brightness: float) -> tuple[_Body, ...]:
+    """Bodies of a car, m and reflectance of its paint: a shell with rounded corners, a cabin with inclined screens, a roof and four wheels."""
     a, b, waist, floor = length / 2, width / 2, 0.58 * height, 0.19
     shell = [(1, 0, 0, a, 0, 0), (-1, 0, 0, -a, 0, 0), (0, 1, 0, 0, b, 0), (0, -1, 0, 0, -b, 0),
              (0, 0, 1, 0, 0, waist), (0, 0, -1, 0, 0, floor)]
@@ -145,8 +134,6 @@ def car_bodies(length: float, width: float, height: float, brightness: float) ->
 class Post:
     """A vertical cylinder: a pole or a trunk.
 
-    Attributes
-    ----------
     x, y, z : m, local place of its foot
     top : m, local z of its upper end
     radius : m
@@ -187,12 +174,9 @@ class Post:
 class Crown:
     """The leaves of a tree: an ellipsoid in which a pulse travels a random distance before it meets a leaf.
 
-    Attributes
-    ----------
     x, y, z : m, local place of its middle
     reach : m, horizontal radius
     half_height : m, vertical radius
-    top : m, local z of its upper end
     free_way : m, mean distance that a pulse travels between leaves
     label : of its points
     brightness : 0 to 1, reflectance
@@ -203,10 +187,14 @@ class Crown:
     z: float
     reach: float
     half_height: float
-    top: float
     free_way: float = 0.8
     label: int = LABEL["tree"]
     brightness: float = 0.34
+
+    @property
+    def top(self) -> float:
+        """m, local z of its upper end."""
+        return self.z + self.half_height
 
     def hits(self, origin: np.ndarray, direction: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Distance, cosine of incidence and brightness of each ray; `rng` decides where a pulse meets a leaf."""
@@ -226,8 +214,6 @@ class Crown:
 class Rail:
     """One length of a guard rail: an upright strip between two places.
 
-    Attributes
-    ----------
     x, y, z : m, local place of the ground below its middle
     heading : radians counter-clockwise from east
     length : m
@@ -269,3 +255,14 @@ class Rail:
             above = origin[2] + t * direction[2] - self.z - self.slope * along
         hit = (t > 0) & (np.abs(along) <= self.length / 2) & (above >= self.low) & (above <= self.high)
         return np.where(hit, t, np.inf), np.where(hit, np.abs(across), 0.0), np.full(len(t), self.brightness)
+
+
+def standing(kind: str, x: float, y: float, z: float, heading: float, shape: Sequence[float]) -> list[Solid | Post | Crown]:
+    """The obstacles of a car (length, width, height, brightness), a pole (radius, height) or a tree (radius of the trunk, radius, half height and
+    height of the middle of the crown) on the ground at x, y, z; m."""
+    if kind == "car":
+        return [Solid(x, y, z, heading, _car_bodies(*shape), 2.6, z + 1.6, LABEL["car"])]
+    if kind == "pole":
+        return [Post(x, y, z, z + shape[1], shape[0], LABEL["pole"], 0.35)]
+    trunk, reach, half, middle = shape
+    return [Post(x, y, z, z + middle, trunk, LABEL["tree"], 0.18), Crown(x, y, z + middle, reach, half)]

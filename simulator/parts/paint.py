@@ -16,58 +16,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PaintedLine:
-    """A line along the road.
+    """A line along the road, or one whose offset changes, such as the border of a hatched island.
 
-    Attributes
-    ----------
-    kind : class of the marking
-    line : number of the line
-    offset, width : m
-    start, end : m, stations
-    dash : (painted, gap) in m, None for a solid line
-    wear : 0 to 1, share of the paint that is worn off
-    """
-
-    kind: str
-    line: int
-    offset: float
-    width: float
-    start: float
-    end: float
-    dash: tuple[float, float] | None = None
-    wear: float = 0.1
-
-    def pieces(self) -> list[tuple[float, float]]:
-        """Start and end stations of its painted pieces, m."""
-        if self.dash is None:
-            return [(self.start, self.end)]
-        painted, gap = self.dash
-        starts = np.arange(self.start, self.end, painted + gap)
-        return [(s, min(s + painted, self.end)) for s in starts]
-
-    def covers(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
-        """(N,) bool, places within the marking, at (N,) stations and offsets."""
-        there = (np.abs(d - self.offset) <= self.width / 2) & (s >= self.start) & (s <= self.end)
-        if self.dash is not None:
-            there &= (s - self.start) % sum(self.dash) <= self.dash[0]
-        return there
-
-    def outlines(self) -> list[np.ndarray]:
-        """Outlines of its painted pieces, (n, 2) m of station and offset each."""
-        low, high = self.offset - self.width / 2, self.offset + self.width / 2
-        return [np.array([(s0, low), (s1, low), (s1, high), (s0, high)]) for s0, s1 in self.pieces()]
-
-
-@dataclass(frozen=True)
-class TaperedLine:
-    """A solid line whose offset changes along the road, such as the border of a hatched island.
-
-    Attributes
-    ----------
     kind : class of the marking
     line : number of the line
     places : (K, 2) m, station and offset, stations increasing; straight between them
     width : m
+    dash : (painted, gap) in m of a line with one offset, None for a solid line
     wear : 0 to 1, share of the paint that is worn off
     """
 
@@ -75,6 +30,7 @@ class TaperedLine:
     line: int
     places: tuple[tuple[float, float], ...]
     width: float
+    dash: tuple[float, float] | None = None
     wear: float = 0.1
 
     @property
@@ -87,26 +43,27 @@ class TaperedLine:
         """Station of its end, m."""
         return self.places[-1][0]
 
-    def _offsets(self, s):
-        return np.interp(s, *np.transpose(self.places))
-
     def covers(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) bool, places within the marking, at (N,) stations and offsets."""
-        return (np.abs(d - self._offsets(s)) <= self.width / 2) & (s >= self.start) & (s <= self.end)
+        there = (np.abs(d - np.interp(s, *np.transpose(self.places))) <= self.width / 2) & (s >= self.start) & (s <= self.end)
+        if self.dash is not None:
+            there &= (s - self.start) % sum(self.dash) <= self.dash[0]
+        return there
 
     def outlines(self) -> list[np.ndarray]:
-        """Its outline, (n, 2) m of station and offset."""
-        places = np.array(self.places)
+        """Outlines of its painted pieces, (n, 2) m of station and offset each."""
+        pieces = [np.array(self.places)]
+        if self.dash is not None:
+            starts, offset = np.arange(self.start, self.end, sum(self.dash)), self.places[0][1]
+            pieces = [np.array([(s, offset), (min(s + self.dash[0], self.end), offset)]) for s in starts]
         aside = np.array([0.0, self.width / 2])
-        return [np.concatenate([places - aside, (places + aside)[::-1]])]
+        return [np.concatenate([piece - aside, (piece + aside)[::-1]]) for piece in pieces]
 
 
 @dataclass(frozen=True)
 class PaintedFigure:
     """Polygons of one marking: a zebra crossing, an arrow or a hatched area.
 
-    Attributes
-    ----------
     kind : class of the marking
     line : None
     polygons : (n, 2) m of station and offset each, not overlapping
@@ -195,17 +152,7 @@ def hatching(start: float, end: float, right: float, left: float, bar: float = 0
 
 
 def hatched_area(outline: np.ndarray, bar: float = 0.5, gap: float = 1.0) -> tuple[np.ndarray, ...]:
-    """Bars at 45 degrees within an area.
-
-    Parameters
-    ----------
-    outline : (n, 2) m, station and offset
-    bar, gap : m along the road
-
-    Returns
-    -------
-    tuple of (m, 2) polygons
-    """
+    """Bars at 45 degrees, polygons, within an outline of (n, 2) stations and offsets; `bar` and `gap` in m along the road."""
     import shapely
 
     area = shapely.Polygon(outline)
@@ -219,15 +166,13 @@ def hatched_area(outline: np.ndarray, bar: float = 0.5, gap: float = 1.0) -> tup
     return tuple(bars)
 
 
-Marking = Union[PaintedLine, TaperedLine, PaintedFigure]
+Marking = Union[PaintedLine, PaintedFigure]
 
 
 class Paint:
     """All markings of a road.
 
-    Parameters
-    ----------
-    markings : PaintedLine, TaperedLine and PaintedFigure
+    markings : PaintedLine and PaintedFigure
     texture : Texture of the wear
     """
 
@@ -236,17 +181,7 @@ class Paint:
         self._texture = texture
 
     def at(self, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Paint at places on the road.
-
-        Parameters
-        ----------
-        s, d : (N,) m, stations and offsets
-
-        Returns
-        -------
-        number : (N,) int16, index of the marking, -1 where there is none
-        fresh : (N,) bool, whether the paint is not worn off
-        """
+        """(number of the marking, -1 where there is none; whether its paint is not worn off), (N,) each, at (N,) stations and offsets, m."""
         number = np.full(len(s), -1, dtype=np.int16)
         if len(s) == 0:
             return number, np.zeros(0, dtype=bool)

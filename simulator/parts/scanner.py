@@ -31,20 +31,11 @@ _HIGHEST = np.sin(np.radians(50.0))  # steeper upward pulses meet nothing on thi
 
 
 def cast(scene: SurveyedScene, origin: np.ndarray, direction: np.ndarray, station: float, rng: np.random.Generator, reach: float) -> Hits:
-    """Intersect pulses with the scene; the nearest hit of each counts.
+    """Intersect pulses, (3, N) local origins, m, and unit directions, with the scene; the nearest hit of each counts.
 
-    Parameters
-    ----------
-    scene : SurveyedScene
-    origin : (3, N) m, local
-    direction : (3, N) unit vectors
     station : m, of the scanner, accurate to 15 m
-    rng : Generator for the leaves of trees and the glass of cars
+    rng : decides where pulses meet leaves and which pass through glass
     reach : m; ground farther from the axis is left out
-
-    Returns
-    -------
-    Hits
     """
     hits = scene.meet(origin, direction, station, reach)
     flat = np.hypot(direction[0], direction[1])
@@ -57,7 +48,7 @@ def cast(scene: SurveyedScene, origin: np.ndarray, direction: np.ndarray, statio
         aside = np.abs(to_x * direction[1] - to_y * direction[0])
         ahead = to_x * direction[0] + to_y * direction[1]
         toward = (aside <= obstacle.reach * flat) & (ahead > 0)
-        if obstacle.label == LABEL["car"] and highest > obstacle.z + obstacle.top:
+        if obstacle.label == LABEL["car"] and highest > obstacle.top:
             toward &= direction[2] < 0
         near = np.flatnonzero(toward)
         if len(near) == 0:
@@ -75,8 +66,6 @@ def cast(scene: SurveyedScene, origin: np.ndarray, direction: np.ndarray, statio
 class Scanner:
     """A rotating line scanner.
 
-    Attributes
-    ----------
     number : point_source_id
     rotation_rate : Hz
     pulse_rate : Hz
@@ -108,12 +97,7 @@ class Scanner:
         return share[used], directions[:, used]
 
     def pulses(self, drive: Drive, lines: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """The N pulses of some turns.
-
-        Parameters
-        ----------
-        drive : Drive
-        lines : (L,) int, consecutive numbers of turns
+        """The N pulses of (L,) consecutive turns.
 
         Returns
         -------
@@ -136,34 +120,16 @@ class Scanner:
 
 
 def butterfly(rotation_rate: float, pulse_rate: float, yaw: float) -> list[Scanner]:
-    """Left and right scanner behind the reference point of the trajectory, their planes crossed, as on the roof of a survey vehicle.
+    """Left and right scanner behind the reference point of the trajectory, as on the roof of a survey vehicle; rates in Hz.
 
-    Parameters
-    ----------
-    rotation_rate, pulse_rate : Hz
-    yaw : degrees, rotation of their planes from straight across, one either way
-
-    Returns
-    -------
-    list of two Scanner
+    `yaw`: degrees, rotation of their planes from straight across, one either way, so that they cross.
     """
     return [Scanner(1, rotation_rate, pulse_rate, -yaw, -20.0, (-2.45, 0.32, 0.0), 1.0),
             Scanner(2, rotation_rate, pulse_rate, yaw, -20.0, (-2.45, -0.32, 0.0), 0.94)]
 
 
 def label_hits(scene: SurveyedScene, hits: Hits, found: np.ndarray) -> np.ndarray:
-    """Labels of hits.
-
-    Parameters
-    ----------
-    scene : SurveyedScene
-    hits : Hits
-    found : (M,) int, indices of hits
-
-    Returns
-    -------
-    (M,) uint8
-    """
+    """(M,) uint8 labels of the hits of these (M,) indices."""
     label = hits.label[found]
     ground = found[hits.strip[found] != OBSTACLE]
     label[hits.strip[found] != OBSTACLE] = scene.labels(hits.strip[ground], hits.station[ground], hits.offset[ground])
@@ -171,19 +137,7 @@ def label_hits(scene: SurveyedScene, hits: Hits, found: np.ndarray) -> np.ndarra
 
 
 def brightness_of(scene: SurveyedScene, label: np.ndarray, s: np.ndarray, d: np.ndarray, own: np.ndarray) -> np.ndarray:
-    """Reflectance of hits: that of the ground, with patchy asphalt and repairs.
-
-    Parameters
-    ----------
-    scene : SurveyedScene
-    label : (M,) uint8
-    s, d : (M,) m, stations and offsets
-    own : (M,) reflectance of hits on obstacles
-
-    Returns
-    -------
-    (M,) 0 to 1
-    """
+    """(M,) reflectance of hits with these labels at stations and offsets, m: of obstacles `own`, of the ground with patchy asphalt and repairs."""
     texture = scene.texture
     bright = np.where(_REFLECTANCE_OF_LABEL[label] > 0, _REFLECTANCE_OF_LABEL[label], own)
     asphalt = np.flatnonzero((label == LABEL["road"]) | (label == LABEL["worn paint"]))
@@ -197,21 +151,10 @@ def brightness_of(scene: SurveyedScene, label: np.ndarray, s: np.ndarray, d: np.
 
 
 def received(brightness: np.ndarray, distance: np.ndarray, cosine: np.ndarray, gain: float) -> np.ndarray:
-    """Strength of returns without noise.
+    """(M,) counts that are received without noise, from reflectance, distance, m, cosine of incidence and the gain of the scanner.
 
     The strength is proportional to the brightness and to a power of the cosine below 1, as of rough asphalt. The range law
     1 / (1 + (R / R0)^2) is the inverse square at long range and levels off near the scanner, where the receiver sees
     only a part of the spot.
-
-    Parameters
-    ----------
-    brightness : (M,) 0 to 1
-    distance : (M,) m
-    cosine : (M,) of the incidence angle
-    gain : of the scanner
-
-    Returns
-    -------
-    (M,) counts
     """
     return _FULL_SCALE * gain * brightness * np.maximum(cosine, 0.0) ** 0.7 / (1.0 + (distance / _HALF_RANGE) ** 2)

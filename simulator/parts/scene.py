@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 class Hits:
     """The first intersection of each of N pulses.
 
-    Attributes
-    ----------
     distance : (N,) m, inf where a pulse meets nothing
     station, offset : (N,) m, as the scene locates places
     cosine : (N,) of the incidence angle

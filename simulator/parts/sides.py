@@ -15,8 +15,6 @@ _RAMP = 1.0      # m along the road from full to lowered curb
 class Side:
     """Strips of ground beside the carriageway, on one side of the road; each is straight across between two borders.
 
-    Attributes
-    ----------
     sign : 1 left, -1 right
     borders : (K + 1,) m from the axis, increasing; the first is the edge of the carriageway
     rises : (K + 1,) m, heights of the borders above the edge of the carriageway, without the curb
@@ -72,23 +70,11 @@ class Side:
 
 def sidewalk(sign: int, edge: float, curb_height: float, lowered: Sequence[tuple[float, float]] = (), width: float = 3.6,
              reach: float = 24.0, face: float = 0.025) -> Side:
-    """A raised curb with an inclined face, curb stone, sidewalk and verge.
+    """A raised curb with an inclined face, curb stone, sidewalk and verge, on the left (sign 1) or right (-1) of an axis.
 
-    Where the curb is lowered, the sidewalk ramps down to it over its first metre.
-
-    Parameters
-    ----------
-    sign : 1 left, -1 right
-    edge : m from the axis to the curb bottom
-    curb_height : m
-    lowered : (start, end) stations of lowered curbs, m
-    width : m, curb and sidewalk
-    reach : m from the axis to the end of the verge
-    face : m across the face of the curb
-
-    Returns
-    -------
-    Side
+    edge, reach : m from the axis to the curb bottom and to the end of the verge
+    lowered : (start, end) stations of lowered curbs, m, to which the sidewalk ramps down over its first metre
+    width, face : m, of curb and sidewalk, and across the face of the curb
     """
     top = edge + face
     borders = np.array([edge, top, top + 0.15, top + 1.2, edge + width, reach])
@@ -100,18 +86,9 @@ def sidewalk(sign: int, edge: float, curb_height: float, lowered: Sequence[tuple
 
 
 def ditch(sign: int, edge: float, depth: float = 0.6, reach: float = 24.0) -> Side:
-    """No curb: a falling shoulder, a verge, a ditch and a field.
+    """No curb: a falling shoulder, a verge, a ditch and a field, on the left (sign 1) or right (-1) of an axis.
 
-    Parameters
-    ----------
-    sign : 1 left, -1 right
-    edge : m from the axis to the edge of the carriageway
-    depth : m of the ditch
-    reach : m from the axis to the end of the field
-
-    Returns
-    -------
-    Side
+    `edge`, `reach`: m from the axis to the edge of the carriageway and to the end of the field.
     """
     borders = edge + np.array([0.0, 0.8, 2.2, 3.6, 4.1, 5.6, 0.0])
     borders[-1] = reach

@@ -23,19 +23,7 @@ _STROKES = (((31, 31), (60, 72), (116, 74), (78, 31), (31, 31)), ((56, 84), (78,
 
 
 def bus_word(start: float, offset: float, direction: int, length: float = 2.4, width: float = 1.8) -> tuple[np.ndarray, ...]:
-    """The word BUS.
-
-    Parameters
-    ----------
-    start : m, station of the foot of its letters
-    offset : m, of its middle
-    direction : 1 read along the road, -1 against it
-    length, width : m along and across the road
-
-    Returns
-    -------
-    tuple of (n, 2) polygons that do not overlap
-    """
+    """The word BUS as polygons that do not overlap, its letters standing at station `start`, read along the road (direction 1) or against it; m."""
     import shapely
     from shapely import affinity
 

@@ -18,8 +18,6 @@ _RUN_OUT = 15.0      # m driven before and after the surveyed stretch
 class Drive:
     """One pass: position and attitude as smooth functions of the time since its start.
 
-    Attributes
-    ----------
     way : Followed
     direction : 1 along the axis, -1 against it
     offset : m, mean offset of the vehicle
@@ -53,11 +51,7 @@ class Drive:
         return s, d, x, y
 
     def pose(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Position and attitude of the vehicle.
-
-        Parameters
-        ----------
-        t : (N,) s since the start
+        """Position and attitude of the vehicle at (N,) s since the start.
 
         Returns
         -------
@@ -82,16 +76,7 @@ class Drive:
 
 
 def attitude(roll: np.ndarray, pitch: np.ndarray, heading: np.ndarray) -> np.ndarray:
-    """Rotations from the frame of the vehicle (x ahead, y left, z up) to the map.
-
-    Parameters
-    ----------
-    roll, pitch, heading : (N,) radians, as of `Drive.pose`
-
-    Returns
-    -------
-    (N, 3, 3)
-    """
+    """(N, 3, 3) rotations from the frame of the vehicle (x ahead, y left, z up) to the map, of angles as in `Drive.pose`."""
     turn = np.pi / 2 - heading
     cr, sr, cp, sp, ct, st = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch), np.cos(turn), np.sin(turn)
     ahead = np.stack([ct * cp, st * cp, sp])

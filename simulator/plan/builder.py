@@ -8,8 +8,8 @@ from typing import Union
 import numpy as np
 import shapely
 
-from ..parts.materials import LABEL, Texture
-from ..parts.obstacles import Car, Crown, Post, Rail, car_bodies
+from ..parts.materials import Texture
+from ..parts.obstacles import Rail, standing
 from ..parts.sides import Side
 from .ground import Ground, curb_heights, rings_of, terrain_over
 from .marks import Mark, PlanPaint, line_mark, stations_between
@@ -34,8 +34,6 @@ def strip(path: Path, start: float, end: float, right: Offset, left: Offset) -> 
 class PlanBuilder:
     """Collects markings, lanes and objects; everything random follows from the seed.
 
-    Parameters
-    ----------
     name : of the scene
     seed : of all random numbers
     area : the surveyed area, m, local; paint, lanes and truth end at its border
@@ -144,10 +142,6 @@ class PlanBuilder:
         curb_height : m
         lowered : areas in which curbs are lowered
         gutter : m, width of a concrete gutter
-
-        Returns
-        -------
-        PlanScene
         """
         west, south, east, north = shapely.buffer(self.area, _FRAME).bounds
         rings = rings_of(carriageway)
@@ -161,20 +155,11 @@ class PlanBuilder:
                           self.lanes, [(Track(path, ground), haste) for path, haste in passes], [], self.patches, self.factors,
                           np.array(self.manholes).reshape(-1, 3), gutter, self.rails)
         for kind, place, heading, shape in self.objects:
-            scene.obstacles += _standing(kind, place, heading, shape, ground)
+            here = ground.at(place[:1], place[1:])
+            x, y, z = float(place[0]), float(place[1]), float(here.z[0])
+            if kind == "rail":
+                slope = float(here.slope_x[0] * np.cos(heading) + here.slope_y[0] * np.sin(heading))
+                scene.obstacles.append(Rail(x, y, z, heading, shape[0], slope))
+            else:
+                scene.obstacles += standing(kind, x, y, z, heading, shape)
         return scene
-
-
-def _standing(kind, place, heading, shape, ground):
-    """The obstacles of one object, on the ground."""
-    here = ground.at(place[:1], place[1:])
-    x, y, z = float(place[0]), float(place[1]), float(here.z[0])
-    if kind == "car":
-        return [Car(x, y, z, heading, car_bodies(*shape))]
-    if kind == "pole":
-        return [Post(x, y, z, z + shape[1], shape[0], LABEL["pole"], 0.35)]
-    if kind == "rail":
-        slope = float(here.slope_x[0] * np.cos(heading) + here.slope_y[0] * np.sin(heading))
-        return [Rail(x, y, z, heading, shape[0], slope)]
-    trunk, reach, half, middle = shape
-    return [Post(x, y, z, z + middle, trunk, LABEL["tree"], 0.18), Crown(x, y, z + middle, reach, half, z + middle + half)]

@@ -30,17 +30,7 @@ _REACH = 18.0        # m beside the passes that are surveyed
 
 
 def crossing(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> PlanScene:
-    """Build the scene: arms of half the length each.
-
-    Parameters
-    ----------
-    length, seed, curb_height, gutter : as in `..scenes.build_scene`
-    radius : not used
-
-    Returns
-    -------
-    PlanScene
-    """
+    """Build the scene: arms of half the length each; `radius` is not used."""
     arm = max(length / 2, _STOP[1] + 8.0)
     # to the east, north, west and south, a little turned so that nothing runs along a row of the grid
     turned = np.radians(9.0)

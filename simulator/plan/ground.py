@@ -20,8 +20,6 @@ _RAMP = 1.0          # m from full to lowered curb
 class _Terrain:
     """Heights on a grid, bilinear between its nodes.
 
-    Parameters
-    ----------
     corner : m, local x and y of the first node
     cell : m between nodes
     heights : (R, C) m, rows to the north
@@ -71,8 +69,6 @@ def curb_heights(places: np.ndarray, height: float, lowered: Sequence[shapely.Po
 class Surface:
     """The ground at (N,) places.
 
-    Attributes
-    ----------
     z : m
     slope_x, slope_y : m per m
     away : m beyond the edge of the carriageway, negative on it
@@ -89,8 +85,6 @@ class Surface:
 class Ground:
     """_Terrain, edges of the carriageway and what lies beyond them.
 
-    Parameters
-    ----------
     terrain : _Terrain
     rings : (K, 2) m, local vertices of each edge, closed, the carriageway on the left
     heights : (K,) m, of the curb at the vertices of each ring
@@ -137,15 +131,7 @@ class Ground:
         return max(0.0, *(float((profile.rises + profile.on_curb * curb).max()) for profile in self.profiles)) + 0.01
 
     def beyond_edge(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """The nearest edge at (N,) places.
-
-        Returns
-        -------
-        away : (N,) m beyond it, negative on the carriageway
-        outward : (2, N) direction in which `away` grows
-        curb : (N,) m, its height
-        profile : (N,) number of the profile
-        """
+        """(m beyond the nearest edge, negative on the carriageway; (2, N) direction of their growth; m of its curb; its profile) at (N,) places."""
         rows, columns = self._shape
         column = np.clip(((x - self.terrain.corner[0]) / _LOOKUP).astype(np.intp), 0, columns - 1)
         row = np.clip(((y - self.terrain.corner[1]) / _LOOKUP).astype(np.intp), 0, rows - 1)

@@ -24,8 +24,6 @@ _CELL = 0.25    # m, cells that tell where paint may be
 class Mark:
     """One marking.
 
-    Attributes
-    ----------
     kind : class of the marking
     line : number of the line, None for other markings
     pattern : solid or dashed, None for other markings
@@ -46,20 +44,7 @@ class Mark:
 
 def line_mark(kind: str, line: int, path: Path, spans: Sequence[tuple[float, float]], offsets: Sequence[np.ndarray], width: float,
               dashed: bool, wear: float) -> Mark:
-    """A line along a path.
-
-    Parameters
-    ----------
-    kind, line, width, wear : as of Mark
-    path : Path
-    spans : (start, end) stations of its painted parts, m
-    offsets : for each span the offsets at `stations_between(start, end)`, m
-    dashed : whether it is a dash of a line, and not a solid line
-
-    Returns
-    -------
-    Mark
-    """
+    """A line along a path, painted between the (start, end) stations of `spans`, with offsets at `stations_between` of each, m."""
     outlines, pieces = [], []
     for (start, end), offset in zip(spans, offsets):
         s = stations_between(start, end)
@@ -79,8 +64,6 @@ def stations_between(start: float, end: float) -> np.ndarray:
 class PlanPaint:
     """All markings of a plan.
 
-    Parameters
-    ----------
     markings : Mark
     texture : Texture of the wear
     """
@@ -92,13 +75,7 @@ class PlanPaint:
         self._limits = np.array([NormalDist().inv_cdf(mark.wear) for mark in markings])
 
     def at(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Paint at (N,) places.
-
-        Returns
-        -------
-        number : (N,) int16, index of the marking, -1 where there is none
-        fresh : (N,) bool, whether the paint is not worn off
-        """
+        """(number of the marking, -1 where there is none; whether its paint is not worn off), (N,) each, at (N,) places."""
         number = self._areas.number(x, y)
         fresh = np.zeros(len(x), dtype=bool)
         painted = np.flatnonzero(number >= 0)
@@ -111,8 +88,6 @@ class PlanPaint:
 class Areas:
     """Polygons that are looked up by place.
 
-    Parameters
-    ----------
     outlines : (n, 2) m
     numbers : (P,) int16, what to give for each
     """

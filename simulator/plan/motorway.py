@@ -32,17 +32,7 @@ _RUN = 40.0          # m of road beyond both ends
 
 
 def motorway(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> PlanScene:
-    """Build the scene.
-
-    Parameters
-    ----------
-    length, seed : as in `..scenes.build_scene`
-    radius, curb_height, gutter : not used; its bends are those of a motorway, and it has no curbs
-
-    Returns
-    -------
-    PlanScene
-    """
+    """Build the scene; its bends are those of a motorway and it has no curbs, so `radius`, `curb_height` and `gutter` are not used."""
     straight = length / 3
     axis = path_of_elements((0.0, 0.0), np.radians(12.0), [(_RUN + straight, 0, 0), (60.0, 0, 1 / _BEND), (length + _RUN, 1 / _BEND, 1 / _BEND)],
                             -_RUN)

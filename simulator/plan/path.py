@@ -16,8 +16,6 @@ _SPACING = 0.25  # m between nodes; chords of an arc of 10 m are then shorter th
 class Path:
     """A line through places, continued straight beyond both ends.
 
-    Parameters
-    ----------
     places : (N, 2) m, local, at most about half a metre apart
     start : m, station of the first place
     """
@@ -71,19 +69,7 @@ class Path:
 
 
 def path_of_elements(place: tuple[float, float], heading: float, elements: Sequence[tuple[float, float, float]], start: float = 0.0) -> Path:
-    """A path of straights, arcs and clothoids.
-
-    Parameters
-    ----------
-    place : m, local, at station 0
-    heading : radians counter-clockwise from east, at the first station
-    elements : (length, curvature at start, curvature at end), m and 1/m, left positive
-    start : m, first station
-
-    Returns
-    -------
-    Path
-    """
+    """A path of (length, curvature at start, curvature at end), m and 1/m, left positive, from a place and heading at its first station."""
     axis = RoadAxis(elements, start, heading)
     s = np.linspace(axis.start, axis.end, int(np.ceil((axis.end - axis.start) / _SPACING)) + 1)
     return Path(np.column_stack(axis.to_map(s, np.zeros(len(s)))) + place, start)

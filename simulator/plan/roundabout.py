@@ -33,17 +33,7 @@ _REACH = 18.0        # m beside the passes that are surveyed
 
 
 def roundabout(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> PlanScene:
-    """Build the scene: arms that reach half the length from the middle.
-
-    Parameters
-    ----------
-    length, seed, curb_height, gutter : as in `..scenes.build_scene`
-    radius : not used
-
-    Returns
-    -------
-    PlanScene
-    """
+    """Build the scene: arms that reach half the length from the middle; `radius` is not used."""
     arm = max(length / 2, _SPLITTERS[1][1] + 6.0)
     turned = np.radians(14.0)
     arms = [path_of_elements((0.0, 0.0), turned + k * np.pi / 2, [(arm + _RUN, 0.0, 0.0)]) for k in range(4)]

@@ -24,8 +24,6 @@ _ASKEW = 1.45   # m over the ground to the scanner, per m from the track: planes
 class PlanLane:
     """A lane along a path, between two borders.
 
-    Attributes
-    ----------
     number, road : of the lane, and of the road it belongs to
     path : Path
     direction : 1 along the path, -1 against it
@@ -46,8 +44,6 @@ class PlanLane:
 class Track:
     """What a vehicle follows: a path over the terrain.
 
-    Attributes
-    ----------
     path : Path, driven from station 0
     ground : Ground
     """
@@ -76,8 +72,6 @@ class Track:
 class PlanScene:
     """A plan. Its points have x and y (m, local) in the place of station and offset.
 
-    Attributes
-    ----------
     name : of the scene
     ground : Ground
     carriageway : polygon, m, local
@@ -88,7 +82,7 @@ class PlanScene:
     texture : Texture
     lanes : list of PlanLane
     ways : list of (Track, factor of the speed), one for each pass
-    obstacles : list of Car, Post, Crown and Rail
+    obstacles : list of Solid, Post, Crown and Rail
     patches : (n, 2) outlines of repaired asphalt
     patch_factors : of its brightness
     manholes : (M, 3) m, x, y and radius
@@ -166,34 +160,18 @@ class PlanScene:
         return self.ground.height(x, y)
 
     def truth(self, origin: Sequence[float], crs: str) -> Truth:
-        """The true layers, in map coordinates."""
-        return _truth_of_plan(self, origin, crs)
+        """The true layers, in map coordinates, as far as the plan is surveyed."""
+        def on_map(places, rise=0.0):
+            return np.column_stack([places, self.ground.height(*places.T) + rise]) + origin
+
+        return TruePlaces(_boundaries(self, on_map), _markings(self, on_map), _driving_lines(self, on_map), _surface(self, on_map),
+                          _lanes(self, on_map), _roadside(self, on_map)).layers(crs)
 
 
 # The truth of a plan, as layers in map coordinates.
 
 _FACE = 0.025    # m across the face of a curb
 _LEAST = 4       # vertices of an edge that is worth a line
-
-
-def _truth_of_plan(scene: PlanScene, origin: Sequence[float], crs: str) -> Truth:
-    """The true layers of a plan, as far as it is surveyed.
-
-    Parameters
-    ----------
-    scene : PlanScene
-    origin : (3,) m, map coordinates of the local origin
-    crs : WKT
-
-    Returns
-    -------
-    Truth
-    """
-    def on_map(places, rise=0.0):
-        return np.column_stack([places, scene.ground.height(*places.T) + rise]) + origin
-
-    return TruePlaces(_boundaries(scene, on_map), _markings(scene, on_map), _driving_lines(scene, on_map), _surface(scene, on_map),
-                      _lanes(scene, on_map), _roadside(scene, on_map)).layers(crs)
 
 
 def _boundaries(scene, on_map):

@@ -26,17 +26,7 @@ _REACH = 16.0        # m from the axis that are surveyed
 
 
 def serpentine(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> PlanScene:
-    """Build the scene.
-
-    Parameters
-    ----------
-    length, seed : as in `..scenes.build_scene`
-    radius, curb_height, gutter : not used; hairpins have a radius of 12 m, and there are no curbs
-
-    Returns
-    -------
-    PlanScene
-    """
+    """Build the scene; hairpins have a radius of 12 m, and there are no curbs: `radius`, `curb_height` and `gutter` are not used."""
     axis = _axis(length)
     s = np.arange(0.0, length + 0.1, 0.25)
     area = shapely.buffer(shapely.LineString(axis.at(s)), _REACH, cap_style="flat")

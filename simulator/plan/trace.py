@@ -21,19 +21,7 @@ _GRAZING = 0.02       # least sine of the angle towards the steepest ground
 
 
 def trace(ground: Ground, origin: np.ndarray, direction: np.ndarray, farthest: float) -> np.ndarray:
-    """Distances at which pulses meet the ground.
-
-    Parameters
-    ----------
-    ground : Ground
-    origin : (3, N) m, local
-    direction : (3, N) unit vectors
-    farthest : m over the ground; what lies farther is not looked for
-
-    Returns
-    -------
-    (N,) m, inf where nothing is met
-    """
+    """(N,) m at which pulses, (3, N) local origins, m, and unit directions, meet the ground within `farthest` m over it; inf where they do not."""
     found = np.full(direction.shape[1], np.inf)
     flat = np.hypot(direction[0], direction[1])
     steepest = ground.terrain.steepest

@@ -8,9 +8,9 @@ import numpy as np
 
 from ..parts.axis import RoadAxis, winding_road
 from ..parts.beside import PIECE, RAIL_PIECE, USUAL, RunningThing, rail_of, straight_pieces
-from ..parts.materials import LABEL, Texture
-from ..parts.obstacles import Car, Crown, Post, Rail, car_bodies
-from ..parts.paint import Marking, Paint, PaintedFigure, PaintedLine, TaperedLine
+from ..parts.materials import Texture
+from ..parts.obstacles import Rail, standing
+from ..parts.paint import Marking, Paint, PaintedFigure, PaintedLine
 from ..parts.sides import Side
 from .street import Lane, Scene
 
@@ -42,13 +42,13 @@ class SceneBuilder:
         """Add a line along the road, cut at its ends."""
         start, end = max(start, 0.0), min(end, self.length)
         if end - start > 0.5:
-            self.markings.append(PaintedLine(kind, line, offset, width, start, end, dash, self.random.uniform(0.05, 0.22)))
+            self.markings.append(PaintedLine(kind, line, ((start, offset), (end, offset)), width, dash, self.random.uniform(0.05, 0.22)))
 
     def tapered(self, kind: str, line: int, places: Sequence[tuple[float, float]], width: float = 0.12) -> None:
         """Add a solid line through (station, offset) places, cut at the end of the road."""
         places = [place for place in places if 0.0 <= place[0] <= self.length]
         if len(places) > 1:
-            self.markings.append(TaperedLine(kind, line, tuple(places), width, self.random.uniform(0.05, 0.22)))
+            self.markings.append(PaintedLine(kind, line, tuple(places), width, None, self.random.uniform(0.05, 0.22)))
 
     def figure(self, kind: str, *polygons: np.ndarray) -> None:
         """Add those polygons of a marking that lie on the road."""
@@ -111,14 +111,7 @@ class SceneBuilder:
         scene.repairs = np.array(self.repairs).reshape(-1, 5)
         for kind, s, d, shape in self.objects:
             x, y, z = (float(value[0]) for value in scene.to_map(np.array([s]), np.array([d])))
-            if kind == "car":
-                scene.obstacles.append(Car(x, y, z, float(self.axis.heading(np.array([s]))[0]), car_bodies(*shape)))
-            elif kind == "pole":
-                scene.obstacles.append(Post(x, y, z, z + shape[1], shape[0], LABEL["pole"], 0.35))
-            else:
-                trunk, reach, half, middle = shape
-                scene.obstacles.append(Post(x, y, z, z + middle, trunk, LABEL["tree"], 0.18))
-                scene.obstacles.append(Crown(x, y, z + middle, reach, half, z + middle + half))
+            scene.obstacles += standing(kind, x, y, z, float(self.axis.heading(np.array([s]))[0]), shape)
         for kind, start, end, offset, height in self.running:
             count = int(round((end - start) / (RAIL_PIECE if kind == "guard_rail" else PIECE)))
             stations = np.linspace(start, end, max(count, 1) + 1)

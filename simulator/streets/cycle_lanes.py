@@ -17,16 +17,7 @@ _WORDS = ((26.0, 2.4, 1.7), (60.0, 4.0, 1.9), (92.0, 1.6, 1.8))   # m in each mo
 
 
 def cycle_lanes(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
-    """A lane each way with the word BUS, read along the lane, and a cycle lane with bicycles beside it; driven both ways.
-
-    Parameters
-    ----------
-    length, seed, radius, curb_height, gutter : as in `..scenes.build_scene`
-
-    Returns
-    -------
-    Scene
-    """
+    """A lane each way with the word BUS, read along the lane, and a cycle lane with bicycles beside it; driven both ways."""
     road = SceneBuilder(length, seed, radius)
     lowered = []
     for number, offset in ((2, _LANE), (3, -_LANE)):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from ..parts.paint import hatched_area, straight_arrow
 from ..parts.sides import sidewalk
 from .builder import MODULE, SceneBuilder
-from .street import Scene
 
 _PARKING = 2.3       # m from an edge line to the curb beyond the parked cars
 _MARGIN = 0.45       # m from an edge line to a curb without parking
@@ -15,40 +16,6 @@ _LINE = 0.12         # m, width of the lines
 _ISLAND = (34.0, 48.0, 76.0, 90.0)  # m in each module: the island of paint opens, is full, begins to close, is closed
 _ISLAND_HALF = 1.0   # m, half the width of the island, to the middle of its border
 _WARNING = 15.0      # m of solid centre line before and after the island
-
-
-def one_lane(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
-    """One lane of 5.8 m between two edge lines, driven in its middle, with arrows there; cars parked on the right.
-
-    Parameters
-    ----------
-    length, seed, radius, curb_height, gutter : as in `..scenes.build_scene`
-
-    Returns
-    -------
-    Scene
-    """
-    return _between_edge_lines("one-lane", 5.8, True, 0.0, length, seed, radius, curb_height, gutter)
-
-
-def wide_lane(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
-    """The same as `one_lane` with a lane of 7 m, as broad as two."""
-    return _between_edge_lines("wide-lane", 7.0, True, 0.0, length, seed, radius, curb_height, gutter)
-
-
-def beside_middle(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
-    """The lane of `wide_lane` without arrows, driven half a metre right of its middle: it might as well be two lanes."""
-    return _between_edge_lines("beside-middle", 7.0, True, -0.5, length, seed, radius, curb_height, gutter)
-
-
-def solid_centre_line(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
-    """A lane each way, parted by a solid line; nobody drove in the oncoming one."""
-    return _between_edge_lines("solid-centre-line", 7.0, False, -1.75, length, seed, radius, curb_height, gutter, (1.0, 0.0))
-
-
-def no_centre_line(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
-    """The street of `wide_lane` as two lanes, one each way, without arrows and without a line between; driven on the right."""
-    return _between_edge_lines("no-centre-line", 7.0, False, -1.75, length, seed, radius, curb_height, gutter)
 
 
 def _between_edge_lines(name, width, one_way, track, length, seed, radius, curb_height, gutter, centre=None):
@@ -83,25 +50,6 @@ def _between_edge_lines(name, width, one_way, track, length, seed, radius, curb_
         road.lane(2, 1, (0.0, -half / 2, half), (length, -half / 2, half))
     return road.scene(name, sidewalk(1, left_edge, curb_height, lowered_left), sidewalk(-1, right_edge, curb_height, lowered_right),
                       [(1, track, 1.0)], gutter)
-
-
-def hatched_island(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
-    """A lane each way, held apart by an island of paint that opens from the centre line and closes again; driven both ways.
-
-    Parameters
-    ----------
-    length, seed, radius, curb_height, gutter : as in `..scenes.build_scene`
-
-    Returns
-    -------
-    Scene
-    """
-    return _around_island("hatched-island", _ISLAND, (1.0, 1.0), 0.5, 1.0, length, seed, radius, curb_height, gutter)
-
-
-def one_sided_island(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
-    """The same with an island on one side of the middle alone, with thin bars far apart."""
-    return _around_island("one-sided-island", (34.0, 50.0, 66.0, 94.0), (1.7, 0.0), 0.3, 1.7, length, seed, radius, curb_height, gutter)
 
 
 def _around_island(name, island, sides, bar, gap, length, seed, radius, curb_height, gutter):
@@ -149,3 +97,17 @@ def _cut(places, end):
     stations, offsets = np.array(places).T
     kept = [(s, d) for s, d in places if s < end]
     return [*kept, (end, float(np.interp(end, stations, offsets)))] if len(kept) < len(places) else kept
+
+
+# A lane of 5.8 m between two edge lines, driven in its middle, with arrows there; one of 7 m, as broad as two; the same without arrows, driven half a
+# metre right of its middle: it might as well be two lanes
+one_lane = partial(_between_edge_lines, "one-lane", 5.8, True, 0.0)
+wide_lane = partial(_between_edge_lines, "wide-lane", 7.0, True, 0.0)
+beside_middle = partial(_between_edge_lines, "beside-middle", 7.0, True, -0.5)
+# Two lanes, one each way, of which only the right one was driven: without a line between, and parted by a solid one
+no_centre_line = partial(_between_edge_lines, "no-centre-line", 7.0, False, -1.75)
+solid_centre_line = partial(_between_edge_lines, "solid-centre-line", 7.0, False, -1.75, centre=(1.0, 0.0))
+# A lane each way, held apart by an island of paint that opens from the centre line and closes again; an island on one side of the middle alone, with
+# thin bars far apart
+hatched_island = partial(_around_island, "hatched-island", _ISLAND, (1.0, 1.0), 0.5, 1.0)
+one_sided_island = partial(_around_island, "one-sided-island", (34.0, 50.0, 66.0, 94.0), (1.7, 0.0), 0.3, 1.7)

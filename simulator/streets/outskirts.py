@@ -15,16 +15,7 @@ _PASTURE = 9.4  # m from the axis to the fence beyond the ditch
 
 
 def outskirts(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
-    """Two lanes; gardens behind a sidewalk on the left, guard rail, concrete barrier and a pasture's fence on the right; driven both ways.
-
-    Parameters
-    ----------
-    length, seed, radius, curb_height, gutter : as in `..scenes.build_scene`
-
-    Returns
-    -------
-    Scene
-    """
+    """Two lanes; gardens behind a sidewalk on the left, guard rail, concrete barrier and a pasture's fence on the right; driven both ways."""
     road = SceneBuilder(length, seed, radius)
     lowered = []
     road.line("edge line", 1, _LINE, 0.0, length, width=0.12)

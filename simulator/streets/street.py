@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 class Lane:
     """A lane and the offset of its middle, linear between stations.
 
-    Attributes
-    ----------
     number : of the lane
     direction : 1 along the axis, -1 against it
     stations, offsets : (K,) m
@@ -45,15 +43,13 @@ class Scene:
 
     On the carriageway the height is grade_line(s) + fall(d). Beyond its edges the strips of each Side continue it.
 
-    Attributes
-    ----------
     name : of the scene
     axis : RoadAxis
     length : m from station 0
     left, right : Side
     paint : Paint
     texture : Texture
-    obstacles : list of Car, Post, Crown, Rail and Piece
+    obstacles : list of Solid, Post, Crown and Rail
     lanes : list of Lane
     passes : list of (direction, offset in m, speed factor)
     crown : m per m, fall to both sides
@@ -146,8 +142,36 @@ class Scene:
         return self.carriageway(s, d), self.grade(s), self.cross_slope(d)
 
     def meet(self, origin: np.ndarray, direction: np.ndarray, station: float, reach: float) -> Hits:
-        """Intersect pulses with the ground."""
-        return cast_ground(self, origin, direction, station, reach)
+        """Intersect pulses with the ground; the station of the scanner is accurate to 15 m, ground farther than `reach` from the axis is left out."""
+        count = direction.shape[1]
+        hits = Hits(np.full(count, np.inf), np.full(count, station), np.zeros(count), np.zeros(count),
+                    np.zeros(count, dtype=np.int8), np.zeros(count, dtype=np.uint8), np.zeros(count))
+        down = np.flatnonzero(direction[2] < -_GRAZING)
+        rays = _Rays(self.axis, origin[:, down], direction[:, down])
+        t = (rays.oz - self.grade_line(station)) / -rays.vz
+        s, d = rays.at(t, np.full(len(t), station), steps=2)
+        # only pulses that reach the ground on the surveyed stretch are traced further
+        there = (t < LONGEST) & (s > -4.0) & (s < self.length + 4.0)
+        there &= np.abs(d) < reach + 25.0
+        rays, down, t, s, d = rays.some(there), down[there], t[there], s[there], d[there]
+        for _ in range(3):
+            # Newton step; the slope of the road along the ray follows from its grade and cross slope
+            error = rays.oz + t * rays.vz - self.carriageway(s, d)
+            ahead = rays.vx * rays.cos + rays.vy * rays.sin
+            aside = rays.vy * rays.cos - rays.vx * rays.sin
+            t = t - error / (rays.vz - self.grade(s) * ahead - self.cross_slope(d) * aside)
+            s, d = rays.at(t, s, steps=1)
+        strip = np.zeros(len(t), dtype=np.int8)
+        for side in (self.left, self.right):
+            beyond = np.flatnonzero(side.sign * d > side.edge)
+            t[beyond], s[beyond], d[beyond], strip[beyond] = _beyond_edge(
+                self, side, rays.some(beyond), t[beyond], s[beyond], d[beyond])
+        good = np.flatnonzero((t < LONGEST) & (np.abs(d) <= reach) & (s > -_MARGIN) & (s < self.length + _MARGIN))
+        down, strip = down[good], strip[good]
+        hits.distance[down], hits.station[down], hits.offset[down] = t[good], s[good], d[good]
+        hits.strip[down] = strip
+        hits.cosine[down] = _incidence(self, rays.some(good), s[good], d[good], strip)
+        return hits
 
     def labels(self, strip: np.ndarray, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) uint8 labels of places on the ground, whose strips are known: 0 the carriageway, k left and -k right of it."""
@@ -180,7 +204,13 @@ class Scene:
 
     def truth(self, origin: Sequence[float], crs: str) -> Truth:
         """The true layers, in map coordinates."""
-        return _truth_of_street(self, origin, crs)
+        def on_map(s, d):
+            return np.column_stack(self.to_map(s, d)) + origin
+
+        s = _stations(0.0, self.length)
+        surface = np.vstack([on_map(s, self.left.edge), on_map(s[::-1], -self.right.edge)])
+        return TruePlaces(_boundaries(self, on_map), _markings(self, on_map), _driving_lines(self, on_map), [(surface, [])],
+                          _lanes(self, on_map), _roadside(self, origin)).layers(crs)
 
 
 # The intersection of pulses with the ground of a simulated street.
@@ -191,52 +221,6 @@ class Scene:
 
 _GRAZING = 0.02    # sine of the flattest downward direction that is traced
 _MARGIN = 1.0      # m around the surveyed stretch, within which the ground is computed
-
-
-def cast_ground(scene: Scene, origin: np.ndarray, direction: np.ndarray, station: float, reach: float) -> Hits:
-    """Intersect pulses with the ground alone.
-
-    Parameters
-    ----------
-    scene : Scene
-    origin : (3, N) m, local
-    direction : (3, N) unit vectors
-    station : m, of the scanner, accurate to 15 m
-    reach : m; ground farther from the axis is left out
-
-    Returns
-    -------
-    Hits
-    """
-    count = direction.shape[1]
-    hits = Hits(np.full(count, np.inf), np.full(count, station), np.zeros(count), np.zeros(count),
-                np.zeros(count, dtype=np.int8), np.zeros(count, dtype=np.uint8), np.zeros(count))
-    down = np.flatnonzero(direction[2] < -_GRAZING)
-    rays = _Rays(scene.axis, origin[:, down], direction[:, down])
-    t = (rays.oz - scene.grade_line(station)) / -rays.vz
-    s, d = rays.at(t, np.full(len(t), station), steps=2)
-    # only pulses that reach the ground on the surveyed stretch are traced further
-    there = (t < LONGEST) & (s > -4.0) & (s < scene.length + 4.0)
-    there &= np.abs(d) < reach + 25.0
-    rays, down, t, s, d = rays.some(there), down[there], t[there], s[there], d[there]
-    for _ in range(3):
-        # Newton step; the slope of the road along the ray follows from its grade and cross slope
-        error = rays.oz + t * rays.vz - scene.carriageway(s, d)
-        ahead = rays.vx * rays.cos + rays.vy * rays.sin
-        aside = rays.vy * rays.cos - rays.vx * rays.sin
-        t = t - error / (rays.vz - scene.grade(s) * ahead - scene.cross_slope(d) * aside)
-        s, d = rays.at(t, s, steps=1)
-    strip = np.zeros(len(t), dtype=np.int8)
-    for side in (scene.left, scene.right):
-        beyond = np.flatnonzero(side.sign * d > side.edge)
-        t[beyond], s[beyond], d[beyond], strip[beyond] = _beyond_edge(
-            scene, side, rays.some(beyond), t[beyond], s[beyond], d[beyond])
-    good = np.flatnonzero((t < LONGEST) & (np.abs(d) <= reach) & (s > -_MARGIN) & (s < scene.length + _MARGIN))
-    down, strip = down[good], strip[good]
-    hits.distance[down], hits.station[down], hits.offset[down] = t[good], s[good], d[good]
-    hits.strip[down] = strip
-    hits.cosine[down] = _incidence(scene, rays.some(good), s[good], d[good], strip)
-    return hits
 
 
 def _beyond_edge(scene, side, rays, t, s, d):
@@ -340,28 +324,6 @@ class _Rays:
 # The truth of the simulated street, as layers in map coordinates.
 
 _DROPPED = 0.05   # m: lower curbs are of the kind "dropped"
-
-
-def _truth_of_street(scene: Scene, origin: Sequence[float], crs: str) -> Truth:
-    """The true layers of a street.
-
-    Parameters
-    ----------
-    scene : Scene
-    origin : (3,) m, map coordinates of the local origin
-    crs : WKT
-
-    Returns
-    -------
-    Truth
-    """
-    def on_map(s, d):
-        return np.column_stack(scene.to_map(s, d)) + origin
-
-    s = _stations(0.0, scene.length)
-    surface = np.vstack([on_map(s, scene.left.edge), on_map(s[::-1], -scene.right.edge)])
-    return TruePlaces(_boundaries(scene, on_map), _markings(scene, on_map), _driving_lines(scene, on_map), [(surface, [])],
-                      _lanes(scene, on_map), _roadside(scene, origin)).layers(crs)
 
 
 def _stations(start, end):

@@ -17,6 +17,13 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 
 
+@pytest.fixture
+def german(qgis_app):
+    speak("de")
+    yield
+    speak("en")
+
+
 def messages(language):
     return json.loads((TRANSLATIONS / f"lanewright_{language}.json").read_text(encoding="utf-8"))
 
@@ -75,14 +82,13 @@ def test_a_german_qgis_process_speaks_german(tmp_path):
 
 def test_every_choice_of_a_dialog_has_a_word_in_german_or_is_a_name():
     from lanewright.algorithms.catalogue import ALGORITHMS
-    from lanewright.algorithms.choice_words import CHOICE_WORDS, NAMES
+    from lanewright.algorithms.choice_words import CHOICES, NAMES
 
     choices = {choice for algorithm in ALGORITHMS for spec in algorithm().parameters for choice in getattr(spec, "choices", ())}
-    assert choices <= {*CHOICE_WORDS, *NAMES}
+    assert choices <= {*CHOICES, *NAMES}
 
 
-def test_a_choice_reads_german_and_keeps_its_value(provider, monkeypatch):
-    from lanewright.algorithms import choice_words
+def test_a_choice_reads_german_and_keeps_its_value(german, provider, monkeypatch):
     from lanewright.algorithms.driving.road_map import RoadMap
     from lanewright.desktop.choice_widget import ChoiceWrapper
     from lanewright.processing_provider.parameters import qgis_parameter
@@ -90,8 +96,6 @@ def test_a_choice_reads_german_and_keeps_its_value(provider, monkeypatch):
     from processing.gui.AlgorithmDialog import AlgorithmDialog
     from qgis.core import QgsApplication
 
-    german = messages("de")
-    monkeypatch.setattr(choice_words, "CHOICE_WORDS", {choice: german[choice] for choice in choice_words.CHOICE_WORDS})
     parameter = qgis_parameter(RoadMap().parameter("BOUNDARY_METHOD"))
     assert parameter.metadata()["widget_wrapper"]["class"].endswith("ChoiceWrapper")
     monkeypatch.setattr(ParametersPanel, "iface", None)  # pytest-qgis has a stand-in that this panel refuses
@@ -103,13 +107,6 @@ def test_a_choice_reads_german_and_keeps_its_value(provider, monkeypatch):
 
 
 # -- what the core says ---------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def german(qgis_app):
-    speak("de")
-    yield
-    speak("en")
 
 
 def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german, project):

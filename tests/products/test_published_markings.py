@@ -1,10 +1,7 @@
 """The published ways of finding paint that ours is compared with."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity.image import write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint.extract import extract_markings
@@ -172,12 +169,3 @@ def test_the_mask_covers_the_paint_in_the_pixels_of_the_image(tmp_path, method):
     painted = line(records["s"] * 1e-4, records["d"] * 1e-4)
     assert covered[painted].mean() > 0.85
     assert painted[covered].mean() > 0.70
-
-
-@pytest.mark.parametrize("settings, wrong", [
-    (IntensityPeaks(), dict(prominence=0.0)), (IntensityPeaks(), dict(narrowest=0.4)), (IntensityPeaks(), dict(gap=0.1)),
-    (IntensityPeaks(), dict(profile_length=0.0)), (PointSegments(), dict(length=0.0)), (PointSegments(), dict(radius=0.0)),
-    (PointSegments(), dict(separation=-1.0))])
-def test_settings_without_sense_are_refused(settings, wrong):
-    with pytest.raises(RoadExtractionError):
-        replace(settings, **wrong)

@@ -159,9 +159,7 @@ def test_parked_cars_hide_the_curb_and_open_kerbside_shows_it():
 
 def test_no_pulse_goes_through_a_car(street, true_points):
     """Between the scanner and each point the way is free: no body holds its middle points."""
-    from lanewright.simulator.parts.obstacles import Car
-
-    cars = [thing for thing in street.scene.obstacles if isinstance(thing, Car)]
+    cars = [thing for thing in street.scene.obstacles if thing.label == LABEL["car"]]
     t = street.trajectory
     points = true_points[np.isin(true_points["label"], GROUND)][::7]
     # The scanner from the trajectory: level enough that 0.1 m of the body's own size covers roll and pitch.
@@ -186,12 +184,11 @@ def test_no_pulse_goes_through_a_car(street, true_points):
 
 def test_a_thing_in_the_way_takes_the_pulse_from_the_ground_behind_it(street):
     from lanewright.simulator.parts.scanner import OBSTACLE, cast
-    from lanewright.simulator.streets.street import cast_ground
 
     drive = street.drives[0]
     origin, direction, times, _ = street.scanners[0].pulses(drive, np.arange(200, 240))
     station = float(drive.station(times.mean()))
-    bare = cast_ground(street.scene, origin, direction, station, 18.0)
+    bare = street.scene.meet(origin, direction, station, 18.0)
     full = cast(street.scene, origin, direction, station, np.random.default_rng(1), 18.0)
     caught = full.strip == OBSTACLE
     assert np.count_nonzero(caught & np.isfinite(bare.distance)) > 100

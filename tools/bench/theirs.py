@@ -94,7 +94,8 @@ def _places(size):
 
 def _plan(size):
     """(N, 3) station and offset, stretched until near is a circle: quicker for PCL than a condition on a wider search."""
-    from lanewright.core.markings.objects.grouping import REACH_ACROSS_DIVISOR, REACH_ALONG_FACTOR
+    from lanewright.core.markings.weights import GROUPS
 
     paint = np.load(prepared("paint.npy", size))
-    return np.c_[paint[:, 3:5] - paint[:, 3:5].mean(axis=0).round(), np.zeros(len(paint))] * [1 / REACH_ALONG_FACTOR, REACH_ACROSS_DIVISOR, 0.0]
+    reach = 1 / GROUPS.reach_along_factor, GROUPS.reach_across_divisor, 0.0
+    return np.c_[paint[:, 3:5] - paint[:, 3:5].mean(axis=0).round(), np.zeros(len(paint))] * reach

@@ -8,22 +8,15 @@ from functools import cached_property
 import numpy as np
 
 from ...survey.frame.row_table import RowTable, stacked
+from ..weights import LANES
 from .sections import STATION_STEP, CrossSections
 from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, PAVEMENT, SOLID, SURFACE, EstimateWeights
 
 NAMES = {"edge": EDGE_LINE, "centre": CENTRE_LINE}   # a line called lane line may have been called nothing better
-STATIONS_OF_CELL = 5           # stations of the grid that are always in one interval: 2.5 m
-MAX_INTERVAL = 4               # cells: longer intervals are divided
-DOUBLE_SPACING = 0.22, 0.6     # m between the two lines of a double line; nearer ones are one line
-WEAK_TWIN = 0.25               # of the paint of the line beside it: less is a frayed edge, no second line
-FRAYED_LENGTH = 6.0            # m of paint at most of such an edge
-MAX_BOUNDARIES = 16            # at one place
-FAR = 30.0                     # m: beyond any road
-USUAL_LINES = 0.3              # of the painted length of a road: its lines of usual breadth
-USUAL_WIDTH = 0.10, 0.20       # m, of lines of usual breadth in all countries of the catalogue
-WIDE_LINE, WIDE_SOFTNESS = 1.6, 0.1   # times the usual breadth: a wide line has twice of it (RMS, MUTCD 3A.04), measured to some 2 cm
-SHORT_DASH, SHORT_SOFTNESS = 1.5, 0.1  # m: dashes between lanes have 2 m and more in all countries of the catalogue, interrupted edges 1 m and less
-SURFACE_MERGE = 0.8            # m: the surface, or a hatched area, ends at the line or curb that lies this near
+STATIONS_OF_CELL = 5   # derived: stations of the grid that are always in one interval: 2.5 m
+MAX_BOUNDARIES = 16   # derived: at one place
+FAR = 30.0   # derived: m: beyond any road
+USUAL_WIDTH = 0.10, 0.20   # source: m, of lines of usual breadth in all countries of the catalogue
 ENDS = SURFACE, PAVEMENT       # ends of the surface
 
 
@@ -31,25 +24,20 @@ ENDS = SURFACE, PAVEMENT       # ends of the surface
 class Boundaries:
     """All rows that may bound lanes on one grid of stations: lines, then curbs, then ends of the surface.
 
-    s : (K,) stations; d : RowTable of (R, K) offsets, NaN where a row is not; seen : (R, K); made_of : (R,) of SOLID ... ISLAND
-    patterns : (R, K) what a row is made of at each place: lines are solid here and dashed there, and where the surface ends an edge of the
-        pavement is seen (PAVEMENT) or not; paint : (R,) m of paint of each row
-    named : (R,) what a row separates by its layer, -1 where that is not said
-    bend : (K,) whether the road bends so much that lanes are widened
-    wide : (R, K) 0 to 1, whether a row is a wide line, which is at least twice as broad as the usual lines of its road; short : (R, K) the same of
-        dashes shorter than those between lanes; NaN where unknown
+    patterns : (R, K) what a row is made of at each place: lines are solid here and dashed there, and where the surface ends an edge of the pavement
+        is seen (PAVEMENT) or not
     """
 
-    s: np.ndarray
-    d: RowTable
-    seen: RowTable
-    made_of: np.ndarray
+    s: np.ndarray   # (K,) stations
+    d: RowTable   # RowTable of (R, K) offsets, NaN where a row is not
+    seen: RowTable   # (R, K)
+    made_of: np.ndarray   # (R,) of SOLID ... ISLAND
     patterns: RowTable
-    paint: np.ndarray
-    named: np.ndarray
-    bend: np.ndarray
-    wide: RowTable
-    short: RowTable
+    paint: np.ndarray   # (R,) m of paint of each row
+    named: np.ndarray   # (R,) what a row separates by its layer, -1 where that is not said
+    bend: np.ndarray   # (K,) whether the road bends so much that lanes are widened
+    wide: RowTable   # (R, K) 0 to 1, whether a row is a wide line, which is at least twice as broad as the usual lines of its road
+    short: RowTable   # (R, K) the same of dashes shorter than those between lanes; NaN where unknown
 
     @cached_property
     def bounding(self) -> np.ndarray:
@@ -120,7 +108,7 @@ def _at_edges(surface, pavement, s):
         own = slice(first, end)
         away = np.where(seen.row(row), d.row(row), np.inf) - surface[:, own]
         nearest[:, own] = np.where(np.isfinite(away) & (np.abs(away) < np.abs(nearest[:, own])), away, nearest[:, own])
-    at_edge = np.abs(nearest) < SURFACE_MERGE
+    at_edge = np.abs(nearest) < LANES.surface_merge
     return np.where(at_edge, surface + np.where(at_edge, nearest, 0.0), surface), at_edge
 
 
@@ -130,13 +118,13 @@ def _wide_share(lines):
     known = seen & np.isfinite(d) & (width > 0)
     if not known.any():
         return np.full(len(d), np.nan)
-    usual = np.clip(np.quantile(width[known], USUAL_LINES), *USUAL_WIDTH)
-    return np.where(known, 1 / (1 + np.exp(-(np.where(known, width, usual) / usual - WIDE_LINE) / WIDE_SOFTNESS)), np.nan)
+    usual = np.clip(np.quantile(width[known], LANES.usual_lines), *USUAL_WIDTH)
+    return np.where(known, 1 / (1 + np.exp(-(np.where(known, width, usual) / usual - LANES.wide_line) / LANES.wide_softness)), np.nan)
 
 
 def _short_share(lines, dashes):
     """Of each place of lines, 0 to 1, whether dashes are shorter than any country draws them between lanes."""
-    return np.full(lines.d.spans.size, np.nan) if dashes is None else 1 / (1 + np.exp((dashes.values - SHORT_DASH) / SHORT_SOFTNESS))
+    return np.full(lines.d.spans.size, np.nan) if dashes is None else 1 / (1 + np.exp((dashes.values - LANES.short_dash) / LANES.short_softness))
 
 
 def _made_of(pattern):
@@ -147,29 +135,20 @@ def _made_of(pattern):
 
 @dataclass
 class Candidates:
-    """Boundaries by interval, from left to right; the first and the last stand for what lies outside.
+    """Boundaries by interval, from left to right; the first and the last stand for what lies outside."""
 
-    first, last : (I,) stations of the grid that an interval begins and ends with
-    left, right : (I, M) m, offsets of the leftmost and the rightmost line of a boundary (a double line is one boundary)
-    made_of : (I, M) of SOLID ... ISLAND; trust, seen : (I, M) 0 to 1
-    rows : (I, M, 2) the rows of Boundaries that lie leftmost and rightmost; -1 outside
-    valid : (I, M) False where there are fewer boundaries than M
-    named : (I, M) what the layer says that a boundary separates, -1 where it does not
-    bend : (I,) as in Boundaries; wide, short : (I, M) as there, NaN of double lines
-    """
-
-    first: np.ndarray
+    first: np.ndarray   # (I,) stations of the grid that an interval begins and ends with
     last: np.ndarray
-    left: np.ndarray
+    left: np.ndarray   # (I, M) m, offsets of the leftmost and the rightmost line of a boundary (a double line is one boundary)
     right: np.ndarray
-    made_of: np.ndarray
-    trust: np.ndarray
+    made_of: np.ndarray   # (I, M) of SOLID ... ISLAND
+    trust: np.ndarray   # (I, M) 0 to 1
     seen: np.ndarray
-    rows: np.ndarray
-    valid: np.ndarray
-    named: np.ndarray
-    bend: np.ndarray
-    wide: np.ndarray
+    rows: np.ndarray   # (I, M, 2) the rows of Boundaries that lie leftmost and rightmost; -1 outside
+    valid: np.ndarray   # (I, M) False where there are fewer boundaries than M
+    named: np.ndarray   # (I, M) what the layer says that a boundary separates, -1 where it does not
+    bend: np.ndarray   # (I,) as in Boundaries
+    wide: np.ndarray   # (I, M) as there, NaN of double lines
     short: np.ndarray
 
     @property
@@ -208,7 +187,7 @@ def boundary_candidates(boundaries: Boundaries, weights: EstimateWeights) -> Can
     cut = cut[:-1]
     run = np.cumsum(cut) - 1
     within = np.arange(len(starts)) - np.flatnonzero(cut)[run]
-    cut |= within % MAX_INTERVAL == 0
+    cut |= within % LANES.max_interval == 0
     first = starts[cut]
     last = np.r_[first[1:], len(cell)] - 1
     intervals = _Stretches(boundaries.d, (np.cumsum(cut) - 1)[number])
@@ -268,7 +247,7 @@ def _rows(entries, which):
 def _twins(entries):
     """(N,) bool, whether an entry is paint right beside the paint before it."""
     paint = entries["made"] <= DOUBLE
-    return np.r_[False, (np.diff(entries["interval"]) == 0) & (-np.diff(entries["d"]) < DOUBLE_SPACING[1]) & paint[1:] & paint[:-1]]
+    return np.r_[False, (np.diff(entries["interval"]) == 0) & (-np.diff(entries["d"]) < LANES.double_spacing[1]) & paint[1:] & paint[:-1]]
 
 
 def _superfluous(entries, boundaries):
@@ -278,8 +257,8 @@ def _superfluous(entries, boundaries):
     found = np.zeros(len(d), bool)
     for step in (-1, 1):
         beside, twin = np.roll(made, -step), np.roll(twins, -1) if step > 0 else twins
-        found |= twin & (np.roll(paint, -step) * WEAK_TWIN > paint) & (paint < FRAYED_LENGTH)
-        near = (np.roll(interval, -step) == interval) & (np.abs(np.roll(d, -step) - d) < SURFACE_MERGE)
+        found |= twin & (np.roll(paint, -step) * LANES.weak_twin > paint) & (paint < LANES.frayed_length)
+        near = (np.roll(interval, -step) == interval) & (np.abs(np.roll(d, -step) - d) < LANES.surface_merge)
         found |= near & ((made == HATCHING) & (beside <= DOUBLE) | np.isin(made, ENDS) & ~np.isin(beside, ENDS))
     return found
 
@@ -295,7 +274,7 @@ def _grouped(entries):
         found[name] = np.maximum.reduceat(entries[name], begin)
     made, right = np.minimum.reduceat(entries["made"], begin), entries["d"][end]
     # two lines closer than that are the two sides of one broad line
-    double = (end > begin) & (found["d"] - right > DOUBLE_SPACING[0]) & (made <= DOUBLE)
+    double = (end > begin) & (found["d"] - right > LANES.double_spacing[0]) & (made <= DOUBLE)
     found["made"] = np.where(double, DOUBLE, np.where(made == DOUBLE, SOLID, made))
     found |= {name: np.where(double, np.nan, found[name]) for name in ("wide", "short")}
     return {**found, "right_row": entries["row"][end], "right": right}

@@ -31,45 +31,38 @@ from .sequence import (
 )
 from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, EstimateWeights, Reading
 
-FARTHEST_BEHIND = 30.0   # nats at most by which one direction is less probable than the other
-INTERVALS_OF_STRETCH = 256      # intervals that are looked at together, 1 to 2 km of road: what they are chosen from takes 0.2 MB for each
+FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
+INTERVALS_OF_STRETCH = 256   # derived: intervals that are looked at together, 1 to 2 km of road: what they are chosen from takes 0.2 MB for each
 
 
 @dataclass
 class RoadEstimate:
     """The cross-sections of one road for one side of traffic.
 
-    candidates : Candidates
-    lane_width : metres, the usual width of a lane
-    sections : Sections; choice : (I,) which of them; total : nats of them; posterior : (I, K) how probable each is
     sureness : (I, K) the same as far as it was seen here, where what is laid out alike along the road counts once, and so do the same lanes
-    first_direction : of the lanes met first from the left
-    evidence, weights : that it is made from
-    unnamed : (I,) which cross-sections would have been chosen without the names of the lines; -1 where these decide; unnamed_total : nats of them
     once : (I, K) nats of the most probable sequence through each as far as it was seen here, as `sureness` counts that; inf where nothing is known
     second : (I, K) by how many nats the most probable sequence through each is behind the best one, without names, see `behind_best`; inf where
         nothing is known
     other, behind : the estimate for the other side of traffic where either may be, else None, and by how many nats it is less probable
-    opposite, opposite_behind : the same as far as it is a second reading, in nats as of `second`
     """
 
     candidates: Candidates
-    lane_width: float
+    lane_width: float   # metres, the usual width of a lane
     sections: Sections
-    choice: np.ndarray
-    posterior: np.ndarray
+    choice: np.ndarray   # (I,) which of them
+    posterior: np.ndarray   # (I, K) how probable each is
     sureness: np.ndarray
-    total: float
-    first_direction: int
-    evidence: Evidence
+    total: float   # nats of them
+    first_direction: int   # of the lanes met first from the left
+    evidence: Evidence   # that it is made from
     weights: EstimateWeights
-    unnamed: np.ndarray
-    unnamed_total: float
+    unnamed: np.ndarray   # (I,) which cross-sections would have been chosen without the names of the lines; -1 where these decide
+    unnamed_total: float   # nats of them
     once: np.ndarray
     second: np.ndarray
     other: RoadEstimate | None = None
     behind: float = 0.0
-    opposite: RoadEstimate | None = None
+    opposite: RoadEstimate | None = None   # the same as far as it is a second reading, in nats as of `second`
     opposite_behind: float = 0.0
 
     @property
@@ -83,11 +76,7 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
                   weights: EstimateWeights = EstimateWeights()) -> RoadEstimate:
     """The most probable sequence of cross-sections of one road.
 
-    Parameters
-    ----------
-    evidence : Evidence of their intervals
-    first_direction : 1 or -1, of the lanes that are met first from the left: -1 with traffic on the right
-    lane_width : metres, the usual width of a lane
+    `first_direction` : 1 or -1, of the lanes that are met first from the left: -1 with traffic on the right; `lane_width` : m, the usual one.
     """
     sections = _best_sections(candidates, evidence, weights, lane_width, first_direction)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
@@ -202,26 +191,21 @@ def _roads_of_many_lanes(c, sections, divided, weights):
 class LaneSpan:
     """One lane over one interval.
 
-    interval : number; left, right : rows of Boundaries, place : from the right, of `count` lanes between them
-    direction : 1 or -1, of the most probable sequence; where that is the less probable one of a lane there, the other, unless names of
-        lines decided that, or the drive
-    probability : 0 to 1, of a lane of either direction there, with the posterior of RoadEstimate
-    confidence : 0 to 1, of a lane of either direction there, with the sureness of RoadEstimate
-    directed : 0 to 1, of those of this direction among them, on both sides of traffic where the survey leaves that open
-    left_border, right_border : what the two separate, LANE_LINE ... OTHER_LINE
+    direction : 1 or -1, of the most probable sequence; where that is the less probable one of a lane there, the other, unless names of lines decided
+        that, or the drive
     second : Reading, the most probable one of those without such a lane in that direction there; None where that is not known
     """
 
-    interval: int
-    left: int
+    interval: int   # number
+    left: int   # rows of Boundaries
     right: int
-    place: int
+    place: int   # from the right, of `count` lanes between them
     count: int
     direction: int
-    probability: float
-    confidence: float
-    directed: float
-    left_border: int
+    probability: float   # 0 to 1, of a lane of either direction there, with the posterior of RoadEstimate
+    confidence: float   # 0 to 1, of a lane of either direction there, with the sureness of RoadEstimate
+    directed: float   # 0 to 1, of those of this direction among them, on both sides of traffic where the survey leaves that open
+    left_border: int   # what the two separate, LANE_LINE ... OTHER_LINE
     right_border: int
     second: Reading | None = None
 
@@ -260,17 +244,14 @@ def _lane_spans(estimate, part):
 
 @dataclass
 class _Lanes:
-    """Every lane of every strip of an estimate, in order of interval: where it is and which way it leads.
+    """Every lane of every strip of an estimate, in order of interval: where it is and which way it leads."""
 
-    interval, section, strip : (N,) int, the last the row of LaneStrips; d, width : (N,) m; way : (N,) 1 or -1
-    """
-
-    interval: np.ndarray
+    interval: np.ndarray   # (N,) int
     section: np.ndarray
-    strip: np.ndarray
-    d: np.ndarray
+    strip: np.ndarray   # row of LaneStrips
+    d: np.ndarray   # (N,) m
     width: np.ndarray
-    way: np.ndarray
+    way: np.ndarray   # (N,) 1 or -1
 
 
 def _strips_of(estimate, part):

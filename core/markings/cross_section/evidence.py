@@ -21,16 +21,12 @@ from ...survey.store.section_store import STRETCH_POINTS, Stretch
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..road_grid import CELL_SIZE
+from ..weights import EVIDENCE
 from .candidates import FAR, Candidates
 from .sections import STATION_STEP
 
-BIN = 0.2              # m across, of what is seen of the surface and of hatching
-BINS = int(round(2 * FAR / BIN))
-CARRIAGEWAY_DISTANCE = 40.0  # m between the tracks on two carriageways of one road at most
-OWN_ROAD = 6.0         # m: what runs nearer is on this road
-PASS_SPACING = 20      # stations, between the places of a pass at most
-SECTIONS_ALIKE = 3   # sections of points whose median spacing is taken: one in which the road begins or ends holds fewer points
-STOP_REACH = 5.0    # m before and after a stop line where its lanes are still its lanes
+BIN = 0.2   # derived: m across, of what is seen of the surface and of hatching
+BINS = int(round(2 * FAR / BIN))   # derived
 
 _known: WeakKeyDictionary[Any, dict[Any, Any]] = WeakKeyDictionary()   # stores of road points -> what `surface_coverage` found
 
@@ -39,21 +35,16 @@ _known: WeakKeyDictionary[Any, dict[Any, Any]] = WeakKeyDictionary()   # stores 
 class Evidence:
     """What is seen beside boundaries, by interval.
 
-    driven : (P, I) m, offset of each pass, NaN where it was not; directions : (P,) 1 along, -1 against the road, 0 unknown
-    asphalt, hatched : (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
-    arrows : (A, 3) interval, offset, and which way it points: 1 along the road, -1 against it, nearer 0 the less sure
-    stops : (S, 3) interval, least and greatest offset
-    divided : (I,) bool, whether the road is one carriageway of two
     taken : what an analyst took: interval, offset of the lane that it is taken for, and offset, width and direction of each lane instead
     """
 
-    driven: np.ndarray
-    directions: np.ndarray
-    asphalt: np.ndarray | None
+    driven: np.ndarray   # (P, I) m, offset of each pass, NaN where it was not
+    directions: np.ndarray   # (P,) 1 along, -1 against the road, 0 unknown
+    asphalt: np.ndarray | None   # (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
     hatched: np.ndarray | None
-    arrows: np.ndarray
-    stops: np.ndarray
-    divided: np.ndarray
+    arrows: np.ndarray   # (A, 3) interval, offset, and which way it points: 1 along the road, -1 against it, nearer 0 the less sure
+    stops: np.ndarray   # (S, 3) interval, least and greatest offset
+    divided: np.ndarray   # (I,) bool, whether the road is one carriageway of two
     taken: tuple[tuple[int, float, tuple[tuple[float, float, int], ...]], ...] = ()
 
     def part(self, first: int, end: int) -> Evidence:
@@ -66,16 +57,9 @@ class Evidence:
 
 
 def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where the vehicle drove.
+    """(P, K) m, offset of every pass at (K,) stations, NaN where it did not drive, and (P,) its direction along the road's reference line.
 
-    Parameters
-    ----------
-    s : (K,) metres, stations
-
-    Returns
-    -------
-    d : (P, K) metres, offset of every pass; NaN where it did not drive
-    direction : (P,) int, 1 along the road's reference line, -1 against it; 0 where the drive was estimated and that is not known
+    The direction is 1 or -1; 0 where the drive was estimated and that is not known.
     """
     passes = frame.passes_of(road)
     d = np.full((len(passes), len(s)), np.nan)
@@ -87,26 +71,23 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
 
 
 def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
-    """(K,) bool, whether another road of the survey was driven the other way beside this one: the two are carriageways of one road.
-
-    `s` are (K,) stations in metres.
-    """
+    """(K,) bool, whether another road of the survey was driven the other way beside this one, at (K,) stations: both are carriageways of one road."""
     found = np.zeros(len(s), bool)
     ways = {p.direction for p in frame.passes_of(road)}
     if len(ways) != 1 or not frame.way_known:
         return found
     of_road = frame.road(road)
     for p in frame.passes:
-        if p.road == road or _apart(p, of_road) > CARRIAGEWAY_DISTANCE:
+        if p.road == road or _apart(p, of_road) > EVIDENCE.carriageway_distance:
             continue
-        station, d = of_road.locate(p.x, p.y, corridor=CARRIAGEWAY_DISTANCE)
+        station, d = of_road.locate(p.x, p.y, corridor=EVIDENCE.carriageway_distance)
         against = np.gradient(np.nan_to_num(station)) * next(iter(ways)) < 0
-        beside = np.isfinite(station) & against & (np.abs(d) > OWN_ROAD)
+        beside = np.isfinite(station) & against & (np.abs(d) > EVIDENCE.own_road)
         at = np.rint((station[beside] - s[0]) / STATION_STEP)
         at = at[(at >= 0) & (at < len(s))].astype(int)
         found[at] = True
     # the places of a pass are sparser than the stations
-    return binary_closing(found, np.ones(2 * PASS_SPACING + 1, bool)) if len(found) else found
+    return binary_closing(found, np.ones(2 * EVIDENCE.pass_spacing + 1, bool)) if len(found) else found
 
 
 def _apart(p, road):
@@ -154,17 +135,7 @@ def _surface_coverage(points, road, first, count):
 
 
 def point_spacing(road_points: RoadPoints, road: int, s: np.ndarray) -> np.ndarray:
-    """Spacing of the road points at stations, the side of the square of surface that holds one of them.
-
-    Parameters
-    ----------
-    road : number
-    s : (K,) m, the grid stations of the road's lines
-
-    Returns
-    -------
-    (K,) m; NaN where it is not known
-    """
+    """(K,) m, the side of the square of surface that holds one road point, at (K,) stations; NaN where it is not known."""
     numbers, length = np.array(road_points.sections(road)), road_points.store.section_length
     left, right = surface_coverage(road_points, road, s)[1]
     known = np.isfinite(left - right)
@@ -174,21 +145,14 @@ def point_spacing(road_points: RoadPoints, road: int, s: np.ndarray) -> np.ndarr
     width = np.maximum(np.interp(middles, s[known], (left - right)[known]), 1.0)
     count = np.array([road_points.store.size(road, number) for number in numbers.tolist()])
     side = np.sqrt(width * length / np.maximum(count, 1))
-    return np.interp(s, middles, median_filter(side, SECTIONS_ALIKE, mode="mirror"))
+    return np.interp(s, middles, median_filter(side, EVIDENCE.sections_alike, mode="mirror"))
 
 
 def seen_in_stretch(points: RoadPoints, stretch: Stretch, first: int, count: int) -> list[tuple[int, np.ndarray, np.ndarray, np.ndarray]]:
-    """The phase that looks where the surface was scanned.
+    """The phase that looks where the surface was scanned, at stations `first` to `first + count` of the grid.
 
-    Parameters
-    ----------
-    stretch : Stretch of a road
-    first, count : stations first to first + count of the grid are looked at
-
-    Returns
-    -------
-    of each section the first of the N stations that it shows, less `first`; (N, BINS) bool, the bins with points; (N, 2) sums of half widths (mm)
-    and (N, 2) numbers of points on the left and on the right
+    Returns of each section the first of the N stations that it shows, less `first`; (N, BINS) bool, the bins with points; (N, 2) sums of half widths
+    (mm) and (N, 2) numbers of points on the left and on the right.
     """
     return [_seen_in_section(points.section(*key).records, first, count) for key in points.store.in_stretch(stretch)]
 
@@ -216,14 +180,8 @@ def _seen_in_section(records, first, count):
 def between_ends(ends: np.ndarray, likely: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The same where only paint tells how far the surface reaches: everything between the ends that neighbouring paint knows.
 
-    Parameters
-    ----------
-    ends : (2, K) metres, NaN where there is no paint
-    likely : (2, K) metres, where it may end on a side that has no paint at all
-
-    Returns
-    -------
-    covered : (K, BINS) bool; ends : (2, K) metres, filled along the road
+    `ends` : (2, K) m, NaN where there is no paint; `likely` : (2, K) m, where it may end on a side that has no paint at all. Returns (K, BINS) bool
+    and the (2, K) ends, filled along the road.
     """
     rows = np.arange(ends.shape[1])
     filled = np.full(ends.shape, np.nan)
@@ -243,12 +201,8 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
 
     Parameters
     ----------
-    s : (K,) metres
-    driven, directions : as `driven_offsets` gives them
-    covered, hatched : (K, BINS) bool, or None
-    arrows : (A, 3) as `arrows_of` gives them, or None
-    markings : MarkingObjects, of which stop lines count; or None
-    divided : (K,) bool as `other_carriageway` gives it, or None
+    driven, directions : as `driven_offsets` gives them; divided : (K,) bool as `other_carriageway` gives it
+    covered, hatched : (K, BINS) bool; arrows : (A, 3) as `arrows_of` gives them; markings : of which stop lines count; each may be None
     """
     size = np.diff(np.r_[candidates.first, candidates.last[-1] + 1])
 
@@ -282,21 +236,13 @@ def _stop_lines(candidates, s, markings, road):
     """(S, 3) interval, least and greatest offset of the stop lines on or near it."""
     begin, end = s[candidates.first], s[candidates.last]
     found = [(k, low, high) for first, last, low, high in _extents(markings, road, "stop")
-             for k in np.flatnonzero((begin <= last + STOP_REACH) & (end >= first - STOP_REACH)).tolist()]
+             for k in np.flatnonzero((begin <= last + EVIDENCE.stop_reach) & (end >= first - EVIDENCE.stop_reach)).tolist()]
     return np.array(found).reshape(-1, 3)
 
 
 # Hatched areas and parking bays: where nobody drives, and the borders that bound the lanes beside.
 
-BAR_REACH = 1.6        # m: bars of one hatched area are at most twice as far apart
-OUTLINE_SPACING = 0.25 # m between places of an outline
-HALF_BORDER = 0.06     # m from the outside of its border line to the middle: half of a narrow line
-OUTSIDE_PAINT = CELL_SIZE / 2   # m: outlines are of whole cells, of which paint reaches into the outermost ones by half on average
-SHORTEST_AREA = 5.0    # m
-BORDER_LINE_REACH = 0.5  # m between the ends of bars and the middle of the border line that they lead to: gap, and half of a broad line
-MAX_TIP = 20.0         # m from the last bar to where the borders meet
-MAX_TIP_GAP = 2.0      # m of border that is not seen
-TIP_COURSE = 4.0       # m of border that give its course
+OUTSIDE_PAINT = CELL_SIZE / 2   # derived: m: outlines are of whole cells, of which paint reaches into the outermost ones by half on average
 
 
 def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray | None:
@@ -321,36 +267,28 @@ def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.
 
 
 def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> RowTable:
-    """The outer borders of hatched areas: nobody drives between them, and they bound the lanes beside.
+    """RowTable (2 G, K) of m, the left and the right border of each of G hatched areas and of tips of them, NaN where it is not.
 
-    A border is the middle of the line that is painted along the ends of the bars; where there is none, the ends themselves. Where the area narrows
-    to a tip, too narrow for bars, the borders go on along their lines to where these meet.
-
-    Parameters
-    ----------
-    s : (K,) metres, stations
-
-    Returns
-    -------
-    RowTable (2 G, K) of metres, the left and the right border of each of G areas and of tips of them, NaN where it is not
+    Nobody drives between them, and they bound the lanes beside. A border is the middle of the line that is painted along the ends of the bars; where
+    there is none, the ends themselves. Where the area narrows to a tip, too narrow for bars, the borders go on along their lines to where these meet.
     """
     here = markings.road == road
     bars, lines = ([shape for shape in shapely.force_2d(markings.outlines.polygons()[here & kind]) if not shape.is_empty]
                    for kind in (markings.kind == "hatch", np.isin(markings.kind.astype(str), LINE_KINDS)))
-    areas = shapely.get_parts(shapely.union_all(shapely.buffer(bars, BAR_REACH))) if bars else np.empty(0, object)
-    bars_of, lines_of = _meeting(areas, bars), _meeting(shapely.buffer(areas, MAX_TIP), lines)
+    areas = shapely.get_parts(shapely.union_all(shapely.buffer(bars, EVIDENCE.bar_reach))) if bars else np.empty(0, object)
+    bars_of, lines_of = _meeting(areas, bars), _meeting(shapely.buffer(areas, EVIDENCE.max_tip), lines)
     found = []
     for k in range(len(areas)):
         first, reach = _reach([bars[j] for j in bars_of[k]], frame, road, s)
         known = np.flatnonzero(np.isfinite(reach[0]))
-        if not len(known) or np.ptp(known) * STATION_STEP < SHORTEST_AREA:
+        if not len(known) or np.ptp(known) * STATION_STEP < EVIDENCE.shortest_area:
             continue
         borders = np.empty(reach.shape)
         for side, sign in enumerate((1.0, -1.0)):
             # bars touch the border only at their ends
             outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR),
-                                 size=int(2 * BAR_REACH / STATION_STEP) + 1, mode="nearest")
-            borders[side] = sign * (outer - OUTSIDE_PAINT - HALF_BORDER)
+                                 size=int(2 * EVIDENCE.bar_reach / STATION_STEP) + 1, mode="nearest")
+            borders[side] = sign * (outer - OUTSIDE_PAINT - EVIDENCE.half_border)
         beside = [(begin, along.mean(axis=0)) for begin, along in (_reach([lines[j]], frame, road, s) for j in lines_of[k])]
         for begin, middle in beside:
             low, high = max(begin, first), min(begin + len(middle), first + reach.shape[1])
@@ -369,7 +307,7 @@ def _tip(borders, last, step, lines):
     `borders` : (2, M) m, those beside the bars, up to the station of the number `last`; `step` : 1 or -1, the way that stations are counted on;
     `lines` : (number of the first station, (L,) m of its middle) of the lines about the area
     """
-    course, count = int(TIP_COURSE / STATION_STEP), int(MAX_TIP / STATION_STEP)
+    course, count = int(EVIDENCE.tip_course / STATION_STEP), int(EVIDENCE.max_tip / STATION_STEP)
     table = np.full((len(lines), course + count), np.nan)
     for row, (begin, middle) in zip(table, lines):
         at = (begin + np.arange(len(middle)) - last) * step + course - 1
@@ -382,11 +320,11 @@ def _tip(borders, last, step, lines):
         for k in range(course, course + count):
             before = np.arange(known - course, known)
             before = before[np.isfinite(border[before])]
-            if k - known > MAX_TIP_GAP / STATION_STEP or len(before) < 2:
+            if k - known > EVIDENCE.max_tip_gap / STATION_STEP or len(before) < 2:
                 break
             slope, level = np.polyfit(before - k, border[before], 1)
             off = np.abs(table[:, k] - level)
-            if np.isfinite(off).any() and np.nanmin(off) <= BORDER_LINE_REACH:
+            if np.isfinite(off).any() and np.nanmin(off) <= EVIDENCE.border_line_reach:
                 border[k] = table[np.nanargmin(off), k]
                 border[known:k] = np.interp(np.arange(known, k), [known - 1, k], border[[known - 1, k]])
                 known = k + 1
@@ -406,19 +344,7 @@ def _meeting(areas, shapes):
 
 
 def places_of_bays(rows: list[np.ndarray], s: np.ndarray, driven: np.ndarray) -> tuple[np.ndarray, RowTable]:
-    """Where parking bays lie, and their ends towards the lanes.
-
-    Parameters
-    ----------
-    rows : as `rows_of_bays` gives them
-    s : (K,) metres, stations
-    driven : (P, K) metres, offset of every pass, NaN where it did not drive
-
-    Returns
-    -------
-    places : (K, BINS) bool, cells of station and offset that lie in bays
-    ends : RowTable (G, K) of metres, offset at which the lines of each row end towards the vehicle, NaN beyond the row
-    """
+    """(K, BINS) bool, where the bays of `rows_of_bays` lie, and RowTable (G, K) of m, where the lines of each row end towards the vehicle."""
     places, ends = np.zeros((len(s), BINS), bool), []
     offsets = (np.arange(BINS) + 0.5) * BIN - FAR
     for row in rows:
@@ -432,7 +358,7 @@ def places_of_bays(rows: list[np.ndarray], s: np.ndarray, driven: np.ndarray) ->
 
 def _reach(shapes, frame, road, s):
     """Greatest and least offset of outlines, (2, N) m, from a first station on that is given; NaN at stations where there are none."""
-    x, y = shapely.get_coordinates(shapely.segmentize(shapes, OUTLINE_SPACING)).T
+    x, y = shapely.get_coordinates(shapely.segmentize(shapes, EVIDENCE.outline_spacing)).T
     station, d = located(frame, np.full(len(x), road), x, y)
     at = np.rint((station - s[0]) / STATION_STEP)
     inside = np.isfinite(at) & (at >= 0) & (at < len(s))
@@ -449,7 +375,7 @@ def _reach(shapes, frame, road, s):
 def _follow(borders, middle):
     """Put borders on the middle of a line that runs along them, (N,) m at the same stations."""
     with np.errstate(invalid="ignore"):
-        along = np.abs(borders - middle) < BORDER_LINE_REACH
+        along = np.abs(borders - middle) < EVIDENCE.border_line_reach
     for border, near in zip(borders, along):
         border[near] = middle[near]
 
@@ -457,29 +383,13 @@ def _follow(borders, middle):
 # Rows of parking bays: the lines between bays are as narrow as other lines and run across or askew, from the lane to the edge of the road (RMS
 # part 1, bays of 2.3 to 2.7 m, parallel ones of 5 to 7 m; MUTCD 3B.19). Joints of a concrete road and rumble bars lie across driven lanes, too.
 
-WIDEST_BAY_LINE = 0.20   # m, of lines of usual breadth in all countries of the catalogue
-LEAST_REACH = 1.2        # m across the road that is seen of a line: a parked car hides the rest
-MAX_SKEW = 1.3           # m along the road for each metre across
-BAY_PITCH = 2.0, 8.0     # m along the road from line to line
-MAX_BAYS_HIDDEN = 3      # bays without a line between them, which cars hide
-EVEN_PITCH = 0.12        # of the pitch, by which a line may lie off an even row
-MIN_BAY_LINES = 4        # of a row
-MIN_EVEN = 0.75          # of the steps of a row that are even
-PIECES_OF_LINE = 0.5     # m along the road between pieces of one line at most
-SHARED_REACH = 0.5       # of the shorter of two neighbours that lies beside the other
+WIDEST_BAY_LINE = 0.20   # source: m, of lines of usual breadth in all countries of the catalogue
 
 
 def rows_of_bays(markings: MarkingObjects, road: int, s: np.ndarray, driven: np.ndarray) -> list[np.ndarray]:
-    """Rows of parking bays on one road.
+    """Rows of parking bays on one road: (n, 3) m each, station of the middle, least and greatest offset of its lines, by station.
 
-    Parameters
-    ----------
-    s : (K,) metres, stations, increasing
-    driven : (P, K) metres, offset of every pass at these, NaN where it did not drive
-
-    Returns
-    -------
-    list of (n, 3) metres: station of the middle, least and greatest offset of the lines of each row, by station
+    `driven` : (P, K) m, offset of every pass at (K,) increasing stations, NaN where it did not drive.
     """
     rows = _rows(_lines_across(markings, road))
     crossed = [_driven_over(row, s, driven) for row in rows]
@@ -495,7 +405,7 @@ def _lines_across(markings, road):
     cluster = markings.cluster[here]
     _, of = np.unique(np.where(cluster >= 0, cluster, -2 - np.arange(len(here))), return_inverse=True)
     first, last, low, high = (pick(markings.extent[here, k], of) for k, pick in enumerate((_least, _greatest, _least, _greatest)))
-    across = (high - low >= LEAST_REACH) & (last - first <= MAX_SKEW * (high - low) + WIDEST_BAY_LINE)
+    across = (high - low >= EVIDENCE.least_reach) & (last - first <= EVIDENCE.max_skew * (high - low) + WIDEST_BAY_LINE)
     lines = np.column_stack([(first + last) / 2, low, high])[across]
     return lines[np.argsort(lines[:, 0], kind="stable")]
 
@@ -513,30 +423,30 @@ def _greatest(values, of):
 def _rows(lines):
     """Rows of lines that follow each other at an even pace: list of (n, 3), each by station."""
     station = lines[:, 0]
-    low, high = np.searchsorted(station, station + BAY_PITCH[0]), np.searchsorted(station, station + BAY_PITCH[1], side="right")
+    low, high = np.searchsorted(station, station + EVIDENCE.bay_pitch[0]), np.searchsorted(station, station + EVIDENCE.bay_pitch[1], side="right")
     a = np.repeat(np.arange(len(lines)), high - low)
     b = np.arange(len(a)) - np.repeat(np.cumsum(high - low) - (high - low), high - low) + low[a]
     shared = np.minimum(lines[a, 2], lines[b, 2]) - np.maximum(lines[a, 1], lines[b, 1])
-    linked = shared >= SHARED_REACH * np.minimum(lines[a, 2] - lines[a, 1], lines[b, 2] - lines[b, 1])
+    linked = shared >= EVIDENCE.shared_reach * np.minimum(lines[a, 2] - lines[a, 1], lines[b, 2] - lines[b, 1])
     group = linked_groups(a[linked], b[linked], len(lines))
-    found = [_whole(lines[group == number]) for number in np.flatnonzero(np.bincount(group) >= MIN_BAY_LINES)]
+    found = [_whole(lines[group == number]) for number in np.flatnonzero(np.bincount(group) >= EVIDENCE.min_bay_lines)]
     return [row for row in found if _even(row)]
 
 
 def _whole(row):
     """The row with the pieces of each line, which lie at one station, put together."""
-    start = np.flatnonzero(np.r_[True, np.diff(row[:, 0]) > PIECES_OF_LINE])
+    start = np.flatnonzero(np.r_[True, np.diff(row[:, 0]) > EVIDENCE.pieces_of_line])
     return np.column_stack([np.add.reduceat(row[:, 0], start) / np.diff(np.r_[start, len(row)]), np.minimum.reduceat(row[:, 1], start),
                             np.maximum.reduceat(row[:, 2], start)])
 
 
 def _even(row):
-    if len(row) < MIN_BAY_LINES:
+    if len(row) < EVIDENCE.min_bay_lines:
         return False
     steps = np.diff(row[:, 0])
     pitch = float(np.median(steps))
-    times = np.clip(np.round(steps / pitch), 1, MAX_BAYS_HIDDEN)
-    return np.mean(np.abs(steps - times * pitch) <= EVEN_PITCH * pitch) >= MIN_EVEN
+    times = np.clip(np.round(steps / pitch), 1, EVIDENCE.max_bays_hidden)
+    return np.mean(np.abs(steps - times * pitch) <= EVIDENCE.even_pitch * pitch) >= EVIDENCE.min_even
 
 
 def _driven_over(row, s, driven):

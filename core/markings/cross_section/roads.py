@@ -17,6 +17,7 @@ from ...survey.frame.row_table import RowTable, stacked
 from ...survey.store.road_points import RoadPoints
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
+from ..weights import ROADS
 from .candidates import Boundaries, Candidates, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import (
@@ -34,10 +35,6 @@ from .evidence import (
 from .sections import STATION_STEP, CrossSections
 from .weights import PAVEMENT, EstimateWeights, TakenReading
 
-LENGTH_OF_USUAL = 50.0    # m of lanes that weigh as much as what is usual in the country
-WIDENED_RADIUS = 60.0     # m: lanes are widened in tighter bends (most codes widen below 100 to 200 m; less than 0.3 m there)
-SURE_SIDE = 1.4           # nats by which one side of traffic must be more probable than the other to be sure: else it is wrong one time in five
-
 
 @dataclass
 class EstimatedRoad:
@@ -50,19 +47,13 @@ class EstimatedRoad:
 
 @dataclass
 class RoadEstimates:
-    """All roads of a survey.
+    """All roads of a survey."""
 
-    roads : {number: EstimatedRoad}
-    side : "right" or "left"; sure : whether the survey shows that
-    lane_width : metres, usual
-    against_arrows : whether the survey was driven against the arrows in its lanes
-    """
-
-    roads: dict[int, EstimatedRoad]
-    side: str
-    sure: bool
-    lane_width: float
-    against_arrows: bool
+    roads: dict[int, EstimatedRoad]   # {number: EstimatedRoad}
+    side: str   # "right" or "left"
+    sure: bool   # whether the survey shows that
+    lane_width: float   # metres, usual
+    against_arrows: bool   # whether the survey was driven against the arrows in its lanes
 
 
 def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_width: float, side: str = "automatic",
@@ -99,7 +90,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         covered, ends = _surface(road_points, paint, number, s, likely)
         open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
         hatched, borders = _closed_areas(markings, frame, number, s, driven[0])
-        bends = np.abs(frame.road(number).curvature(s)) > 1 / WIDENED_RADIUS
+        bends = np.abs(frame.road(number).curvature(s)) > 1 / ROADS.widened_radius
         boundaries = gather_boundaries(of_road, (curbs or {}).get(number), ends, open_ends, bends, borders, (pavement or {}).get(number),
                                        dash_lengths(of_road, markings, number))
         candidates = boundary_candidates(boundaries, weights)
@@ -121,7 +112,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     opposite = np.inf if len(sides) == 1 or named else weights.left_hand * -best + sum(
         (found[-best][number].unnamed_total - estimate.unnamed_total) * min(1.0, weights.repeats / max(float(estimate.candidates.length.sum()), 1.0))
         for number, estimate in found[best].items())
-    used = tuple(first for first in sides if first == best or behind < SURE_SIDE or opposite < weights.doubt)
+    used = tuple(first for first in sides if first == best or behind < ROADS.sure_side or opposite < weights.doubt)
     width = usual_width if width_asked else _usual_width(known, found[best], usual_width)
     # the road's own width tells lanes better than that of a country
     if width != usual_width:
@@ -132,9 +123,9 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
             estimate = replace(estimate, unnamed=np.full(len(estimate.choice), -1))
         elif len(used) > 1:
             other = found[-best][number]
-            estimate = replace(estimate, other=other if behind < SURE_SIDE else None, behind=behind, opposite=other, opposite_behind=opposite)
+            estimate = replace(estimate, other=other if behind < ROADS.sure_side else None, behind=behind, opposite=other, opposite_behind=opposite)
         roads[number] = EstimatedRoad(lines[number], known[number][0], estimate)
-    return RoadEstimates(roads, "right" if best < 0 else "left", behind >= SURE_SIDE, width, against)
+    return RoadEstimates(roads, "right" if best < 0 else "left", behind >= ROADS.sure_side, width, against)
 
 
 def _taken_on(taken, number, candidates, s):
@@ -200,32 +191,24 @@ def _usual_width(known, estimates, usual):
                 lengths.append(STATION_STEP * (rows.stop - rows.start))
     if not lengths:
         return usual
-    widths, lengths = np.append(widths, usual), np.append(lengths, LENGTH_OF_USUAL)
+    widths, lengths = np.append(widths, usual), np.append(lengths, ROADS.length_of_usual)
     order = np.argsort(widths)
     total = np.cumsum(lengths[order])
     middle = float(widths[order[int(np.searchsorted(total, total[-1] / 2))]])
-    return (middle * sum(lengths[:-1]) + usual * LENGTH_OF_USUAL) / sum(lengths)
+    return (middle * sum(lengths[:-1]) + usual * ROADS.length_of_usual) / sum(lengths)
 
 
 # Arrows on the road: in which lane they lie and which way they point.
 
-SHORTEST_ARROW = 2.0  # m along the road, of a lane of a road (Convention on Road Signs and Signals, Vienna 1968, annex 2, 39)
-WORN_ENDS = 0.1       # m that an arrow may look shorter than it was painted
-SLICES = 50           # of an arrow from end to end, whose breadth is taken
-SHAFT_BREADTH = 0.36  # m, of a single stroke at most: shafts are 0.10 to 0.20 m broad, and a cell more on either side; heads begin at 0.5 m
-POINTED = 0.03         # of the length: the tip gets broad in a longer way than the end of a letter, which is as broad as the letter
-SURE_LEAN = 0.15      # of the length by which the shaft must be longer than the tip to be sure which is which; painted arrows have 0.15 to 0.5
+SHORTEST_ARROW = 2.0   # source: m along the road, of a lane of a road (Convention on Road Signs and Signals, Vienna 1968, annex 2, 39)
+SLICES = 50   # derived: of an arrow from end to end, whose breadth is taken
 
 
 def arrows_of(markings: MarkingObjects, frame: RoadFrame, road: int) -> np.ndarray:
-    """Where arrows lie and which way they point.
+    """(A, 3) station and offset of the middle of arrows, m, and which way they point: 1 along the road, -1 against it, nearer 0 the less that shows.
 
     An arrow begins with a bare shaft and soon is broad behind its tip, so it points to the end at which less of it is a single stroke. That
     is read from the painted outline alone. Shorter arrows than a lane of a road has belong to cycle paths or are none.
-
-    Returns
-    -------
-    (A, 3) station and offset of the middle, m, and which way it points: 1 along the road, -1 against it, nearer 0 the less that shows
     """
     rows = np.flatnonzero((markings.road == road) & (markings.kind == "arrow") & np.isfinite(markings.extent[:, 0]))
     if not len(rows):
@@ -240,20 +223,16 @@ def arrows_of(markings: MarkingObjects, frame: RoadFrame, road: int) -> np.ndarr
     known = np.bincount(owner, ~np.isfinite(places).all(axis=1), minlength=len(rows)) == 0
     arrows = np.array([shapely.union_all(shapely.make_valid(parts[known & (of == k)])) for k in np.unique(of[known])], object)
     first, low, last, high = shapely.bounds(arrows).T
-    arrows, first, low, last, high = (values[last - first >= SHORTEST_ARROW - WORN_ENDS] for values in (arrows, first, low, last, high))
+    arrows, first, low, last, high = (values[last - first >= SHORTEST_ARROW - ROADS.worn_ends] for values in (arrows, first, low, last, high))
     begin, finish = stems(arrows)
-    way = np.clip((begin - finish) / SURE_LEAN, -1, 1) * (np.minimum(begin, finish) > POINTED)
+    way = np.clip((begin - finish) / ROADS.sure_lean, -1, 1) * (np.minimum(begin, finish) > ROADS.pointed)
     return np.c_[(first + last) / 2, (low + high) / 2, way]
 
 
 def driven_against(arrows: np.ndarray, s: np.ndarray, driven: np.ndarray, directions: np.ndarray) -> float:
     """How many arrows point against those who drove over them, less those that point along with them, each as far as it surely points.
 
-    Parameters
-    ----------
-    arrows : (A, 3) as `arrows_of` gives them
-    s : (K,) metres, stations in order
-    driven, directions : (P, K) m and (P,), offsets of every pass, NaN where it did not drive, and 1 along the road or -1 against it
+    `arrows` : (A, 3) as `arrows_of` gives them; `driven`, `directions` : as `driven_offsets` gives them at (K,) stations in order.
     """
     if not len(arrows) or not len(s):
         return 0.0
@@ -264,44 +243,24 @@ def driven_against(arrows: np.ndarray, s: np.ndarray, driven: np.ndarray, direct
 
 
 def stems(shapes: np.ndarray) -> np.ndarray:
-    """Shares of the length of outlines, from either end, that are a single stroke.
-
-    Parameters
-    ----------
-    shapes : (A,) shapely polygons in (s, d), m
-
-    Returns
-    -------
-    (2, A) from the first station on, and from the last one back
-    """
+    """(2, A) shares of the length of polygons in (s, d) that are a single stroke: from the first station on, and from the last one back."""
     first, low, last, high = shapely.bounds(shapes).T
     at = first[:, None] + (last - first)[:, None] * (np.arange(SLICES) + 0.5) / SLICES
     ends = np.stack([np.stack([at, np.broadcast_to(side[:, None], at.shape)], axis=-1) for side in (low - 1, high + 1)], axis=-2)
     slices = shapely.intersection(shapely.linestrings(ends), shapes[:, None])
     _, right, _, left = np.moveaxis(shapely.bounds(slices), -1, 0)
-    broad = np.nan_to_num(left - right) > SHAFT_BREADTH
+    broad = np.nan_to_num(left - right) > ROADS.shaft_breadth
     bare = np.stack([np.argmax(broad, axis=1), np.argmax(broad[:, ::-1], axis=1)]) / SLICES
     return np.where(broad.any(axis=1), bare, 0.0)
 
 
 # How long the dashes of lines are, from the markings that lie on them.
 
-BESIDE = 0.15        # m between the middle of a dash and its line
-FULL_DASH = 75       # percent: of the dashes of a run those that are not worn; wear only ever shortens them
-MIN_DASHES = 4       # in a run: fewer may be remnants of a line that is worn away
-
 
 def dash_lengths(lines: CrossSections, markings: MarkingObjects | None, road: int) -> RowTable:
-    """Length of the dashes of dashed lines.
+    """RowTable (L, K) of m, length of the dashes of L lines at K stations, the same along each dashed stretch.
 
-    Parameters
-    ----------
-    lines : CrossSections of L lines at K stations
-    road : number of the road
-
-    Returns
-    -------
-    RowTable (L, K) of metres, the same along each dashed stretch of a line; NaN where a line is not dashed, or has too few dashes to tell
+    It is NaN where a line is not dashed, or has too few dashes to tell.
     """
     found = RowTable.full(lines.d.spans, np.nan)
     if markings is None:
@@ -321,7 +280,7 @@ def dash_lengths(lines: CrossSections, markings: MarkingObjects | None, road: in
         if not dashed[begin]:
             continue
         near = slice(*np.searchsorted(station, [at[begin], at[end - 1] + 1]))
-        own = length[near][np.abs(lines.d.values[begin:end][station[near] - at[begin]] - middle[near]) < BESIDE]
-        if len(own) >= MIN_DASHES:
-            found.values[begin:end] = np.percentile(own, FULL_DASH)
+        own = length[near][np.abs(lines.d.values[begin:end][station[near] - at[begin]] - middle[near]) < ROADS.beside]
+        if len(own) >= ROADS.min_dashes:
+            found.values[begin:end] = np.percentile(own, ROADS.full_dash)
     return found

@@ -14,35 +14,26 @@ from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import FrameLines
 from ...survey.frame.row_table import BLOCK, RowSpans, RowTable
+from ..weights import SECTIONS
 
 if TYPE_CHECKING:
     from ..lines.painted_lines import PaintedLines
 
-MAX_LINE_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
-CLOSED_ISLAND = 1.0                            # m between the ends of a line round an island that closes
-
 
 @dataclass
 class CrossSections:
-    """All lines of one road on a common grid of stations.
+    """All lines of one road on a common grid of stations."""
 
-    s : (K,) stations; d, z : RowTable of (L, K), offset and height of each line, NaN where it is not;
-    seen : (L, K) False where the line itself was bridged; kinds, patterns : per line, of its longest piece
-    drawn : (L, K) how it is drawn at each place, a row of `names`; -1 where that is not known
-    number : (L, K) number of the line in its layer at each place; -1 where that is not known
-    width : (L, K) m of paint across; NaN where that is not known
-    """
-
-    s: np.ndarray
-    d: RowTable
+    s: np.ndarray   # (K,) stations
+    d: RowTable   # RowTable of (L, K), offset and height of each line, NaN where it is not
     z: RowTable
-    seen: RowTable
-    kinds: list
+    seen: RowTable   # (L, K) False where the line itself was bridged
+    kinds: list   # per line, of its longest piece
     patterns: list
-    drawn: RowTable
+    drawn: RowTable   # (L, K) how it is drawn at each place, a row of `names`; -1 where that is not known
     names: list
-    number: RowTable
-    width: RowTable
+    number: RowTable   # (L, K) number of the line in its layer at each place; -1 where that is not known
+    width: RowTable   # (L, K) m of paint across; NaN where that is not known
 
     @cached_property
     def usual(self) -> np.ndarray:
@@ -52,19 +43,14 @@ class CrossSections:
 
 def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, pattern: np.ndarray, seen: np.ndarray,
                    width: np.ndarray | None = None) -> dict[int, CrossSections]:
-    """Lines of every road as offsets at common stations.
+    """CrossSections by number of the road: lines as offsets at common stations.
 
     Parameters
     ----------
-    lines : FrameLines of P pieces
-    number : (P,) int, the pieces of one line share a number
+    lines : FrameLines of P pieces; number : (P,) int, the pieces of one line share it
     kind, pattern : (P,) str objects, "" where unknown
     seen : (P,) bool, False for pieces that are bridged
     width : (P,) m of paint across, NaN where unknown; or None
-
-    Returns
-    -------
-    dict of road number to CrossSections
     """
     pieces: dict[int, dict[int, list[_PieceOfLine]]] = {}
     for k in range(len(lines)):
@@ -121,7 +107,7 @@ def _sides_of_islands(course, island):
         if island[k] and (known := np.isfinite(course.s[places])).sum() > 1:
             places = places[known]
             first, last = places[[0, -1]]
-            if np.hypot(course.x[first] - course.x[last], course.y[first] - course.y[last]) < CLOSED_ISLAND:
+            if np.hypot(course.x[first] - course.x[last], course.y[first] - course.y[last]) < SECTIONS.closed_island:
                 places = np.roll(places, -int(np.argmin(course.s[places])))
             turns = sorted({0, int(np.argmin(course.s[places])), int(np.argmax(course.s[places])), len(places) - 1})
             sides = [places[a:b + 1] for a, b in zip(turns[:-1], turns[1:])]
@@ -143,7 +129,7 @@ def _piece(s, d, z, kind, pattern, seen, width):
     rising = np.append(True, s[1:] > np.maximum.accumulate(s)[:-1])
     if not rising.all():
         s, d, z = s[rising], d[rising], z[rising]
-    if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > MAX_LINE_OBLIQUITY:
+    if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > SECTIONS.max_line_obliquity:
         return None
     return _PieceOfLine(s, d, z, kind, pattern, seen, width)
 
@@ -164,12 +150,8 @@ def _sections(lines: _GridLines) -> CrossSections:
 
 # Lines resampled to common stations: short gaps are bridged, and lines that continue each other are merged.
 
-STATION_STEP = 0.5                             # m of station between places where lanes are looked for
-MIN_BOUNDARY_SPACING = 0.8                     # m: lines nearer than this are one boundary, a lane ends at the nearer one
-MAX_LINE_JUMP = 0.3                         # m across by which a line may jump where it goes on as another
-PARTING = 0.1                                  # m by which a line must leave one neighbour more than the other to run along that one
-MAX_DASH_GAP = 9.5                             # m that a dashed line may be silent at its ends before it is known to end
-GAP_REACH = int(MAX_DASH_GAP / STATION_STEP)   # the same in stations
+STATION_STEP = 0.5   # derived: m of station between places where lanes are looked for
+GAP_REACH = int(SECTIONS.max_dash_gap / STATION_STEP)   # derived: the same in stations
 # what is known of a line at each station, and what stands where it is not
 MISSING = dict(d=np.float64(np.nan), z=np.float64(np.nan), seen=np.bool_(False), drawn=np.int32(-1), number=np.int32(-1), width=np.float64(np.nan))
 
@@ -188,10 +170,7 @@ class _PieceOfLine:
 
 
 class _GridRow:
-    """One line at the stations from `first` on: columns d, z, seen, drawn, number and width as of CrossSections.
-
-    begin, end : the first and the last station at which it is
-    """
+    """One line at the stations from `first` on, which is there from station `begin` to `end`: columns d, z, seen, drawn, number and width."""
 
     def __init__(self, kind: str, pattern: str, first: int, columns: dict[str, np.ndarray]) -> None:
         self.kind, self.pattern, self.first, self.columns = kind, pattern, first, columns
@@ -227,10 +206,7 @@ class _GridRow:
 
 
 class _GridLines:
-    """The lines of one road.
-
-    s : (K,) m, stations; rows : list of _GridRow; names : the patterns that `drawn` counts
-    """
+    """The lines of one road at (K,) stations; `names` are the patterns that `drawn` counts."""
 
     def __init__(self, s: np.ndarray, rows: list[_GridRow], names: list[str]) -> None:
         self.s, self.rows, self.names = s, rows, names
@@ -300,7 +276,7 @@ def joined(lines: _GridLines) -> tuple[_GridLines, list[tuple[int, int, int, boo
         last, d = rows[k].begin, rows[k].columns["d"][rows[k].begin - rows[k].first]
         behind = np.array(sorted(j for end in range(last - GAP_REACH, last) for j in ending.get(end, ())), int)
         away = np.array([abs(d - rows[chains[j][-1]].at("d", np.array([rows[chains[j][-1]].end]))[0]) for j in behind.tolist()])
-        behind, away = behind[away <= MAX_LINE_JUMP], away[away <= MAX_LINE_JUMP]
+        behind, away = behind[away <= SECTIONS.max_line_jump], away[away <= SECTIONS.max_line_jump]
         if not len(behind):
             continue
         j = int(behind[np.argmin(away)])
@@ -355,7 +331,7 @@ def lead_over(lines: _GridLines, gaps: list[tuple[int, int, int, bool, bool]]) -
             if k == j or "double" not in row.pattern or not 0 <= (own - end) * step <= GAP_REACH:
                 continue
             apart = _step_between(row, single, end)
-            if abs(apart["d"]) >= MIN_BOUNDARY_SPACING:
+            if abs(apart["d"]) >= SECTIONS.min_boundary_spacing:
                 continue
             beside, gap = np.arange(end + step, own + step, step), np.arange(own + step, other, step)
             for name in ("d", "z"):
@@ -387,7 +363,7 @@ def even_doubles(lines: _GridLines, led: set[tuple[int, int]]) -> None:
             if (k, step) in led:
                 continue
             others, offsets = _beside(lines, known, k, end)
-            twin = _nearest(np.abs(offsets) < MIN_BOUNDARY_SPACING, np.abs(offsets))
+            twin = _nearest(np.abs(offsets) < SECTIONS.min_boundary_spacing, np.abs(offsets))
             if twin is None:
                 continue
             other = lines.rows[others[twin]]
@@ -420,10 +396,7 @@ def _ahead(lines, end, step):
 
 
 def lengthen_dashed(lines: _GridLines) -> None:
-    """A dashed line goes on by up to one gap where lines on both its sides do.
-
-    Where the last dash ends says nothing of where the line does: the next dash is only missed after a gap's length.
-    """
+    """A dashed line goes on by up to one gap where lines on both its sides do: the next dash is only missed after a gap's length."""
     lines = _GridLines(lines.s, lines.rows, lines.names)
     known = [(row.begin, row.end) for row in lines.rows]
     for k, row in enumerate(lines.rows):
@@ -431,7 +404,7 @@ def lengthen_dashed(lines: _GridLines) -> None:
             continue
         for end, step in ((known[k][1], 1), (known[k][0], -1)):
             others, offsets = _beside(lines, known, k, end)
-            sides = [_nearest(offsets > MIN_BOUNDARY_SPACING, np.abs(offsets)), _nearest(offsets < -MIN_BOUNDARY_SPACING, np.abs(offsets))]
+            sides = [_nearest(side * offsets > SECTIONS.min_boundary_spacing, np.abs(offsets)) for side in (1, -1)]
             if None in sides:
                 continue
             numbers = [others[side] for side in sides]
@@ -456,7 +429,7 @@ def _share_across(row, left, right, inner):
     apart = np.abs(np.stack([left.at("d", inner), right.at("d", inner)]) - row.at("d", inner))
     apart = apart[:, np.isfinite(apart).all(axis=0)]
     away = np.ptp(apart, axis=1)
-    if abs(away[0] - away[1]) > PARTING:
+    if abs(away[0] - away[1]) > SECTIONS.parting:
         return float(away[0] < away[1])
     return apart[1, 0] / (apart[0, 0] + apart[1, 0])
 

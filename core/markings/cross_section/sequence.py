@@ -13,6 +13,7 @@ import numpy as np
 
 from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
+from ..weights import LANES
 from .candidates import FAR, Candidates
 from .evidence import BIN, Evidence
 from .weights import (
@@ -34,40 +35,32 @@ from .weights import (
 
 # How wide lanes are in the strip between two boundaries, and where they begin.
 
-LIKELY_SHARE = 0.8, 1.5    # of the usual width of a lane: lanes in bends
 # whether nothing is painted there, and whether the surface ends without an edge or nothing is known of it, by what a boundary is made of
 UNPAINTED, SURFACE_END = (np.isin(np.arange(PAVEMENT + 1), made) for made in ((CURB, ISLAND, PAVEMENT, SURFACE, OPEN), (SURFACE, OPEN)))
 
 
 def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made_right: np.ndarray, number: np.ndarray | int, usual: float,
                 bend: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where lanes lie in strips.
+    """Offset of the left border of the leftmost lane, and width of each lane, in strips between two boundaries; arrays broadcast together.
 
-    Between two lines they share the strip. Beside a curb, or an edge of the pavement that was seen, they are no wider than usual; beside an island,
+    Between two lines lanes share the strip. Beside a curb, or an edge of the pavement that was seen, they are no wider than usual; beside an island,
     where nothing else has room, they share the strip too, but are as wide as usual where it reaches somewhat into them. Elsewhere the surface may
     end at what hides it, and reach into side streets: beside its end they are as wide as usual. In bends, where lanes are widened, lanes beside the
     end of the surface are as wide as there is room.
 
     Parameters
     ----------
-    left, right : metres, offsets of the two boundaries of each strip; all arrays broadcast together
-    made_left, made_right : SOLID ... ISLAND, what the boundaries are made of
-    number : lanes in the strip
-    usual : metres, the usual width of a lane
+    left, right : m, offsets of the two boundaries of each strip; made_left, made_right : SOLID ... ISLAND, what they are made of
+    number : lanes in the strip; usual : m, the usual width of a lane
     bend : bool, whether the road bends so much that lanes are widened
-
-    Returns
-    -------
-    begin : metres, offset of the left border of the leftmost lane
-    each : metres, width of each lane
     """
     open_left, open_right = UNPAINTED[made_left], UNPAINTED[made_right]
     loose = open_left ^ open_right
     each = (left - right) / number
-    widened = bend & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
+    widened = bend & (each > LANES.likely_share[0] * usual) & (each < LANES.likely_share[1] * usual)
     hidden = loose & beside_surface_end(made_left, made_right)
     least = np.where(widened & ((made_left == PAVEMENT) | (made_right == PAVEMENT)), each, np.minimum(each, usual))
-    likely = beside_island(made_left, made_right) & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
+    likely = beside_island(made_left, made_right) & (each > LANES.likely_share[0] * usual) & (each < LANES.likely_share[1] * usual)
     each = np.where(hidden, np.where(widened, each, usual), np.where(loose, np.where(likely, np.maximum(each, usual), least), each))
     return np.where(loose & open_left, right + number * each, left), each
 
@@ -89,26 +82,14 @@ def beside_surface_end(made_left: np.ndarray, made_right: np.ndarray) -> np.ndar
 # and again what nobody drives on
 REST_FIRST, FIRST, MOST_FIRST, BOTH, MOST_SECOND, SECOND, REST_SECOND = STRIPS = range(7)
 TWO_WAY = MOST_FIRST, BOTH, MOST_SECOND
-MAX_LANES = 4              # between two boundaries without paint between them
-HATCHED_SHARE = 0.12       # of a strip that is covered by hatching: its bars leave most of it free
-ASPHALT_OF_A_LANE = 2.2, 3.0   # m of asphalt that could be a lane: between two lines, and elsewhere
-ASPHALT_SOFTNESS = 0.2     # m by which that is uncertain
-OTHER_SIGMA = 0.8          # m, scatter of lane widths from road to road
-STOP_MARGIN = 0.5          # m by which a stop line may reach beyond the lanes that it is for
-MIN_SCANNED_SHARE = 0.6    # of a lane's width that must be seen of a lane beside the end of the surface
 
 
 @dataclass
 class _StripCosts:
-    """Costs of all strips.
+    """Costs of all strips."""
 
-    cost : (7, I, M, M) nats, of a strip of one kind between two boundaries; inf where it cannot be
-    lanes, first_lanes : (7, I, M, M) int8, how many lanes it holds at that cost, and how many of them are of the direction that is met first
-    lane_width : metres, the usual width of a lane; beside a curb or the end of the surface no lane is wider
-    """
-
-    cost: np.ndarray
-    lanes: np.ndarray
+    cost: np.ndarray   # (7, I, M, M) nats, of a strip of one kind between two boundaries; inf where it cannot be
+    lanes: np.ndarray   # (7, I, M, M) int8, how many lanes it holds at that cost, and how many of them are of the direction that is met first
     first_lanes: np.ndarray
     lane_width: float
 
@@ -123,7 +104,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     ordered = c.valid[:, :, None] & c.valid[:, None, :] & (np.arange(size)[:, None] < np.arange(size))
     outside = (c.made_of == OUTSIDE)[:, :, None] | (c.made_of == OUTSIDE)[:, None, :]
     through, rest = _passed_over(c, w)
-    hatched = _share_between(evidence.hatched, c, width) > HATCHED_SHARE if evidence.hatched is not None else np.zeros(width.shape, bool)
+    hatched = _share_between(evidence.hatched, c, width) > LANES.hatched_share if evidence.hatched is not None else np.zeros(width.shape, bool)
     paint = c.painted | (c.made_of == HATCHING)
     both_paint, any_paint = paint[:, :, None] & paint[:, None, :], paint[:, :, None] | paint[:, None, :]
     asphalt = width * _share_between(evidence.asphalt, c, width) if evidence.asphalt is not None else np.where(both_paint, width, 0.0)
@@ -135,7 +116,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     # beyond short dashes the bay that they open, however it is bounded
     opened = np.nan_to_num(c.short) > 0.5
     lined = both_paint & ~(opened[:, :, None] | opened[:, None, :])
-    unused = np.where(lined, _unused(asphalt, between, ASPHALT_OF_A_LANE[0]), _unused(asphalt, w.unused_asphalt[1]))
+    unused = np.where(lined, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, w.unused_asphalt[1]))
     inside = _inside(evidence.driven, c)
     idle = scale * (np.where(hatched, 0.0, unused) + rest) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
     cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)
@@ -145,16 +126,16 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     loose = any_paint & ~both_paint
     hidden = loose & beside_surface_end(made_left, made_right)
     off = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
-    possible = ordered & ~outside & any_paint & (width < MAX_LANES * NEUTRAL.widest_lane)
+    possible = ordered & ~outside & any_paint & (width < LANES.max_lanes * NEUTRAL.widest_lane)
     base = scale * (through + hatched * w.hatched_lane + off * w.off_asphalt)
     driven_there = inside.any(0)
-    for number in range(1, MAX_LANES + 1):
+    for number in range(1, LANES.max_lanes + 1):
         begin, each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, c.bend[:, None, None])
         fits = width_cost(each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
         # what lies beyond the end of the surface
         beyond = np.clip(1 - width / np.maximum(number * each, 0.1), 0, 1) * hidden
         total = base + scale * (fits + beyond * w.off_asphalt)
-        scanned = ~hidden | (width > MIN_SCANNED_SHARE * number * lane_width)
+        scanned = ~hidden | (width > LANES.min_scanned_share * number * lane_width)
         # only where somebody drove is a lane known to be wider than lanes are built: elsewhere nothing tells its place in the strip
         built = (each >= NEUTRAL.narrowest_lane) & ((each <= NEUTRAL.widest_lane) | driven_there)
         total = np.where(possible & scanned & built, total, np.inf)
@@ -171,15 +152,15 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     return _StripCosts(cost, lanes, first_lanes, lane_width)
 
 
-def _unused(asphalt, cost, enough=ASPHALT_OF_A_LANE[1]):
+def _unused(asphalt, cost, enough=LANES.asphalt_of_a_lane[1]):
     """Nats of some metres of asphalt where no lane is."""
-    return cost / (1 + np.exp(-(asphalt - enough) / ASPHALT_SOFTNESS))
+    return cost / (1 + np.exp(-(asphalt - enough) / LANES.asphalt_softness))
 
 
 def width_cost(width: np.ndarray, usual: float, w: EstimateWeights) -> np.ndarray:
     """Nats of a lane of some width, m, against one of the usual width: most lanes of a road are alike, some as on other roads, few are odd."""
     own = np.exp(-0.5 * ((width - usual) / w.width_sigma) ** 2)
-    other = np.exp(-0.5 * ((width - NEUTRAL.usual_lane) / OTHER_SIGMA) ** 2)
+    other = np.exp(-0.5 * ((width - NEUTRAL.usual_lane) / LANES.other_sigma) ** 2)
     share = (1 - w.other_width - w.odd_width) * own + w.other_width * other + w.odd_width
     return np.where((width >= NEUTRAL.narrowest_lane) & (width <= w.widest_odd), -np.log(share), np.inf)
 
@@ -263,11 +244,11 @@ def _stops_across(stops: np.ndarray, divider: np.ndarray) -> np.ndarray:
     number = np.zeros(divider.shape)
     for interval, low, high in stops:
         k = int(interval)
-        number[k] += (divider[k] > low + STOP_MARGIN) & (divider[k] < high - STOP_MARGIN)
+        number[k] += (divider[k] > low + LANES.stop_margin) & (divider[k] < high - LANES.stop_margin)
     return number
 
 
-KEPT = 32     # cross-sections of an interval that are kept
+KEPT = 32   # derived: cross-sections of an interval that are kept
 
 # What a boundary between two strips separates, -1 where the two cannot follow each other, and whether traffic is on the wrong side there
 SEPARATES = np.full((len(STRIPS), len(STRIPS)), -1, np.int8)
@@ -284,18 +265,12 @@ _WRONG_SIDE = {(REST_SECOND, FIRST), (SECOND, FIRST)}
 
 @dataclass
 class Sections:
-    """The best cross-sections of each interval, the best one first.
+    """The best cross-sections of each interval, the best one first."""
 
-    cost : (I, K) nats; inf where there are fewer than K
-    strip : (I, K, M) int8, kind of the strip to the right of each boundary, -1 where a boundary bounds nothing
-    right : (I, K, M) int8, the boundary that the strip ends at
-    lanes, first_lanes : (I, K, M) int8, how many lanes the strip holds, and how many of them are of the direction that is met first
-    """
-
-    cost: np.ndarray
-    strip: np.ndarray
-    right: np.ndarray
-    lanes: np.ndarray
+    cost: np.ndarray   # (I, K) nats; inf where there are fewer than K
+    strip: np.ndarray   # (I, K, M) int8, kind of the strip to the right of each boundary, -1 where a boundary bounds nothing
+    right: np.ndarray   # (I, K, M) int8, the boundary that the strip ends at
+    lanes: np.ndarray   # (I, K, M) int8, how many lanes the strip holds, and how many of them are of the direction that is met first
     first_lanes: np.ndarray
 
     def take(self, intervals: slice | np.ndarray) -> Sections:
@@ -315,18 +290,14 @@ class Sections:
 
 @dataclass
 class LaneStrips:
-    """The strips of cross-sections that hold lanes.
+    """The strips of cross-sections that hold lanes."""
 
-    interval, section, left, right : (S,) int, where they are and the boundaries they lie between
-    kind : (S,) FIRST ... SECOND; number, first : (S,) lanes in them, and how many of these are of the direction that is met first
-    """
-
-    interval: np.ndarray
+    interval: np.ndarray   # (S,) int, where they are and the boundaries they lie between
     section: np.ndarray
     left: np.ndarray
     right: np.ndarray
-    kind: np.ndarray
-    number: np.ndarray
+    kind: np.ndarray   # (S,) FIRST ... SECOND
+    number: np.ndarray   # (S,) lanes in them, and how many of these are of the direction that is met first
     first: np.ndarray
 
 
@@ -431,25 +402,19 @@ def _traced(back, ends, costs):
 
 # The most probable sequence of cross-sections along a road, and how sure each is.
 
-PLACE = 0.5      # m across at which cross-sections are compared
-INTERVALS_AT_ONCE = 32   # of which cross-sections are compared with each other
-SAME_DIVIDER = 1 # places by which the same border between lanes may lie elsewhere
+PLACE = 0.5   # derived: m across at which cross-sections are compared
+INTERVALS_AT_ONCE = 32   # derived: of which cross-sections are compared with each other
 
 
 def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, lane_width: float, left: Sequence[np.ndarray],
                 weights: EstimateWeights) -> np.ndarray:
-    """Nats of going from each cross-section of an interval to each of the next of those of which something is known.
+    """(N - 1, K, K) nats of going from each cross-section of an interval to each of the next of those of which something is known.
 
     Parameters
     ----------
-    candidates, sections : of all intervals
-    known : (N,) int, intervals, ascending
-    lane_width : metres, usual
+    known : (N,) int, intervals, ascending, of the candidates and sections of all intervals
+    lane_width : m, usual
     left : of what was known of lanes, and of directions, what is left after the way to the next one, (N - 1,) 0 to 1 each
-
-    Returns
-    -------
-    (N - 1, K, K)
     """
     kept = sections.cost.shape[1]
     found = np.empty((max(len(known) - 1, 0), kept, kept))
@@ -498,7 +463,7 @@ def _transition_costs(area, divider, weights):
     """Nats of going from a cross-section to one of the next interval: of lanes that begin, end or divide, and of those that change direction."""
     first, second = area.astype(np.float32)
     wide = np.zeros(divider.shape, np.float32)
-    for shift in range(-SAME_DIVIDER, SAME_DIVIDER + 1):
+    for shift in range(-LANES.same_divider, LANES.same_divider + 1):
         wide = np.maximum(wide, np.roll(divider, shift, axis=-1))
     marks = divider.astype(np.float32)
     change, turn = weights.change * PLACE, weights.turn * PLACE
@@ -521,16 +486,9 @@ def _transition_costs(area, divider, weights):
 
 
 def best_sequence(cost: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray, float]:
-    """The most probable sequence (Viterbi).
+    """The most probable sequence (Viterbi): the (I,) cross-section of each interval, and nats of the whole.
 
-    Parameters
-    ----------
-    cost : (I, K) nats, inf where there is no cross-section
-    transition : (I - 1, K, K) nats
-
-    Returns
-    -------
-    choice : (I,) the cross-section of each interval; total : nats of the whole
+    `cost` : (I, K) nats, inf where there is no cross-section; `transition` : (I - 1, K, K) nats.
     """
     count, kept = cost.shape
     best, came = cost[0].copy(), np.zeros((count, kept), int)
@@ -569,20 +527,10 @@ def best_through(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
 
 
 def behind_best(cost: np.ndarray, transition: np.ndarray, length: np.ndarray, repeats: float) -> np.ndarray:
-    """By how many nats the most probable sequence through each cross-section is behind the most probable one of all.
+    """(I, K) nats by which the most probable sequence through each cross-section is behind the most probable one of all; inf where there is none.
 
-    Where the two differ over a longer way than `repeats`, they differ in how the whole road is laid out. What is seen there again and again was
-    laid out and driven once, so it counts as on a way of that length.
-
-    Parameters
-    ----------
-    cost, transition : as of `best_sequence`
-    length : (I,) metres of each interval
-    repeats : metres
-
-    Returns
-    -------
-    (I, K) nats, 0 for the most probable sequence; inf for cross-sections that are none
+    Where the two differ over a longer way than `repeats`, m, they differ in how the whole road is laid out. What is seen there again and again was
+    laid out and driven once, so it counts as on a way of that length. `length` : (I,) m of each interval; the rest as of `best_sequence`.
     """
     choice, total = best_sequence(cost, transition)
     apart = np.repeat(length[:, None].astype(float), cost.shape[1], axis=1)

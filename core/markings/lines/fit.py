@@ -32,18 +32,13 @@ from ..cross_section.sequence import separated_kinds
 from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights, TakenReading
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
+from ..weights import STRANDS
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
 from .painted_lines import PaintedLines, painted_lines_of
 from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, same_dash_pattern, select_lines
-from .strands import LEVEL_REACH, EdgesBeside, LinkedLine, Strand, edges_beside, line_paint, painted_strands
+from .strands import EdgesBeside, LinkedLine, Strand, edges_beside, line_paint, painted_strands
 
 # The course of one marking line in plan and height: places from its paint, a curve through them.
-
-MIN_POINTS_PER_PLACE = 3     # points that a place must have to count, where there are enough such places
-MIN_GUIDED_GAP = 4.0         # m: in a longer gap the curve is guided parallel to the other lines
-GUIDE_SPACING = 2.0          # m between guiding places
-KEPT_DISTANCE = 0.1          # m within which a line keeps its distance from what it runs along, as MAX_STRAY_OFFSET of its own pieces
-LINE_HEIGHT_SMOOTHING = 3.0  # m
 
 
 @dataclass(frozen=True)
@@ -77,11 +72,7 @@ class MarkingLineSettings:
 
 @dataclass
 class _LineShape:
-    """A line that can be drawn between two stations.
-
-    fit : CurveFit of the curve; residuals belong to the places `s`
-    s : (K,) stations of the places
-    """
+    """A line that can be drawn between two stations: the fit of its curve, whose residuals belong to the places at (K,) stations `s`."""
 
     fit: CurveFit
     s: np.ndarray
@@ -107,20 +98,14 @@ class _LineShape:
 def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], road: Road, trend: CommonTrend, edges: EdgesBeside,
                     track_height: Callable[[np.ndarray], np.ndarray], settings: MarkingLineSettings,
                     progress: Progress = Progress()) -> tuple[list[_LineShape], int]:
-    """The LineShapes of linked lines, fitted together.
+    """The _LineShapes of linked lines, fitted together, and how many of them could not take the wanted curve and have the automatic one.
 
     Parameters
     ----------
-    lines : list of LinkedLine
     spans : (first, last) stations of each to be drawn, which may reach beyond the paint
-    trend : CommonTrend, how the painted lines of the road run together
-    edges : EdgesBeside of the road
-    track_height : function of stations (N,), height of the trajectory; the line's height is
-        smoothed as the difference to it, so that it goes on along the road's slope
-
-    Returns
-    -------
-    list of _LineShape, and how many could not take the wanted curve (automatic replaces it there)
+    trend : how the painted lines of the road run together
+    track_height : function of stations (N,), height of the trajectory; the line's height is smoothed as the difference to it, so that it goes on
+        along the road's slope
     """
     if not lines:
         return [], 0
@@ -141,7 +126,7 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
     for k, t, guided in zip(curved, along, fit_splines([(x[k], y[k]) for k in curved], along)):
         fits[k], near[k] = guided, guided.curve.u_of(t)
     track = np.split(track_height(s[own]), np.cumsum([len(course.z) for course in courses])[:-1])
-    heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], LINE_HEIGHT_SMOOTHING)
+    heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], STRANDS.line_height_smoothing)
     found = []
     for k, (course, fit, height) in enumerate(zip(courses, fits, heights)):
         progress.report(0.9 + 0.1 * k / len(courses))
@@ -162,10 +147,7 @@ def _height_above(height, track_height):
 
 @dataclass
 class _Course:
-    """Places of a line by station, and places that guide its curve where nothing is painted.
-
-    s, d : (N,) metres; own : (N,) True for the line's own places; z : heights of these
-    """
+    """Places of a line by station, (N,) m, with heights of its own ones, and places that guide its curve where nothing is painted."""
 
     s: np.ndarray
     d: np.ndarray
@@ -175,7 +157,7 @@ class _Course:
 
 def _course(line, trend, edges, span):
     s, d, z, weight = line.places()
-    strong = weight >= MIN_POINTS_PER_PLACE
+    strong = weight >= STRANDS.min_points_per_place
     if strong.sum() >= max(4, 0.5 * len(s)):
         s, d, z = s[strong], d[strong], z[strong]
     order = np.argsort(s, kind="stable")
@@ -201,12 +183,12 @@ def _fitted(places, settings):
 
 def _guides(s, d, trend, edges, span):
     """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines, an edge of the road and the road."""
-    wide = np.flatnonzero(np.diff(s) > MIN_GUIDED_GAP)
+    wide = np.flatnonzero(np.diff(s) > STRANDS.min_guided_gap)
     stations, offsets = [], []
     for k in wide.tolist():
         a, b = s[[k, k + 1]].tolist()
-        at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE_SPACING)) + 1)[1:-1]
-        near = [slice(np.searchsorted(s, a - LEVEL_REACH), k + 1), slice(k + 1, np.searchsorted(s, b + LEVEL_REACH, "right"))]
+        at = np.linspace(a, b, int(np.ceil((b - a) / STRANDS.guide_spacing)) + 1)[1:-1]
+        near = [slice(np.searchsorted(s, a - STRANDS.level_reach), k + 1), slice(k + 1, np.searchsorted(s, b + STRANDS.level_reach, "right"))]
         edge = edges.between((a, d[k]), (b, d[k + 1]))
         courses = [trend.at] if edge is None else [trend.at, edge, np.zeros_like]
         levels = np.array([[median(d[side] - course(s[side])) for side in near] for course in courses])
@@ -214,28 +196,27 @@ def _guides(s, d, trend, edges, span):
         offsets.append(_common_course(np.array([np.interp(at, [a, b], ends) + course(at) for ends, course in zip(levels, courses)]),
                                       levels[:, 1] - levels[:, 0]))
     for tip, end in ((s[0], span[0]), (s[-1], span[1])):
-        if abs(end - tip) > GUIDE_SPACING / 4:
-            at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / GUIDE_SPACING)) + 1)[1:]
+        if abs(end - tip) > STRANDS.guide_spacing / 4:
+            at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / STRANDS.guide_spacing)) + 1)[1:]
             stations.append(at)
-            near = np.abs(s - tip) <= LEVEL_REACH
+            near = np.abs(s - tip) <= STRANDS.level_reach
             offsets.append(median(d[near] - trend.at(s[near])) + trend.at(at))
     if not stations:
         return np.empty(0), np.empty(0)
     return np.concatenate(stations), np.concatenate(offsets)
 
 
-def _common_course(found, missed):
+def _common_course(parallel, missed):
     """(N,) offsets in a gap of what others have in common: the other lines, an edge of the road and the road itself.
 
-    Each course counts by how well the line keeps its distance from it from one end of the gap to the other. Which of them it runs along is not told
-    by the ends alone: an edge that gives way to a bay in the gap comes back to where it was.
-
-    found : (C, N) metres, offsets that lead parallel to each course; missed : (C,) metres by which the line's distance from it differs at the ends
+    Each course counts by how well the line keeps its distance from it over the gap. Which of them it runs along is not told by the ends alone: an
+    edge that gives way to a bay in the gap comes back to where it was. `parallel` : (C, N) m, offsets that lead parallel to each course;
+    `missed` : (C,) m by which the line's distance from it differs at the ends.
     """
-    weight = 1.0 / (KEPT_DISTANCE**2 + missed**2)
-    order = np.argsort(found, axis=0, kind="stable")
-    values = np.take_along_axis(found, order, axis=0)
-    return weighted_medians(values.T.ravel(), weight[order].T.ravel(), len(found) * np.arange(found.shape[1]))
+    weight = 1.0 / (STRANDS.kept_distance**2 + missed**2)
+    order = np.argsort(parallel, axis=0, kind="stable")
+    values = np.take_along_axis(parallel, order, axis=0)
+    return weighted_medians(values.T.ravel(), weight[order].T.ravel(), len(parallel) * np.arange(parallel.shape[1]))
 
 
 def _along(road, s, d):
@@ -249,7 +230,6 @@ def _along(road, s, d):
 
 KINDS = {EDGE_LINE: "edge", LANE_LINE: "lane", CENTRE_LINE: "centre"}
 CONFIRMED = "accepted"        # status of a line that an analyst looked at
-MAX_DISTANCE_TO_LINE = 0.15   # m between a marking and the line along it
 
 
 def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float, markings: MarkingObjects | None = None,
@@ -259,14 +239,10 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
 
     Parameters
     ----------
-    usual_width : metres, of lanes where the lines do not tell
+    usual_width : m, of lanes where the lines do not tell
     markings, edges, road_points : what else the estimate is made from, or None
     paint : points of markings, which serve where there are no road points, or None
     taken : second readings that an analyst took
-
-    Returns
-    -------
-    PaintedLines, the same with the new names
     """
     if not len(lines):
         return lines
@@ -285,21 +261,12 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
 
 
 def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObjects:
-    """Markings of lines (`keep`) with the `kind` of the marking line that runs along them, and paint between tracks of the scan.
-
-    Parameters
-    ----------
-    lines : PaintedLines fitted to them
-
-    Returns
-    -------
-    MarkingObjects, the same with the new names, and what `with_paint_between_tracks` adds
-    """
+    """Markings of lines (`keep`) with the `kind` of the marking line that runs along them, and what `with_paint_between_tracks` adds."""
     rows = np.flatnonzero(markings.keep & np.isin(markings.kind.astype(str), LINE_KINDS))
     if not len(rows) or not len(lines):
         return markings
     places = shapely.point_on_surface(markings.outlines.polygons()[rows])
-    found, line = shapely.STRtree(lines.course.linestrings()).query_nearest(places, max_distance=MAX_DISTANCE_TO_LINE, all_matches=False)
+    found, line = shapely.STRtree(lines.course.linestrings()).query_nearest(places, max_distance=STRANDS.max_distance_to_line, all_matches=False)
     same_road = markings.road[rows[found]] == lines.course.road[line]
     kind = markings.kind.copy()
     kind[rows[found][same_road]] = lines.kind[line[same_road]]
@@ -346,8 +313,7 @@ def _second_kinds(estimates):
     return found
 
 
-LINES_SHARE = 0.65         # of the work; the rest is the estimate that names the lines
-PAINT_BESIDE_PIECE = 2.0   # m of station before and after a piece whose paint counts for its offset
+LINES_SHARE = 0.65   # derived: of the work; the rest is the estimate that names the lines
 
 
 def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, frame: RoadFrame,
@@ -357,8 +323,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
 
     Parameters
     ----------
-    clustered_points : RoadPoints with `cluster`
-    markings : MarkingObjects of the same clusters
+    clustered_points : RoadPoints with `cluster`; markings : MarkingObjects of the same clusters
     edges, road_points : RoadEdges and RoadPoints, or None: what the lines separate is told better with them
     taken : second readings that an analyst took
 
@@ -432,7 +397,7 @@ def _drawn_pieces(one: SelectedLine, shape: _LineShape, origin: np.ndarray) -> I
             continue
         residuals = shape.fit.residuals[slice(np.searchsorted(shape.s, piece.first), np.searchsorted(shape.s, piece.last, side="right"))]
         measured = piece.status == "measured" and len(residuals)
-        _, near = one.line.near(piece.first - PAINT_BESIDE_PIECE, piece.last + PAINT_BESIDE_PIECE)
+        _, near = one.line.near(piece.first - STRANDS.paint_beside_piece, piece.last + STRANDS.paint_beside_piece)
         yield dict(
             kind="", pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
             curve=shape.fit.curve, arc=shape.u(np.array([piece.first, piece.last])), places=places,

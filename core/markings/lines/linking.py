@@ -21,21 +21,9 @@ from ...survey.frame.row_table import RowSpans
 from ...survey.store.road_points import RoadPoints
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects, Outlines
-from ..paint.not_paint import MAX_TRACK_GAP
-from ..road_grid import MIN_TRACK_GAP
+from ..weights import LINKS, TRACKS, TREND
 from .painted_lines import PaintedLines
 from .strands import EdgesBeside, LinkedLine, Strand
-
-END_WINDOW = 6.0                           # m of a strand's end that say where it goes
-MIN_PAINT_BESIDE_GAP = 3.0                 # m that either side of a long gap must have
-MAX_STRAND_OVERLAP = 0.6                   # m that two strands of one line may overlap
-STRAY_WINDOW = 20.0                        # m before and after a strand that say where it should lie
-MAX_STRAY_LENGTH = 4.0                     # m: longer strands make their own case
-MAX_STRAY_OFFSET = 0.10                    # m across
-DOUBLE_LINE_SPACING = (0.19, 0.50)         # m between the middles of the two lines of a double line
-TWIN_REACH = 2.0                           # m before and after a place at which the other line of a double line is looked for
-MIDDLE_SHARE = (0.25, 0.75)                # of the way from one line of a double to the other: its middle
-COST_WITHOUT_LINK = 2.01                   # the worst possible link costs 1 for its mismatch and 1 for its gap
 
 
 @dataclass(frozen=True)
@@ -51,7 +39,7 @@ class _End:
         return self.d + trust * self.slope * (s - self.s)
 
 
-def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reach: float = END_WINDOW) -> list[_End]:
+def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reach: float = LINKS.end_window) -> list[_End]:
     """The `_End` at the start or the end of every line, from its last `reach` metres of station."""
     if not lines:
         return []
@@ -73,7 +61,7 @@ def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reac
     away = s - np.repeat(middle, count)
     squares = np.add.reduceat(weight * away**2, starts) if len(owner) else s
     slope = np.add.reduceat(weight * away * (d - np.repeat(offset, count)), starts) / np.where(span < 1.0, 1.0, squares) if len(owner) else s
-    slope = np.where(span < 1.0, 0.0, np.clip(slope, -MAX_LINE_SLOPE, MAX_LINE_SLOPE))
+    slope = np.where(span < 1.0, 0.0, np.clip(slope, -TREND.max_line_slope, TREND.max_line_slope))
     found = [_End(float(tip), float("nan"), 0.0, 0.0) for tip in tips]
     for k, lv, sl, m, reached in zip(owner[starts].tolist(), level.tolist(), slope.tolist(), middle.tolist(), span.tolist()):
         tip = float(tips[k])
@@ -102,7 +90,7 @@ def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, end
     if edge is None:
         return miss
     miss = min(miss, float(np.ptp(d - edge(s))))
-    if after.s - before.s <= MAX_STRAND_OVERLAP:
+    if after.s - before.s <= LINKS.max_strand_overlap:
         return miss
     beside = [median(own_d - edge(own_s)) for own_s, own_d in (ends.end_places(False), begins.end_places(True))]
     return min(miss, abs(beside[1] - beside[0]))
@@ -114,18 +102,9 @@ def _trust(before, after):
 
 
 def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, allowed: float = 0.30) -> list[LinkedLine]:
-    """Lines linked over gaps up to `max_gap`, each end once, at the least cost of all links together.
+    """Lines linked over gaps up to `max_gap`, m, each end once, at the least cost of all links together.
 
-    Parameters
-    ----------
-    lines : list of LinkedLine
-    edges : EdgesBeside of the road
-    max_gap : metres
-    allowed : metres across at the longest gap; half of it where lines touch
-
-    Returns
-    -------
-    list of LinkedLine
+    `allowed` : m across at the longest gap; half of it where lines touch.
     """
     starts, ends = (_line_ends(lines, trend, at_start) for at_start in (True, False))
     by_start = np.argsort([e.s for e in starts], kind="stable")
@@ -134,12 +113,12 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, 
     pairs = []
     for a, before in enumerate(ends):
         check_cancelled()
-        low, high = np.searchsorted(stations, [before.s - MAX_STRAND_OVERLAP, before.s + max_gap])
+        low, high = np.searchsorted(stations, [before.s - LINKS.max_strand_overlap, before.s + max_gap])
         for b in by_start[low:high]:
             after, gap = starts[b], starts[b].s - before.s
             if b == a or lines[b].last <= lines[a].last:
                 continue
-            if abs(before.slope - after.slope) > MAX_LINE_SLOPE and min(before.reach, after.reach) > 3.0:
+            if abs(before.slope - after.slope) > TREND.max_line_slope and min(before.reach, after.reach) > 3.0:
                 continue
             miss, limit = _miss(before, after, trend, edges, lines[a], lines[b]), allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6))
             if _between_twins(twin_ends[a], twin_starts[b], before, after):
@@ -159,40 +138,29 @@ def twin_offsets(lines: list[LinkedLine], trend: CommonTrend, tips: list[_End], 
         for j in beside.between(inner[k], inner[k]).tolist():
             if j == k:
                 continue
-            s, d = lines[j].near(inner[k] - TWIN_REACH, inner[k] + TWIN_REACH)
+            s, d = lines[j].near(inner[k] - LINKS.twin_reach, inner[k] + LINKS.twin_reach)
             if len(s):
                 away = median(d - trend.at(s)) - tip.d
-                if DOUBLE_LINE_SPACING[0] <= abs(away) <= DOUBLE_LINE_SPACING[1]:
+                if LINKS.double_line_spacing[0] <= abs(away) <= LINKS.double_line_spacing[1]:
                     result[k] = away
     return result
 
 
 def _between_twins(twin_before, twin_after, before, after):
-    """Whether a double line meets a single one in its middle: it ends there.
-
-    Where only wear hides a twin, the other goes straight on and is no line between the two.
-    """
+    """Whether a double line meets a single one in its middle: it ends there. Where only wear hides a twin, the other goes straight on."""
     if (twin_before == 0.0) == (twin_after == 0.0):
         return False
     middle = (before.s + after.s) / 2
     step = after.offset_at(middle, 0.0) - before.offset_at(middle, 0.0)
     share = step / twin_before if twin_before else -step / twin_after
-    return MIDDLE_SHARE[0] < share < MIDDLE_SHARE[1]
+    return LINKS.middle_share[0] < share < LINKS.middle_share[1]
 
 
 def assigned_links(pairs: list[tuple[float, int, int]]) -> dict[int, int]:
-    """Which line goes on as which other, so that the sum of all costs is least.
+    """{line that ends: line that begins}, of `pairs` (cost up to COST_WITHOUT_LINK, line that ends, line that begins), at the least sum of all costs.
 
-    A line that is not linked costs as much as the worst link that is possible, so that links are made rather than left out. Lines that
-    compete for the same links are assigned together (Hungarian method, as in `scipy.optimize.linear_sum_assignment`).
-
-    Parameters
-    ----------
-    pairs : list of (cost, line that ends, line that begins), costs from 0 to COST_WITHOUT_LINK
-
-    Returns
-    -------
-    {line that ends: line that begins}
+    A line that is not linked costs as much as the worst link that is possible, so that links are made rather than left out. Lines that compete for
+    the same links are assigned together (Hungarian method, as in `scipy.optimize.linear_sum_assignment`).
     """
     if not pairs:
         return {}
@@ -206,7 +174,7 @@ def assigned_links(pairs: list[tuple[float, int, int]]) -> dict[int, int]:
         rows, i = np.unique(row[of_group], return_inverse=True)
         columns, j = np.unique(column[of_group], return_inverse=True)
         gain = np.zeros((len(rows), len(columns)))
-        gain[i, j] = COST_WITHOUT_LINK - cost[of_group]
+        gain[i, j] = LINKS.cost_without_link - cost[of_group]
         for u, v in zip(*linear_sum_assignment(gain, maximize=True)):
             if gain[u, v] > 0:
                 links[int(ends[rows[u]])] = int(starts[columns[v]])
@@ -228,23 +196,23 @@ def _joined(lines, follows):
 
 def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, max_bridge: float,
                         same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool], allowed: float = 0.25) -> list[LinkedLine]:
-    """Link over longer gaps, up to `max_bridge`, where something carries over.
+    """Link over longer gaps, up to `max_bridge`, m, where something carries over.
 
     Either both sides have one dash pattern and the gap is a whole multiple of it (`same_dash_pattern(before, after)`), or another line runs on
     beside the gap without one, so that the road does not end there.
     """
     while True:
-        ends, starts = (_line_ends(lines, trend, at_start, 3 * END_WINDOW) for at_start in (False, True))
+        ends, starts = (_line_ends(lines, trend, at_start, 3 * LINKS.end_window) for at_start in (False, True))
         by_start = np.argsort([e.s for e in starts], kind="stable")
         stations = np.array([starts[k].s for k in by_start])
         pairs = []
         beside = lines_beside(lines)
         for a, before in enumerate(ends):
             check_cancelled()
-            low, high = np.searchsorted(stations, [before.s + max_gap - MAX_STRAND_OVERLAP, before.s + max_bridge])
+            low, high = np.searchsorted(stations, [before.s + max_gap - LINKS.max_strand_overlap, before.s + max_bridge])
             for b in by_start[low:high]:
                 after = starts[b]
-                if min(lines[a].painted, lines[b].painted) < MIN_PAINT_BESIDE_GAP:
+                if min(lines[a].painted, lines[b].painted) < LINKS.min_paint_beside_gap:
                     continue
                 if (miss := _miss(before, after, trend, edges, lines[a], lines[b])) > allowed:
                     continue
@@ -268,16 +236,16 @@ def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside) -> 
     kept = []
     for k, strand in enumerate(line.strands):
         middle = (strand.first + strand.last) / 2
-        window = np.arange(*np.searchsorted(s, [middle - STRAY_WINDOW, middle + STRAY_WINDOW]))
+        window = np.arange(*np.searchsorted(s, [middle - LINKS.stray_window, middle + LINKS.stray_window]))
         others, own = window[owner[window] != k], window[owner[window] == k]
         both = (s[others] < middle).any() and (s[others] > middle).any()
-        if strand.length > MAX_STRAY_LENGTH and strand.length > 0.1 * line.painted or not both:
+        if strand.length > LINKS.max_stray_length and strand.length > 0.1 * line.painted or not both:
             kept.append(strand)
             continue
         edge = edges.between(*((float(s[j]), float(d[j])) for j in window[[0, -1]]))
         for course in [trend.at] + ([] if edge is None else [edge]):
             expected = _robust_level(s[others] - middle, d[others] - course(s[others]), np.minimum(weight[others], 10.0))
-            if abs(median(d[own] - course(s[own])) - expected) <= MAX_STRAY_OFFSET:
+            if abs(median(d[own] - course(s[own])) - expected) <= LINKS.max_stray_offset:
                 kept.append(strand)
                 break
     return LinkedLine(kept)
@@ -286,7 +254,7 @@ def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside) -> 
 def _robust_level(s, level, weight):
     """Value at 0 of a straight line through (s, level), strays counting little."""
     base = weight
-    design = np.c_[np.ones(len(s)), s / STRAY_WINDOW]
+    design = np.c_[np.ones(len(s)), s / LINKS.stray_window]
     for _ in range(6):
         root = np.sqrt(weight)
         found = np.linalg.lstsq(design * root[:, None], level * root, rcond=None)[0]
@@ -311,11 +279,6 @@ def _runs_beside(lines, beside, pair, before, after, trend):
 
 # How all painted lines of a road change their offset together: the vehicle's weaving shows in all of them alike.
 
-TREND_STEP = 0.5      # m, nodes of the drift
-SLOPE_WINDOW = 5.0    # m that slopes are averaged over
-GENTLE_TAPER = 0.05   # m across for each m along: a line that runs as askew as that to the others counts half (tapers are 1 in 20 and steeper)
-MAX_LINE_SLOPE = np.tan(np.radians(10.0))  # across per along by which two strands may differ
-
 
 class CommonTrend:
     """How the offset of all lines of a road changes together: d(s) of a line minus this is nearly constant.
@@ -330,27 +293,27 @@ class CommonTrend:
         if not long:
             return
         s, slope, weight, strand = _slopes(long)
-        bins = np.floor(s / TREND_STEP).astype(np.int64)
+        bins = np.floor(s / TREND.trend_step).astype(np.int64)
         order = np.lexsort((slope, bins))
         starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) != 0])
         first = bins.min()
         nodes = np.arange(first, bins.max() + 1)
         mean = np.bincount(bins - first, weight * slope) / np.bincount(bins - first, weight).clip(1e-9)
         askew = np.bincount(strand, weight * np.abs(slope - mean[bins - first])) / np.bincount(strand, weight).clip(1e-9)
-        weight = weight / (1.0 + (askew[strand] / GENTLE_TAPER) ** 2)
+        weight = weight / (1.0 + (askew[strand] / TREND.gentle_taper) ** 2)
         middle = np.full(len(nodes), np.nan)
         middle[bins[order[starts]] - first] = weighted_medians(slope[order], weight[order], starts)
         known = np.isfinite(middle)
-        at = (nodes + 0.5) * TREND_STEP
+        at = (nodes + 0.5) * TREND.trend_step
         # where nothing is painted for long the lines are taken to follow the reference
         middle = np.interp(at, at[known], middle[known])
         away = np.abs(at - at[known][np.clip(np.searchsorted(at[known], at), 0, known.sum() - 1)])
         behind = np.abs(at - at[known][np.clip(np.searchsorted(at[known], at) - 1, 0, known.sum() - 1)])
         middle *= np.exp(-np.minimum(away, behind) / 10.0)
-        reach = int(SLOPE_WINDOW / TREND_STEP / 2)
+        reach = int(TREND.slope_window / TREND.trend_step / 2)
         middle = np.convolve(np.pad(middle, reach, mode="edge"), np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
-        self.s = np.r_[at[0] - TREND_STEP / 2, at + TREND_STEP / 2]
-        self.value = np.r_[0.0, np.cumsum(middle * TREND_STEP)]
+        self.s = np.r_[at[0] - TREND.trend_step / 2, at + TREND.trend_step / 2]
+        self.value = np.r_[0.0, np.cumsum(middle * TREND.trend_step)]
 
     def at(self, s: np.ndarray) -> np.ndarray:
         """(N,) metres at stations s; flat beyond the painted part."""
@@ -363,13 +326,13 @@ def _slopes(strands):
     starts = np.cumsum(counts) - counts
     owner = np.repeat(np.arange(len(strands)), counts)
     own_s, own_d = (np.concatenate([getattr(strand, name) for strand in strands]) for name in ("s", "d"))
-    at = [np.arange(strand.first + TREND_STEP / 2, strand.last, TREND_STEP) for strand in strands]
+    at = [np.arange(strand.first + TREND.trend_step / 2, strand.last, TREND.trend_step) for strand in strands]
     of = np.repeat(np.arange(len(strands)), [len(some) for some in at])
     at = np.concatenate(at)
     # strands one after the other, so far apart that none reaches into the next
-    far = owner * (float(max(strand.last for strand in strands) - min(strand.first for strand in strands)) + 4 * SLOPE_WINDOW)
+    far = owner * (float(max(strand.last for strand in strands) - min(strand.first for strand in strands)) + 4 * TREND.slope_window)
     shift = far[starts]
-    low, high = (np.searchsorted(own_s + far, at + shift[of] + side * SLOPE_WINDOW / 2) for side in (-1, 1))
+    low, high = (np.searchsorted(own_s + far, at + shift[of] + side * TREND.slope_window / 2) for side in (-1, 1))
     # from the strand's own start, so that sums keep their digits
     s, d = own_s - own_s[starts][owner], own_d - own_d[starts][owner]
     n = high - low
@@ -378,7 +341,7 @@ def _slopes(strands):
     good = (n >= 5) & (spread > 0.2 * n * n)
     slope = np.where(good, (n * msd - ms * md) / np.where(good, spread, 1.0), 0.0)
     # a slope beyond any lane change is a false strand's
-    good &= np.abs(slope) < MAX_LINE_SLOPE
+    good &= np.abs(slope) < TREND.max_line_slope
     return at[good], slope[good], (spread / np.maximum(n, 1))[good], of[good]
 
 
@@ -397,16 +360,11 @@ def weighted_medians(values: np.ndarray, weight: np.ndarray, starts: np.ndarray)
 
 # What lies beside a line, strand or crossing along the road.
 
-LOOKUP_CELL = 1.0   # m of station by which they are looked up
+LOOKUP_CELL = 1.0   # derived: m of station by which they are looked up
 
 
 class StretchLookup:
-    """Stretches of road looked up by station.
-
-    Parameters
-    ----------
-    first, last : (N,) metres, stations
-    """
+    """Stretches of road looked up by station; `first`, `last` : (N,) metres."""
 
     def __init__(self, first: np.ndarray, last: np.ndarray) -> None:
         self.first, self.last = np.asarray(first, float), np.asarray(last, float)
@@ -431,15 +389,6 @@ def lines_beside(lines: Sequence[LinkedLine]) -> StretchLookup:
 # Paint between two tracks of the scan. Far from the vehicle the tracks lie farther apart than a line is broad and cross it askew, so that it shows
 # on one track, on none, on the next. Where it shows on none, no gap was seen; where a track on its course is asphalt, the line is worn or ends.
 
-STEP = 0.25                # m along a line, over which it is asked what lies on its course and beside it
-STEP_REACH = 0.12          # m before and after a step whose points count for it: those of a track lie so near
-BESIDE_GAP = 10.0          # m before and after a gap, whose paint tells how bright the line is, and on what tracks it was seen
-ON_LINE = 0.15             # m across between a marking and the course of the line that it is of
-MIN_SEEN_LENGTH = 4.0      # m of a marking: over so much a track that crosses the line askew shows most of its width
-MIN_FREE_SHARE = 0.6       # of the width of a line: it has no room where tracks on asphalt lie nearer to each other
-CORE_SHARE = 0.25          # of the width of a line, from its middle: where asphalt lies so near, the course is not just off by a little
-MAX_BARE_SHARE = 0.35      # of a gap in which the course is asphalt: wear leaves so much, and with more the line is not there
-SHORTEST_UNSEEN = 0.5      # m: less is nothing to draw
 UNKNOWN, BARE, FREE = 0, 1, 2
 
 
@@ -452,16 +401,9 @@ class _SeenPaint(NamedTuple):
 
 
 def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: RoadPoints, road_points: RoadPoints) -> PaintedLines:
-    """Lines that know where in their gaps they lie between two tracks of the scan.
+    """Lines that know, in `unseen`, where in their gaps they lie between two tracks of the scan.
 
-    Parameters
-    ----------
-    markings : MarkingObjects they were made of
-    paint : RoadPoints of the markings, with `spacing`
-
-    Returns
-    -------
-    PaintedLines with `unseen`
+    `markings` : they were made of; `paint` : points of these, with `spacing`.
     """
     unseen = [np.empty((0, 3)) for _ in range(len(lines))]
     if not paint.has_spacing:
@@ -472,18 +414,18 @@ def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: Road
         road, (whole, own) = int(lines.course.road[k]), marked.of_piece(k)
         piece = lines.course.s[lines.course.line(k)]
         first, last = float(np.nanmin(piece)), float(np.nanmax(piece))
-        course = _between(whole, first - 2 * BESIDE_GAP, last + 2 * BESIDE_GAP)
+        course = _between(whole, first - 2 * TREND.beside_gap, last + 2 * TREND.beside_gap)
         seen = _paint_beside(paint, road, course, first, last, _full_width(markings, own))
-        if seen is None or seen.spacing < MIN_TRACK_GAP:
+        if seen is None or seen.spacing < TRACKS.min_track_gap:
             continue
         near = own[(markings.extent[own, 0] <= last) & (markings.extent[own, 1] >= first)]
         gaps = _less(first, last, markings.extent[near, :2])
-        steps = [np.linspace(a, b, int(np.ceil((b - a) / STEP)) + 1) for a, b in gaps]
+        steps = [np.linspace(a, b, int(np.ceil((b - a) / TREND.step)) + 1) for a, b in gaps]
         states = [_states(road_points, road, course, some, seen) for some in steps]
         known = np.concatenate([*states, np.empty(0, int)])
-        if np.count_nonzero(known == BARE) <= MAX_BARE_SHARE * np.count_nonzero(known != UNKNOWN):
+        if np.count_nonzero(known == BARE) <= TREND.max_bare_share * np.count_nonzero(known != UNKNOWN):
             found = [run for some, state in zip(steps, states) for run in _runs(some, state == FREE)]
-            unseen[k] = np.array([(a, b, seen.width) for a, b in found if b - a >= SHORTEST_UNSEEN]).reshape(-1, 3)
+            unseen[k] = np.array([(a, b, seen.width) for a, b in found if b - a >= TREND.shortest_unseen]).reshape(-1, 3)
     return replace(lines, unseen=unseen)
 
 
@@ -518,7 +460,7 @@ class _MarkedLines:
         near = self.markings_of[road][self.lookup[road].between(course[0][0], course[0][-1])]
         first, last, *_ = self.markings.extent[near].T
         away = np.abs(self.markings.offset[near] - np.interp((first + last) / 2, *course))
-        return near[(away <= ON_LINE) & (last > course[0][0]) & (first < course[0][-1])]
+        return near[(away <= TREND.on_line) & (last > course[0][0]) & (first < course[0][-1])]
 
 
 def _between(course, first, last):
@@ -529,14 +471,14 @@ def _between(course, first, last):
 
 def _full_width(markings, own):
     """The width of a line: that of the widest of its pieces, as few tracks show less of it and never more; 0 where nothing is known."""
-    long = own[markings.length[own] >= MIN_SEEN_LENGTH]
+    long = own[markings.length[own] >= TREND.min_seen_length]
     return float(markings.width[long].max()) if len(long) else 0.0
 
 
 def _paint_beside(paint, road, course, first, last, width):
     """_SeenPaint of a line about a gap; None where there is none."""
-    near = paint.window(road, first - BESIDE_GAP, last + BESIDE_GAP)
-    on = (near.cluster > 0) & (np.abs(near.d - np.interp(near.s, *course)) <= max(width / 2, MIN_TRACK_GAP / 2))
+    near = paint.window(road, first - TREND.beside_gap, last + TREND.beside_gap)
+    on = (near.cluster > 0) & (np.abs(near.d - np.interp(near.s, *course)) <= max(width / 2, TRACKS.min_track_gap / 2))
     if not on.any() or not width:
         return None
     return _SeenPaint(median(near.spacing[on].astype(float)), median(near.value[on].astype(float)), width)
@@ -552,23 +494,23 @@ def _less(first, last, spans):
         if at >= last:
             break
     left.append((at, last))
-    return [(a, b) for a, b in left if b - a >= SHORTEST_UNSEEN]
+    return [(a, b) for a, b in left if b - a >= TREND.shortest_unseen]
 
 
 def _states(road_points, road, course, steps, seen):
     """(N,) FREE, BARE or UNKNOWN of each of the N steps of a gap, whose N + 1 stations are given."""
-    near = road_points.window(road, steps[0] - STEP_REACH, steps[-1] + STEP_REACH)
+    near = road_points.window(road, steps[0] - TREND.step_reach, steps[-1] + TREND.step_reach)
     s, away, value = near.s, near.d - np.interp(near.s, *course), near.value
-    close = np.abs(away) <= MAX_TRACK_GAP
+    close = np.abs(away) <= TRACKS.max_track_gap
     s, away, value = s[close], away[close], value[close]
-    beside = np.abs(away) > seen.width / 2 + MIN_TRACK_GAP
+    beside = np.abs(away) > seen.width / 2 + TRACKS.min_track_gap
     if not beside.any():
         return np.full(len(steps) - 1, UNKNOWN)
     dark = value < (median(value[beside].astype(float)) + seen.brightness) / 2
     count = len(steps) - 1
     low, high, painted = np.full(count, -np.inf), np.full(count, np.inf), np.zeros(count, bool)
     # a point counts for the step that it lies in and for those that it lies near
-    for reach in (-STEP_REACH, 0.0, STEP_REACH):
+    for reach in (-TREND.step_reach, 0.0, TREND.step_reach):
         step = np.searchsorted(steps, s + reach, side="right") - 1
         inside = (step >= 0) & (step < count)
         below, above, on = inside & dark & (away <= 0), inside & dark & (away >= 0), inside & ~dark & (np.abs(away) <= seen.width / 2)
@@ -576,8 +518,8 @@ def _states(road_points, road, course, steps, seen):
         np.minimum.at(high, step[above], away[above])
         painted[step[on]] = True
     room, nearest = high - low, np.minimum(high, -low)
-    bare = (room < MIN_FREE_SHARE * seen.width) | (nearest < CORE_SHARE * seen.width)
-    return np.where(bare, BARE, np.where(painted | (room <= MAX_TRACK_GAP), FREE, UNKNOWN))
+    bare = (room < TREND.min_free_share * seen.width) | (nearest < TREND.core_share * seen.width)
+    return np.where(bare, BARE, np.where(painted | (room <= TRACKS.max_track_gap), FREE, UNKNOWN))
 
 
 def _runs(steps, on):
@@ -587,17 +529,9 @@ def _runs(steps, on):
 
 
 def with_paint_between_tracks(markings: MarkingObjects, lines: PaintedLines) -> MarkingObjects:
-    """Markings, and behind them the paint of lines that lies between two tracks of the scan.
+    """Markings, and behind them the paint of lines that lies between two tracks of the scan, as `with_unseen_paint` gives it.
 
     Each stretch has the number and the class of the piece of the line that is nearest along it, and no points.
-
-    Parameters
-    ----------
-    lines : PaintedLines of `with_unseen_paint`
-
-    Returns
-    -------
-    MarkingObjects, the same object where there is nothing to add
     """
     like, spans, polygons = [], [], []
     known = _MarkedLines(lines, markings)

@@ -20,27 +20,17 @@ LONG_LISTS = ("knots", "control_x", "control_y")  # parameters of splines
 
 @dataclass(frozen=True)
 class _FittedPieces:
-    """What a fit says of P pieces of marking lines.
+    """What a fit says of P pieces of marking lines."""
 
-    curve : P Curve in local coordinates; the pieces of one line share one
-    arc : (P, 2) metres, arc lengths on the curve where the piece begins and ends
-    vertices : (V, 3) local metres, the pieces as they are drawn, one after the other
-    start : (P + 1,) int, first vertex of each piece, and V
-    station, end : (P,) metres
-    offset : (P,) metres, median of the paint along the piece; NaN where there is none, as between dashes
-    width : (P,) metres
-    rmse : (P,) metres, of the paint from the curve; NaN on bridged pieces
-    """
-
-    curve: list[Curve]
-    arc: np.ndarray
-    vertices: np.ndarray
-    start: np.ndarray
+    curve: list[Curve]   # P Curve in local coordinates; the pieces of one line share one
+    arc: np.ndarray   # (P, 2) m, arc lengths on it where the piece begins and ends
+    vertices: np.ndarray   # (V, 3) local m, the pieces as they are drawn, one after the other
+    start: np.ndarray   # (P + 1,) int, first vertex of each piece, and V
     station: np.ndarray
     end: np.ndarray
-    offset: np.ndarray
+    offset: np.ndarray   # (P,) m, median of the paint along the piece; NaN where there is none, as between dashes
     width: np.ndarray
-    rmse: np.ndarray
+    rmse: np.ndarray   # (P,) m, of the paint from the curve; NaN on bridged pieces
 
     def linestrings(self, frame: RoadFrame) -> np.ndarray:
         """(P,) shapely lines with Z in map coordinates."""
@@ -53,28 +43,21 @@ class _FittedPieces:
 class PaintedLines(LayerRows):
     """Marking lines in P pieces, each of one status and pattern.
 
-    line : (P,) int, number of the line; its pieces share it
-    kind : (P,) str objects, edge, lane or centre; "" where unknown
-    pattern : (P,) str objects, solid, dashed, double-solid, double-dashed; "" where unknown
-    status : (P,) str objects, measured or bridged
-    course : FrameLines, one per piece
-    fitted : _FittedPieces, None for lines that were read from a layer
-    crs : WKT, "" where unknown
     rmse, width : (P,) metres, of the paint from the curve and of the paint across; NaN where unknown; None where nothing is known
-    unseen : P arrays (K, 3), metres: first and last station of stretches of a bridged piece that lie between two tracks of the scan,
-        and the width of the line; None where it was not looked for
+    unseen : P arrays (K, 3), metres: first and last station of stretches of a bridged piece that lie between two tracks of the scan, and the width
+        of the line; None where it was not looked for
     other : (P,) str objects, the second reading of `kind` as JSON, "" where there is none; None where it was not looked for
     """
 
     GEOMETRY_TYPE, SCHEMA = "LineStringZ", MARKING_LINES
 
-    line: np.ndarray = field(metadata=column(unknown=-1))
-    kind: np.ndarray = field(metadata=column(unknown=""))
-    pattern: np.ndarray = field(metadata=column(unknown=""))
-    status: np.ndarray = field(metadata=column(unknown="measured"))
-    course: FrameLines
-    fitted: _FittedPieces | None = None
-    crs: str = ""
+    line: np.ndarray = field(metadata=column(unknown=-1))   # (P,) int, number of the line; its pieces share it
+    kind: np.ndarray = field(metadata=column(unknown=""))   # (P,) str objects, edge, lane or centre; "" where unknown
+    pattern: np.ndarray = field(metadata=column(unknown=""))   # (P,) str objects, solid, dashed, double-solid, double-dashed; "" where unknown
+    status: np.ndarray = field(metadata=column(unknown="measured"))   # (P,) str objects, measured or bridged
+    course: FrameLines   # FrameLines, one per piece
+    fitted: _FittedPieces | None = None   # _FittedPieces, None for lines that were read from a layer
+    crs: str = ""   # WKT, "" where unknown
     rmse: np.ndarray | None = None
     width: np.ndarray | None = None
     unseen: list[np.ndarray] | None = None
@@ -143,14 +126,7 @@ def _rounded(numbers: dict[str, Any]) -> dict[str, Any]:
 
 
 def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> PaintedLines:
-    """PaintedLines of one row a piece, as `pieces_of_lines` gives them.
-
-    Parameters
-    ----------
-    rows : dicts of road, line, kind, pattern, status, and of what _FittedPieces holds: curve, arc, places (V, 3), station, end, offset, width, rmse;
-        and of `unseen`, where it is known
-    crs : WKT, "" where unknown
-    """
+    """PaintedLines of one row a piece, as `pieces_of_lines` gives them; `unseen` may be missing."""
     def column(name: str, kind: Any) -> np.ndarray:
         return np.array([row[name] for row in rows], kind)
 

@@ -11,26 +11,10 @@ from ...common.arrays import linked_groups, members_of, overlapping_pairs
 from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
 from ...curves.robust import median
-from ..objects.classify import LANE_CLEARANCE
 from ..objects.marking_objects import MarkingObjects
-from .linking import DOUBLE_LINE_SPACING, MAX_STRAY_OFFSET, CommonTrend, StretchLookup, lines_beside
+from ..weights import CLASSES, LINKS, SELECTION
+from .linking import CommonTrend, StretchLookup, lines_beside
 from .strands import LinkedLine, Strand
-
-SAME_COURSE_OFFSET = 0.25     # m: a single dash this near the course of a dashed line is one of its dashes
-MIN_SHARED_PAINT = 0.6      # of a line's paint that must have its twin beside it in a double line
-MIN_TWIN_PAINT = 4.0        # m of paint: a shorter line beside another is its frayed edge, however short the other is there
-MAX_FRAYED_SHARE = 0.35     # of a line's length: less paint beside a line than this is no second line but its frayed edge
-MIN_SINGLE_DASH = 1.5       # m
-MIN_BOUNDING_PAINT = 15.0   # m of paint: enough to bound a road by
-MAX_NEIGHBOUR_OFFSET = 8.0  # m across: a line this near starts and ends where this one does
-MAX_BAR_LENGTH = 4.0        # m along the road: what is called hatching and is longer is no single bar of it
-MAX_BAR_END_OFFSET = 0.35   # m between the end of a bar and the outline
-MAX_BAR_PITCH = 3.0         # m from bar to bar along an outline
-MAX_BORDER_GAP = 2.0        # m along the road between pieces of one outline that bend off each other
-MIN_BARS = 4                # that make an outline
-MIN_BARS_OF_STRAND = 2      # that tell which strands of an outline are its own
-AT_CROSSING = 0.5           # m across beyond a crossing where a line still leads to it
-LEAST_TURN_ASIDE = 0.3      # m from the straight way between two strands: farther than links reach across, a strand is another line
 
 
 @dataclass
@@ -60,7 +44,7 @@ def crossings(markings: MarkingObjects, road: int) -> np.ndarray:
 def hatching_bars(markings: MarkingObjects, road: int) -> np.ndarray:
     """(K, 4) the same of the bars of hatched areas."""
     found = _extents(markings, road, ("hatch",))
-    return found[found[:, 1] - found[:, 0] < MAX_BAR_LENGTH]
+    return found[found[:, 1] - found[:, 0] < SELECTION.max_bar_length]
 
 
 def _extents(markings, road, kinds):
@@ -71,22 +55,15 @@ def _extents(markings, road, kinds):
 
 def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarray, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),
                  longest_dash: float = NEUTRAL.longest_dash) -> list[SelectedLine]:
-    """The lines worth drawing.
+    """The lines worth drawing, by station.
 
-    A line needs paint: `min_paint` metres of it, or two dashes of a pattern, or one dash on the course and of the length of a dashed line elsewhere
-    on the road. What runs close beside a much longer line is that line's frayed edge; what frames a hatched area belongs to that area.
+    A line needs paint: `min_paint` m of it, or two dashes of a pattern. What runs close beside a much longer line is that line's ragged edge; what
+    frames a hatched area belongs to that area.
 
     Parameters
     ----------
-    lines : list of LinkedLine
-    crossed : (K, 4) as `crossings` gives it
-    min_paint : metres
-    hatched : (K, 4) as `hatching_bars` gives it
-    longest_dash : metres, longer paint is solid line
-
-    Returns
-    -------
-    list of SelectedLine, by station
+    crossed, hatched : (K, 4) as `crossings` and `hatching_bars` give them
+    longest_dash : m, longer paint is solid line
     """
     if not lines:
         return []
@@ -94,25 +71,18 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     crossings_there = StretchLookup(crossed[:, 0], crossed[:, 1])
     parts = [_without_pairs_at_crossings(stretches(line, longest_dash), line, crossed, crossings_there) for line in lines]
     level = np.array([_level(line, trend) for line in lines])
-    patterns = [[part.dashes for part in stretch if part.dashes] for stretch in parts]
     painted_to = max(line.last for line in lines)
     painted_from = min(line.first for line in lines)
     frayed, double = _beside(lines, beside, trend, longest_dash)
     outside = _beyond_the_edge(lines, beside, level)
-    dashes = _DashesElsewhere(lines, patterns, level)
     found = []
     for k, line in enumerate(lines):
         check_cancelled()
-        single = None
-        if not patterns[k] and line.painted < longest_dash:
-            single = dashes.alike(k)
-        if frayed[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or patterns[k] or single):
+        dashed = any(stretch.dashes for stretch in parts[k])
+        if frayed[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or dashed):
             continue
-        drawn = _line_pieces(parts[k])
-        if single is not None:
-            drawn = [_LinePiece(line.first, line.last, "measured", "dashed")]
-        drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), partial(_crossed_there, crossed, crossings_there, line.middle),
-                          partial(strands.near, level, k), line)
+        drawn = _extended(_line_pieces(parts[k]), parts[k], (painted_from, painted_to),
+                          partial(_crossed_there, crossed, crossings_there, line.middle), partial(strands.near, level, k), line)
         found.append(SelectedLine(line, bool(double[k]), drawn))
     return found
 
@@ -133,7 +103,7 @@ def _without_pairs_at_crossings(parts, line, crossed, crossings_there):
 def _crossed_there(crossed, crossings_there, d, first, last):
     """(M, 4) crossings that reach over an offset or near it, between two stations."""
     near = crossed[crossings_there.between(first, last)]
-    return near[(near[:, 2] <= d + AT_CROSSING) & (near[:, 3] >= d - AT_CROSSING)]
+    return near[(near[:, 2] <= d + SELECTION.at_crossing) & (near[:, 3] >= d - SELECTION.at_crossing)]
 
 
 class _StrandsBeside:
@@ -148,37 +118,12 @@ class _StrandsBeside:
         """(M, 2) stations between which the lines beside line k are painted, of what is painted between two stations."""
         near = self.lookup.between(first, last)
         of = self.owner[near]
-        return self.spans[near[(of != k) & (np.abs(level[of] - level[k]) <= MAX_NEIGHBOUR_OFFSET)]]
+        return self.spans[near[(of != k) & (np.abs(level[of] - level[k]) <= SELECTION.max_neighbour_offset)]]
 
 
 def _level(line, trend):
     s, d, *_ = line.places()
     return median(d - trend.at(s))
-
-
-class _DashesElsewhere:
-    """The dash patterns of the lines of a road, by how far across these lie."""
-
-    def __init__(self, lines, patterns, level):
-        self.lines, self.level = lines, level
-        found = [(j, pattern) for j, of_line in enumerate(patterns) if len(lines[j].strands) >= 3 for pattern in of_line]
-        order = np.argsort([level[j] for j, _ in found], kind="stable").astype(int)
-        self.of, self.patterns = np.array([found[n][0] for n in order], int), [found[n][1] for n in order]
-        self.dash = np.array([pattern.dash for pattern in self.patterns])
-        self.first, self.last = (np.array([getattr(lines[j], end) for j in self.of]) for end in ("first", "last"))
-
-    def alike(self, k):
-        """The _DashPattern of a dashed line elsewhere on the road, on whose course and of whose dash length line k is; of several the first one's."""
-        line = self.lines[k]
-        if line.painted < MIN_SINGLE_DASH or len(line.strands) > 2:
-            return None
-        levels = self.level[self.of]
-        near = slice(*np.searchsorted(levels, self.level[k] + SAME_COURSE_OFFSET * np.array([-1.001, 1.001])))
-        apart = (self.last[near] < line.first) | (self.first[near] > line.last)
-        same = np.abs(levels[near] - self.level[k]) <= SAME_COURSE_OFFSET
-        differs = np.abs(line.last - line.first - self.dash[near])
-        found = near.start + np.flatnonzero(apart & same & (differs <= np.maximum(0.6, 0.25 * self.dash[near])))
-        return self.patterns[found[np.argmin(self.of[found])]] if len(found) else None
 
 
 def _beside(lines, beside, trend, longest_dash):
@@ -200,15 +145,15 @@ def _beside(lines, beside, trend, longest_dash):
                 continue
             away = median(np.abs(tracks[k][1][a] - tracks[j][1][b]))
             share = len(a) / len(tracks[k][0])
-            if away <= DOUBLE_LINE_SPACING[1] and share > MIN_SHARED_PAINT:
+            if away <= LINKS.double_line_spacing[1] and share > SELECTION.min_shared_paint:
                 # between two junctions both lines of a double are short, and one of them may go on farther beyond
-                least = max(MIN_TWIN_PAINT, MIN_SHARED_PAINT * _painted_there(lines[j], lines[k]))
-                twin = away >= DOUBLE_LINE_SPACING[0] and lines[k].painted >= least
-                if not twin and lines[k].painted < MAX_FRAYED_SHARE * lines[j].painted and lines[k].painted < longest_dash:
+                least = max(SELECTION.min_twin_paint, SELECTION.min_shared_paint * _painted_there(lines[j], lines[k]))
+                twin = away >= LINKS.double_line_spacing[0] and lines[k].painted >= least
+                if not twin and lines[k].painted < SELECTION.max_frayed_share * lines[j].painted and lines[k].painted < longest_dash:
                     frayed[k] = True
-                elif away >= DOUBLE_LINE_SPACING[0]:
+                elif away >= LINKS.double_line_spacing[0]:
                     double[k] = True
-                    double[j] |= len(a) / len(tracks[j][0]) > MAX_FRAYED_SHARE
+                    double[j] |= len(a) / len(tracks[j][0]) > SELECTION.max_frayed_share
     return frayed, double
 
 
@@ -232,7 +177,7 @@ def _beyond_the_edge(lines, beside, level):
     """
     result = np.zeros(len(lines), bool)
     bounds = {j for j, line in enumerate(lines)
-              if line.painted >= MIN_BOUNDING_PAINT and _votes(line).get("edge", 0.0) > 0.3 * line.painted}
+              if line.painted >= SELECTION.min_bounding_paint and _votes(line).get("edge", 0.0) > 0.3 * line.painted}
     for k, line in enumerate(lines):
         for j in beside.between(line.first, line.last).tolist():
             if j not in bounds:
@@ -240,9 +185,9 @@ def _beyond_the_edge(lines, beside, level):
             # the vehicle drove between the edge lines
             farther = np.sign(lines[j].middle) * (level[k] - level[j])
             shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
-            least = MAX_FRAYED_SHARE * lines[j].painted if farther < LANE_CLEARANCE else 0.0
-            if j != k and farther > DOUBLE_LINE_SPACING[0] and shared > 0.5 * (line.last - line.first) \
-                    and line.painted < max(least, MIN_BOUNDING_PAINT):
+            least = SELECTION.max_frayed_share * lines[j].painted if farther < CLASSES.lane_clearance else 0.0
+            if j != k and farther > LINKS.double_line_spacing[0] and shared > 0.5 * (line.last - line.first) \
+                    and line.painted < max(least, SELECTION.min_bounding_paint):
                 result[k] = True
     return result
 
@@ -258,15 +203,15 @@ def hatching_borders(lines: list[LinkedLine], hatched: np.ndarray, known: list[S
     borders = known + [strand for line, frames in zip(lines, framing) if frames for strand in line.strands]
     found = [strand for line, frames in zip(lines, framing) if len(line.strands) > 1
              for k, strand in enumerate(line.strands)
-             if frames and _frames_hatching(LinkedLine([strand]), bars, MIN_BARS_OF_STRAND)
-             or _aside(line.strands[k - 1:k + 2]) > LEAST_TURN_ASIDE
-             and (_frames_hatching(LinkedLine([strand]), bars, MIN_BARS_OF_STRAND) or _lies_within(strand, within))]
+             if frames and _frames_hatching(LinkedLine([strand]), bars, SELECTION.min_bars_of_strand)
+             or _aside(line.strands[k - 1:k + 2]) > SELECTION.least_turn_aside
+             and (_frames_hatching(LinkedLine([strand]), bars, SELECTION.min_bars_of_strand) or _lies_within(strand, within))]
     if found:
         return found
-    aside = [strand for line in lines for k, strand in enumerate(line.strands) if _aside(line.strands[k - 1:k + 2]) > MAX_STRAY_OFFSET]
+    aside = [strand for line in lines for k, strand in enumerate(line.strands) if _aside(line.strands[k - 1:k + 2]) > LINKS.max_stray_offset]
     there = StretchLookup(np.array([border.first for border in borders]), np.array([border.last for border in borders]))
     return [strand for strand in aside if any(_meet(strand, borders[k]) for k in there.between(
-        strand.first - MAX_BORDER_GAP, strand.last + MAX_BORDER_GAP) if borders[k] is not strand)]
+        strand.first - SELECTION.max_border_gap, strand.last + SELECTION.max_border_gap) if borders[k] is not strand)]
 
 
 def _aside(strands):
@@ -281,7 +226,7 @@ def _aside(strands):
 def _meet(one, other):
     """Whether one strand begins where the other ends."""
     for a, b in ((one, other), (other, one)):
-        if abs(b.first - a.last) <= MAX_BORDER_GAP and abs(b.d[0] - a.d[-1]) <= MAX_BAR_END_OFFSET:
+        if abs(b.first - a.last) <= SELECTION.max_border_gap and abs(b.d[0] - a.d[-1]) <= SELECTION.max_bar_end_offset:
             return True
     return False
 
@@ -291,17 +236,18 @@ def _areas(hatched):
     if not len(hatched):
         return np.empty((0, 4))
     first, last, low, high = hatched.T
-    a, b = (np.concatenate(found) for found in zip(*overlapping_pairs(first, last, first, last, MAX_BAR_PITCH)))
+    a, b = (np.concatenate(found) for found in zip(*overlapping_pairs(first, last, first, last, SELECTION.max_bar_pitch)))
     beside = (low[a] <= high[b]) & (low[b] <= high[a])
-    rows = [hatched[own] for _, own in members_of(linked_groups(a[beside], b[beside], len(hatched))) if len(own) >= MIN_BARS]
-    return np.array([[*row[:, [0, 2]].min(0), *row[:, [1, 3]].max(0)] for row in rows]).reshape(-1, 4) + [-MAX_BAR_PITCH, 0, MAX_BAR_PITCH, 0]
+    rows = [hatched[own] for _, own in members_of(linked_groups(a[beside], b[beside], len(hatched))) if len(own) >= SELECTION.min_bars]
+    pitch = SELECTION.max_bar_pitch
+    return np.array([[*row[:, [0, 2]].min(0), *row[:, [1, 3]].max(0)] for row in rows]).reshape(-1, 4) + [-pitch, 0, pitch, 0]
 
 
 def _lies_within(strand, areas):
     """Whether a strand lies in one of the areas, (A, 4) as `_areas` gives them, or on its border."""
     first, low, last, high = areas.T
-    return bool(((first <= strand.first) & (strand.last <= last) & (low - MAX_BAR_END_OFFSET <= strand.d.min())
-                 & (strand.d.max() <= high + MAX_BAR_END_OFFSET)).any())
+    return bool(((first <= strand.first) & (strand.last <= last) & (low - SELECTION.max_bar_end_offset <= strand.d.min())
+                 & (strand.d.max() <= high + SELECTION.max_bar_end_offset)).any())
 
 
 class _Bars:
@@ -313,7 +259,7 @@ class _Bars:
         self.middle, (self.low, self.high) = middle[order], hatched[order, 2:].T
 
 
-def _frames_hatching(line, bars, fewest=MIN_BARS):
+def _frames_hatching(line, bars, fewest=SELECTION.min_bars):
     """Whether bars end at a line along most of it; an edge line beside a hatched area goes on after it."""
     inside = slice(*np.searchsorted(bars.middle, [line.first, line.last]))
     middle = bars.middle[inside]
@@ -321,12 +267,12 @@ def _frames_hatching(line, bars, fewest=MIN_BARS):
         return False
     s, d, *_ = line.places()
     at = np.interp(middle, s, d)
-    ends = np.minimum(np.abs(bars.low[inside] - at), np.abs(bars.high[inside] - at)) < MAX_BAR_END_OFFSET
+    ends = np.minimum(np.abs(bars.low[inside] - at), np.abs(bars.high[inside] - at)) < SELECTION.max_bar_end_offset
     near = middle[ends & (middle > line.first) & (middle < line.last)]
     if len(near) < fewest:
         return False
     steps = np.diff(np.sort(near))
-    return steps[steps < MAX_BAR_PITCH].sum() + MAX_BAR_PITCH > MIN_SHARED_PAINT * (line.last - line.first)
+    return steps[steps < SELECTION.max_bar_pitch].sum() + SELECTION.max_bar_pitch > SELECTION.min_shared_paint * (line.last - line.first)
 
 
 def _votes(line):
@@ -338,14 +284,13 @@ def _votes(line):
     return votes
 
 
-def _extended(drawn, parts, single, painted, crossed, painted_beside, line):
-    """A dashed line ends with a gap: its ends go on by one gap.
+def _extended(drawn, parts, painted, crossed, painted_beside, line):
+    """A dashed line ends with a gap: its ends go on by one gap, but not past the road's paint, into a crossing, or past the ends of lines beside it.
 
-    But not past the paint of the road, into a crossing, or past where the lines
-    beside it begin or end. `crossed` and `painted_beside` tell crossings and paint between two stations.
+    `crossed` and `painted_beside` tell crossings and paint between two stations.
     """
     drawn = list(drawn)
-    before, after = single or parts[0].dashes, single or parts[-1].dashes
+    before, after = parts[0].dashes, parts[-1].dashes
     if before:
         limit = line.first - before.gap
         beside, neighbours = crossed(limit - 1.0, line.first + 1.0), painted_beside(limit - 1.0, line.first + 1.0)
@@ -366,16 +311,6 @@ def _extended(drawn, parts, single, painted, crossed, painted_beside, line):
 
 
 # Solid or dashed, and with what dash length and period, from the painted intervals of a line.
-
-MAX_WORN_HOLE = 0.8            # m: a shorter hole is wear within a dash
-MIN_GAP_PER_DASH = 0.4         # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
-DASH_PAIR_LENGTH = (1.5, 8.0)  # m: dashes of which two alone are taken for a dashed line
-PERIOD_TOLERANCE = 0.16        # of the period: how evenly dashes must follow each other
-STEP_TOLERANCE = 0.2           # m by which the two steps between three pieces of unequal lengths may differ
-MIN_SHORT_DASHES = 4           # dashes of about a metre with gaps as long must be so many
-SHORT_DASH_TOLERANCE = 0.25    # m: of such dashes, deviation of the length from the median
-MAX_UNEVEN_SHARE = 0.25        # of such dashes: those that deviate more
-MAX_SOLID_GAP = 2.5            # m: a longer hole in a solid line is bridged, not measured
 
 
 @dataclass(frozen=True)
@@ -409,7 +344,7 @@ def _painted_intervals(line: LinkedLine) -> np.ndarray:
     spans = [span for strand in line.strands for span in _painted(strand)]
     found = [list(spans[0])]
     for first, last in spans[1:]:
-        if first - found[-1][1] < MAX_WORN_HOLE:
+        if first - found[-1][1] < SELECTION.max_worn_hole:
             found[-1][1] = max(found[-1][1], last)
         else:
             found.append([first, last])
@@ -418,22 +353,19 @@ def _painted_intervals(line: LinkedLine) -> np.ndarray:
 
 def _painted(strand):
     """(first, last) of the parts of a strand: a strand leaps the gaps of short dashes. Where they are uneven they are wear."""
-    holes = np.flatnonzero(np.diff(strand.s) > MAX_WORN_HOLE)
-    if len(holes) + 1 < MIN_SHORT_DASHES:
+    holes = np.flatnonzero(np.diff(strand.s) > SELECTION.max_worn_hole)
+    if len(holes) + 1 < SELECTION.min_short_dashes:
         return [(strand.first, strand.last)]
     parts = np.column_stack([np.r_[strand.first, strand.s[holes + 1]], np.r_[strand.s[holes], strand.last]])
     length, steps = np.diff(parts, axis=1)[:, 0], np.diff(parts.mean(axis=1))
-    if (np.abs(steps - np.median(steps)) > PERIOD_TOLERANCE * np.median(steps)).mean() > MAX_UNEVEN_SHARE \
-            or (np.abs(length - np.median(length)) > SHORT_DASH_TOLERANCE).mean() > MAX_UNEVEN_SHARE:
+    if (np.abs(steps - np.median(steps)) > SELECTION.period_tolerance * np.median(steps)).mean() > SELECTION.max_uneven_share \
+            or (np.abs(length - np.median(length)) > SELECTION.short_dash_tolerance).mean() > SELECTION.max_uneven_share:
         return [(strand.first, strand.last)]
     return list(map(tuple, parts.tolist()))
 
 
 def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> list[Stretch]:
-    """The stretches of a line: dashed where short intervals follow a dash pattern, solid elsewhere.
-
-    longest_dash : metres, longer paint is solid line; of the catalogue of countries
-    """
+    """The stretches of a line: dashed where short intervals follow a dash pattern, solid elsewhere; paint longer than `longest_dash`, m, is solid."""
     spans = _painted_intervals(line)
     long = np.diff(spans, axis=1)[:, 0] > longest_dash
     cuts = np.flatnonzero(np.r_[True, np.diff(long.astype(int)) != 0, True])
@@ -466,16 +398,16 @@ def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> _DashPat
     if len(spans) == 2:
         gap = float(spans[1, 0] - spans[0, 1])
         # two pieces may be alike by chance: they must be as long as dashes are, and equally long
-        even = np.ptp(length) <= max(0.4, 0.12 * dash) and DASH_PAIR_LENGTH[0] <= dash <= DASH_PAIR_LENGTH[1] \
-            and max(MIN_GAP_PER_DASH * dash, 1.5) <= gap <= 13.0
+        even = np.ptp(length) <= max(0.4, 0.12 * dash) and SELECTION.dash_pair_length[0] <= dash <= SELECTION.dash_pair_length[1] \
+            and max(SELECTION.min_gap_per_dash * dash, 1.5) <= gap <= 13.0
         return _DashPattern(dash, float(steps[0])) if even else None
     period = _period(steps)
-    if period is None or period - dash < MIN_GAP_PER_DASH * dash or alike.mean() < 0.55:
+    if period is None or period - dash < SELECTION.min_gap_per_dash * dash or alike.mean() < 0.55:
         return None
     if len(spans) == 3 and not alike.all():
         # a worn dash keeps one of its ends, or its middle
         steps = np.diff(np.column_stack([spans, spans.mean(axis=1)]), axis=0)
-        if beside_solid or np.ptp(steps, axis=0).min() > STEP_TOLERANCE:
+        if beside_solid or np.ptp(steps, axis=0).min() > SELECTION.step_tolerance:
             return None
     return _DashPattern(dash, period)
 
@@ -484,10 +416,10 @@ def _period(steps):
     """The longest period of which most steps are whole multiples (up to 4), or None."""
     best, best_share = None, 0.0
     for start in np.unique(np.round(steps, 1)):
-        if start < 2 * MAX_WORN_HOLE:
+        if start < 2 * SELECTION.max_worn_hole:
             continue
         times = np.maximum(np.round(steps / start), 1.0)
-        good = (np.abs(steps / start - times) <= PERIOD_TOLERANCE) & (times <= 4)
+        good = (np.abs(steps / start - times) <= SELECTION.period_tolerance) & (times <= 4)
         share, single = good.mean(), (times[good] == 1).sum()
         # many steps over missing dashes are believed where nearly all fit
         if single < 0.4 * len(steps) and not (single >= 2 and len(steps) >= 5 and share >= 0.85):
@@ -503,11 +435,11 @@ def same_dash_pattern(before: LinkedLine, after: LinkedLine, longest_dash: float
     if not ends.dashes or not begins.dashes:
         return False
     period = (ends.dashes.period + begins.dashes.period) / 2
-    if abs(ends.dashes.period - begins.dashes.period) > PERIOD_TOLERANCE * period \
+    if abs(ends.dashes.period - begins.dashes.period) > SELECTION.period_tolerance * period \
             or abs(ends.dashes.dash - begins.dashes.dash) > max(0.6, 0.25 * ends.dashes.dash):
         return False
     step = (np.mean(begins.intervals[0]) - np.mean(ends.intervals[-1])) / period
-    return abs(step - round(step)) <= PERIOD_TOLERANCE * 1.5
+    return abs(step - round(step)) <= SELECTION.period_tolerance * 1.5
 
 
 @dataclass(frozen=True)
@@ -521,15 +453,17 @@ class _LinePiece:
 
 
 def _line_pieces(parts: list[Stretch]) -> list[_LinePiece]:
-    """Cut a line of some stretches where its status or pattern changes. A hole longer than the line's own gap, or in a solid line longer than
-    2.5 m, is bridged."""
+    """Cut a line of some stretches where its status or pattern changes.
+
+    A hole longer than the line's own gap, or in a solid line longer than 2.5 m, is bridged.
+    """
     found = []
     for k, part in enumerate(parts):
-        gap = part.dashes.gap * 1.25 + 0.8 if part.dashes else MAX_SOLID_GAP
+        gap = part.dashes.gap * 1.25 + 0.8 if part.dashes else SELECTION.max_solid_gap
         if k:
             # between two patterns: the dashed one's gap, if there is one
             other = parts[k - 1]
-            between = max(gap, other.dashes.gap * 1.25 + 0.8 if other.dashes else MAX_SOLID_GAP)
+            between = max(gap, other.dashes.gap * 1.25 + 0.8 if other.dashes else SELECTION.max_solid_gap)
             measured = part.first - other.last <= between
             found.append(_LinePiece(other.last, part.first, "measured" if measured else "bridged",
                                other.pattern if other.dashes else part.pattern))

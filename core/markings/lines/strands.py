@@ -19,40 +19,21 @@ from ..cross_section.sections import CrossSections, sections_of_edges, sections_
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..objects.shape import middle_line
-
-RUN_BIN_UNITS = 5000  # units of 0.1 mm: 0.5 m of station in which runs of paint are separated
-PLACE_STEP_UNITS = 2500  # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
-RUN_GAP_UNITS = 600  # 6 cm across without paint separate two runs ...
-MAX_WORN_LINE_WIDTH_UNITS = 3300  # ... unless together they are no wider than one worn line
-MAX_LINE_WIDTH_UNITS = 3600  # 36 cm: wider is no line, or it is a double line whose middle is hazy
-MAX_MIXED_WIDTH_UNITS = 6000  # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
-MIN_MIXED_STRAND = 2.0  # m of paint in a strand of a mixed marking
-MIN_MIXED_MARKING = 9.0  # m: no arrow or letter is this long; a longer mixed marking has a line in it
-MIN_POINTS_PER_RUN = 3  # points in a run
-MIN_STRAND_LENGTH = 0.8  # m of paint in a strand
-MAX_BIN_STEP = 3  # bins that a strand may leap: 1.5 m of wear
-LATERAL_STEP_UNITS, LATERAL_STEP_PER_BIN_UNITS = 600, 400  # units: 6 cm, and 4 cm more per bin, that a strand may move across
+from ..weights import STRANDS
 
 
 @dataclass
 class Strand:
-    """One stretch of painted line.
-
-    first, last : stations of its first and last point, metres
-    s, d, z : (K,) its places, one per 0.25 m of station; z local
-    weight : (K,) points in each place
-    width : metres
-    classes : dict, class of marking to painted length, metres
-    """
+    """One stretch of painted line, stations `first` to `last`, m."""
 
     first: float
     last: float
-    s: np.ndarray
+    s: np.ndarray   # (K,) its places, one per 0.25 m of station, z local
     d: np.ndarray
     z: np.ndarray
-    weight: np.ndarray
-    width: float
-    classes: dict
+    weight: np.ndarray   # (K,) points in each place
+    width: float   # metres
+    classes: dict   # {class of marking: painted length, metres}
 
     @property
     def length(self) -> float:
@@ -123,7 +104,7 @@ class LinkedLine:
     def _end_places(self):
         s, d, *_ = self._places
         away = s.max() - s, s - s.min()
-        return [(s[near], d[near]) for near in (a <= LEVEL_REACH for a in away)]
+        return [(s[near], d[near]) for near in (a <= STRANDS.level_reach for a in away)]
 
     @cached_property
     def _places(self):
@@ -132,19 +113,10 @@ class LinkedLine:
 
 
 def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[Columns, np.ndarray]:
-    """The points that may belong to a painted line.
+    """The points that may belong to a painted line, and the class of each as an index into LINE_KINDS, or their number for a mixed marking.
 
     Those of markings of use keep; of other long markings (a line that touches a stop line or a hatched area is clustered with it) those places
-    where the marking is no wider across than a double line.
-
-    Parameters
-    ----------
-    records : N points of one road with `cluster`
-    road : number
-
-    Returns
-    -------
-    records, and the class of each as an index into LINES, or len(LINES) for a mixed marking
+    where the marking is no wider across than a double line. `records` : points of one road with `cluster`.
     """
     here = np.flatnonzero(markings.road == road)
     if not len(here) or not len(records):
@@ -155,7 +127,7 @@ def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[C
     ranks = np.full(len(known), len(LINE_KINDS), np.int8)
     for k, name in enumerate(LINE_KINDS):
         ranks[markings.keep[here] & (markings.kind[here] == name)] = k
-    mixed_ones = (ranks == len(LINE_KINDS)) & (markings.length[here] > MIN_MIXED_MARKING)
+    mixed_ones = (ranks == len(LINE_KINDS)) & (markings.length[here] > STRANDS.min_mixed_marking)
     number = records["cluster"]
     place = np.clip(np.searchsorted(known, number), 0, len(known) - 1)
     listed, rank = known[place] == number, ranks[place]
@@ -171,12 +143,12 @@ def _narrow_there(records, number, mixed):
     result = np.zeros(len(records), bool)
     if not len(rows):
         return result
-    bins = records["s"][rows] // RUN_BIN_UNITS
+    bins = records["s"][rows] // STRANDS.run_bin_units
     order = order_by(bins, number[rows])
     rows, bins = rows[order], bins[order]
     starts = np.flatnonzero(np.r_[True, (np.diff(bins) != 0) | (np.diff(number[rows]) != 0)])
     across = records["d"][rows].astype(np.int64)
-    narrow = np.maximum.reduceat(across, starts) - np.minimum.reduceat(across, starts) <= MAX_MIXED_WIDTH_UNITS
+    narrow = np.maximum.reduceat(across, starts) - np.minimum.reduceat(across, starts) <= STRANDS.max_mixed_width_units
     owner, at = number[rows][starts], bins[starts]
     # the tip of a hatched area is narrow too: keep a metre away from what is wide
     beside = np.zeros(len(starts), bool)
@@ -189,23 +161,13 @@ def _narrow_there(records, number, mixed):
 
 
 def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
-    """Strands of painted line among the points of one road.
-
-    Parameters
-    ----------
-    records : N points
-    rank : (N,) class of each point as `line_paint` gives it
-
-    Returns
-    -------
-    list of Strand, by station
-    """
+    """Strands of painted line among the N points of one road, by station; `rank` : (N,) class of each as `line_paint` gives it."""
     if not len(records):
         return []
-    across, bins = records["d"], records["s"] // RUN_BIN_UNITS
+    across, bins = records["d"], records["s"] // STRANDS.run_bin_units
     order = order_by(across, bins)
     run = _runs(bins[order], across[order])
-    run = np.where((np.bincount(run) >= MIN_POINTS_PER_RUN)[run], run, np.int32(-1))   # runs of too few points are none
+    run = np.where((np.bincount(run) >= STRANDS.min_points_per_run)[run], run, np.int32(-1))   # runs of too few points are none
     inside = np.flatnonzero(run >= 0)
     check_cancelled()
     if not len(inside):
@@ -214,13 +176,13 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     del inside
     starts = np.flatnonzero(np.append(True, run[1:] != run[:-1]))
     node_d, width = _middle_and_width(across[order], starts)
-    label = _chains(bins[order[starts]], node_d, width <= MAX_LINE_WIDTH_UNITS)
+    label = _chains(bins[order[starts]], node_d, width <= STRANDS.max_line_width_units)
     check_cancelled()
     of_point = np.repeat(label, np.diff(np.append(starts, len(run))))
     del run
     used = np.flatnonzero(of_point >= 0)
     order, of_point = order[used], of_point[used]
-    place = records["s"][order] // PLACE_STEP_UNITS
+    place = records["s"][order] // STRANDS.place_step_units
     # within a place points keep their order, which is across
     by_place = order_by(place, of_point)
     order, of_point, place = order[by_place], of_point[by_place], place[by_place]
@@ -230,13 +192,13 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
 
 def _runs(bins, across):
     """(N,) int32, number of the run of paint each point belongs to; points sorted by bin, then across."""
-    cut = np.r_[True, (np.diff(bins) != 0) | (np.diff(across) > RUN_GAP_UNITS)]
+    cut = np.r_[True, (np.diff(bins) != 0) | (np.diff(across) > STRANDS.run_gap_units)]
     starts = np.flatnonzero(cut)
     for _ in range(8):
         if len(starts) < 2:
             break
         last = np.r_[starts[1:], len(bins)] - 1
-        joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= MAX_WORN_LINE_WIDTH_UNITS)
+        joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= STRANDS.max_worn_line_width_units)
         # one join at a time per neighbourhood: the first of a row of joins
         joins &= ~np.r_[False, joins[:-1]]
         if not joins.any():
@@ -256,7 +218,7 @@ def _part_hazy_doubles(bins, across, starts):
     for k in wide:
         check_cancelled()
         values = across[starts[k]:last[k] + 1]
-        if len(values) < 4 * MIN_POINTS_PER_RUN:
+        if len(values) < 4 * STRANDS.min_points_per_run:
             continue
         low, high = values[len(values) // 20], values[-1 - len(values) // 20]
         third = (high - low) / 3
@@ -282,15 +244,15 @@ def _chains(node_bin, node_d, good):
     count = len(node_bin)
     follows = np.full(count, -1)
     preceded = np.zeros(count, bool)
-    span = float(np.ptp(node_d)) + 10 * RUN_BIN_UNITS
-    for leap in range(1, MAX_BIN_STEP + 1):
+    span = float(np.ptp(node_d)) + 10 * STRANDS.run_bin_units
+    for leap in range(1, STRANDS.max_bin_step + 1):
         check_cancelled()
         open_end = np.flatnonzero(good & (follows < 0))
         open_start = np.flatnonzero(good & ~preceded)
         if not len(open_end) or not len(open_start):
             break
         a, b = _mutual(node_bin, node_d, open_end, open_start, leap, span)
-        near = np.abs(node_d[a] - node_d[b]) <= LATERAL_STEP_UNITS + LATERAL_STEP_PER_BIN_UNITS * leap
+        near = np.abs(node_d[a] - node_d[b]) <= STRANDS.lateral_step_units + STRANDS.lateral_step_per_bin_units * leap
         follows[a[near]] = b[near]
         preceded[b[near]] = True
     linked = np.flatnonzero(follows >= 0)
@@ -309,7 +271,7 @@ def _mutual(node_bin, node_d, ends, starts, leap, span):
             away = np.abs(key_b[order][j] - key_a)
             closer = away < gap
             best[closer], gap[closer] = order[j][closer], away[closer]
-        best[gap > 4 * LATERAL_STEP_UNITS] = -1
+        best[gap > 4 * STRANDS.lateral_step_units] = -1
         return best
 
     there, back = nearest(ends, starts, leap), nearest(starts, ends, -leap)
@@ -326,7 +288,7 @@ def _strands(place, columns, label):
         check_cancelled()
         strand = _strand(place[a:b], *(column[a:b] for column in columns))
         mixed = strand.classes.get("mixed", 0.0) > 0.5 * strand.length
-        if strand.length >= (MIN_MIXED_STRAND if mixed else MIN_STRAND_LENGTH):
+        if strand.length >= (STRANDS.min_mixed_strand if mixed else STRANDS.min_strand_length):
             found.append(strand)
     return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
 
@@ -353,18 +315,12 @@ def _strand(place, rank, along, across, height):
 
 # The edges of the road beside painted lines: an edge line keeps its distance from the edge, also where the road widens.
 
-LINE_TO_EDGE = 4.0   # m between a line and the edge that it runs along: the widest paved shoulders are 12 ft (AASHTO, Green Book, 4.4.2)
-LOOKUP_STRETCH = 50.0   # m of road whose edges are listed together
-LEVEL_REACH = 3.0    # m of a line at either side of a gap that say how far it lies from the edge
+LINE_TO_EDGE = 4.0   # source: m between a line and the edge that it runs along: the widest paved shoulders are 12 ft (AASHTO, Green Book, 4.4.2)
+LOOKUP_STRETCH = 50.0   # derived: m of road whose edges are listed together
 
 
 class EdgesBeside:
-    """The edges along one road.
-
-    Parameters
-    ----------
-    sections : CrossSections of edges
-    """
+    """The edges along one road, of CrossSections."""
 
     def __init__(self, sections: list[CrossSections]) -> None:
         self._by_stretch: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
@@ -403,27 +359,19 @@ def edges_beside(edges: RoadEdges | None, roads: list[int]) -> dict[int, EdgesBe
 
 # Lines that few tracks of the scan met: each track shows such a line at one place of its width.
 
-FEW_TRACKS = 0.20           # m across the road between tracks of the scan: of a line, which is 0.10 to 0.30 m broad, one or two meet it
-LONGEST_HOLE_UNITS = MAX_BIN_STEP * RUN_BIN_UNITS   # of wear in one strand
+LONGEST_HOLE_UNITS = STRANDS.max_bin_step * STRANDS.run_bin_units   # derived: of wear in one strand
 
 
 def painted_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
-    """Strands of painted line: traced place by place where points lie close together, else along the middle line of their marking.
+    """Strands of painted line, by station: traced place by place where points lie close together, else along the middle line of their marking.
 
-    Parameters
-    ----------
-    records : N points with `cluster` and `spacing`
-    rank : (N,) class of each point as `line_paint` gives it
-
-    Returns
-    -------
-    list of Strand, by station
+    `records` : N points with `cluster` and `spacing`; `rank` : (N,) class of each as `line_paint` gives it.
     """
     if not len(records):
         return []
     of = records["cluster"]
     # most points of the marking, which is a line
-    apart = (records["spacing"] >= FEW_TRACKS * 1e3) & (rank < len(LINE_KINDS))
+    apart = (records["spacing"] >= STRANDS.few_tracks * 1e3) & (rank < len(LINE_KINDS))
     sparse = (2 * np.bincount(of[apart], minlength=int(of.max()) + 1) > np.bincount(of))[of]
     few = np.flatnonzero(sparse)
     check_cancelled()
@@ -434,7 +382,7 @@ def painted_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     bounds = np.append(np.flatnonzero(new), len(few))
     columns = [records[name][few] for name in ("s", "d", "z", "spacing")]
     for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
-        if (along[b - 1] - along[a]) * COORDINATE_SCALE >= MIN_STRAND_LENGTH:
+        if (along[b - 1] - along[a]) * COORDINATE_SCALE >= STRANDS.min_strand_length:
             s, d, z, spacing = (values[a:b] for values in columns)
             found.append(_strand_of_marking(s, d, z, spacing, LINE_KINDS[int(rank[few[a]])]))
     return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
@@ -447,7 +395,7 @@ def _strand_of_marking(along, across, height, spacing, kind):
         # too short to be followed: straight
         nodes = along[[0, -1]]
         offsets = np.polyval(np.polyfit(along - along[0], across, 1), nodes - along[0])
-    starts = np.flatnonzero(np.r_[True, np.diff(along // PLACE_STEP_UNITS) != 0])
+    starts = np.flatnonzero(np.r_[True, np.diff(along // STRANDS.place_step_units) != 0])
     count = np.diff(np.append(starts, len(along)))
     s, z = (np.add.reduceat(values, starts, dtype=np.int64) / count for values in (along, height))
     low, high = percentiles((across - np.interp(along, nodes, offsets)) * COORDINATE_SCALE, (2.5, 97.5))

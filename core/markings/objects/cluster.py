@@ -22,17 +22,15 @@ from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.store.road_points import RoadPoints
 from ..road_grid import CELL_UNITS, occupied, track_reach
-from .classify import LINE_KINDS, MIN_COVERED_SHARE, NOT_PAINT, RIM_CLEARANCE, ClassSettings, classify_markings, filled, relative_contrast, too_pale
+from ..weights import CLASSES, ROWS, SHAPES
+from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, filled, relative_contrast, too_pale
 from .figures import Candidate, figures_of_group, painted_figures
 from .grouping import RoadPaint, connected_points, told_by_one_road
 from .marking_objects import MarkingObjects, make_marking_objects
-from .repeating import BLOCK_SIZE, Comb, Crossing, Stripe, blocks_of_strip, comb_of_window, give_way_blocks, stripes_of_crossing, zebra_stripes
-from .shape import SMALL_MARKING_SIZE, Shape, drawn_outline, lifted, measure, smallest_rectangle
+from .repeating import Comb, Crossing, Stripe, blocks_of_strip, comb_of_window, give_way_blocks, stripes_of_crossing, zebra_stripes
+from .shape import Shape, drawn_outline, lifted, measure, smallest_rectangle
 from .split_merge import join_fragments, parts_of_compound, split_compounds
 
-MIN_FRAGMENT_POINTS = 1                       # points: the smallest worn rest that a line may be joined from
-ROW_OF_BLOCKS = 0.8, 20.0   # m along the road, where the inside of a bend is shorter than the line itself
-MAX_ROW_SLOPE = 0.5   # to the road: of a row more askew the blocks do not touch
 STRIP_KINDS = LINE_KINDS + ("stop",)  # drawn as even strips, the others cell by cell
 
 
@@ -41,8 +39,6 @@ class ClusterSettings:
     """How points join, and how small a marking may be.
 
     distance : m between points of one marking (twice as much along the road, half as much across it)
-    min_points : fewer are no marking
-    classes : when a cluster is a line
     """
 
     distance: float = setting(0.20, 0.02, 2.0, "The clustering distance", "m")
@@ -55,11 +51,10 @@ class ClusterSettings:
 
 def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: ClusterSettings = ClusterSettings(),
                      progress: Progress = Progress(), executor: Executor = THREADS) -> tuple[MarkingObjects, RoadPoints]:
-    """Group paint points into markings with class, size and outline.
+    """Group road points on paint into markings with class, size and outline.
 
     Parameters
     ----------
-    marking_points : RoadPoints on paint
     executor : who links points, looks for crossings, divides compound clusters and measures clusters
 
     Returns
@@ -112,18 +107,12 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
 
 
 class _Pieces(NamedTuple):
-    """Clusters of one road, before it is known what they are.
-
-    paint : the points of the road but for stripes of crossings
-    records, order : the points of the clusters, one cluster after the other, and their rows in the paint
-    bounds, shapes : first and end row of each cluster in the records, and its Shape
-    work : ApartWork of the road
-    """
+    """Clusters of one road, before it is known what they are."""
 
     paint: RoadPaint
-    records: Columns
+    records: Columns   # their points, one cluster after the other, and the rows of these in the paint of the road but for stripes of crossings
     order: np.ndarray
-    bounds: list[tuple[int, int]]
+    bounds: list[tuple[int, int]]   # first and end row of each cluster in the records, and its Shape
     shapes: list[Shape]
     work: ApartWork
 
@@ -132,7 +121,7 @@ def _pieces(paint, work, settings, progress):
     """_Pieces of one road: compound clusters divided, what wear has parted joined."""
     records = paint.records
     split = split_compounds(records, _with_rows_divided(records, paint.labels), partial(work.parts, progress=progress.part(0.0, 0.3)))
-    order, starts, _ = _by_cluster(split, MIN_FRAGMENT_POINTS)
+    order, starts, _ = _by_cluster(split, 1)
     records = records.take(order)
     pieces = work.shapes(records, starts, progress.part(0.3, 0.9))
     joins = join_fragments(pieces, settings.classes.max_width)
@@ -148,7 +137,7 @@ def _pieces(paint, work, settings, progress):
 def _blocks_of_all(found):
     """Of each road (N,) bool, which clusters are blocks of give-way lines: a row of them may lie on several roads, and askew to them."""
     shapes = [shape for pieces in found for shape in pieces.shapes]
-    rectangles = [_rectangle(records, bounds) if max(shape.sides) <= SMALL_MARKING_SIZE else (0.0, 0.0, 0.0, 0.0)
+    rectangles = [_rectangle(records, bounds) if max(shape.sides) <= SHAPES.small_marking_size else (0.0, 0.0, 0.0, 0.0)
                   for pieces in found for records in [pieces.records.unread()] for bounds, shape in zip(pieces.bounds, pieces.shapes)]
     sides, middles = np.split(np.array(rectangles).reshape(-1, 4), 2, axis=1)
     blocks = give_way_blocks(filled(shapes), sides, middles)
@@ -172,8 +161,8 @@ def _with_rows_divided(records, labels):
     along, across = ((np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts)) * COORDINATE_SCALE
                      for values in (records[name].take(order) for name in "sd"))
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
-    for k in np.flatnonzero((along >= ROW_OF_BLOCKS[0]) & (along <= ROW_OF_BLOCKS[1]) & (across >= BLOCK_SIZE[0])
-                            & (across <= BLOCK_SIZE[1] + MAX_ROW_SLOPE * along)).tolist():
+    for k in np.flatnonzero((along >= ROWS.row_of_blocks[0]) & (along <= ROWS.row_of_blocks[1]) & (across >= ROWS.block_size[0])
+                            & (across <= ROWS.block_size[1] + ROWS.max_row_slope * along)).tolist():
         own = order[starts[k]:starts[k + 1] if k + 1 < len(starts) else None]
         cells, member = occupied(*(records[name].take(own) // CELL_UNITS for name in "xy"))
         if (blocks := blocks_of_strip(cells)) is not None:
@@ -189,8 +178,8 @@ def _markings(pieces, blocks, settings, has_corrected, progress):
     half_widths = [median(half_width[a:b].astype(float)) * 1e-3 for a, b in bounds]
     covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in bounds]
     kinds = classify_markings(shapes, half_widths, settings.classes, covered, blocks)
-    clear = np.array(half_widths) - np.abs([shape.offset for shape in shapes]) > RIM_CLEARANCE
-    possible = clear & (np.array(covered) <= MIN_COVERED_SHARE)
+    clear = np.array(half_widths) - np.abs([shape.offset for shape in shapes]) > CLASSES.rim_clearance
+    possible = clear & (np.array(covered) <= CLASSES.min_covered_share)
     if has_corrected:
         bright = relative_contrast(Points(records).value, records["s"], np.array([0, *(b for _, b in bounds)]))
         pale = [too_pale(share, kind) for share, (kind, _) in zip(bright.tolist(), kinds)]
@@ -338,8 +327,8 @@ def _scanning_distance(records, line, frame):
 
 # The phases: what is computed of some clusters or windows apart from all others; their items hold the columns that they need.
 
-TASK_POINTS = 20_000   # of paint, that a worker process is given together at least: about a tenth of a second of its time
-PHASE_POINTS = 500_000   # of paint, whose columns are held for tasks at a time
+TASK_POINTS = 20_000   # derived: of paint, that a worker process is given together at least: about a tenth of a second of its time
+PHASE_POINTS = 500_000   # derived: of paint, whose columns are held for tasks at a time
 
 
 def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> list[tuple[Any, ...] | None]:
@@ -356,9 +345,7 @@ def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> l
 def _zebra_stripes(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, list[tuple[Any, ...]]]) -> list[list[tuple[Any, ...]]]:
     """The phase that finds the stripes of crossings.
 
-    Parameters
-    ----------
-    item : (N, 2) m spots about crossings one after the other, (N,) radians of the road there, the bounds of the crossings, and the Comb of each
+    `item` : (N, 2) m spots about crossings one after the other, (N,) radians of the road there, the bounds of the crossings, and the Comb of each.
     """
     places, way, bounds, combs = item
     found = []
@@ -381,15 +368,8 @@ def shapes_of_clusters(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.
 def outlines_of_markings(source: NoSource, item: tuple[Any, ...], road: Road) -> tuple[np.ndarray, ...]:
     """The phase that draws markings.
 
-    Parameters
-    ----------
-    item : s, d, x, y, z (0.1 mm), spacing (mm) of the points, the bounds of the markings, and the Shape and whether it is a strip of each
-
-    Returns
-    -------
-    vertices : (V, 3) local m
-    ring_start, polygon_start : (R + 1,), (P + 1,) first vertex of each ring and first ring of each polygon
-    count : (M,) polygons of each marking
+    `item` : s, d, x, y, z (0.1 mm), spacing (mm) of the points, the bounds of the markings, and the Shape and whether it is a strip of each. Returns
+    (V, 3) local m, first vertex of each ring, first ring of each polygon, each with the end, and the number of polygons of each marking.
     """
     *columns, looks = item
     drawn = [drawn_outline(own, shape, strip, road) for own, (shape, strip) in zip(_clusters(columns), looks)]
@@ -407,11 +387,7 @@ def _clusters(item):
 
 @dataclass(frozen=True)
 class ApartWork:
-    """The phases for the clusters of one road.
-
-    executor : Executor
-    road : its number
-    """
+    """The phases for the clusters of one road, by its number."""
 
     executor: Executor
     road: int

@@ -19,18 +19,12 @@ from ...countries.painted_symbols import SYMBOLS, PaintedSymbol
 from ...execution.phase import NoSource
 from ...lazy import cv2
 from ..road_grid import CELL_SIZE, fill_gaps, filled_between_tracks
+from ..weights import FIGURES
 from .classify import NOT_PAINT
 from .shape import Shape
 
 FIGURE_PARTS = NOT_PAINT, "symbol", "arrow", "hatch"   # classes that pieces of a figure may have; a small wheel looks like a cover
-FIGURE_SIZE = 0.6, 5.0      # m along and across of a figure
-SCAN_GAP = 4                # cells along the road between scan lines that are closed; the strokes of a figure lie farther apart
-LETTER_GAP = 0.45           # m between parts of one figure at most
-MOST_PARTS = 12             # of a figure
-GROUPS_AT_ONCE = 200        # groups of markings whose cells are in memory together
-THICK_CELLS = 9            # cells: strokes of figures are thinner than this, 0.36 m, in one direction at least
-MOST_THICK = 0.4            # of the paint may be thicker: bars of words that are 4 m long
-LEAST_AGREEMENT = {"bicycle": (0.68, 0.64), "bus": (0.72, 0.66)}   # of the whole figure, and of the third that agrees least
+GROUPS_AT_ONCE = 200   # derived: groups of markings whose cells are in memory together
 
 
 class _RecognisedFigure(NamedTuple):
@@ -46,19 +40,14 @@ Candidate = tuple[tuple[int, ...], np.ndarray, np.ndarray]   # markings that may
 def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.ndarray,
                     cells_of: Callable[[tuple[int, ...]], tuple[np.ndarray, np.ndarray]],
                     look: Callable[[list[list[Candidate]], float, float], Iterable[list[tuple[int, str]]]]) -> list[_RecognisedFigure]:
-    """Bicycles and words among the markings of one road.
+    """Bicycles and words among the N markings of one road; no marking is in two of them.
 
     Parameters
     ----------
-    shapes : N Shape
     kinds : N classes, "" for what was taken for no paint
     possible : (N,) bool, whether a marking lies where paint can be
     cells_of : gives the (K, 2) int cells of some markings together, different ones, and the (K,) m of `track_reach` there
     look : gives what `figures_of_group` finds in each of some groups, which are all groups from one fraction to another
-
-    Returns
-    -------
-    list of _RecognisedFigure, no marking in two of them
     """
     parts = np.flatnonzero(possible & np.isin(np.array(kinds, object), FIGURE_PARTS))
     found: list[_RecognisedFigure] = []
@@ -86,9 +75,9 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
     """Of each group of markings that lie together those that may be a figure: all, those of them that were taken for paint, and each alone."""
     box = np.array([(shape.s0, shape.s1, shape.d0, shape.d1) for shape in shapes]).reshape(-1, 4)[parts]
     links = [np.empty((0, 2), np.int64)]
-    for a, b in overlapping_pairs(box[:, 0], box[:, 1], box[:, 0], box[:, 1], LETTER_GAP):
+    for a, b in overlapping_pairs(box[:, 0], box[:, 1], box[:, 0], box[:, 1], FIGURES.letter_gap):
         across = np.maximum(box[a, 2], box[b, 2]) - np.minimum(box[a, 3], box[b, 3])
-        links.append(np.column_stack([a, b])[across <= LETTER_GAP])
+        links.append(np.column_stack([a, b])[across <= FIGURES.letter_gap])
     pairs = np.concatenate(links)
     group = linked_groups(pairs[:, 0], pairs[:, 1], len(parts))
     for _, together in members_of(group):
@@ -96,11 +85,11 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
         tried, large = set(), []
         for some in (together, painted, *(one[None] for one in together)):
             members = tuple(parts[some].tolist())
-            if members in tried or not 0 < len(some) <= MOST_PARTS:
+            if members in tried or not 0 < len(some) <= FIGURES.most_parts:
                 continue
             tried.add(members)
             size = box[some][:, [1, 3]].max(axis=0) - box[some][:, [0, 2]].min(axis=0)
-            if size.min() >= FIGURE_SIZE[0] and size.max() <= FIGURE_SIZE[1]:
+            if size.min() >= FIGURES.figure_size[0] and size.max() <= FIGURES.figure_size[1]:
                 large.append(members)
         if large:
             yield large
@@ -109,14 +98,15 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
 def _figure(cells, reach):
     """The class of the figure that cells show, "" where none clearly."""
     mask, first = filled_between_tracks(cells, reach)
-    mask = fill_gaps(mask, SCAN_GAP, 0)
-    thick = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (THICK_CELLS, THICK_CELLS)))
-    if thick.sum() > MOST_THICK * mask.sum():
+    mask = fill_gaps(mask, FIGURES.scan_gap, 0)
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (FIGURES.thick_cells, FIGURES.thick_cells))
+    thick = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, disc)
+    if thick.sum() > FIGURES.most_thick * mask.sum():
         return ""
     image = _PaintImage.of(mask, first * CELL_SIZE, CELL_SIZE)
     best, kind = 0.0, ""
     for symbol in SYMBOLS:
-        found, (whole, third) = agreement(image, symbol), LEAST_AGREEMENT[symbol.kind]
+        found, (whole, third) = agreement(image, symbol), getattr(FIGURES, f"least_of_{symbol.kind}")
         if found is not None and found.whole >= whole and found.worst_third >= third and found.whole > best:
             best, kind = found.whole, symbol.kind
     return kind
@@ -125,58 +115,31 @@ def _figure(cells, reach):
 # How well painted cells agree with a drawn figure: two images, of which the paint is turned, moved and scaled to cover the figure. They are
 # compared by their correlation, bare road within the figure included, and each third by itself, so that another letter or one wheel is noticed.
 
-PAINT_BLUR = 0.8           # cells
-RIM = 4                    # cells about the paint
-FIGURE_HEIGHT = 48         # px of a figure
-FIGURE_MARGIN = 8          # px of bare road about it that is compared, too
-FIGURE_BLUR = 2.0          # px, so that strokes need not lie exactly on each other
-TURNS = np.radians(np.arange(0.0, 360.0, 10.0))   # that are tried
-CLOSEST = 3                # of them are looked at closely
-LEAST_AT_FIRST = 0.20      # correlation of a first pose that is worth a closer look: a figure with a part missing may begin so low
-STEPS = 0.10, 0.05, 0.025  # of the size that it is moved and stretched by, and the same in radians that it is turned by, coarse to fine
+TURNS = np.radians(np.arange(0.0, 360.0, 10.0))   # derived: that are tried
 
 
 class _PaintImage(NamedTuple):
-    """Paint of one marking or several.
+    """Paint of one marking or several."""
 
-    image : (A, B) float32, painted cells blurred, first axis along the road and second across it
-    corner : (2,) m, station and offset of its corner
-    size : m, of a cell
-    places : (N, 2) m, the middles of the painted cells
-    spread_right, spread_up : (T,) m, standard deviation of these along the axes of a figure turned by each of TURNS
-    total_square : sum of the squares of the image
-    """
-
-    image: np.ndarray
-    corner: np.ndarray
-    size: float
-    places: np.ndarray
-    spread_right: np.ndarray
+    image: np.ndarray   # (A, B) float32, painted cells blurred, first axis along the road and second across it
+    corner: np.ndarray   # (2,) m, station and offset of its corner
+    size: float   # m, of a cell
+    places: np.ndarray   # (N, 2) m, the middles of the painted cells
+    spread_right: np.ndarray   # (T,) m, standard deviation of these along the axes of a figure turned by each of TURNS
     spread_up: np.ndarray
-    total_square: float
+    total_square: float   # sum of the squares of the image
 
     @classmethod
     def of(cls, mask: np.ndarray, corner: np.ndarray, size: float) -> _PaintImage:
-        """The image of painted cells.
-
-        Parameters
-        ----------
-        mask : (A, B) bool, first axis along the road, second across it
-        corner : (2,) m, station and offset where it begins
-        size : m, of a cell
-        """
-        image = cv2.GaussianBlur(np.pad(mask, RIM).astype(np.float32), (0, 0), PAINT_BLUR)
+        """The image of painted cells, (A, B) bool with cells of `size` m, from station and offset `corner` on."""
+        image = cv2.GaussianBlur(np.pad(mask, FIGURES.rim).astype(np.float32), (0, 0), FIGURES.paint_blur)
         places = (np.argwhere(mask) + 0.5) * size + corner
         right, up = ((places @ way).std(axis=0) for way in _axes(TURNS))
-        return cls(image, corner - RIM * size, size, places, right, up, float((image * image).sum()))
+        return cls(image, corner - FIGURES.rim * size, size, places, right, up, float((image * image).sum()))
 
 
 class _Pose(NamedTuple):
-    """Where a figure lies.
-
-    turn : radians from the first axis of the paint to the way to the right of the figure
-    x, y : m, its middle; width, height : m, of one unit of the figure
-    """
+    """Where a figure lies: radians from the first axis of the paint to its right, its middle, m, and width and height of a unit of it, m."""
 
     turn: float
     x: float
@@ -194,18 +157,12 @@ class Agreement(NamedTuple):
 
 
 class _Figure(NamedTuple):
-    """A figure as an image.
+    """A figure as an image."""
 
-    image : (rows, columns) float32, blurred, of mean 0 and length 1; the first row is its top
-    spread : (2,) standard deviation of its paint, right and up, units of its height
-    middle : (2,) mean place of its paint, right and up
-    size : (2,) width and height, units of its height
-    """
-
-    image: np.ndarray
-    spread: np.ndarray
+    image: np.ndarray   # (rows, columns) float32, blurred, of mean 0 and length 1; the first row is its top
+    spread: np.ndarray   # (2,) standard deviation and mean place of its paint, right and up
     middle: np.ndarray
-    size: np.ndarray
+    size: np.ndarray   # (2,) width and height; units of its height
 
 
 @cache
@@ -219,18 +176,18 @@ def _drawn(symbol, hand):
     low = np.min([stroke.min(axis=0) for stroke in strokes], axis=0) - symbol.stroke_width / 2
     high = np.max([stroke.max(axis=0) for stroke in strokes], axis=0) + symbol.stroke_width / 2
     size = high - low
-    scale = FIGURE_HEIGHT / size[1]
-    columns, rows = (np.ceil(size * scale).astype(int) + 2 * FIGURE_MARGIN).tolist()
+    scale = FIGURES.figure_height / size[1]
+    columns, rows = (np.ceil(size * scale).astype(int) + 2 * FIGURES.figure_margin).tolist()
     image = np.zeros((rows, columns), np.uint8)
     for stroke in strokes:
         places = (stroke - low) * scale
-        places = np.column_stack([places[:, 0] + FIGURE_MARGIN, FIGURE_HEIGHT + FIGURE_MARGIN - places[:, 1]])
+        places = np.column_stack([places[:, 0] + FIGURES.figure_margin, FIGURES.figure_height + FIGURES.figure_margin - places[:, 1]])
         # OpenCV has the middle of the first pixel at 0, and takes places in sixteenths
         thickness = max(int(round(symbol.stroke_width * scale)), 1)
         cv2.polylines(image, [np.rint(16 * (places - 0.5)).astype(np.int32)], False, 1, thickness, cv2.LINE_8, 4)
     row, column = np.nonzero(image)
-    paint = np.stack([column + 0.5 - FIGURE_MARGIN, FIGURE_HEIGHT + FIGURE_MARGIN - row - 0.5]) / scale
-    return _Figure(_normed(cv2.GaussianBlur(image.astype(np.float32), (0, 0), FIGURE_BLUR)), paint.std(axis=1), paint.mean(axis=1), size)
+    paint = np.stack([column + 0.5 - FIGURES.figure_margin, FIGURES.figure_height + FIGURES.figure_margin - row - 0.5]) / scale
+    return _Figure(_normed(cv2.GaussianBlur(image.astype(np.float32), (0, 0), FIGURES.figure_blur)), paint.std(axis=1), paint.mean(axis=1), size)
 
 
 def _normed(image):
@@ -245,8 +202,8 @@ def agreement(cells: _PaintImage, symbol: PaintedSymbol) -> Agreement | None:
         poses = _allowed(_poses(cells, figure), figure, symbol)
         correlations = _correlations(cells, figure, poses)
         # of equal ones the last
-        for k in np.lexsort((np.arange(len(poses)), correlations))[::-1][:CLOSEST].tolist():
-            if correlations[k] < LEAST_AT_FIRST:
+        for k in np.lexsort((np.arange(len(poses)), correlations))[::-1][:FIGURES.closest].tolist():
+            if correlations[k] < FIGURES.least_at_first:
                 break
             found = _closer(cells, figure, symbol, correlations[k], poses[k])
             if best is None or found[0] > best[0]:
@@ -287,7 +244,7 @@ def _seen(cells, figure, poses):
     """(P, rows, columns) float32, the paint as it lies on the pixels of the figure."""
     turn, x, y, width, height = poses.T
     right, up = _axes(turn)
-    unit = figure.size[1] / FIGURE_HEIGHT
+    unit = figure.size[1] / FIGURES.figure_height
     across, down = right * width * unit, -up * height * unit
     rows, columns = figure.image.shape
     corner = np.stack([x, y]) - across * (columns - 1) / 2 - down * (rows - 1) / 2
@@ -302,7 +259,7 @@ def _seen(cells, figure, poses):
 
 def _correlations(cells, figure, poses):
     """(P,) correlation of the figure with the paint in each pose."""
-    unit = figure.size[1] / FIGURE_HEIGHT
+    unit = figure.size[1] / FIGURES.figure_height
     seen = _seen(cells, figure, poses).reshape(len(poses), figure.image.size)
     total, square, both = (values.sum(axis=1).astype(float) for values in (seen, seen * seen, figure.image.ravel() * seen))
     # paint beyond the figure is none of it: it counts as well
@@ -312,7 +269,7 @@ def _correlations(cells, figure, poses):
 
 def _closer(cells, figure, symbol, correlation, pose):
     """The best correlation near a pose, and the pose there."""
-    for step in STEPS:
+    for step in FIGURES.steps:
         better = True
         while better:
             better = False

@@ -18,25 +18,25 @@ from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, join_columns, to_units
 from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..road_grid import CELL_UNITS, components, occupied, track_reach
+from ..weights import GROUPS
 
-LINKING_WINDOW_CELLS = 1250                   # cells of 4 cm: 50 m of station are linked at a time
+LINKING_WINDOW_CELLS = 1250   # derived: cells of 4 cm: 50 m of station are linked at a time
 LINKING_COLUMNS = ("s", "d", "spacing", "half_width")   # of a point, that linking looks at
-LINKED_POINTS = 50_000                        # of paint, that a worker process links together at least: about 50 ms of its time
-PHASE_POINTS = 500_000                        # of paint, whose columns are held for tasks at a time
+LINKED_POINTS = 50_000   # derived: of paint, that a worker process links together at least: about 50 ms of its time
+PHASE_POINTS = 500_000   # derived: of paint, whose columns are held for tasks at a time
 # of a point of paint that clustering looks at
 PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
-ROAD_EDGE_CLEARANCE = 0.10                    # m: strips so near to the road edge are taken for verge
-REACH_ALONG_FACTOR = 2.5                      # neighbours may be this times the distance apart along the road,
-REACH_ACROSS_DIVISOR = 2.0                    # and across it the distance over this, or the reach between tracks of the scan
 
 
 def connected_points(marking_points: RoadPoints, road: int, distance: float, progress: Progress = Progress(),
                      executor: Executor = THREADS) -> tuple[Columns, np.ndarray]:
     """Connected components of the points of one road.
 
+    Points of one 4 cm cell are one member, at their mean place: points of dense paint would otherwise have hundreds of neighbours each. Cells are
+    fixed in station, and windows are joined through the cells they share, so neither window nor section length shows in the result.
+
     Parameters
     ----------
-    marking_points : RoadPoints on paint
     distance : m, by which points of one marking are joined
     executor : who links the points of windows
 
@@ -44,11 +44,6 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     -------
     records : Columns PAINT_COLUMNS of the N points of the road, by station, which are read when they are asked for and not kept
     labels : (N,) int32 component of each; its numbering follows station
-
-    Notes
-    -----
-    Points of one 4 cm cell are one member, at their mean place: points of dense paint would otherwise have hundreds of neighbours each. Cells are
-    fixed in station, and windows are joined through the cells they share, so neither window nor section length shows in the result.
     """
     records = columns_of_roads(marking_points.store, [road], PAINT_COLUMNS)
     labels, links = [], []
@@ -88,7 +83,7 @@ def _linked_windows(marking_points, road, distance, progress, executor):
 
 def _points_to_link(marking_points, road, distance, number):
     """LINKING_COLUMNS of the points of a window and of those beyond its end that they may reach, and the cell along the road at which it ends."""
-    reach = int(np.ceil(distance * REACH_ALONG_FACTOR / (CELL_UNITS * COORDINATE_SCALE))) + 1
+    reach = int(np.ceil(distance * GROUPS.reach_along_factor / (CELL_UNITS * COORDINATE_SCALE))) + 1
     first, end = number * LINKING_WINDOW_CELLS, (number + 1) * LINKING_WINDOW_CELLS
     found = marking_points.window(road, *(row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, end + reach + 1))).records
     column = found["s"] // CELL_UNITS
@@ -97,17 +92,10 @@ def _points_to_link(marking_points, road, distance, number):
 
 
 def links_of_windows(source: NoSource, item: list[tuple[Any, ...]], distance: float) -> list[tuple[np.ndarray, ...]]:
-    """The phase that links the points of windows.
+    """The phase that links the points of windows, by `distance`, m.
 
-    Parameters
-    ----------
-    item : of each window LINKING_COLUMNS of its N points, one after the other, and the cell along the road at which it ends
-    distance : m, by which points of one marking are joined
-
-    Returns
-    -------
-    of each window (K, 2) int occupied cells, (K,) int their component, (K,) bool whether they lie beyond the end, and (M,) int the cell of
-    each point that does not
+    `item` : of each window LINKING_COLUMNS of its N points, one after the other, and the cell along the road at which it ends. Returns of each
+    (K, 2) int occupied cells, (K,) int their component, (K,) bool whether they lie beyond the end, and (M,) int the cell of each point that does not.
     """
     found: list[tuple[np.ndarray, ...]] = []
     for *columns, end in item:
@@ -122,14 +110,14 @@ def _components_of_points(records: Columns | Mapping[str, np.ndarray], distance:
     size = np.bincount(member, minlength=len(cells))
     # sums of integers are the same in any order
     s, d = (np.bincount(member, records[name], len(cells)) for name in ("s", "d"))
-    places = np.stack([s / size / REACH_ALONG_FACTOR, d / size * REACH_ACROSS_DIVISOR], axis=1) * COORDINATE_SCALE
-    size_of_cell = CELL_UNITS * COORDINATE_SCALE / REACH_ALONG_FACTOR, CELL_UNITS * COORDINATE_SCALE * REACH_ACROSS_DIVISOR
+    places = np.stack([s / size / GROUPS.reach_along_factor, d / size * GROUPS.reach_across_divisor], axis=1) * COORDINATE_SCALE
+    size_of_cell = CELL_UNITS * COORDINATE_SCALE / GROUPS.reach_along_factor, CELL_UNITS * COORDINATE_SCALE * GROUPS.reach_across_divisor
     found = components(cells, places, size_of_cell, distance)
     reach = np.zeros(len(cells))
     reach[member] = track_reach(records["spacing"])
     at_rim = np.zeros(len(cells), bool)
-    at_rim[member[records["half_width"] * 1e-3 - np.abs(records["d"]) * COORDINATE_SCALE < ROAD_EDGE_CLEARANCE]] = True
-    pairs = _across_tracks(places / [distance, REACH_ACROSS_DIVISOR], reach, at_rim)
+    at_rim[member[records["half_width"] * 1e-3 - np.abs(records["d"]) * COORDINATE_SCALE < GROUPS.road_edge_clearance]] = True
+    pairs = _across_tracks(places / [distance, GROUPS.reach_across_divisor], reach, at_rim)
     if len(pairs):
         found = linked_groups(found[pairs[:, 0]], found[pairs[:, 1]], int(found.max()) + 1)[found]
     return cells, member, found
@@ -138,9 +126,8 @@ def _components_of_points(records: Columns | Mapping[str, np.ndarray], distance:
 def _across_tracks(places, reach, at_rim):
     """(P, 2) cells on neighbouring tracks of the scan, where these lie farther apart than points that join anyway.
 
-    places : (K, 2) along the road in units of the reach there, across it in metres
-    reach : (K,) m across the road
-    at_rim : (K,) bool, at the very edge of the road, where it is the curb that is bright: the next track may show an edge line
+    `places` : (K, 2) along the road in units of the reach there, across it in m; `reach` : (K,) m across the road; `at_rim` : (K,) bool, at the very
+    edge of the road, where it is the curb that is bright: the next track may show an edge line.
     """
     rows = np.flatnonzero(reach)
     if not len(rows):
@@ -166,23 +153,13 @@ def _shared_labels(cells, labels, others, other_labels):
 # Figures on two roads: a block of a give-way line or an arrow is one figure, whichever road its points were given to, and is described in the frame
 # of the road that has most of them. Lines along a road stay with each of the roads, which fits them in its own frame.
 
-LARGEST_FIGURE = 8.0                # m, of an arrow: what is longer runs on along a road
-LINE_WIDTH, LINE_ELONGATION = 0.35, 4.0   # m, and length by width: a line or one of its dashes
-SPOT_UNITS = 1000                   # units of 0.1 mm: points are compared in squares of 10 cm,
-TOUCHING = 1.5                      # squares: and those that touch, at a corner too, are of one figure
-
 
 class RoadPaint(NamedTuple):
-    """Points of paint told in the frame of one road.
+    """Points of paint told in the frame of one road."""
 
-    records : N points
-    labels : (N,) int, the cluster of each
-    home : (N, 2) int32, whose the points are: the place of their road among all, and their row there
-    """
-
-    records: Columns
-    labels: np.ndarray
-    home: np.ndarray
+    records: Columns   # N points
+    labels: np.ndarray   # (N,) int, the cluster of each
+    home: np.ndarray   # (N, 2) int32, whose the points are: the place of their road among all, and their row there
 
 
 def told_by_one_road(found: Sequence[tuple[Columns, np.ndarray]], roads: Sequence[Road], distance: float) -> list[RoadPaint]:
@@ -230,7 +207,7 @@ def _shared_points(found):
     spots = np.concatenate([spots for spots, _ in parts])
     part = np.concatenate([number + first for (_, number), first in zip(parts, before)])
     road = np.repeat(np.arange(len(found)), [len(number) for _, number in parts])
-    pairs = cKDTree(spots).query_pairs(TOUCHING, output_type="ndarray").reshape(-1, 2) if len(spots) else np.empty((0, 2), np.int64)
+    pairs = cKDTree(spots).query_pairs(GROUPS.touching, output_type="ndarray").reshape(-1, 2) if len(spots) else np.empty((0, 2), np.int64)
     pairs = part[pairs[road[pairs[:, 0]] != road[pairs[:, 1]]]]
     group = linked_groups(pairs[:, 0], pairs[:, 1], int(before[-1]))
     members = np.unique(pairs)
@@ -252,17 +229,17 @@ def _compact_parts(records, order, begins):
     places = [records[name].take(order).astype(np.int64) for name in "xy"]
     size = np.max([np.maximum.reduceat(values, begins) - np.minimum.reduceat(values, begins) for values in places], axis=0)
     number = np.repeat(np.arange(len(begins)), np.diff(np.r_[begins, len(order)]))
-    small = np.flatnonzero(size[number] * COORDINATE_SCALE <= LARGEST_FIGURE)
-    different = np.unique(np.column_stack([number[small], *(values[small] // SPOT_UNITS for values in places)]), axis=0)
+    small = np.flatnonzero(size[number] * COORDINATE_SCALE <= GROUPS.largest_figure)
+    different = np.unique(np.column_stack([number[small], *(values[small] // GROUPS.spot_units for values in places)]), axis=0)
     return different[:, 1:], different[:, 0]
 
 
 def _is_figure(places):
     """Whether (N, 2) places, units of 0.1 mm, are no larger than a figure and no line."""
-    cells, _ = occupied(*(places // (SPOT_UNITS // 4)).T)
-    sides = np.add(cv2.minAreaRect(cells.astype(np.float32))[1], 1.0) * (SPOT_UNITS // 4) * COORDINATE_SCALE
+    cells, _ = occupied(*(places // (GROUPS.spot_units // 4)).T)
+    sides = np.add(cv2.minAreaRect(cells.astype(np.float32))[1], 1.0) * (GROUPS.spot_units // 4) * COORDINATE_SCALE
     length, width = max(sides), min(sides)
-    return length <= LARGEST_FIGURE and not (width <= LINE_WIDTH and length >= LINE_ELONGATION * width)
+    return length <= GROUPS.largest_figure and not (width <= GROUPS.line_width and length >= GROUPS.line_elongation * width)
 
 
 def _told_by(road, parts):

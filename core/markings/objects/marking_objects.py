@@ -17,18 +17,12 @@ from ...survey.frame.road_frame import RoadFrame
 
 @dataclass(frozen=True)
 class Outlines:
-    """Outlines of M markings: polygons, stored vertex by vertex.
+    """Outlines of M markings: polygons, stored vertex by vertex."""
 
-    vertices : (V, 3) local metres (map coordinates less the origin of the frame); z is NaN where there is none
-    ring_start : (R + 1,) int, first vertex of each ring, and V. Rings are closed
-    polygon_start : (P + 1,) int, first ring of each polygon, and R. The first ring is the outer one
-    marking_start : (M + 1,) int, first polygon of each marking, and P
-    """
-
-    vertices: np.ndarray
-    ring_start: np.ndarray
-    polygon_start: np.ndarray
-    marking_start: np.ndarray
+    vertices: np.ndarray   # (V, 3) local metres (map coordinates less the origin of the frame); z is NaN where there is none
+    ring_start: np.ndarray   # (R + 1,) int, first vertex of each ring, and V. Rings are closed
+    polygon_start: np.ndarray   # (P + 1,) int, first ring of each polygon, and R. The first ring is the outer one
+    marking_start: np.ndarray   # (M + 1,) int, first polygon of each marking, and P
 
     @classmethod
     def of(cls, polygons: Sequence[Any]) -> Outlines:
@@ -72,36 +66,25 @@ class Outlines:
 class MarkingObjects(LayerRows):
     """M markings in the road frame. A marking that wear or a shadow cut into parts has several elements of one `cluster`.
 
-    road : (M,) int, number of the road; -1 where unknown
-    cluster : (M,) int, number of the marking; -1 where unknown
-    kind : (M,) str objects, the class: edge, lane, centre, zebra, stop, hatch, ...
-    keep : (M,) bool, True for what may be part of a marking line (`use` is keep)
     station, offset : (M,) metres, where it begins and its median offset; NaN where unknown, like all numbers below
-    length, width : (M,) metres
-    elongation : (M,) length by width
-    scan_distance : (M,) metres across the road from the track that scanned it
-    points : (M,) float, number of paint points
-    extent : (M, 4) metres, first and last station, least and greatest offset of the outline; NaN off the road
-    outlines : Outlines of the M markings
-    crs : WKT, "" where unknown
     """
 
     GEOMETRY_TYPE, SCHEMA = "PolygonZ", MARKINGS
 
-    road: np.ndarray = field(metadata=column(unknown=-1))
-    cluster: np.ndarray = field(metadata=column(unknown=-1))
-    kind: np.ndarray = field(metadata=column("class", unknown=""))
-    keep: np.ndarray
+    road: np.ndarray = field(metadata=column(unknown=-1))   # (M,) int, number of the road; -1 where unknown
+    cluster: np.ndarray = field(metadata=column(unknown=-1))   # (M,) int, number of the marking; -1 where unknown
+    kind: np.ndarray = field(metadata=column("class", unknown=""))   # (M,) str objects, the class: edge, lane, centre, zebra, stop, hatch and more
+    keep: np.ndarray   # (M,) bool, True for what may be part of a marking line (`use` is keep)
     station: np.ndarray = field(metadata=column("station_m"))
     offset: np.ndarray = field(metadata=column("offset_m"))
-    length: np.ndarray = field(metadata=column("length_m"))
+    length: np.ndarray = field(metadata=column("length_m"))   # (M,) metres
     width: np.ndarray = field(metadata=column("width_m"))
-    elongation: np.ndarray = field(metadata=column())
-    scan_distance: np.ndarray = field(metadata=column("scan_m"))
-    points: np.ndarray = field(metadata=column(unknown=np.nan))
-    extent: np.ndarray
-    outlines: Outlines
-    crs: str = ""
+    elongation: np.ndarray = field(metadata=column())   # (M,) length by width
+    scan_distance: np.ndarray = field(metadata=column("scan_m"))   # (M,) metres across the road from the track that scanned it
+    points: np.ndarray = field(metadata=column(unknown=np.nan))   # (M,) float, number of paint points
+    extent: np.ndarray   # (M, 4) metres, first and last station, least and greatest offset of the outline; NaN off the road
+    outlines: Outlines   # Outlines of the M markings
+    crs: str = ""   # WKT, "" where unknown
 
     def with_kinds(self, kind: np.ndarray) -> MarkingObjects:
         """The same markings with other classes, (M,) str objects."""
@@ -124,13 +107,9 @@ class MarkingObjects(LayerRows):
 
 
 def make_marking_objects(rows: Sequence[dict[str, Any]], polygons: Sequence[Any], frame: RoadFrame, crs: str = "") -> MarkingObjects:
-    """MarkingObjects of rows with the fields of MARKINGS and of their outlines.
+    """MarkingObjects of M rows with the fields of MARKINGS, and of their outlines in local coordinates, polygons or None.
 
-    Parameters
-    ----------
-    rows : M dicts of field name to value; `road` -1, `cluster` -1, `class` "" and NaN stand for what is missing
-    polygons : M shapely polygons or multipolygons in local coordinates, None where there is none
-    crs : WKT
+    `road` -1, `cluster` -1, `class` "" and NaN stand for what is missing in a row.
     """
     columns, outlines = MarkingObjects.read_columns(rows), Outlines.of(polygons)
     keep = np.array([row.get("use") == "keep" for row in rows], bool)

@@ -18,55 +18,24 @@ from ...curves.robust import percentiles
 from ...lazy import cv2
 from ...survey.frame.placement import PlaceIndex
 from ..road_grid import CELL_SIZE
+from ..weights import ROWS, STRIPES
 from .shape import Shape
 
-STRIPE_WIDTH = (0.25, 0.80)  # m
-STRIPE_LENGTH = (1.5, 10.0)  # m
-MIN_STRIPES = 3
-COMB_WINDOW = 5.0               # m either way that a pitch is looked for in; windows overlap by half
-LEAST_SPOTS = 30           # cells of paint in a window
-MOST_SPOTS = 200           # looked at in a window; of more an even share
-LEAST_SPREAD = 0.4         # m, their standard deviation in the direction where it is least: three stripes spread by more
-COMB_PITCH = 0.5, 1.6           # m from stripe to stripe
-COMB_PITCH_STEP, COMB_HEADING_STEP = 0.05, np.radians(5.0)   # of the pitch, and of the direction, that are tried; then a tenth of both
-MIN_COMB_COHERENCE = 0.45       # length of the mean phase: 0.64 for stripes as broad as their gaps, 0 for spots anywhere
-MIN_SHARE_OF_STRIPE = 0.05  # of the spots of a crossing that a stripe has at least
-MIN_STRIPE_SPAN = 1.2      # m: letters and blocks are shorter
-MIN_SHARED_OF_STRIPES = 0.6           # of the longer of two stripes side by side that lies beside the other
-COMB_STEP_ALONG = 0.4           # m along the stripes that is taken together
-LEAST_PHASE = 0.3          # mean cosine of the phase where there are stripes: a stop line beside them has 0
-MIN_WIDTH_OF_PITCH, MAX_WIDTH_OF_PITCH = 0.3, 0.7   # of the pitch that a stripe is broad: lines with an arrow between them are narrower
-MIN_OF_WIDTH = 0.5         # of the width of all stripes that one of them has at least
-MIN_OF_USUAL = 0.2         # of the spots that a stripe usually has, and a step along all of them
-MIN_OF_NEIGHBOUR = 0.4     # of the spots of the next stripe that the last one has at least: it may be a curb
-SAME_HEADING, SAME_PITCH = np.radians(8.0), 0.08   # of neighbouring windows on one crossing
-REACH_OF_CROSSING = 2.5    # m about these windows that the crossing may go on: their other halves show fewer than three stripes
-ALONG_ROAD = np.radians(35.0)           # of stripes to the road: those of its own crossings
-MAX_ROW_SKEW, MAX_ROW_SKEW_ALONG = np.radians((15.0, 45.0))   # of stripes in any direction, and of those, to the square of their row
-MAX_ASIDE = 0.2            # of its width that the spots of a stripe lie on one side of its middle
-END_PERCENT = 2.0          # % of a stripe's spots beyond either end
-FRAYED = 0.12              # m beside a stripe, whose width and place are estimates, that spots are of it
-MAX_STRAY_END = 0.6        # m that spots may lie beyond the line of ends to be of a stripe, and that one which ends earlier is shorter
-ENDS_SEEN = 80.0           # % of the stripes that end on that line or before it: many end where a track of the scan last met their paint
-STEPS_OF_CROSSING = 1.0, 1.0, 0.5, 0.1   # of direction and pitch, tried one after the other when all stripes are known
-
-# What is tried
-COMB_BIN = 0.10                 # m across the stripes
-COMB_HEADINGS = np.arange(-np.pi / 2, np.pi / 2, COMB_HEADING_STEP)
-COMB_PITCHES = COMB_PITCH[0] * (1 + COMB_PITCH_STEP) ** np.arange(int(np.log(COMB_PITCH[1] / COMB_PITCH[0]) / np.log(1 + COMB_PITCH_STEP)) + 1)
+# derived: the directions and pitches of stripes that are tried, from the steps between them
+COMB_HEADINGS = np.arange(-np.pi / 2, np.pi / 2, STRIPES.comb_heading_step)
+COMB_PITCHES = STRIPES.comb_pitch[0] * (1 + STRIPES.comb_pitch_step) ** np.arange(
+    int(np.log(STRIPES.comb_pitch[1] / STRIPES.comb_pitch[0]) / np.log(1 + STRIPES.comb_pitch_step)) + 1)
 COMB_ACROSS = np.stack([-np.sin(COMB_HEADINGS), np.cos(COMB_HEADINGS)])
-PHASE_TOLERANCE = 1e-3     # of a mean phase: its error in single precision is a tenth of that
-MOST_PEAKS = 2             # of them, the clearest, that are looked at closely: a line beside a crossing may repeat more clearly than its stripes
-COMB_SHARES = np.linspace(-0.5, 0.5, 11)   # of a step of both, when it is looked at closely
-COMB_REACH = int(1.5 * COMB_WINDOW / COMB_BIN)   # bins, either way
-COMB_PHASES = np.exp(2j * np.pi * COMB_BIN * np.arange(-COMB_REACH, COMB_REACH + 1)[:, None] / COMB_PITCHES)
+PHASE_TOLERANCE = 1e-3   # derived: of a mean phase: its error in single precision is a tenth of that
+COMB_SHARES = np.linspace(-0.5, 0.5, 11)   # derived: of a step of both, when it is looked at closely
+COMB_REACH = int(1.5 * STRIPES.comb_window / STRIPES.comb_bin)   # derived: bins, either way
+COMB_PHASES = np.exp(2j * np.pi * STRIPES.comb_bin * np.arange(-COMB_REACH, COMB_REACH + 1)[:, None] / COMB_PITCHES)
 
 
 class Comb(NamedTuple):
-    """Stripes of one direction and pitch.
+    """Stripes of one direction and pitch, as clear as `coherence` from 0 to 1.
 
-    heading : radians from the first axis to theirs; pitch : m; phase : m, where the middle of one lies across them;
-    middle : (2,) m, the place that it is measured from; coherence : 0 to 1
+    `heading` : radians from the first axis to theirs; `phase` : m, where the middle of one lies across them, from the place `middle` on.
     """
 
     heading: float
@@ -97,10 +66,10 @@ def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Seque
     combs_of : what applies `comb_of_window` to the spots of windows, given their rows; by default one after the other
     stripes_of : what applies `stripes_of_crossing` to the spots of crossings; by default likewise
     """
-    if len(places) < LEAST_SPOTS:
+    if len(places) < STRIPES.least_spots:
         return []
-    spots = PlaceIndex(places, COMB_WINDOW / 2)
-    windows = spots.windows(LEAST_SPOTS)
+    spots = PlaceIndex(places, STRIPES.comb_window / 2)
+    windows = spots.windows(STRIPES.least_spots)
     known = combs_of(windows) if combs_of else [comb_of_window(places[own]) for own in windows]
     combs = [comb for comb in known if comb is not None]
     rows = [own for own, comb in zip(windows, known) if comb is not None]
@@ -129,7 +98,7 @@ def _about(spots, rows, heading):
     places = spots.places
     turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
     own = places[rows] @ turn
-    low, high = own.min(axis=0) - REACH_OF_CROSSING, own.max(axis=0) + REACH_OF_CROSSING
+    low, high = own.min(axis=0) - STRIPES.reach_of_crossing, own.max(axis=0) + STRIPES.reach_of_crossing
     corners = np.array([low, (low[0], high[1]), high, (high[0], low[1])]) @ turn.T
     near = spots.within(corners.min(axis=0) - 1.0, corners.max(axis=0) + 1.0)
     turned = places[near] @ turn
@@ -138,7 +107,7 @@ def _about(spots, rows, heading):
 
 def comb_of_window(spots: np.ndarray) -> Comb | None:
     """`find_comb` of the (N, 2) spots of a window that holds more than one line, which most do not."""
-    return find_comb(spots) if _least_spread(spots) >= LEAST_SPREAD else None
+    return find_comb(spots) if _least_spread(spots) >= STRIPES.least_spread else None
 
 
 def _least_spread(places):
@@ -155,32 +124,23 @@ def _mean_phase(across, pitches):
 
 
 def find_comb(places: np.ndarray) -> Comb | None:
-    """The direction and pitch in which spots repeat, as stripes side by side do.
-
-    Parameters
-    ----------
-    places : (N, 2) m
-
-    Returns
-    -------
-    Comb, or None where the spots are no three stripes side by side
-    """
+    """The direction and pitch in which spots, (N, 2) m, repeat as stripes side by side do; None where they are no three stripes side by side."""
     middle = places.mean(axis=0)
-    own = (places - middle)[::max(len(places) // MOST_SPOTS, 1)]
+    own = (places - middle)[::max(len(places) // STRIPES.most_spots, 1)]
     phase = _phases(own)
     length = np.abs(phase)
-    peaks = np.argwhere((length >= 0.8 * MIN_COMB_COHERENCE) & (length >= cv2.dilate(length, np.ones((3, 3), np.uint8))))
+    peaks = np.argwhere((length >= 0.8 * STRIPES.min_comb_coherence) & (length >= cv2.dilate(length, np.ones((3, 3), np.uint8))))
     # one line, and spots in a corner of the window, repeat at every pitch: stripes must lie side by side, each as long as one
-    for a, b in peaks[np.argsort(-length[tuple(peaks.T)], kind="stable")][:MOST_PEAKS].tolist():
+    for a, b in peaks[np.argsort(-length[tuple(peaks.T)], kind="stable")][:STRIPES.most_peaks].tolist():
         comb = _refined(own, middle, COMB_HEADINGS[a], COMB_PITCHES[b])
-        if comb.coherence >= MIN_COMB_COHERENCE and _has_stripes(own, comb):
+        if comb.coherence >= STRIPES.min_comb_coherence and _has_stripes(own, comb):
             return comb
     return None
 
 
 def _phases(own):
     """(H, P) complex, nearly the mean phase of spots for every direction and pitch that is tried: by bins across the stripes."""
-    number = np.floor(own @ COMB_ACROSS / COMB_BIN).astype(np.int64) + COMB_REACH
+    number = np.floor(own @ COMB_ACROSS / STRIPES.comb_bin).astype(np.int64) + COMB_REACH
     number = np.clip(number, 0, len(COMB_PHASES) - 1) + np.arange(len(COMB_HEADINGS)) * len(COMB_PHASES)
     counts = np.bincount(number.ravel(), minlength=len(COMB_HEADINGS) * len(COMB_PHASES)).reshape(len(COMB_HEADINGS), -1)
     # small: shared out to threads it takes longer
@@ -189,8 +149,8 @@ def _phases(own):
 
 def _refined(own, middle, heading, pitch, steps=1.0):
     """The clearest comb within some of the steps that are tried of a direction and a pitch."""
-    headings = heading + COMB_HEADING_STEP * steps * COMB_SHARES
-    pitches = pitch * (1 + COMB_PITCH_STEP * steps * COMB_SHARES)
+    headings = heading + STRIPES.comb_heading_step * steps * COMB_SHARES
+    pitches = pitch * (1 + STRIPES.comb_pitch_step * steps * COMB_SHARES)
     across = own @ np.array([-np.sin(headings), np.cos(headings)])
     clear = _clear(across, pitches)
     headings, pitches = headings[clear.any(axis=1)], pitches[clear.any(axis=0)]
@@ -218,23 +178,23 @@ def _has_stripes(own, comb):
     """Whether at least three stripes side by side are long enough, and as long as each other at the same place."""
     number, _, along = _numbered(own, comb)
     number -= number.min()
-    enough = np.bincount(number) >= MIN_SHARE_OF_STRIPE * len(own)
-    beside = np.convolve(enough, np.ones(MIN_STRIPES, int)) == MIN_STRIPES   # the last of so many side by side
+    enough = np.bincount(number) >= STRIPES.min_share_of_stripe * len(own)
+    beside = np.convolve(enough, np.ones(STRIPES.min_stripes, int)) == STRIPES.min_stripes   # the last of so many side by side
     if not beside.any():
         return False
     spans = {}
     for k in np.flatnonzero(enough).tolist():
-        first, last = percentiles(along[number == k], (END_PERCENT, 100 - END_PERCENT))
-        if last - first >= MIN_STRIPE_SPAN:
+        first, last = percentiles(along[number == k], (STRIPES.end_percent, 100 - STRIPES.end_percent))
+        if last - first >= STRIPES.min_stripe_span:
             spans[k] = first, last
     run = best = 0
     for k, (first, last) in spans.items():
         before = spans.get(k - 1)
         shared = before is not None \
-            and min(last, before[1]) - max(first, before[0]) >= MIN_SHARED_OF_STRIPES * max(last - first, before[1] - before[0])
+            and min(last, before[1]) - max(first, before[0]) >= STRIPES.min_shared_of_stripes * max(last - first, before[1] - before[0])
         run = run + 1 if shared else 1
         best = max(best, run)
-    return best >= MIN_STRIPES
+    return best >= STRIPES.min_stripes
 
 
 def _alike(combs):
@@ -242,28 +202,28 @@ def _alike(combs):
     if not combs:
         return []
     heading, pitch, middle = (np.array([getattr(comb, name) for comb in combs]) for name in ("heading", "pitch", "middle"))
-    a, b = cKDTree(middle).query_pairs(COMB_WINDOW, output_type="ndarray").reshape(-1, 2).T
+    a, b = cKDTree(middle).query_pairs(STRIPES.comb_window, output_type="ndarray").reshape(-1, 2).T
     turn = np.abs((heading[a] - heading[b] + np.pi / 2) % np.pi - np.pi / 2)
-    same = (turn <= SAME_HEADING) & (np.abs(pitch[a] - pitch[b]) <= SAME_PITCH * np.maximum(pitch[a], pitch[b]))
+    same = (turn <= STRIPES.same_heading) & (np.abs(pitch[a] - pitch[b]) <= STRIPES.same_pitch * np.maximum(pitch[a], pitch[b]))
     return [members.tolist() for _, members in members_of(linked_groups(a[same], b[same], len(combs)))]
 
 
 def stripes_of_crossing(places: np.ndarray, way: np.ndarray, comb: Comb) -> list[Stripe]:
     """The stripes of one crossing, from the (N, 2) spots about it, the (N,) direction of the road there, and a comb that it shows."""
-    if len(places) < LEAST_SPOTS:
+    if len(places) < STRIPES.least_spots:
         return []
     rows, middle = np.arange(len(places)), places.mean(axis=0)
     own = places - middle
-    best, some = comb, own[::max(len(own) // (8 * MOST_SPOTS), 1)]
+    best, some = comb, own[::max(len(own) // (8 * STRIPES.most_spots), 1)]
     # a window tells the pitch of three stripes less well than all of them do
-    for steps in STEPS_OF_CROSSING:
+    for steps in STRIPES.steps_of_crossing:
         best = _refined(some, middle, best.heading, best.pitch, steps)
-    if best.coherence < MIN_COMB_COHERENCE:
+    if best.coherence < STRIPES.min_comb_coherence:
         return []
     number, off, along = _numbered(own, best)
     striped = _striped(number, off / best.pitch, along)
     rows, own, number, off, along = (values[striped] for values in (rows, own, number, off, along))
-    if len(rows) < LEAST_SPOTS:
+    if len(rows) < STRIPES.least_spots:
         return []
     # spots of lines that end at the crossing turned the comb: its stripes alone tell their direction and pitch
     row = _row_of_stripes(number, off, along, best)
@@ -275,12 +235,12 @@ def stripes_of_crossing(places: np.ndarray, way: np.ndarray, comb: Comb) -> list
     if row is None:
         return []
     kept, width, ends = row.numbers, row.width, row.ends
-    if (lengths := np.median(ends[:, 1] - ends[:, 0])) > STRIPE_LENGTH[1] or lengths < MIN_STRIPE_SPAN:
+    if (lengths := np.median(ends[:, 1] - ends[:, 0])) > STRIPES.stripe_length[1] or lengths < STRIPES.min_stripe_span:
         return []
     # the ends of all stripes lie on a line
     lines = [_line_of_ends(np.array(kept), end, outward) for end, outward in zip(ends.T, (-1, 1))]
     turn = np.abs((best.heading - way[rows] + np.pi / 2) % np.pi - np.pi / 2)
-    skew = MAX_ROW_SKEW_ALONG if np.median(turn) <= ALONG_ROAD else MAX_ROW_SKEW
+    skew = STRIPES.max_row_skew_along if np.median(turn) <= STRIPES.along_road else STRIPES.max_row_skew
     if np.mean([abs(slope) for _, slope in lines]) > np.tan(skew) * best.pitch:
         return []
     ends = np.stack([line for line, _ in lines], axis=1)
@@ -289,7 +249,8 @@ def stripes_of_crossing(places: np.ndarray, way: np.ndarray, comb: Comb) -> list
     for k, (first, last) in zip(kept, ends):
         side = best.phase + k * best.pitch + np.array([-width / 2, width / 2])
         corners = np.array([(first, side[0]), (last, side[0]), (last, side[1]), (first, side[1])]) @ np.array([[c, n], [-n, c]]) + middle
-        inside = (np.abs(off) <= width / 2 + FRAYED) & (number == k) & (along >= first - MAX_STRAY_END) & (along <= last + MAX_STRAY_END)
+        near = (along >= first - STRIPES.max_stray_end) & (along <= last + STRIPES.max_stray_end)
+        inside = (np.abs(off) <= width / 2 + STRIPES.frayed) & (number == k) & near
         found.append(Stripe(rows[inside], corners))
     return found
 
@@ -304,12 +265,12 @@ class _Row(NamedTuple):
 
 def _row_of_stripes(number, off, along, comb):
     """The stripes that are broad and long enough, from spots by the stripe nearest to each; None where they are no crossing's."""
-    on = np.abs(off) < MAX_WIDTH_OF_PITCH / 2 * comb.pitch
+    on = np.abs(off) < STRIPES.max_width_of_pitch / 2 * comb.pitch
     # half of what is spread evenly over a stripe lies within a quarter of its width
     width = 4 * float(np.median(np.abs(off[on])))
-    if width < max(STRIPE_WIDTH[0], MIN_WIDTH_OF_PITCH * comb.pitch):
+    if width < max(STRIPES.stripe_width[0], STRIPES.min_width_of_pitch * comb.pitch):
         return None
-    width = min(width, STRIPE_WIDTH[1], MAX_WIDTH_OF_PITCH * comb.pitch)
+    width = min(width, STRIPES.stripe_width[1], STRIPES.max_width_of_pitch * comb.pitch)
     on = np.abs(off) <= width / 2
     kept, ends = [], []
     numbers, counts = _without_strays(*np.unique(number[on], return_counts=True))
@@ -318,18 +279,18 @@ def _row_of_stripes(number, off, along, comb):
         span = _span(along[on & (number == k)])
         own_width, aside = _width(along[on & (number == k)], off[on & (number == k)])
         # a curb or a line that happens to lie there is narrower, or on one side; few spots tell their middle to two standard errors
-        full = aside <= max(MAX_ASIDE, 1 / np.sqrt(count)) * width and own_width >= MIN_OF_WIDTH * width
-        if full and count >= MIN_OF_USUAL * usual and span[1] - span[0] >= MIN_STRIPE_SPAN / 2:
+        full = aside <= max(STRIPES.max_aside, 1 / np.sqrt(count)) * width and own_width >= STRIPES.min_of_width * width
+        if full and count >= STRIPES.min_of_usual * usual and span[1] - span[0] >= STRIPES.min_stripe_span / 2:
             kept.append(int(k))
             ends.append(span)
-    if max(map(len, np.split(kept, np.flatnonzero(np.diff(kept) != 1) + 1))) < MIN_STRIPES:
+    if max(map(len, np.split(kept, np.flatnonzero(np.diff(kept) != 1) + 1))) < STRIPES.min_stripes:
         return None
     return _Row(kept, width, np.array(ends))
 
 
 def _fitted(number, off, along, comb, row):
     """The comb turned, shifted and stretched onto the spots of a row of its stripes, by least squares."""
-    on = np.isin(number, row.numbers) & (np.abs(off) <= row.width / 2 + FRAYED)
+    on = np.isin(number, row.numbers) & (np.abs(off) <= row.width / 2 + STRIPES.frayed)
     # a spot lies across at phase + number * pitch + turn * along, and anywhere over the width of its stripe
     design = np.column_stack([np.ones(on.sum()), number[on], along[on]])
     shift, stretch, turn = np.linalg.lstsq(design, off[on], rcond=None)[0].tolist()
@@ -340,26 +301,26 @@ def _fitted(number, off, along, comb, row):
 
 def _striped(number, phase, along):
     """(N,) bool, the spots of the stretch along the stripes over which they are stripes: side by side, not one with a line that leads on."""
-    step = np.floor((along - along.min()) / COMB_STEP_ALONG).astype(np.int64)
+    step = np.floor((along - along.min()) / STRIPES.comb_step_along).astype(np.int64)
     count = np.bincount(step)
     mean = np.bincount(step, np.cos(2 * np.pi * phase)) / np.maximum(count, 1)
     stripes = np.bincount(np.unique(np.column_stack([step, number]), axis=0)[:, 0])
     # a line that leads on from the outermost stripe has their phase, too; one worn step parts no stripes
-    full = (mean >= LEAST_PHASE) & (stripes > 1) & (count >= MIN_OF_USUAL * np.median(count[step]))
+    full = (mean >= STRIPES.least_phase) & (stripes > 1) & (count >= STRIPES.min_of_usual * np.median(count[step]))
     full = full | (np.r_[False, full[:-1]] & np.r_[full[1:], False] & (mean >= 0))
     runs = np.cumsum(np.diff(np.r_[False, full].astype(int)) == 1) * full
     spots = np.bincount(runs, count * full)
     best = int(spots[1:].argmax()) + 1 if len(spots) > 1 else -1
     own = runs == best
     # the stripes may end a little way into the next step
-    ends = (mean >= LEAST_PHASE) & (stripes > 1) & (np.r_[own[1:], False] | np.r_[False, own[:-1]])
+    ends = (mean >= STRIPES.least_phase) & (stripes > 1) & (np.r_[own[1:], False] | np.r_[False, own[:-1]])
     return (own | ends)[step]
 
 
 def _span(along):
     """Where a stripe begins and ends, from spots spread evenly along it, of which a few at either end may not be its own."""
-    first, last = percentiles(along, (END_PERCENT, 100 - END_PERCENT))
-    beyond = END_PERCENT / (100 - 2 * END_PERCENT) * (last - first)
+    first, last = percentiles(along, (STRIPES.end_percent, 100 - STRIPES.end_percent))
+    beyond = STRIPES.end_percent / (100 - 2 * STRIPES.end_percent) * (last - first)
     return first - beyond, last + beyond
 
 
@@ -374,114 +335,71 @@ def _width(along, across):
 def _without_strays(number, count):
     """Numbers of stripes and how many spots they have, without those at either end that have far fewer than the next."""
     first, last = 0, len(number)
-    while last - first > 1 and count[first] < MIN_OF_NEIGHBOUR * count[first + 1]:
+    while last - first > 1 and count[first] < STRIPES.min_of_neighbour * count[first + 1]:
         first += 1
-    while last - first > 1 and count[last - 1] < MIN_OF_NEIGHBOUR * count[last - 2]:
+    while last - first > 1 and count[last - 1] < STRIPES.min_of_neighbour * count[last - 2]:
         last -= 1
     return number[first:last], count[first:last]
 
 
 def _line_of_ends(number, end, outward):
-    """The line on which stripes end, and its slope from stripe to stripe; of one that ends well before it, `MAX_STRAY_END` before it.
+    """The line on which stripes end, and its slope from stripe to stripe; of one that ends well before it, `max_stray_end` before it.
 
-    outward : 1 or -1, the way out along the stripes
+    `outward` : 1 or -1, the way out along the stripes.
     """
     a, b = np.triu_indices(len(number), 1)
     slope = float(np.median((end[b] - end[a]) / (number[b] - number[a])))
     off = np.sort(outward * (end - slope * number))
-    line = outward * off[int(ENDS_SEEN / 100 * (len(off) - 1))] + slope * number
-    return np.where(outward * (line - end) <= MAX_STRAY_END, line, line - outward * MAX_STRAY_END), slope
+    line = outward * off[int(STRIPES.ends_seen / 100 * (len(off) - 1))] + slope * number
+    return np.where(outward * (line - end) <= STRIPES.max_stray_end, line, line - outward * STRIPES.max_stray_end), slope
 
 
 # Rows of dashes: one bright spot of half a metre may be anything; four in a line, evenly spaced and pointing along it, were painted (or are stones
 # of one curb).
 
-MAX_DASH_SPACING = 3.0                      # m between the middles of neighbours in a row
-MIN_DASH_SPACING = 0.25                     # m between them at least
-MAX_DASH_BREADTH = 0.45                     # m that a dash may reach across its row
-MAX_DASH_OFFSET = 0.12                      # m off the line through its neighbours
-MAX_GAP_PER_DASH = 3.0                      # times the length of the longer dash: no gap of a row is longer
-MAX_STEP_RATIO = 2.5                        # times: how much one step of a row may be longer than the next, a dash worn away between them
-MIN_STEP_COSINE = np.cos(np.radians(12.0))  # by which a row may turn from dash to dash
-MIN_DASHES_IN_ROW = 4
-MAX_DASH_LENGTH_RATIO = 2.0                 # times: a dash that leads a row on to the usual one of the row, either way
-MIN_NEXT_STEP = 2 / 3                       # of the usual step of a row: the next dash lies no nearer
-
-# Blocks of give-way lines
-MIN_BLOCKS_IN_ROW = 3
-BLOCK_SIZE = 0.30, 0.80        # m, either way
-MAX_BLOCK_RATIO = 1.35         # times: the longer side of a block to the shorter, and the size of one to the next
-BLOCK_SPACING = 1.4, 3.2       # block sizes from middle to middle
-MAX_BLOCK_STEP_RATIO = 1.25    # times: one step of a row to the next
-MAX_BLOCK_OFFSET = 0.15        # m off the line through its neighbours
-MAX_PACE_ERROR = 0.10          # of the step of a row: two squares so far apart are two blocks of another such row
-MAX_END_RATIO = 1.5            # times: the longer side of a piece that goes on with a row to the usual one of its blocks, either way
-MAX_END_OFFSET = 0.2           # of the step that its middle lies off the place of the next block at most
-LEAST_STRIP = 1.2              # m: three of the smallest blocks
-LEAST_GAP = 2                  # cells between the blocks of a strip
-PAINTED_SHARE = 0.25           # of a strip's usual breadth: with less paint across it there is a gap
-
 
 def rows_of_dashes(shapes: Sequence[Shape]) -> list[np.ndarray]:
-    """Pieces that stand in rows.
-
-    Parameters
-    ----------
-    shapes : list of N Shape
-
-    Returns
-    -------
-    list of ascending int arrays, the pieces of each row; a piece where rows meet is in several
-    """
-    if len(shapes) < MIN_DASHES_IN_ROW:
+    """Pieces that stand in rows: ascending int arrays, the pieces of each row; a piece where rows meet is in several."""
+    if len(shapes) < ROWS.min_dashes_in_row:
         return []
     middle = np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes])
     length, width, turn = (np.array([getattr(shape, name) for shape in shapes]) for name in ("length", "width", "direction"))
-    pairs = cKDTree(middle).query_pairs(MAX_DASH_SPACING, output_type="ndarray")
+    pairs = cKDTree(middle).query_pairs(ROWS.max_dash_spacing, output_type="ndarray")
     pairs = np.concatenate([pairs, pairs[:, ::-1]])
     pairs = pairs[np.lexsort(pairs.T[::-1])]
     step = middle[pairs[:, 1]] - middle[pairs[:, 0]]
     apart = np.hypot(*step.T)
     ways = step / np.maximum(apart, 1e-9)[:, None]
-    links = _narrow(length, width, turn, pairs, ways) & (apart >= MIN_DASH_SPACING) \
-        & (apart - length[pairs].mean(axis=1) <= MAX_GAP_PER_DASH * length[pairs].max(axis=1))
+    links = _narrow(length, width, turn, pairs, ways) & (apart >= ROWS.min_dash_spacing) \
+        & (apart - length[pairs].mean(axis=1) <= ROWS.max_gap_per_dash * length[pairs].max(axis=1))
     return _chains(pairs[links], apart[links], ways[links])
 
 
 def dashes_beyond(row: Sequence[Shape], others: Sequence[Shape]) -> list[int]:
-    """Pieces that lead a row of dashes on beyond its ends.
+    """Numbers of the pieces that lead a row of dashes, at least two in any order, on beyond its ends, from the row outwards. By our own rule.
 
-    A row that is sure says where its next dash lies: in line with its last dashes, one step ahead, or two where a dash is
-    worn away. The nearest piece there that is about as long as a dash of the row is the next one, and so on. By our own rule.
-
-    Parameters
-    ----------
-    row : Shapes of the dashes of a row, at least two, in any order; metres and radians
-    others : list of N Shape, those of the row may be among them
-
-    Returns
-    -------
-    list of int, numbers of the pieces in `others`, from the row outwards
+    A row that is sure says where its next dash lies: in line with its last dashes, one step ahead, or two where a dash is worn away. The nearest
+    piece there that is about as long as a dash of the row is the next one, and so on. Those of the row may be among the others.
     """
     if not others:
         return []
     middle, place = (np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes]) for shapes in (row, others))
     length, width, turn = (np.array([getattr(shape, name) for shape in others]) for name in ("length", "width", "direction"))
     usual = np.median([shape.length for shape in row])
-    alike = np.maximum(length, usual) <= MAX_DASH_LENGTH_RATIO * np.minimum(length, usual)
+    alike = np.maximum(length, usual) <= ROWS.max_dash_length_ratio * np.minimum(length, usual)
     along = np.argsort((middle - middle.mean(axis=0)) @ _way(middle))
     pace = float(np.median(np.hypot(*np.diff(middle[along], axis=0).T)))
     found: list[int] = []
     for outwards in (along, along[::-1]):
         known = list(middle[outwards])
         while True:
-            last = np.array(known[-MIN_DASHES_IN_ROW:])
+            last = np.array(known[-ROWS.min_dashes_in_row:])
             way = _way(last)
             ahead, off = (place - last[-1]) @ way, np.abs((place - last.mean(axis=0)) @ (-way[1], way[0]))
             askew = turn - np.arctan2(way[1], way[0])
-            narrow = length * np.abs(np.sin(askew)) + width * np.abs(np.cos(askew)) <= MAX_DASH_BREADTH
-            follows = np.flatnonzero(alike & narrow & (off <= MAX_DASH_OFFSET) & (ahead >= max(MIN_NEXT_STEP * pace, MIN_DASH_SPACING))
-                                     & (ahead <= MAX_STEP_RATIO * pace))
+            narrow = length * np.abs(np.sin(askew)) + width * np.abs(np.cos(askew)) <= ROWS.max_dash_breadth
+            follows = np.flatnonzero(alike & narrow & (off <= ROWS.max_dash_offset) & (ahead >= max(ROWS.min_next_step * pace, ROWS.min_dash_spacing))
+                                     & (ahead <= ROWS.max_step_ratio * pace))
             if not len(follows):
                 break
             found.append(int(follows[np.argmin(ahead[follows])]))
@@ -496,7 +414,7 @@ def _way(places):
 
 
 def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -> np.ndarray:
-    """Which pieces are blocks of give-way lines: filled squares in rows.
+    """(N,) bool, which pieces are blocks of give-way lines: filled squares in rows.
 
     Where no more of a row was seen than two squares, they count if they lie at the pace of a sure row. A row goes on where a piece lies at its pace
     and in line with it, though wear or stray points leave it no square.
@@ -506,10 +424,6 @@ def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -
     filled : (N,) bool, whether most of the smallest rectangle about a piece is painted
     sides : (N, 2) m, of that rectangle; 0 for what is larger than any block
     middle : (N, 2) m, in one frame
-
-    Returns
-    -------
-    (N,) bool
     """
     squares = np.flatnonzero(filled)
     rows = [squares[row] for row in _rows_of_blocks(sides[squares], middle[squares])]
@@ -522,8 +436,8 @@ def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -
     at_pace = np.zeros(len(pairs), bool)
     for row in rows:
         usual, pace = sides[row].mean(), _pace(middle[row])
-        at_pace |= (np.maximum(size.max(axis=1), usual) <= MAX_BLOCK_RATIO * np.minimum(size.min(axis=1), usual)) \
-            & (np.abs(apart - pace) <= MAX_PACE_ERROR * pace)
+        at_pace |= (np.maximum(size.max(axis=1), usual) <= ROWS.max_block_ratio * np.minimum(size.min(axis=1), usual)) \
+            & (np.abs(apart - pace) <= ROWS.max_pace_error * pace)
     larger = sides.max(axis=1)
     small = np.flatnonzero(larger > 0)
     tree = cKDTree(middle[small])
@@ -533,7 +447,7 @@ def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -
 
         def likely(place, reach, usual=usual):
             near = small[sorted(tree.query_ball_point(place, reach))]
-            return near[(larger[near] >= usual / MAX_END_RATIO) & (larger[near] <= MAX_END_RATIO * usual)]
+            return near[(larger[near] >= usual / ROWS.max_end_ratio) & (larger[near] <= ROWS.max_end_ratio * usual)]
 
         result[_led_on(middle[row], middle, likely)] = True
     return result
@@ -546,7 +460,7 @@ def _led_on(row, middle, likely):
     for sign, place in ((1.0, row[np.argmax(along)]), (-1.0, row[np.argmin(along)])):
         while True:
             place = place + sign * pace * way
-            near = likely(place, MAX_END_OFFSET * pace)
+            near = likely(place, ROWS.max_end_offset * pace)
             if not len(near):
                 break
             found.append(int(near[np.argmin(np.hypot(*(middle[near] - place).T))]))
@@ -559,26 +473,20 @@ def _pace(middle):
 
 
 def blocks_of_strip(cells: np.ndarray) -> np.ndarray | None:
-    """The blocks of a give-way line that was taken for one piece: along the road scan lines join what lies so near.
+    """The number of each cell's block along a give-way line that was taken for one piece: along the road scan lines join what lies so near.
 
-    Parameters
-    ----------
-    cells : (K, 2) int, different ones, of a frame in which the line is straight
-
-    Returns
-    -------
-    (K,) the number of each cell's block along the line; None where the cells are no row of blocks
+    `cells` : (K, 2) int, different ones, of a frame in which the line is straight. None where they are no row of blocks.
     """
     direction = np.linalg.eigh(np.cov(cells.T))[1][:, 1]
     places = cells @ np.array([[direction[0], -direction[1]], [direction[1], direction[0]]])
-    if np.ptp(places[:, 0]) * CELL_SIZE < LEAST_STRIP or not BLOCK_SIZE[0] <= np.ptp(places[:, 1]) * CELL_SIZE <= BLOCK_SIZE[1]:
+    if np.ptp(places[:, 0]) * CELL_SIZE < ROWS.least_strip or not ROWS.block_size[0] <= np.ptp(places[:, 1]) * CELL_SIZE <= ROWS.block_size[1]:
         return None
     step = np.floor(places[:, 0] - places[:, 0].min()).astype(np.int64)
     count = np.bincount(step)
-    painted = np.flatnonzero(count >= PAINTED_SHARE * np.percentile(count[count > 0], 75))
+    painted = np.flatnonzero(count >= ROWS.painted_share * np.percentile(count[count > 0], 75))
     gaps = np.diff(painted)
-    apart = np.flatnonzero(gaps > max(gaps.max(initial=0) / 2, LEAST_GAP))
-    if len(apart) < MIN_BLOCKS_IN_ROW - 1:
+    apart = np.flatnonzero(gaps > max(gaps.max(initial=0) / 2, ROWS.least_gap))
+    if len(apart) < ROWS.min_blocks_in_row - 1:
         return None
     number = np.searchsorted((painted[apart] + painted[apart + 1]) / 2, step)
     low, high = np.full((2, len(apart) + 1), np.inf), np.full((2, len(apart) + 1), -np.inf)
@@ -588,26 +496,28 @@ def blocks_of_strip(cells: np.ndarray) -> np.ndarray | None:
         np.maximum.at(high[k], number[rows], places[rows, k])
     found = _rows_of_blocks((high - low + 1).T * CELL_SIZE, (low + high).T / 2 * CELL_SIZE)
     # those at the ends may be cut off
-    return number if sum(map(len, found)) >= max(len(apart) - 1, MIN_BLOCKS_IN_ROW) else None
+    return number if sum(map(len, found)) >= max(len(apart) - 1, ROWS.min_blocks_in_row) else None
 
 
 def _rows_of_blocks(sides: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:
-    """Ascending numbers of filled squares that stand in a row, for each row: three of one size at an even pitch were painted, one may be a
-    manhole cover. `sides` and `middle` are (N, 2) m."""
+    """Ascending numbers of filled squares that stand in a row, for each row; `sides` and `middle` are (N, 2) m.
+
+    Three of one size at an even pitch were painted, one may be a manhole cover.
+    """
     pairs, of_pair, apart = _pairs_of_squares(sides, middle)
-    links = (of_pair.max(axis=1) <= MAX_BLOCK_RATIO * of_pair.min(axis=1)) \
-        & (apart >= BLOCK_SPACING[0] * of_pair.mean(axis=1)) & (apart <= BLOCK_SPACING[1] * of_pair.mean(axis=1))
+    links = (of_pair.max(axis=1) <= ROWS.max_block_ratio * of_pair.min(axis=1)) \
+        & (apart >= ROWS.block_spacing[0] * of_pair.mean(axis=1)) & (apart <= ROWS.block_spacing[1] * of_pair.mean(axis=1))
     ways = (middle[pairs[:, 1]] - middle[pairs[:, 0]]) / np.maximum(apart, 1e-9)[:, None]
-    return _chains(pairs[links], apart[links], ways[links], MIN_BLOCKS_IN_ROW, MAX_BLOCK_STEP_RATIO, MAX_BLOCK_OFFSET)
+    return _chains(pairs[links], apart[links], ways[links], ROWS.min_blocks_in_row, ROWS.max_block_step_ratio, ROWS.max_block_offset)
 
 
 def _pairs_of_squares(sides, middle):
     """(P, 2) squares near each other, either way, (P, 2) m their sizes, and (P,) m between their middles."""
-    square = np.flatnonzero((sides.min(axis=1, initial=np.inf) >= BLOCK_SIZE[0]) & (sides.max(axis=1, initial=0.0) <= BLOCK_SIZE[1])
-                            & (sides.max(axis=1, initial=0.0) <= MAX_BLOCK_RATIO * np.maximum(sides.min(axis=1, initial=np.inf), 1e-3)))
+    square = np.flatnonzero((sides.min(axis=1, initial=np.inf) >= ROWS.block_size[0]) & (sides.max(axis=1, initial=0.0) <= ROWS.block_size[1])
+                            & (sides.max(axis=1, initial=0.0) <= ROWS.max_block_ratio * np.maximum(sides.min(axis=1, initial=np.inf), 1e-3)))
     if len(square) < 2:
         return np.empty((0, 2), np.int64), np.empty((0, 2)), np.empty(0)
-    pairs = square[cKDTree(middle[square]).query_pairs(BLOCK_SPACING[1] * BLOCK_SIZE[1], output_type="ndarray")].reshape(-1, 2)
+    pairs = square[cKDTree(middle[square]).query_pairs(ROWS.block_spacing[1] * ROWS.block_size[1], output_type="ndarray")].reshape(-1, 2)
     pairs = np.concatenate([pairs, pairs[:, ::-1]])
     pairs = pairs[np.lexsort(pairs.T[::-1])]
     return pairs, sides.mean(axis=1)[pairs], np.hypot(*(middle[pairs[:, 1]] - middle[pairs[:, 0]]).T)
@@ -619,11 +529,11 @@ def _narrow(length, width, turn, pairs, ways):
     narrow = np.ones(len(pairs), bool)
     for k in pairs.T:
         off = turn[k] - heading
-        narrow &= length[k] * np.abs(np.sin(off)) + width[k] * np.abs(np.cos(off)) <= MAX_DASH_BREADTH
+        narrow &= length[k] * np.abs(np.sin(off)) + width[k] * np.abs(np.cos(off)) <= ROWS.max_dash_breadth
     return narrow
 
 
-def _chains(pairs, apart, ways, fewest=MIN_DASHES_IN_ROW, max_step_ratio=MAX_STEP_RATIO, max_offset=MAX_DASH_OFFSET):
+def _chains(pairs, apart, ways, fewest=ROWS.min_dashes_in_row, max_step_ratio=ROWS.max_step_ratio, max_offset=ROWS.max_dash_offset):
     """Arrays of the pieces of each row, from steps between neighbours."""
     # a step from i to j goes on in one from j to k
     order = np.argsort(pairs[:, 0], kind="stable")
@@ -632,7 +542,7 @@ def _chains(pairs, apart, ways, fewest=MIN_DASHES_IN_ROW, max_step_ratio=MAX_STE
     before = np.repeat(np.arange(len(pairs)), count)
     after = order[np.arange(len(before)) - np.repeat(np.cumsum(count) - count - first, count)]
     even = np.maximum(apart[before], apart[after]) <= max_step_ratio * np.minimum(apart[before], apart[after])
-    straight = (ways[before] * ways[after]).sum(axis=1) >= MIN_STEP_COSINE
+    straight = (ways[before] * ways[after]).sum(axis=1) >= ROWS.min_step_cosine
     off = apart[after] * np.abs(ways[before, 0] * ways[after, 1] - ways[before, 1] * ways[after, 0])
     joined = even & straight & (off <= max_offset)
     row = linked_groups(before[joined], after[joined], len(pairs))

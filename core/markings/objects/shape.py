@@ -16,51 +16,31 @@ from ...lazy import cv2
 from ...survey.frame.road import Road
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import CELL_SIZE, CELL_UNITS, fill_gaps, filled_between_tracks, occupied, track_reach
-
-MIDDLE_LINE_STEP_UNITS = 5000                         # units: 0.5 m of station that the run of a line is followed in
-TRACKS_PER_STEP = 10.0                                # times the distance between the tracks of the scan that the step is at least
-WIDTH_PERCENT = 95.0                                  # % of the points that the width spans; divided out again
-MAX_ANGLE_ALONG = np.radians(20.0)                    # closer to the road's direction than this is "along" it
-MIN_ANGLE_ACROSS = np.radians(60.0)                   # farther from it is "across"
-END_UNITS, MIN_END_UNITS, MIN_END_POINTS = 10000, 2000, 4   # units: 1 m at either end, and 0.2 m and points at least that show how a track runs there
-STEM_BREADTH_CELLS, STEM_STEP_CELLS = 9, 5            # cells: a stroke along the road is no broader (0.36 m), looked at every 20 cm
-SCAN_GAPS_OF_BARS = 10, 6                             # cells along the road and across it: gaps between the scan lines on a bar
-SMALL_MARKING_SIZE, SCAN_GAPS_OF_SMALL = 1.2, (3, 1)  # m, and cells likewise of what is no longer than that: the strokes of a sign lie farther apart
+from ..weights import SHAPES, ZIGZAG
 
 
 @dataclass(frozen=True)
 class Shape:
-    """What a cluster looks like in (s, d); metres, radians.
+    """What a cluster looks like in (s, d); metres, radians."""
 
-    direction is 0 along the road, pi/2 across it, within (-pi/2, pi/2].
-    s0, s1, d0, d1 bound it; `offset` is the median offset, `area` that of its 4 cm cells;
-    `closed_area` is the area with the gaps between scan lines, of what runs across the road or is small (`area` of the rest);
-    `begin` and `finish` are the offsets of its middle line at s0 and s1 (the median for what is not along the road).
-    `stems` are the shares of its length, from s0 on and from s1 back, over which it is a single stroke.
-    `spacing` is the distance between the tracks of the scan that it was seen on, where these are farther apart than cells, else 0;
-    `askew` is then how fast the tracks cross it at s0 and at s1, metres across per metre along, 0 where it is not known.
-    `legs` are those of a zigzag line, 0 of anything else.
-    `sides` are those of the smallest rectangle about what is small, however it lies, else length and width.
-    """
-
-    s0: float
+    s0: float   # bounds
     s1: float
     d0: float
     d1: float
-    offset: float
+    offset: float   # median offset
     length: float
     width: float
-    direction: float
-    area: float
+    direction: float   # 0 along the road, pi/2 across it, within (-pi/2, pi/2]
+    area: float   # of its 4 cm cells
     points: int
-    begin: float
+    begin: float   # offsets of its middle line at s0 and s1 (the median for what is not along the road)
     finish: float
-    closed_area: float
-    stems: tuple
-    spacing: float = 0.0
-    askew: tuple[float, float] = (0.0, 0.0)
-    legs: int = 0
-    sides: tuple[float, float] = (0.0, 0.0)
+    closed_area: float   # with the gaps between scan lines, of what runs across the road or is small (`area` of the rest)
+    stems: tuple   # shares of its length, from s0 on and from s1 back, over which it is a single stroke
+    spacing: float = 0.0   # distance between the tracks of the scan that it was seen on, where these are farther apart than cells, else 0
+    askew: tuple[float, float] = (0.0, 0.0)   # how fast these cross it at s0 and at s1, metres across per metre along, 0 where it is not known
+    legs: int = 0   # of a zigzag line, 0 of anything else
+    sides: tuple[float, float] = (0.0, 0.0)   # of the smallest rectangle about what is small, however it lies, else length and width
 
     @property
     def elongation(self) -> float:
@@ -73,25 +53,20 @@ class Shape:
     @property
     def along(self) -> bool:
         """Whether it runs along the road."""
-        return abs(self.direction) <= MAX_ANGLE_ALONG
+        return abs(self.direction) <= SHAPES.max_angle_along
 
     @property
     def across(self) -> bool:
         """Whether it runs across the road."""
-        return abs(self.direction) > MIN_ANGLE_ACROSS
+        return abs(self.direction) > SHAPES.min_angle_across
 
 
 def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> Shape:
-    """The Shape of a cluster.
+    """The Shape of a cluster of N points.
 
-    Parameters
-    ----------
-    s, d : (N,) int, station and offset in units of 0.1 mm (integers, so that the order of points does not matter)
-    spacing : (N,) int, mm across the road between the tracks of the scan; None where it is not known
-
-    Notes
-    -----
     Width is the 95 % range across the local tangent, scaled to the full range of evenly spread points: a principal axis would call every bend wide.
+    `s`, `d` : int, units of 0.1 mm, so that the order of points does not matter. `spacing` : int, mm across the road between the tracks of the scan;
+    None where it is not known.
     """
     cells, member = occupied(s // CELL_UNITS, d // CELL_UNITS)
     apart = 0.0
@@ -102,7 +77,7 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
         cells, apart = np.argwhere(mask) + first, median(spacing) * 1e-3
     direction = _principal_direction(cells)
     s0, s1, d0, d1 = s.min(), s.max(), d.min(), d.max()
-    if abs(direction) <= MAX_ANGLE_ALONG and s1 - s0 > 2 * MIDDLE_LINE_STEP_UNITS:
+    if abs(direction) <= SHAPES.max_angle_along and s1 - s0 > 2 * SHAPES.middle_line_step_units:
         length = (s1 - s0) * COORDINATE_SCALE
         nodes, offsets = middle_line(s, d, apart)
         across = d - np.interp(s, nodes, offsets)
@@ -115,11 +90,11 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
         begin = finish = median(d) * COORDINATE_SCALE
     width = _full_width(across) * COORDINATE_SCALE
     sides = float(length), width
-    if max(s1 - s0, d1 - d0) * COORDINATE_SCALE <= SMALL_MARKING_SIZE:
+    if max(s1 - s0, d1 - d0) * COORDINATE_SCALE <= SHAPES.small_marking_size:
         sides = smallest_rectangle(cells)
-        closed = _closed(cells, SCAN_GAPS_OF_SMALL)
+        closed = _closed(cells, SHAPES.scan_gaps_of_small)
     else:
-        closed = _closed(cells, SCAN_GAPS_OF_BARS) if abs(direction) > MIN_ANGLE_ACROSS else len(cells)
+        closed = _closed(cells, SHAPES.scan_gaps_of_bars) if abs(direction) > SHAPES.min_angle_across else len(cells)
     area, closed_area = (count * (CELL_UNITS * COORDINATE_SCALE) ** 2 for count in (len(cells), closed))
     return Shape(s0 * COORDINATE_SCALE, s1 * COORDINATE_SCALE, d0 * COORDINATE_SCALE, d1 * COORDINATE_SCALE, median(d) * COORDINATE_SCALE,
                  float(length), width, direction, area, len(s), float(begin), float(finish), closed_area,
@@ -144,29 +119,29 @@ def _closed(cells, gaps):
 
 def _stems(cells):
     """Shares of the length, from either end, over which cells reach no farther across than a stroke; wear parts none."""
-    step = (cells[:, 0] - cells[:, 0].min()) // STEM_STEP_CELLS
+    step = (cells[:, 0] - cells[:, 0].min()) // SHAPES.stem_step_cells
     count = int(step.max()) + 1
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.minimum.at(low, step, cells[:, 1])
     np.maximum.at(high, step, cells[:, 1])
-    broad = np.flatnonzero(high - low >= STEM_BREADTH_CELLS)
+    broad = np.flatnonzero(high - low >= SHAPES.stem_breadth_cells)
     return (float(broad[0]) / count, 1.0 - float(broad[-1] + 1) / count) if len(broad) else (1.0, 1.0)
 
 
 def _askew(s, d):
     """How fast the tracks cross a cluster at its begin and at its end, from the points there."""
     found = []
-    for end in (s - s.min() <= END_UNITS, s.max() - s <= END_UNITS):
+    for end in (s - s.min() <= SHAPES.end_units, s.max() - s <= SHAPES.end_units):
         along, across = s[end] - s[end].mean(), d[end] - d[end].mean()
-        clear = len(along) >= MIN_END_POINTS and np.ptp(along) >= MIN_END_UNITS
+        clear = len(along) >= SHAPES.min_end_points and np.ptp(along) >= SHAPES.min_end_units
         found.append(abs(float((along * across).sum() / (along * along).sum())) if clear else 0.0)
     return found[0], found[1]
 
 
 def _full_width(across: np.ndarray) -> float:
     """Full width of evenly spread values from their 95 % range."""
-    low, high = percentiles(across, ((100 - WIDTH_PERCENT) / 2, (100 + WIDTH_PERCENT) / 2))
-    return (high - low) / (WIDTH_PERCENT / 100)
+    low, high = percentiles(across, ((100 - SHAPES.width_percent) / 2, (100 + SHAPES.width_percent) / 2))
+    return (high - low) / (SHAPES.width_percent / 100)
 
 
 def _principal_direction(cells):
@@ -179,19 +154,12 @@ def _principal_direction(cells):
 
 
 def middle_line(s: np.ndarray, d: np.ndarray, spacing: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """The middle line of an elongated cluster.
+    """Stations and offsets of the middle line of an elongated cluster, (K,) float each: nodes every 0.5 m, smoothed over 2.5 m.
 
-    Parameters
-    ----------
-    s, d : (N,) int, along and across it, units of 0.1 mm
-    spacing : m between the tracks of the scan
-
-    Returns
-    -------
-    stations, offsets : (K,) float, nodes every 0.5 m, smoothed over 2.5 m; of a line seen on few tracks, each of which
-        shows it at one place of its width, they lie ten track spacings apart
+    Of a line seen on few tracks, each of which shows it at one place of its width, nodes lie ten track spacings apart.
+    `s`, `d` : (N,) int, along and across it, units of 0.1 mm; `spacing` : m between the tracks of the scan.
     """
-    step = max(MIDDLE_LINE_STEP_UNITS, int(round(TRACKS_PER_STEP * spacing / COORDINATE_SCALE)))
+    step = max(SHAPES.middle_line_step_units, int(round(SHAPES.tracks_per_step * spacing / COORDINATE_SCALE)))
     bins = (s - s.min()) // step
     order = order_by(d, bins)
     sorted_bins = bins[order]
@@ -227,55 +195,31 @@ def _smooth(nodes, values, weight, step):
 # turns. Germany, Zeichen 299: at 50 gon (45 degrees) to the road, 1 to 2 m from side to side (RMS part 2, chapter 4.2.1). United Kingdom, diagram
 # 1001.3: marks of 2 m, at least 1 m, gaps of 150 mm, 1.979 m along the road and 0.29 m across it, up to 18 (Traffic Signs Manual, chapter 5, 15.17).
 
-STEP_CELLS = 3              # cells along the road whose middle is one place: 12 cm
-ZIGZAG_LENGTH = 2.0, 45.0     # m along the road: three legs of the shortest, and "school keep clear"
-ZIGZAG_BREADTH = 0.25, 2.6         # m across it
-MAX_STROKE = 0.50           # m across the road of a leg within a step: a line of 0.12 m at 45 degrees takes up 0.29 m
-MIN_STEPS_SEEN = 0.7        # of the steps, for the run to be known: gaps between marks are 150 mm
-MIN_THIN = 0.85             # of the steps that were seen, where there is one stroke alone; a bar may end the line
-LEAST_TURN = 0.15           # m that a line goes back for its turn to count: half the depth of the flattest zigzag
-MIN_LEGS = 3
-LEG_ALONG = 0.7, 2.6        # m along the road of a whole leg
-LEG_SLOPE = 0.10, 1.4       # m across per m along
-MAX_SLOPE_RATIO = 1.6       # times: one leg to another
-MAX_LENGTH_RATIO = 1.5      # times, of those between turns
-MAX_OFF_STRAIGHT = 0.12     # of a leg's depth that its places lie off it at most, root mean square, or
-LEAST_OFF_STRAIGHT = 0.05   # m
-
 
 def zigzag_legs(cells: np.ndarray) -> int:
-    """How many legs a zigzag line has.
-
-    Parameters
-    ----------
-    cells : (K, 2) int, painted cells along the road and across it
-
-    Returns
-    -------
-    int, 0 where the cells are no zigzag line
-    """
-    step = (cells[:, 0] - cells[:, 0].min()) // STEP_CELLS
+    """How many legs a zigzag line has; 0 where cells, (K, 2) int along the road and across it, are no such line."""
+    step = (cells[:, 0] - cells[:, 0].min()) // ZIGZAG.step_cells
     length, breadth = (np.ptp(cells, axis=0) + 1) * CELL_SIZE
-    if not (ZIGZAG_LENGTH[0] <= length <= ZIGZAG_LENGTH[1] and ZIGZAG_BREADTH[0] <= breadth <= ZIGZAG_BREADTH[1]):
+    if not (ZIGZAG.zigzag_length[0] <= length <= ZIGZAG.zigzag_length[1] and ZIGZAG.zigzag_breadth[0] <= breadth <= ZIGZAG.zigzag_breadth[1]):
         return 0
     count = np.bincount(step)
     seen = count > 0
-    if seen.mean() < MIN_STEPS_SEEN:
+    if seen.mean() < ZIGZAG.min_steps_seen:
         return 0
     low, high = np.full(len(count), np.inf), np.full(len(count), -np.inf)
     np.minimum.at(low, step, cells[:, 1])
     np.maximum.at(high, step, cells[:, 1])
-    thin = seen & (high - low < MAX_STROKE / CELL_SIZE)
-    if np.count_nonzero(thin) < MIN_THIN * np.count_nonzero(seen):
+    thin = seen & (high - low < ZIGZAG.max_stroke / CELL_SIZE)
+    if np.count_nonzero(thin) < ZIGZAG.min_thin * np.count_nonzero(seen):
         return 0
     rows = np.flatnonzero(thin)
-    along, across = (rows + 0.5) * STEP_CELLS * CELL_SIZE, (low[rows] + high[rows]) / 2 * CELL_SIZE
+    along, across = (rows + 0.5) * ZIGZAG.step_cells * CELL_SIZE, (low[rows] + high[rows]) / 2 * CELL_SIZE
     return _legs(along, across)
 
 
 def _legs(along, across):
     ends = _turns(across)
-    if len(ends) <= MIN_LEGS:
+    if len(ends) <= ZIGZAG.min_legs:
         return 0
     runs, rises, off = [], [], []
     for first, last in zip(ends[:-1], ends[1:]):
@@ -288,14 +232,14 @@ def _legs(along, across):
         off.append(np.sqrt(np.mean((v - middle - slope * (u - u.mean())) ** 2)))
     runs, rises, off = np.array(runs), np.array(rises), np.array(off)
     # what is left of a leg at either end may be short
-    whole = np.r_[runs[0] >= LEG_ALONG[0], np.ones(max(len(runs) - 2, 0), bool), runs[-1] >= LEG_ALONG[0]]
-    if np.count_nonzero(whole) < MIN_LEGS or (np.sign(rises[:-1]) == np.sign(rises[1:])).any():
+    whole = np.r_[runs[0] >= ZIGZAG.leg_along[0], np.ones(max(len(runs) - 2, 0), bool), runs[-1] >= ZIGZAG.leg_along[0]]
+    if np.count_nonzero(whole) < ZIGZAG.min_legs or (np.sign(rises[:-1]) == np.sign(rises[1:])).any():
         return 0
     inner, slopes = runs[1:-1], np.abs(rises[whole])
-    even = inner.min() >= LEG_ALONG[0] and runs.max() <= LEG_ALONG[1] and inner.max() <= MAX_LENGTH_RATIO * inner.min() \
-        and runs.max() <= MAX_LENGTH_RATIO * inner.max()
-    steep = LEG_SLOPE[0] <= slopes.min() and slopes.max() <= LEG_SLOPE[1] and slopes.max() <= MAX_SLOPE_RATIO * slopes.min()
-    straight = (off[whole] <= np.maximum(MAX_OFF_STRAIGHT * slopes * runs[whole], LEAST_OFF_STRAIGHT)).all()
+    even = inner.min() >= ZIGZAG.leg_along[0] and runs.max() <= ZIGZAG.leg_along[1] and inner.max() <= ZIGZAG.max_length_ratio * inner.min() \
+        and runs.max() <= ZIGZAG.max_length_ratio * inner.max()
+    steep = ZIGZAG.leg_slope[0] <= slopes.min() and slopes.max() <= ZIGZAG.leg_slope[1] and slopes.max() <= ZIGZAG.max_slope_ratio * slopes.min()
+    straight = (off[whole] <= np.maximum(ZIGZAG.max_off_straight * slopes * runs[whole], ZIGZAG.least_off_straight)).all()
     return int(np.count_nonzero(whole)) if even and steep and straight else 0
 
 
@@ -307,12 +251,12 @@ def _turns(across):
         if way == 0:
             lowest = k if value < across[lowest] else lowest
             highest = k if value > across[highest] else highest
-            if across[highest] - across[lowest] >= LEAST_TURN:
+            if across[highest] - across[lowest] >= ZIGZAG.least_turn:
                 way, best = (1, k) if highest > lowest else (-1, k)
                 found.append(lowest if way > 0 else highest)
         elif way * (value - across[best]) >= 0:
             best = k
-        elif way * (across[best] - value) >= LEAST_TURN:
+        elif way * (across[best] - value) >= ZIGZAG.least_turn:
             found.append(best)
             best, way = k, -way
     return [*found, best]
@@ -321,28 +265,11 @@ def _turns(across):
 # Outlines: the cells that a cluster's points lie in, closed along the road, where scan lines lie apart, and much less across it, where the next
 # stripe may begin.
 
-CLOSE_ALONG = 0.40            # m of station over which a gap is closed
-CLOSE_ACROSS = 0.04           # m of offset likewise
-MIN_HOLE_AREA = 0.02          # m2: smaller holes are wear, not shape
-END_STRETCH, MAX_END_GAP = 20000, 5000   # 0.1 mm: 2 m at an end, whose gaps tell how far it goes on, and half a metre: what is longer is worn
-STRIP_TOLERANCE = 0.004       # m by which the outline of a strip may leave its middle line's curve
-MIN_PART_AREA = 0.005         # m2: three cells
-OUTLINE_TOLERANCE = 0.025     # m by which a simplified outline may leave the cells
-OUTLINE_VERTEX_SPACING = 1.0  # m of station between vertices: 2 mm of sagitta at R = 60 m
-OUTLINE_HEIGHT_NEIGHBOURS = 8
-
 
 def band(s: np.ndarray, d: np.ndarray, shape: Shape) -> shapely.Polygon:
-    """Outline of a strip: its middle line, as wide as the whole of it is.
+    """Outline of a strip in (s, d): its middle line, as wide as the whole of it is.
 
-    Parameters
-    ----------
-    s, d : (N,) int, units of 0.1 mm
-    shape : Shape of an elongated cluster along the road, or in any straight direction
-
-    Returns
-    -------
-    shapely Polygon in (s, d)
+    `s`, `d` : (N,) int, units of 0.1 mm; `shape` : of an elongated cluster along the road, or in any straight direction.
     """
     c, n = (1.0, 0.0) if shape.along else (np.cos(shape.direction), np.sin(shape.direction))
     u, v = (s, d) if shape.along else (np.rint(s * c + d * n).astype(np.int64), np.rint(d * c - s * n).astype(np.int64))
@@ -356,36 +283,28 @@ def band(s: np.ndarray, d: np.ndarray, shape: Shape) -> shapely.Polygon:
     nodes, offsets = nodes[keep], offsets[keep]
     ring = np.stack([np.concatenate([nodes, nodes[::-1]]),
                      np.concatenate([offsets - shape.width / 2, offsets[::-1] + shape.width / 2])], axis=1)
-    return shapely.simplify(shapely.Polygon(ring @ np.array([[c, n], [-n, c]])), STRIP_TOLERANCE)
+    return shapely.simplify(shapely.Polygon(ring @ np.array([[c, n], [-n, c]])), SHAPES.strip_tolerance)
 
 
 def _beyond_the_last(along):
-    """How far a strip goes on beyond its first point on average: half the gap that any place of it falls into.
+    """How far a strip goes on beyond its first point on average, from (N,) ascending places along it: half the gap that any place of it falls into.
 
-    along : (N,) int, ascending; a gap of length g is met by a share of places that grows with g, and half of it lies beyond
+    A gap of length g is met by a share of places that grows with g, and half of it lies beyond.
     """
-    gaps = np.diff(along[:np.searchsorted(along, along[0] + END_STRETCH)])
-    gaps = gaps[gaps <= MAX_END_GAP].astype(float)
+    gaps = np.diff(along[:np.searchsorted(along, along[0] + SHAPES.end_stretch)])
+    gaps = gaps[gaps <= SHAPES.max_end_gap].astype(float)
     return int(round((gaps * gaps).sum() / (2.0 * gaps.sum()))) if gaps.any() else 0
 
 
 def painted_cells(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Cells covered by a cluster.
+    """Cells covered by a cluster: (A, B) bool, first axis along the road, and the (2,) int cell number of mask[0, 0].
 
-    Parameters
-    ----------
-    s, d : (N,) metres
-    spacing : (N,) int, mm across the road between the tracks of the scan; None where it is not known
-
-    Returns
-    -------
-    mask : (A, B) bool, first axis along the road, second across it
-    first : (2,) int, the cell number of mask[0, 0]: it begins at first * CELL
+    `s`, `d` : (N,) metres; `spacing` : (N,) int, mm across the road between the tracks of the scan, None where it is not known.
     """
     cells = np.floor(np.c_[s, d] / CELL_SIZE).astype(np.int64)
     mask, first = filled_between_tracks(cells, track_reach(spacing if spacing is not None else np.zeros(len(cells))))
-    mask = fill_gaps(mask, int(round(CLOSE_ALONG / CELL_SIZE)), 0)
-    mask = fill_gaps(mask, int(round(CLOSE_ACROSS / CELL_SIZE)), 1)
+    mask = fill_gaps(mask, int(round(SHAPES.close_along / CELL_SIZE)), 0)
+    mask = fill_gaps(mask, int(round(SHAPES.close_across / CELL_SIZE)), 1)
     return _without_small_holes(mask), first
 
 
@@ -393,7 +312,7 @@ def _without_small_holes(mask):
     holes, count = ndimage.label(~mask)
     if count > 1:
         sizes = np.bincount(holes.ravel())
-        small = sizes * CELL_SIZE**2 < MIN_HOLE_AREA
+        small = sizes * CELL_SIZE**2 < SHAPES.min_hole_area
         small[0] = False
         mask = mask | small[holes]
     return mask
@@ -408,22 +327,19 @@ def _cell_outline(mask: np.ndarray, first: np.ndarray) -> shapely.Geometry:
                         (first[0] + end) * CELL_SIZE, (first[1] + column + 1) * CELL_SIZE)
     # cells that touch at a corner only make one polygon after a hair of widening
     shape = shapely.union_all(boxes, grid_size=0.001)
-    return shape.simplify(OUTLINE_TOLERANCE, preserve_topology=True)
+    return shape.simplify(SHAPES.outline_tolerance, preserve_topology=True)
 
 
 def parts(shape: shapely.Geometry) -> list[shapely.Polygon]:
     """The polygons of an outline that are large enough to be drawn, from the road's start on."""
-    pieces = [piece for piece in getattr(shape, "geoms", [shape]) if piece.area >= MIN_PART_AREA]
+    pieces = [piece for piece in getattr(shape, "geoms", [shape]) if piece.area >= SHAPES.min_part_area]
     return sorted(pieces, key=lambda piece: piece.bounds)
 
 
 def drawn_outline(columns: Sequence[np.ndarray], shape: Shape, strip: bool, road: Road) -> list[shapely.Polygon]:
-    """The polygons of one marking in local coordinates, from the road's start on.
+    """The polygons of one marking in local coordinates, from the road's start on, as an even strip or cell by cell.
 
-    Parameters
-    ----------
-    columns : s, d, x, y, z, units of 0.1 mm, and spacing, mm between the tracks of the scan: (N,) int each of its points
-    strip : whether it is drawn as an even strip, else cell by cell
+    `columns` : s, d, x, y, z, units of 0.1 mm, and spacing, mm between the tracks of the scan: (N,) int each of its points.
     """
     s, d, x, y, z, spacing = columns
     drawn = band(s, d, shape) if strip else _cell_outline(*painted_cells(s * COORDINATE_SCALE, d * COORDINATE_SCALE, spacing))
@@ -432,25 +348,15 @@ def drawn_outline(columns: Sequence[np.ndarray], shape: Shape, strip: bool, road
 
 
 def to_local(shape: shapely.Polygon, road: Road, places: np.ndarray) -> shapely.Polygon:
-    """The outline in local coordinates with Z.
-
-    Parameters
-    ----------
-    shape : polygon in (s, d)
-    places : (N, 3) local x, y, z of the cluster's points
-
-    Returns
-    -------
-    shapely Polygon with Z: each vertex at the median height of the points nearest to it
-    """
-    shape = shapely.segmentize(shape, OUTLINE_VERTEX_SPACING)
+    """A polygon in (s, d) in local coordinates, each vertex at the median height of the nearest of the cluster's `places`, (N, 3) m."""
+    shape = shapely.segmentize(shape, SHAPES.outline_vertex_spacing)
     vertices = shapely.get_coordinates(shape)
     return lifted(shapely.set_coordinates(shape, np.column_stack(road.to_map(vertices[:, 0], vertices[:, 1]))), places)
 
 
 def lifted(shape: shapely.Polygon, places: np.ndarray) -> shapely.Polygon:
     """An outline in local coordinates, each vertex at the median height of the points (N, 3) nearest to it."""
-    k = min(OUTLINE_HEIGHT_NEIGHBOURS, len(places))
+    k = min(SHAPES.outline_height_neighbours, len(places))
     vertices = shapely.get_coordinates(shape)
     _, nearest = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False).query(vertices, k)
     z = row_medians(places[:, 2][nearest.reshape(len(vertices), k)])[:, 0]

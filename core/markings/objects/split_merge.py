@@ -17,38 +17,17 @@ from ...lazy import cv2
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import CELL_SIZE, CELL_UNITS, fill_gaps, filled_between_tracks, occupied, track_reach
-from .classify import MIN_STOP_LINE_FILL, columns_of
+from ..weights import CLASSES, COMPOUNDS
+from .classify import columns_of
 from .shape import Shape
 
-STRIP_WINDOWS = (8.0, 8.0), (4.0, 5.0)        # m that a line is looked for in, and its least length
-LINE_SHARE = 0.85                             # of the window that is painted, gaps between scan lines closed
-MAX_BORDER_SLOPE = 0.20                       # to the road: the borders of hatched areas lie askew by one in five at most
-MAX_BORDER_DRIFT = 0.16                       # m that a line may leave the nearest slope that is tried, over the window
-COMPOUND_LENGTH, COMPOUND_BREADTH = 9.0, 0.5  # m: no arrow or letter is so long; a line that is broader somewhere has something beside it
-MIN_RUN_ACROSS = 2.0                          # m across the road that a bar does not break off; no arrow or letter is as broad
-MORPHOLOGY_CHUNK = 100.0                      # m of road looked at together
-MIN_LEFTOVER_AREA = 0.05                      # m2: smaller left-overs are the frayed rim of the strip
-# Pieces of one marking
-MAX_WORN_GAP, MAX_FRAGMENT_OVERLAP, MAX_FRAGMENT_OFFSET = 0.9, 0.2, 0.08  # m along, along, across
-TRACKS_PER_GAP, MAX_GAP_BETWEEN_TRACKS = 10.0, 2.0  # times the distance between the tracks of the scan, and m, along: gaps of dashes are longer
-MIN_ASKEW, MAX_UNSEEN_GAP = 0.05, 3.5   # m across per m along, and m along: a track that crosses a line so leaves it sideways; gaps of dashes
-MAX_UNSEEN_OFFSET = 0.08                # that are seen so far off are longer; m between the middles of two pieces with such a gap between them
-MAX_STOP_LINE_GAP = 0.30  # m across: the gaps of give-way lines are painted
-MAX_SIDE_SHIFT = 0.10  # m by which wear has moved an edge that two pieces share
+MORPHOLOGY_CHUNK = 100.0   # derived: m of road looked at together
 
 
 def split_compounds(records: Columns, labels: np.ndarray, parts_of: Callable[..., list[tuple[np.ndarray, int]]] | None = None) -> np.ndarray:
-    """Give the parts of compound clusters labels of their own.
+    """(N,) int labels of the points of one road, with labels of their own for the parts of compound clusters.
 
-    Parameters
-    ----------
-    records : N points of one road
-    labels : (N,) int, the cluster of each
-    parts_of : what applies `parts_of_compound` to clusters, given s, d, spacing and [(first, end)] rows of each; by default one after the other
-
-    Returns
-    -------
-    (N,) int labels; those of clusters that are not compound are unchanged
+    `parts_of` : what applies `parts_of_compound` to clusters, given s, d, spacing and [(first, end)] rows of each; by default one after the other.
     """
     if not len(labels):
         return labels
@@ -59,7 +38,7 @@ def split_compounds(records: Columns, labels: np.ndarray, parts_of: Callable[...
     along, across, apart = (records[name].take(order) for name in ("s", "d", "spacing"))
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (along, across)]
     length, breadth = (extent * COORDINATE_SCALE for extent in ranges)
-    large = _of_several(length, breadth) | (length >= MIN_LENGTH_BESIDE_BAR) & (breadth >= MIN_STOP_LINE_PIECE)
+    large = _of_several(length, breadth) | (length >= COMPOUNDS.min_length_beside_bar) & (breadth >= COMPOUNDS.min_stop_line_piece)
 
     bounds = list(zip(starts[large].tolist(), np.r_[starts[1:], len(order)][large].tolist()))
     if parts_of is None:
@@ -75,21 +54,14 @@ def split_compounds(records: Columns, labels: np.ndarray, parts_of: Callable[...
 
 def _of_several(length, breadth):
     """Whether what is so long and so broad, m, is no arrow or letter, and more than a line or a bar."""
-    return (length >= COMPOUND_LENGTH) & (breadth >= COMPOUND_BREADTH) | (length >= MIN_LENGTH_BESIDE_BAR) & (breadth >= MIN_RUN_ACROSS)
+    return (length >= COMPOUNDS.compound_length) & (breadth >= COMPOUNDS.compound_breadth) \
+        | (length >= COMPOUNDS.min_length_beside_bar) & (breadth >= COMPOUNDS.min_run_across)
 
 
 def parts_of_compound(s: np.ndarray, d: np.ndarray, spacing: np.ndarray) -> tuple[np.ndarray, int]:
-    """The parts of one cluster.
+    """The part of every point of one cluster, (N,) int from 0 on, and how many there are.
 
-    Parameters
-    ----------
-    s, d : (N,) int, units of 0.1 mm
-    spacing : (N,) int, mm between the tracks of the scan
-
-    Returns
-    -------
-    parts : (N,) int, the part of every point, numbered from 0
-    count : how many there are
+    `s`, `d` : (N,) int, units of 0.1 mm; `spacing` : (N,) int, mm between the tracks of the scan.
     """
     cells, member = occupied(s // CELL_UNITS, d // CELL_UNITS)
     apart = np.zeros(len(cells))
@@ -115,35 +87,35 @@ def _parts_of_filled(cells):
     """`_parts` of cells without gaps between tracks of the scan, sorted along the road."""
     size = CELL_UNITS * COORDINATE_SCALE
     even, width = even_strip(cells)
-    if even.all() and width * size <= MAX_WIDTH_ALONE:
+    if even.all() and width * size <= COMPOUNDS.max_width_alone:
         return np.zeros(len(cells), np.int64), 1
     if not _of_several(*(np.ptp(cells, axis=0) * size).tolist()):
         return bar_with_lines(cells)
     parts, count = np.full(len(cells), -1), 0
-    for window, least in STRIP_WINDOWS:
+    for window, least in COMPOUNDS.strip_windows:
         rest = np.flatnonzero(parts < 0)
-        strip = rest[_in_lines(cells[rest], MAX_SCAN_GAP, window)]
-        before, count = count, _number_strips(parts, count, cells, strip, MAX_SCAN_GAP, size, least)
+        strip = rest[_in_lines(cells[rest], COMPOUNDS.max_scan_gap, window)]
+        before, count = count, _number_strips(parts, count, cells, strip, COMPOUNDS.max_scan_gap, size, least)
         for _, inside in members_of(np.where(parts >= before, parts, -1)):
             parts[inside[~even_strip(cells[inside])[0]]] = -1
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
     # scan lines lie apart within a bar
-    bars = rest[_in_runs(turned[rest], MAX_PAINT_GAP, MIN_RUN_ACROSS)]
-    before, count = count, _number_strips(parts, count, turned, bars, MAX_PAINT_GAP, MAX_SCAN_GAP, MIN_RUN_ACROSS)
+    bars = rest[_in_runs(turned[rest], COMPOUNDS.max_paint_gap, COMPOUNDS.min_run_across)]
+    before, count = count, _number_strips(parts, count, turned, bars, COMPOUNDS.max_paint_gap, COMPOUNDS.max_scan_gap, COMPOUNDS.min_run_across)
     along = np.ascontiguousarray(cells[:, 0])
     for _, bar in members_of(np.where(parts >= before, parts, -1)):
         complete_bar(parts, bar, turned, along)
     if not count:
         return bar_with_lines(cells)
     rest = np.flatnonzero(parts < 0)
-    pieces = _linked(cells[rest], MAX_SCAN_GAP / size, 3.0)
+    pieces = _linked(cells[rest], COMPOUNDS.max_scan_gap / size, 3.0)
     number = int(pieces.max(initial=-1))
     for _, own in members_of(pieces):
         inner, _ = bar_with_lines(cells[rest[own]])
         pieces[own[inner > 0]] = number + inner[inner > 0]
         number += int(inner.max())
     areas = np.bincount(pieces) * size**2 if len(pieces) else np.empty(0)
-    kept = areas >= MIN_LEFTOVER_AREA
+    kept = areas >= COMPOUNDS.min_leftover_area
     later = np.where(kept, count + np.cumsum(kept) - 1, -1)
     parts[rest] = later[pieces]
     lost = parts < 0
@@ -162,7 +134,7 @@ def _in_lines(cells, longest_gap, window):
     if not len(cells):
         return result
     size = CELL_UNITS * COORDINATE_SCALE
-    steps = int(MAX_BORDER_SLOPE * window / MAX_BORDER_DRIFT)
+    steps = int(COMPOUNDS.max_border_slope * window / COMPOUNDS.max_border_drift)
     gap, length, chunk = round(longest_gap / size) // 2 * 2, round(window / size) | 1, int(MORPHOLOGY_CHUNK / size)
     along = np.ascontiguousarray(cells[:, 0])
     for number in np.unique(along // chunk).tolist():
@@ -174,7 +146,7 @@ def _in_lines(cells, longest_gap, window):
         wanted, near = np.flatnonzero(along[rows] // chunk == number), np.arange(len(column))
         for slope in sorted(range(-steps, steps + 1), key=abs):
             painted = np.zeros(len(column), bool)
-            painted[near] = _painted_along(column[near], across[near], slope * (MAX_BORDER_DRIFT / window), gap, length)
+            painted[near] = _painted_along(column[near], across[near], slope * (COMPOUNDS.max_border_drift / window), gap, length)
             result[rows.start + wanted[painted[wanted]]] = True
             wanted = wanted[~painted[wanted]]
             if not len(wanted):
@@ -202,7 +174,7 @@ def _painted_along(column, across, slope, gap, length):
     closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((1, gap + 1), np.uint8))
     # a line may leave its row of cells by one
     joined = cv2.dilate(cv2.copyMakeBorder(closed, 1, 1, 0, 0, cv2.BORDER_WRAP), np.ones((3, 1), np.uint8))[1:-1]
-    full = (_sums_along(joined, length) >= LINE_SHARE * length).astype(np.uint8)
+    full = (_sums_along(joined, length) >= COMPOUNDS.line_share * length).astype(np.uint8)
     return _sums_along(full, length)[row, column] > 0
 
 
@@ -212,9 +184,9 @@ def _sums_along(mask, length):
 
 
 def _number_strips(parts, count, cells, rows, gap, gap_across, least):
-    """Number in `parts` the strips that the cells `rows` make, from `count` on; returns the next number.
+    """Number in `parts` the strips of at least `least` m that the cells `rows` make, from `count` on; returns the next number.
 
-    cells : (K, 2) along the strips and across them; gap, gap_across : m between cells of one; least : m, its length
+    `cells` : (K, 2) along the strips and across them; `gap`, `gap_across` : m between cells of one.
     """
     size = CELL_UNITS * COORDINATE_SCALE
     strips = _linked(cells[rows], gap / size, gap_across / size)
@@ -260,19 +232,8 @@ def _linked(cells, along, across):
 
 
 def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
-    """Which pieces continue each other over a worn spot.
+    """(N,) int, the same number for pieces that continue each other over a worn spot; `max_width` : m, a line's.
 
-    Parameters
-    ----------
-    shapes : list of N Shape
-    max_width : m, a line's
-
-    Returns
-    -------
-    (N,) int, the same number for pieces of one marking
-
-    Notes
-    -----
     Narrow pieces along the road are joined where one begins up to 0.9 m after the end of another on the same line, farther where tracks of the scan
     cross it askew; pieces of a bar across the road over 0.3 m where their front and rear are the same.
     """
@@ -291,10 +252,11 @@ def _along(shapes, max_width):
     begins = np.array([(shapes[k].s0, shapes[k].begin) for k in narrow])
     ends = np.array([(shapes[k].s1, shapes[k].finish) for k in narrow])
     # a line that the tracks of the scan cross askew shows on each of them for a while
-    longest = np.clip(TRACKS_PER_GAP * np.array([shapes[k].spacing for k in narrow]), MAX_WORN_GAP, MAX_GAP_BETWEEN_TRACKS)
+    spacing = np.array([shapes[k].spacing for k in narrow])
+    longest = np.clip(COMPOUNDS.tracks_per_gap * spacing, COMPOUNDS.max_worn_gap, COMPOUNDS.max_gap_between_tracks)
     # a box of -0.2 to 2 m along and 8 cm either way across about each end
-    scale = np.array([(MAX_GAP_BETWEEN_TRACKS + MAX_FRAGMENT_OVERLAP) / 2, MAX_FRAGMENT_OFFSET])
-    about = (ends + np.array([(MAX_GAP_BETWEEN_TRACKS - MAX_FRAGMENT_OVERLAP) / 2, 0.0])) / scale
+    scale = np.array([(COMPOUNDS.max_gap_between_tracks + COMPOUNDS.max_fragment_overlap) / 2, COMPOUNDS.max_fragment_offset])
+    about = (ends + np.array([(COMPOUNDS.max_gap_between_tracks - COMPOUNDS.max_fragment_overlap) / 2, 0.0])) / scale
     near = cKDTree(begins / scale).query_ball_point(about, 1.0, p=np.inf)
     pairs = np.array([(a, b) for a, found in enumerate(near) for b in found if a != b], np.int64).reshape(-1, 2)
     gap = begins[pairs[:, 1], 0] - ends[pairs[:, 0], 0]
@@ -302,81 +264,57 @@ def _along(shapes, max_width):
 
 
 def _unseen_gaps(shapes, narrow):
-    """(P, 2) pieces of one line with a gap that was not seen: a track of the scan leaves the line sideways before it, or comes in sideways after it.
-
-    Where a track leaves a line sideways the line need not end there.
-    """
-    sparse = np.array([k for k in narrow.tolist() if shapes[k].spacing > 0 and max(shapes[k].askew) >= MIN_ASKEW], np.int64)
+    """(P, 2) pieces of one line with a gap that was not seen: a track of the scan leaves the line sideways before it, or comes in so after it."""
+    sparse = np.array([k for k in narrow.tolist() if shapes[k].spacing > 0 and max(shapes[k].askew) >= COMPOUNDS.min_askew], np.int64)
     if len(sparse) < 2:
         return np.empty((0, 2), np.int64)
     first, last, offset = (np.array([getattr(shapes[k], name) for k in sparse]) for name in ("s0", "s1", "offset"))
-    sideways = np.array([shapes[k].askew for k in sparse]) >= MIN_ASKEW
-    a, b = (np.concatenate(found) for found in zip(*overlapping_pairs(first, last, first, last, MAX_UNSEEN_GAP)))
+    sideways = np.array([shapes[k].askew for k in sparse]) >= COMPOUNDS.min_askew
+    a, b = (np.concatenate(found) for found in zip(*overlapping_pairs(first, last, first, last, COMPOUNDS.max_unseen_gap)))
     gap = first[b] - last[a]
-    unseen = (a != b) & (gap >= 0) & (gap <= MAX_UNSEEN_GAP) & (sideways[a, 1] | sideways[b, 0])
-    return sparse[np.column_stack([a, b])[unseen & (np.abs(offset[a] - offset[b]) <= MAX_UNSEEN_OFFSET)]]
+    unseen = (a != b) & (gap >= 0) & (gap <= COMPOUNDS.max_unseen_gap) & (sideways[a, 1] | sideways[b, 0])
+    return sparse[np.column_stack([a, b])[unseen & (np.abs(offset[a] - offset[b]) <= COMPOUNDS.max_unseen_offset)]]
 
 
 def _bars(column):
     """(P, 2) neighbouring pieces of bars across the road."""
     s0, s1, d0, d1 = (column[name] for name in ("s0", "s1", "d0", "d1"))
     thick, broad = s1 - s0, d1 - d0
-    rows = np.flatnonzero((thick >= STOP_LINE_PIECE_THICKNESS[0]) & (thick <= STOP_LINE_PIECE_THICKNESS[1]) & (broad >= MAX_STOP_LINE_GAP))
+    rows = np.flatnonzero((thick >= CLASSES.stop_line_width[0]) & (thick <= CLASSES.stop_line_width[1]) & (broad >= COMPOUNDS.max_stop_line_gap))
     if len(rows) < 2:
         return np.empty((0, 2), np.int64)
     # nearly the same front and rear
-    pairs = cKDTree(np.column_stack([s0, s1])[rows]).query_pairs(MAX_SIDE_SHIFT, p=np.inf, output_type="ndarray").reshape(-1, 2)
+    pairs = cKDTree(np.column_stack([s0, s1])[rows]).query_pairs(COMPOUNDS.max_side_shift, p=np.inf, output_type="ndarray").reshape(-1, 2)
     a, b = rows[pairs].T
     gap = np.maximum(d0[a], d0[b]) - np.minimum(d1[a], d1[b])
-    return np.column_stack([a, b])[(gap <= MAX_STOP_LINE_GAP) & (np.maximum(broad[a], broad[b]) >= MIN_STOP_LINE_PIECE)]
+    return np.column_stack([a, b])[(gap <= COMPOUNDS.max_stop_line_gap) & (np.maximum(broad[a], broad[b]) >= COMPOUNDS.min_stop_line_piece)]
 
 
 # Bars across the road, as stop lines are, and the lines that end at them. Such a cluster is short, so the bar is known by its own form: as thick as
 # stop lines are, full, and the line leaves its front or its rear.
 
-WIDTH_STEP, WIDTH_TOLERANCE = 12, 2     # cells along a line whose width is taken together, and across by which it may be uneven
-MAX_WIDTH_ALONE = 0.34                  # m of an even strip with nothing beside it; a double line is broader
-MIN_LENGTH_BESIDE_BAR = 1.0             # m along the road: what is shorter is nothing but a bar
-FRAYED_RIM = 0.12                       # m that a bar may reach farther along the road at a place; the tip of an arrow is longer
-MAX_PAINT_GAP = 0.24                    # m across the road, closed; the stripes of a zebra crossing leave more
-MAX_SCAN_GAP = 0.40                     # m between scan lines, closed
-STOP_LINE_PIECE_THICKNESS = 0.18, 0.90  # m along the road of a stop line's pieces
-MIN_STOP_LINE_PIECE = 0.8               # m across: a row of shorter blocks is a give-way line
-
 
 def even_strip(cells: np.ndarray) -> tuple[np.ndarray, float]:
-    """Which cells of a strip lie within its usual width about its middle, as what touches it does not.
-
-    Parameters
-    ----------
-    cells : (K, 2) int, along the strip and across it
-
-    Returns
-    -------
-    even : (K,) bool
-    width : the usual width, cells
-    """
-    step = (cells[:, 0] - cells[:, 0].min()) // WIDTH_STEP
+    """Which cells of a strip, (K, 2) along it and across it, lie within its usual width, in cells, about its middle, as what touches it does not."""
+    step = (cells[:, 0] - cells[:, 0].min()) // COMPOUNDS.width_step
     count = int(step.max()) + 1
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.minimum.at(low, step, cells[:, 1])
     np.maximum.at(high, step, cells[:, 1])
     seen = np.isfinite(low)
     usual = np.median((high - low)[seen])
-    even = np.flatnonzero(seen & (high - low <= usual + WIDTH_TOLERANCE))
+    even = np.flatnonzero(seen & (high - low <= usual + COMPOUNDS.width_tolerance))
     middle = np.interp(step, even, (low[even] + high[even]) / 2)
-    return np.abs(cells[:, 1] - middle) <= (usual + WIDTH_TOLERANCE) / 2, usual
+    return np.abs(cells[:, 1] - middle) <= (usual + COMPOUNDS.width_tolerance) / 2, usual
 
 
 def complete_bar(parts: np.ndarray, bar: np.ndarray, turned: np.ndarray, along: np.ndarray) -> None:
-    """Give a bar what is left over between its front and its rear: where it is worn it is no less its paint.
+    """Give a bar, in `parts`, what is left over between its front and its rear: where it is worn it is no less its paint.
 
     Parameters
     ----------
-    parts : (K,) int, the part of every cell, below 0 for what is left over; changed in place
-    bar : (N,) the numbers of its cells, ascending
-    turned : (K, 2) int cells, across the road first, sorted along it
-    along : (K,) the second column of `turned`
+    parts : (K,) int, the part of every cell, below 0 for what is left over; bar : (N,) the numbers of the bar's cells, ascending
+    turned : (K, 2) int cells, across the road first, sorted along it; along : (K,) its second column
     """
     own = turned[bar]
     (left, front), (right, rear) = own.min(axis=0), own.max(axis=0)
@@ -390,14 +328,7 @@ def complete_bar(parts: np.ndarray, bar: np.ndarray, turned: np.ndarray, along: 
 def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
     """Cut a bar from the lines that end at it or cross it, if that is all there is. The head of an arrow is no bar: it is longer or has a tip.
 
-    Parameters
-    ----------
-    cells : (K, 2) int, along the road and across it, different ones
-
-    Returns
-    -------
-    parts : (K,) int, the part of every cell, numbered from 0
-    count : how many there are; 1 for anything else
+    `cells` : (K, 2) int, along the road and across it, different ones. Returns (K,) int, the part of every cell from 0 on, and how many there are.
     """
     whole = np.zeros(len(cells), np.int64), 1
     if not len(cells):
@@ -405,22 +336,23 @@ def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
     first = cells.min(axis=0)
     mask = np.zeros(cells.max(axis=0) - first + 1, bool)
     mask[tuple((cells - first).T)] = True
-    for axis, gap in enumerate((MAX_SCAN_GAP, MAX_PAINT_GAP)):
+    for axis, gap in enumerate((COMPOUNDS.max_scan_gap, COMPOUNDS.max_paint_gap)):
         mask = fill_gaps(mask, int(round(gap / CELL_SIZE)), axis)
     reach = np.where(mask.any(axis=1), mask.shape[1] - mask[:, ::-1].argmax(axis=1) - mask.argmax(axis=1), 0)
-    broad = np.flatnonzero(reach * CELL_SIZE > MAX_WIDTH_ALONE)
+    broad = np.flatnonzero(reach * CELL_SIZE > COMPOUNDS.max_width_alone)
     if not len(broad):
         return whole
     front, rear = broad[0], broad[-1] + 1
     across = np.flatnonzero(mask[front:rear].any(axis=0))
     box = mask[front:rear, across[0]:across[-1] + 1]
-    thin, thick = STOP_LINE_PIECE_THICKNESS
-    if not thin <= len(box) * CELL_SIZE <= thick or box.shape[1] * CELL_SIZE < MIN_STOP_LINE_PIECE or box.mean() < MIN_STOP_LINE_FILL:
+    thin, thick = CLASSES.stop_line_width
+    short = box.shape[1] * CELL_SIZE < COMPOUNDS.min_stop_line_piece
+    if not thin <= len(box) * CELL_SIZE <= thick or short or box.mean() < CLASSES.min_stop_line_fill:
         return whole
     row, parts, count = cells[:, 0] - first[0], np.zeros(len(cells), np.int64), 1
     for side, length in ((row < front, front * CELL_SIZE), (row >= rear, (len(mask) - rear) * CELL_SIZE)):
-        if FRAYED_RIM < length < MIN_LENGTH_BESIDE_BAR:
+        if COMPOUNDS.frayed_rim < length < COMPOUNDS.min_length_beside_bar:
             return whole
-        if length > FRAYED_RIM:
+        if length > COMPOUNDS.frayed_rim:
             parts[side], count = count, count + 1
     return parts, count

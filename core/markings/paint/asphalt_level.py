@@ -17,73 +17,37 @@ from ...intensity.asphalt_model import asphalt_statistics
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import RoadGrid
-from .not_paint import COARSE_CELLS, RimBands, gutter_cells
+from ..weights import ASPHALT, RIMS
+from .not_paint import RimBands, gutter_cells
 from .settings import MarkingSettings
-
-BACKGROUND_LIMIT = 2.5      # spreads: brighter cells, and those darker by twice as much, are no background
-BACKGROUND_SQUARES = 11     # squares of 20 cm: the background is the mean of 2.2 m around each
-PATCH_SIDE = 25             # cells of 4 cm: 1 m, the smallest patch
-PATCH_NEIGHBOURHOOD = 7     # cells: a spot is bright where most of the 28 cm around it are
-PATCH_RIM = 3               # cells: the irregular rim of a patch
-DARK_SHARE = 0.5            # of the usual brightness: what is darker is water or tar, and no asphalt to compare paint with
-DARK_RIM = 2                # cells about it whose brightness is interpolated between both
-LETTERS_SEPARATION = 0.8    # of the variance that lies between paint and asphalt among letters; of even ground it is two thirds to three quarters
-MOST_OF_LETTERS = 0.65      # of a piece that strokes cover at most: a bright slab has a dark rim, too
-LETTERS_ASPHALT = 1 / 3     # of the darker cells among letters that are no brighter than the asphalt of the road
-PATCH_TAIL = 3.0            # of its own spreads: how far the brightest cells of a patch lie above its median
 
 
 def flatten(brightness: np.ndarray, median: np.ndarray, spread: np.ndarray, rims: Sequence[RimBands]) -> tuple[np.ndarray, np.ndarray]:
-    """Brightness above the asphalt around each cell, and the cells of gutters.
+    """Brightness above the asphalt around each cell, (rows, columns) spreads, and which cells are gutters, (rows, columns) bool.
 
-    Parameters
-    ----------
-    brightness : (rows, columns) NaN where nothing was scanned
-    median, spread : of asphalt, (columns,) or (rows, columns)
-    rims : RimBands of the rim of the scanned road and of the road's edges
-
-    Returns
-    -------
-    z : (rows, columns) spreads above the asphalt around
-    gutter : (rows, columns) bool
+    `brightness` : (rows, columns), NaN where nothing was scanned. `median`, `spread` : of asphalt, (columns,) or (rows, columns).
+    `rims` : of the rim of the scanned road and of the road's edges.
     """
     z = (brightness - median) / spread
     gutter = np.logical_or.reduce([gutter_cells(z, rim) for rim in rims])
     with np.errstate(invalid="ignore"):
-        even = (z < BACKGROUND_LIMIT) & (z > -2 * BACKGROUND_LIMIT) & ~gutter
+        even = (z < ASPHALT.background_limit) & (z > -2 * ASPHALT.background_limit) & ~gutter
     z = z - background(z, even)
-    return z - patch_level(z, BACKGROUND_LIMIT), gutter
+    return z - patch_level(z, ASPHALT.background_limit), gutter
 
 
 def dark_cells(brightness: np.ndarray, usual: float) -> np.ndarray:
-    """Cells of water, tar and other dark ground, with their rim.
+    """(rows, columns) bool, cells of water, tar and other dark ground, with their rim.
 
-    Parameters
-    ----------
-    brightness : (rows, columns) NaN where nothing was scanned
-    usual : brightness of asphalt about there
-
-    Returns
-    -------
-    (rows, columns) bool
+    `brightness` : (rows, columns), NaN where nothing was scanned; `usual` : brightness of asphalt about there.
     """
     with np.errstate(invalid="ignore"):
-        dark = (brightness < np.float32(DARK_SHARE * usual)).astype(np.uint8)
-    return cv2.dilate(dark, np.ones((2 * DARK_RIM + 1, 2 * DARK_RIM + 1), np.uint8)).astype(bool)
+        dark = (brightness < np.float32(ASPHALT.dark_share * usual)).astype(np.uint8)
+    return cv2.dilate(dark, np.ones((2 * ASPHALT.dark_rim + 1, 2 * ASPHALT.dark_rim + 1), np.uint8)).astype(bool)
 
 
 def asphalt_profile(bins: list[AsphaltBin], offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Median and spread of asphalt across the road, interpolated between the middles of one window's bins.
-
-    Parameters
-    ----------
-    bins : of `asphalt_bins`, at least one
-    offsets : (N,) m
-
-    Returns
-    -------
-    median, spread : (N,) float32
-    """
+    """Median and spread of asphalt, (N,) float32 each, at `offsets`, (N,) m, between the middles of one window's `bins`, at least one."""
     middles = [b.middle for b in bins]
     return (np.interp(offsets, middles, [b.median for b in bins]).astype(np.float32),
             np.interp(offsets, middles, [b.spread for b in bins]).astype(np.float32))
@@ -92,11 +56,8 @@ def asphalt_profile(bins: list[AsphaltBin], offsets: np.ndarray) -> tuple[np.nda
 class AsphaltLevels:
     """Asphalt and threshold at any place, interpolated between the bins of several windows.
 
-    Parameters
-    ----------
     windows : list of (AsphaltBin, OtsuSplit) by window number
     window_length : m; window k reaches from k to k + 1 times that
-    settings : MarkingSettings
     """
 
     def __init__(self, windows: dict[int, list[tuple[AsphaltBin, OtsuSplit]]], window_length: float, settings: MarkingSettings):
@@ -112,7 +73,7 @@ class AsphaltLevels:
         for _, split in self.windows[w]:
             value = split.threshold
             if not split.accepted:
-                beside = [other.threshold for other in near if abs(other.middle - split.middle) < MAX_BIN_WIDTH]
+                beside = [other.threshold for other in near if abs(other.middle - split.middle) < ASPHALT.max_bin_width]
                 value = float(np.median(beside)) if beside else self.settings.alone
             limits.append(float(np.clip(value, self.settings.lowest, self.settings.highest)))
         return limits
@@ -138,21 +99,15 @@ class AsphaltLevels:
 
 
 def background(z: np.ndarray, counted: np.ndarray) -> np.ndarray:
-    """Wheel tracks, seams and patches: the level of asphalt around each cell, in spreads.
+    """Wheel tracks, seams and patches: the level of asphalt around each cell, (rows, columns) float32 spreads; 0 where hardly any asphalt is near.
 
-    Parameters
-    ----------
-    z : (rows, columns) brightness in spreads above asphalt
-    counted : (rows, columns) bool, cells of asphalt: neither paint nor gutter, and with data
-
-    Returns
-    -------
-    (rows, columns) float32; 0 where hardly any asphalt is near
+    `z` : (rows, columns) brightness in spreads above asphalt. `counted` : (rows, columns) bool, asphalt with data, neither paint nor gutter.
     """
     count, total = _coarse_sums(counted.view(np.uint8)), _coarse_sums(np.where(counted, z, z.dtype.type(0)))
-    count, total = (cv2.boxFilter(a, -1, (BACKGROUND_SQUARES, BACKGROUND_SQUARES), borderType=cv2.BORDER_CONSTANT) for a in (count, total))
-    level = np.where(count > 0.1 * COARSE_CELLS**2, total / np.maximum(count, 1e-9), 0.0).astype(np.float32)
-    size = level.shape[1] * COARSE_CELLS, level.shape[0] * COARSE_CELLS
+    around = ASPHALT.background_squares, ASPHALT.background_squares
+    count, total = (cv2.boxFilter(a, -1, around, borderType=cv2.BORDER_CONSTANT) for a in (count, total))
+    level = np.where(count > 0.1 * RIMS.coarse_cells**2, total / np.maximum(count, 1e-9), 0.0).astype(np.float32)
+    size = level.shape[1] * RIMS.coarse_cells, level.shape[0] * RIMS.coarse_cells
     return cv2.resize(level, size, interpolation=cv2.INTER_NEAREST)[:z.shape[0], :z.shape[1]]
 
 
@@ -160,56 +115,48 @@ def _coarse_sums(values):
     """(K, L) float64 sums over squares of 20 cm; those at the end may be smaller. values : uint8, float32 or float64"""
     corners = cv2.integral(values)
     for axis, size in enumerate(values.shape):
-        corners = np.diff(corners.take(np.append(np.arange(0, size, COARSE_CELLS), size), axis=axis), axis=axis)
+        corners = np.diff(corners.take(np.append(np.arange(0, size, RIMS.coarse_cells), size), axis=axis), axis=axis)
     return corners.astype(float, copy=False)
 
 
 def patch_level(z: np.ndarray, bright: float) -> np.ndarray:
-    """How much brighter bright patches are than the asphalt around them, plus their additional scatter. Our own rule.
+    """How much brighter bright patches are than the asphalt around them, plus their additional scatter; 0 outside patches. Our own rule.
 
-    Repairs and concrete slabs are larger in either direction than any painted area. Words and symbols may be as large, but
-    are no patches: between their strokes is the asphalt of the road.
-
-    Parameters
-    ----------
-    z : (rows, columns) brightness in spreads above asphalt, NaN where nothing was scanned
-    bright : spreads; brighter cells are not asphalt of the surroundings
-
-    Returns
-    -------
-    (rows, columns) float32 spreads, 0 outside patches
+    Repairs and concrete slabs are larger in either direction than any painted area. Words and symbols may be as large, but are no patches: between
+    their strokes is the asphalt of the road. `z` : (rows, columns) spreads above asphalt, NaN where nothing was scanned; beyond `bright` spreads a
+    cell is not asphalt of the surroundings.
     """
     level = np.zeros(z.shape, np.float32)
     seen = np.isfinite(z)
     with np.errstate(invalid="ignore"):
         above = z > bright
-    if np.count_nonzero(above) < PATCH_SIDE**2 // 2:
+    if np.count_nonzero(above) < ASPHALT.patch_side**2 // 2:
         return level
-    size = PATCH_NEIGHBOURHOOD, PATCH_NEIGHBOURHOOD
+    size = ASPHALT.patch_neighbourhood, ASPHALT.patch_neighbourhood
     share, known = (cv2.boxFilter(a.view(np.uint8), -1, size, normalize=False, borderType=cv2.BORDER_CONSTANT) for a in (above, seen))
-    filled = (share > known // 2) & (known > 0.1 * PATCH_NEIGHBOURHOOD**2)
-    if np.count_nonzero(filled) < PATCH_SIDE**2:
+    filled = (share > known // 2) & (known > 0.1 * ASPHALT.patch_neighbourhood**2)
+    if np.count_nonzero(filled) < ASPHALT.patch_side**2:
         return level
-    core = _morphed(cv2.erode, filled, PATCH_SIDE)
+    core = _morphed(cv2.erode, filled, ASPHALT.patch_side)
     if not core.any():
         return level
-    whole = _morphed(cv2.dilate, core, PATCH_SIDE + 2 * PATCH_RIM) & (filled | above)
+    whole = _morphed(cv2.dilate, core, ASPHALT.patch_side + 2 * ASPHALT.patch_rim) & (filled | above)
     labels, count = ndimage.label(whole)
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
         piece = labels[box] == number
         values = z[box][piece & seen[box]]
         if len(values) and not _letters(values, bright):
             median, spread = asphalt_statistics(values)
-            level[box][piece] = median + PATCH_TAIL * max(spread - 1.0, 0.0)
+            level[box][piece] = median + ASPHALT.patch_tail * max(spread - 1.0, 0.0)
     return level
 
 
 def _letters(z, bright):
     """Whether the cells of a piece are strokes of paint and the road's own asphalt between them, by the criterion of Otsu (1979)."""
-    z = np.clip(z, *HISTOGRAM_LIMITS)
+    z = np.clip(z, *ASPHALT.histogram_limits)
     threshold, below, above, share = otsu(z)
-    apart = share * (1.0 - share) * (above - below) ** 2 > LETTERS_SEPARATION * float(z.var())
-    return apart and share <= MOST_OF_LETTERS and np.count_nonzero(z < bright) >= LETTERS_ASPHALT * np.count_nonzero(z < threshold)
+    apart = share * (1.0 - share) * (above - below) ** 2 > ASPHALT.letters_separation * float(z.var())
+    return apart and share <= ASPHALT.most_of_letters and np.count_nonzero(z < bright) >= ASPHALT.letters_asphalt * np.count_nonzero(z < threshold)
 
 
 def _morphed(operation, mask, side):
@@ -221,22 +168,12 @@ def _morphed(operation, mask, side):
 # Bins across the road and Otsu's threshold in each. A bin is as wide as the spread of point density, so its points were measured from nearly one
 # distance. Brightness is in robust z: above the median of asphalt, in units of its spread below the median, which paint does not increase.
 
-MIN_BIN_WIDTH, MAX_BIN_WIDTH = 0.75, 3.0  # m
-MIN_BIN_CELLS = 500     # below which a bin joins its neighbour
-MIN_ASPHALT_SHARE = 0.25   # of a bin that asphalt covers at least, among letters too: with less it is brighter ground that fills it
-PAINT_LEVEL = 2.0       # times the usual brightness of asphalt: a bin whose median is beyond that is one of paint
-OTSU_LEVELS = 256       # of the histogram
-HISTOGRAM_LIMITS = -6.0, 60.0   # z: the range of Otsu's histogram; a few specular reflections must not stretch it
+OTSU_LEVELS = 256   # derived: of the histogram
 
 
 @dataclass(frozen=True)
 class AsphaltBin:
-    """One bin across the road in one window along it.
-
-    middle : m, its offset
-    count : cells of asphalt with data
-    median, spread : of asphalt's brightness
-    """
+    """One bin across the road in one window: offset of its middle, m, cells of asphalt with data, and median and spread of their brightness."""
 
     middle: float
     count: int
@@ -246,65 +183,37 @@ class AsphaltBin:
 
 @dataclass(frozen=True)
 class OtsuSplit:
-    """Otsu's two classes of one bin in robust z.
+    """Otsu's two classes of one bin in robust z."""
 
-    middle : m, offset of the bin
-    spread : of asphalt's z, 1 where the background was even
-    threshold : Otsu's
-    below, above : means of the classes
-    share : of the bright class
-    accepted : whether the classes are two materials and not one cut in half
-    """
-
-    middle: float
-    spread: float
+    middle: float   # m, offset of the bin
+    spread: float   # of asphalt's z, 1 where the background was even
     threshold: float
-    below: float
+    below: float   # means of the classes
     above: float
-    share: float
-    accepted: bool
+    share: float   # of the bright class
+    accepted: bool   # whether the classes are two materials and not one cut in half
 
 
 def bin_edges(d: np.ndarray, low: float, high: float) -> np.ndarray:
-    """Edges of the bins across the road from the Gaussian of point density.
+    """(B + 1,) ascending edges of bins across the road, from the middle of the point density outwards.
 
-    Parameters
-    ----------
-    d : (N,) int32 offsets of the window's points, units of 0.1 mm
-    low, high : extent of the road, metres
-
-    Returns
-    -------
-    (B + 1,) ascending edges; bins are counted from the middle of the density outwards
-
-    Notes
-    -----
-    sigma of the density is the bin width r, clamped to 0.75-3 m; there are
-    INT(W_L / r) + 1 bins to the left and INT(W_R / r) + 1 to the right [1]_.
-
-    References
-    ----------
-    .. [1] Driving-line thesis (Waterloo, 2017), Eq. 3.8-3.9, after Guan (2014).
+    The width r of a bin is the sigma of the density, clamped to 0.75 to 3 m; INT(W_L / r) + 1 bins lie to the left and INT(W_R / r) + 1 to the right
+    (driving-line thesis, Waterloo 2017, Eq. 3.8-3.9, after Guan 2014). `d` : (N,) int32 offsets of the window's points, units of 0.1 mm;
+    `low`, `high` : extent of the road, m.
     """
     if not len(d):
         return np.array([low, high])
     first, middle, third = (quantiles(d, [0.25, 0.5, 0.75]) * COORDINATE_SCALE).tolist()
     # the Gaussian that has the quartiles of the density: far stray points do not widen it
-    width = float(np.clip((third - first) / 1.349, MIN_BIN_WIDTH, MAX_BIN_WIDTH))
+    width = float(np.clip((third - first) / 1.349, ASPHALT.min_bin_width, ASPHALT.max_bin_width))
     left, right = int(max(high - middle, 0) / width) + 1, int(max(middle - low, 0) / width) + 1
     return middle + width * np.arange(-right, left + 1)
 
 
 def otsu(values: np.ndarray) -> tuple[float, float, float, float]:
-    """Otsu's threshold: the split with the greatest variance between its two classes (Otsu 1979).
+    """Otsu's threshold (1979), the split of (N,) values, at least one, with the greatest variance between its two classes.
 
-    Parameters
-    ----------
-    values : (N,) float, at least one
-
-    Returns
-    -------
-    threshold, mean below, mean above, share above
+    Returns the threshold, the means below and above it, and the share above it.
     """
     low, high = values.min(), values.max()
     if not high > low:
@@ -325,27 +234,22 @@ def otsu(values: np.ndarray) -> tuple[float, float, float, float]:
 
 
 def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, edges: np.ndarray, usual: float = np.inf) -> list[AsphaltBin]:
-    """Asphalt in the bins of one window.
+    """Asphalt in the bins of one window, from right to left; a bin with fewer than 500 cells is joined to its neighbour.
 
-    Half of a zebra crossing is stripes, and of the cells of a bin that lie on one most may be. Where the median of a bin
-    tells that, what is so bright is left out of all of them.
+    Half of a zebra crossing is stripes, and of the cells of a bin that lies on one most may be. Where the median of a bin tells that, what is so
+    bright is left out of all of them.
 
     Parameters
     ----------
     values : (rows, columns) brightness
     counted : (rows, columns) bool, cells away from the road's rim, where `values` has no NaN
-    offsets : (columns,) m, ascending
-    edges : (B + 1,) of `bin_edges`
+    offsets : (columns,) m, ascending; edges : (B + 1,) of `bin_edges`
     usual : brightness of asphalt in the window, where that is the same at all distances from the vehicle
-
-    Returns
-    -------
-    list of AsphaltBin from right to left; a bin with fewer than 500 cells is joined to its neighbour
     """
     bins = _bins(values, counted, offsets, edges)
-    if max((b.median for b in bins), default=0.0) > PAINT_LEVEL * usual:
-        dim = counted & (values < np.float32(PAINT_LEVEL * usual))
-        if np.count_nonzero(dim) >= MIN_BIN_CELLS:
+    if max((b.median for b in bins), default=0.0) > ASPHALT.paint_level * usual:
+        dim = counted & (values < np.float32(ASPHALT.paint_level * usual))
+        if np.count_nonzero(dim) >= ASPHALT.min_bin_cells:
             return _bins(values, dim, offsets, edges)
     return bins
 
@@ -370,7 +274,7 @@ def _joined(counts):
     runs, first, total = [], 0, 0
     for k, count in enumerate(counts):
         total += count
-        if total >= MIN_BIN_CELLS:
+        if total >= ASPHALT.min_bin_cells:
             runs.append((first, k + 1))
             first, total = k + 1, 0
     if first < len(counts):
@@ -380,20 +284,14 @@ def _joined(counts):
 
 def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[AsphaltBin], separation: float,
                highest: float = np.inf) -> list[OtsuSplit]:
-    """Otsu's split of every bin of one window.
+    """Otsu's split of each of the `bins` of one window.
 
     Parameters
     ----------
-    z : (rows, columns) brightness in spreads above asphalt
-    counted : (rows, columns) bool, cells that are no gutter, where z has no NaN
+    z : (rows, columns) spreads above asphalt; counted : (rows, columns) bool, cells that are no gutter, where z has no NaN
     offsets : (columns,) m, ascending
-    bins : list of AsphaltBin of the same window
-    separation : how many spreads the bright class must lie above the dark one
-    highest : spreads, what is brighter is paint wherever the threshold lies: on a zebra crossing that may be half of a bin
-
-    Returns
-    -------
-    list of OtsuSplit, one per bin
+    separation : spreads that the bright class must lie above the dark one
+    highest : spreads; what is brighter is paint wherever the threshold lies: on a zebra crossing that may be half of a bin
     """
     middles = np.array([b.middle for b in bins])
     bounds = [0, *np.searchsorted(offsets, (middles[:-1] + middles[1:]) / 2, side="right").tolist(), len(offsets)]
@@ -402,11 +300,11 @@ def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: li
 
 
 def _split(z, middle, separation, highest):
-    if len(z) < MIN_BIN_CELLS:
+    if len(z) < ASPHALT.min_bin_cells:
         return OtsuSplit(middle, 1.0, 0.0, 0.0, 0.0, 0.0, False)
     dim = z[z <= highest]
-    median, spread = asphalt_statistics(dim if len(dim) >= MIN_ASPHALT_SHARE * len(z) else z)
-    z = np.clip((z - median) / spread, *HISTOGRAM_LIMITS)
+    median, spread = asphalt_statistics(dim if len(dim) >= ASPHALT.min_asphalt_share * len(z) else z)
+    z = np.clip((z - median) / spread, *ASPHALT.histogram_limits)
     threshold, below, above, share = otsu(z)
     accepted = above - below > separation and threshold > 1.0 and share <= 0.5
     return OtsuSplit(middle, spread, threshold, below, above, share, accepted)

@@ -22,6 +22,7 @@ from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore
 from ..road_grid import CELL_UNITS
+from ..weights import ASPHALT
 from .settings import MarkingSettings, PaintMethod
 from .windows import (
     THRESHOLD_WINDOW,
@@ -39,28 +40,25 @@ from .windows import (
     windows_of,
 )
 
-WINDOWS_PER_TASK = 4     # windows of 20 m that a worker process is given together: at everyday density a fifth of a second of its time
+WINDOWS_PER_TASK = 4   # derived: windows of 20 m that a worker process is given together: at everyday density a fifth of a second of its time
 
 
 def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
                      progress: Progress = Progress(), mask_path: str | PathLike | None = None) -> RoadPoints:
-    """Road points that lie on paint.
+    """Road points, corrected or not, that lie on paint.
+
+    Multi-thresholds after Guan et al. (2014) and the driving-line thesis (Waterloo, 2017); our own are the local level of asphalt, the treatment of
+    gutters and patches, and the averages for noisy scanners.
 
     Parameters
     ----------
-    road_points : RoadPoints, corrected or not
-    image : IntensityImage of the same points, in memory or on disk; a method on points needs it for the mask alone
+    image : of the same points, in memory or on disk; a method on points needs it for the mask alone
     mask_path : where to write the mask of markings as GeoTIFF in the image's own pixels, or None
 
     Raises
     ------
     RoadExtractionError
         If the mask cannot be written.
-
-    Notes
-    -----
-    Multi-thresholds after Guan et al. (2014) and the driving-line thesis (Waterloo, 2017); our own are the
-    local level of asphalt, the treatment of gutters and patches, and the averages for noisy scanners.
     """
     saturated = "" if road_points.has_corrected else saturation_of(road_points).warning
     if saturated:
@@ -147,38 +145,27 @@ class _SectionWriter:
 # The scatter of single points of each scanner on asphalt decides whether the scanner is noisy: half of asphalt's intensity under multi-beam
 # scanners, a sixth under mirror scanners. A scanner is judged by all roads of a survey.
 
-NOISY_SCATTER = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
-SCATTER_SQUARE = 1.0      # m
-MIN_SQUARE_POINTS = 30  # points of one scanner
-MIN_SCANNER_POINTS = 500     # in squares, below which the scatter of a scanner is unknown
-MAX_SCATTER_POINTS = 100_000   # of a window that are examined; of twice as many an evenly spread share
-EXAMINED_WINDOWS = 16    # windows of 20 m that a worker process is given together
-SAMPLED_WINDOW_STEP = 4      # every fourth window of a road is examined; the others only for scanners that are in none of these
+MAX_SCATTER_POINTS = 100_000   # derived: of a window that are examined; of twice as many an evenly spread share
+EXAMINED_WINDOWS = 16   # derived: windows of 20 m that a worker process is given together
+SAMPLED_WINDOW_STEP = 4   # derived: every fourth window of a road is examined; the others only for scanners that are in none of these
 
 WindowKey = tuple[int, int]   # road, number of the window
 
 
 @dataclass(frozen=True)
 class ScannerScatter:
-    """ScannerScatter of a survey's scanners.
+    """How single points of each scanner scatter on asphalt.
 
-    shares : {scanner: scatter as a share of asphalt's level, the median over squares of 1 m of all roads}; scanners with too few
-        points are left out, and are taken for not noisy
-    points : {(road, window): (scanners,) points of each scanner}
+    shares : {scanner: scatter as a share of asphalt's level, the median over squares of 1 m of all roads}; scanners with too few points are left
+        out, and are taken for not noisy
     """
 
     shares: dict[int, float]
-    points: dict[WindowKey, np.ndarray]
+    points: dict[WindowKey, np.ndarray]   # {(road, window): (scanners,) points of each scanner}
 
     @classmethod
     def of(cls, road_points: RoadPoints, windows: Sequence[WindowKey], executor: Executor, progress: Progress = Progress()) -> ScannerScatter:
-        """ScannerScatter from the windows of a survey.
-
-        Parameters
-        ----------
-        windows : (road, window) of all roads
-        executor : Executor that looks at the windows
-        """
+        """ScannerScatter from the windows, (road, window), of all roads of a survey."""
         sampled = {key for key in windows if key[1] % SAMPLED_WINDOW_STEP == 0}
         roads = {road for road, _ in sampled}
         sampled |= {key for key in windows if key[0] not in roads}
@@ -201,7 +188,7 @@ class ScannerScatter:
     @property
     def noisy(self) -> list[int]:
         """Scanners that are noisy, in order."""
-        return [scanner for scanner, share in sorted(self.shares.items()) if share > NOISY_SCATTER]
+        return [scanner for scanner, share in sorted(self.shares.items()) if share > ASPHALT.noisy_scatter]
 
     def noisy_windows(self, road: int) -> set[int]:
         """The windows of a road in which most points are of noisy scanners: there paint is searched for in averages."""
@@ -213,7 +200,7 @@ class ScannerScatter:
         if not self.shares:
             return "The scatter of intensities on asphalt is not known, there are too few road points: paint is searched for in the image."
         each = ", ".join(f"{100 * share:.0f} % (scanner {scanner})" for scanner, share in sorted(self.shares.items()))
-        text = f"Intensities on asphalt scatter by {each}; more than {100 * NOISY_SCATTER:.0f} % is noisy."
+        text = f"Intensities on asphalt scatter by {each}; more than {100 * ASPHALT.noisy_scatter:.0f} % is noisy."
         windows = sum(len(self.noisy_windows(road)) for road in {road for road, _ in self.points})
         every = sum(bool(count.sum()) for count in self.points.values())
         if not windows:
@@ -227,16 +214,9 @@ class ScannerScatter:
 
 def scatter_of_windows(road_points: RoadPoints,
                        windows: Sequence[tuple[int, int, bool]]) -> list[tuple[np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray] | None]]:
-    """The phase that looks how single points scatter.
+    """The phase that looks how single points scatter in windows: road, number, and whether the scatter is asked for.
 
-    Parameters
-    ----------
-    windows : road, window, and whether the scatter in it is asked for
-
-    Returns
-    -------
-    count : (scanners,) points of each scanner in a window
-    squares : of `_scatter_in_squares`, None where they are not asked for
+    Returns (scanners,) points of each scanner in a window, and what `_scatter_in_squares` gives, None where it is not asked for.
     """
     found = []
     for road, window, sampled in windows:
@@ -246,13 +226,15 @@ def scatter_of_windows(road_points: RoadPoints,
 
 
 def _scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Scanner, number of points and scatter as a share of asphalt's level, each (squares,), of squares of 1 m measured by one scanner from one
-    distance: from raw intensities of the lower half of a square, which holds no paint. Squares with few points or without intensity are left out."""
+    """Scanner, number of points and scatter as a share of asphalt's level, (squares,) each, of squares of 1 m seen by one scanner from one distance.
+
+    Taken from raw intensities of the lower half of a square, which holds no paint; squares with few points or without intensity are left out.
+    """
     if not len(points):
         return np.empty(0, np.uint8), np.empty(0, int), np.empty(0)
     points = points[::max(len(points) // MAX_SCATTER_POINTS, 1)]
     value, scanner = points.intensity, points.scanner
-    side = int(round(SCATTER_SQUARE / COORDINATE_SCALE))
+    side = int(round(ASPHALT.scatter_square / COORDINATE_SCALE))
     square = np.zeros(len(value), np.int32)
     # another pass is another distance
     for key in (points.records["s"] // side, points.records["d"] // side, scanner, points.pass_number):
@@ -263,7 +245,7 @@ def _scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndar
     value = value[order].astype(float)
     starts = np.flatnonzero(np.r_[True, np.diff(square[order]) != 0])
     count = np.diff(np.r_[starts, len(value)])
-    starts, count = starts[count >= MIN_SQUARE_POINTS], count[count >= MIN_SQUARE_POINTS]
+    starts, count = starts[count >= ASPHALT.min_square_points], count[count >= ASPHALT.min_square_points]
     median, low = value[starts + count // 2], value[starts + (LOWER_QUANTILE * count).astype(np.int64)]
     lit = median > 0
     return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit]
@@ -275,4 +257,4 @@ def _shares(squares):
         return {}
     scanner, count, scatter = (np.concatenate(parts) for parts in zip(*squares))
     points = np.bincount(scanner, count)
-    return {k: float(np.median(scatter[scanner == k])) for k in np.flatnonzero(points >= MIN_SCANNER_POINTS).tolist()}
+    return {k: float(np.median(scatter[scanner == k])) for k in np.flatnonzero(points >= ASPHALT.min_scanner_points).tolist()}

@@ -10,27 +10,17 @@ import numpy as np
 from ...curves.robust import median
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
-from ..road_grid import CELL_SIZE, MAX_GAP_ON_TRACK, fill_gaps
+from ..road_grid import CELL_SIZE, fill_gaps
+from ..weights import RIMS, TRACKS
 from .settings import MarkingSettings
-
-WORN_GAP = 0.80  # m along the road: no painted gap is shorter, so bright specks in it belong to one worn line
-ALONG_REACH = 6       # cells of 4 cm along the road, either way: points so near are on the same track
-ACROSS_REACH = 2      # cells across it, either way: a track wavers by so much
-MAX_TRACK_GAP = 0.50  # m across the road: more between points is no spacing but a shadow
 
 
 def track_spacing(occupied: np.ndarray) -> np.ndarray:
-    """Distance across the road from each cell's track of the scan to the next one, on the side where it is farther.
+    """(rows, columns) float32 m from each cell's track of the scan to the next one across the road, on the side where it is farther.
 
-    Parameters
-    ----------
-    occupied : (rows, columns) bool, cells of 4 cm that hold points; rows along the road
-
-    Returns
-    -------
-    (rows, columns) float32 m; 0 where points lie in every cell or nothing was scanned
+    It is 0 where points lie in every cell or nothing was scanned. `occupied` : (rows, columns) bool, cells of 4 cm that hold points.
     """
-    tracks = cv2.dilate(occupied.astype(np.uint8), np.ones((2 * ALONG_REACH + 1, 1), np.uint8), borderValue=0).astype(bool)
+    tracks = cv2.dilate(occupied.astype(np.uint8), np.ones((2 * TRACKS.along_reach + 1, 1), np.uint8), borderValue=0).astype(bool)
     columns = np.arange(tracks.shape[1], dtype=np.int16)
     far = np.int16(2 * tracks.shape[1])
     # beyond the outermost tracks they are far away; a product is quicker than a choice between a column and that
@@ -40,29 +30,20 @@ def track_spacing(occupied: np.ndarray) -> np.ndarray:
     after = (tracks * (columns - 2 * far))[:, ::-1]
     after = np.minimum.accumulate(after, axis=1)[:, ::-1] + 2 * far
     gap = after - before
-    gap[gap > int(MAX_TRACK_GAP / CELL_SIZE)] = 0
-    return cv2.dilate(gap.astype(np.float32), np.ones((1, 2 * ACROSS_REACH + 1), np.uint8), borderValue=0) * np.float32(CELL_SIZE)
+    gap[gap > int(TRACKS.max_track_gap / CELL_SIZE)] = 0
+    return cv2.dilate(gap.astype(np.float32), np.ones((1, 2 * TRACKS.across_reach + 1), np.uint8), borderValue=0) * np.float32(CELL_SIZE)
 
 
 def morphology(mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings) -> np.ndarray:
-    """Close gaps along the road, then remove runs that are short both along and across it.
+    """Gaps along the road closed, then runs removed that are short both along and across it: (rows, columns) bool, a subset of `mask`.
 
     A stop line is short along the road and a lane line across it: a cell stays where either run through it is long enough. The remains of a worn
     line between two such runs stay, too. Where points lie far apart, cells between two bright ones that no point was near are no gap.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool, bright cells
-    seen : (rows, columns) bool, cells whose brightness is known
-    settings : MarkingSettings, of which `close` and `shortest` are used
-
-    Returns
-    -------
-    (rows, columns) bool, a subset of `mask`
+    `mask`, `seen` : (rows, columns) bool, bright cells and those whose brightness is known. Of the settings `close` and `shortest` are used.
     """
     length = int(round(settings.shortest / CELL_SIZE))
     closed = fill_gaps(mask, int(round(settings.close / CELL_SIZE)), 0)
-    along, across = (closed | _unseen_gaps(mask, seen, limit, axis) for axis, limit in enumerate((MAX_GAP_ON_TRACK, MAX_TRACK_GAP)))
+    along, across = (closed | _unseen_gaps(mask, seen, limit, axis) for axis, limit in enumerate((TRACKS.max_gap_on_track, TRACKS.max_track_gap)))
     long = mask & (_long_runs(along, length, 0) | _long_runs(across, length, 1))
     return mask & (long | _between(long, mask)) if long.any() else long
 
@@ -78,15 +59,12 @@ def _unseen_gaps(mask, seen, limit, axis):
 
 
 def _between(ends, specks):
-    """Cells of runs along the road that connect two ends by specks, with gaps no longer than WORN_GAP.
-
-    A run may deviate by one column: paint is not exactly parallel to the road's reference line.
-    """
+    """Cells of runs along the road that connect two ends by specks without long gaps; a column either way, as paint is not quite parallel to it."""
     beside, result = np.ones((1, 3), np.uint8), np.zeros(specks.shape, bool)
     ends, specks = (cv2.dilate(mask.view(np.uint8), beside, borderValue=0).view(bool) for mask in (ends, specks))
     columns = np.flatnonzero(ends.any(axis=0))
     ends, specks = np.ascontiguousarray(ends[:, columns]), np.ascontiguousarray(specks[:, columns])
-    run = fill_gaps(specks, int(round(WORN_GAP / CELL_SIZE)), 0)
+    run = fill_gaps(specks, int(round(RIMS.worn_gap / CELL_SIZE)), 0)
     result[:, columns] = run & _met_since(ends, ~run) & _met_since(ends[::-1], ~run[::-1])[::-1]
     return result
 
@@ -116,57 +94,30 @@ def _long_runs(mask: np.ndarray, length: int, axis: int) -> np.ndarray:
 # Concrete gutters begin at the very rim of the road and are two decimetres wide or more over metres of rim. An edge line stands off the rim, is
 # narrower, or is the brighter of the two; a stop line or zebra stripe at the rim takes up little of its length.
 
-BAND_CELLS = 2       # bands of 8 cm inwards from the rim
-GUTTER_BANDS = 9     # 0.72 m: no gutter is wider
-MIN_GUTTER_BANDS = 3
-COARSE_CELLS = 5     # shares and levels are taken in squares of 20 cm
-RIM_REACH = 2.5      # m of rim either way along which a gutter must be bright
-MIN_BRIGHT_SHARE = 0.65      # of the cells of a band
-MIN_CELLS_SEEN = 20          # of a band along RIM_REACH either way
-GUTTER_BRIGHTNESS = 1.5      # spreads above asphalt
-PAINT_TO_GUTTER = 1.8        # times as bright as the cells between it and the rim: paint beside the gutter
-ROAD_GAP_ALONG = 15          # cells: smaller gaps between points belong to the road,
-ROAD_GAP_ACROSS = int(MAX_TRACK_GAP / CELL_SIZE)   # and across it those between tracks of the scan
+ROAD_GAP_ACROSS = int(TRACKS.max_track_gap / CELL_SIZE)   # derived: and across it those between tracks of the scan
 
 
 def rim_distance(occupied: np.ndarray) -> np.ndarray:
-    """Distance of each cell of road from the road's rim.
+    """(rows, columns) float32 m from each cell of road to the road's rim; 0 outside the road.
 
-    Where the points end along the road, the road is taken to continue.
-
-    Parameters
-    ----------
-    occupied : (rows, columns) bool, cells that hold road points
-
-    Returns
-    -------
-    (rows, columns) float32 metres; 0 outside the road
+    Where the points end along the road, it is taken to continue. `occupied` : (rows, columns) bool, cells that hold road points.
     """
     rows = np.flatnonzero(occupied.any(axis=1))
     occupied = occupied.copy()
     if len(rows):
-        occupied[:rows[0]] = occupied[rows[0]:rows[0] + ROAD_GAP_ALONG].any(axis=0)
-        occupied[rows[-1] + 1:] = occupied[max(rows[-1] + 1 - ROAD_GAP_ALONG, 0):rows[-1] + 1].any(axis=0)
+        occupied[:rows[0]] = occupied[rows[0]:rows[0] + RIMS.road_gap_along].any(axis=0)
+        occupied[rows[-1] + 1:] = occupied[max(rows[-1] + 1 - RIMS.road_gap_along, 0):rows[-1] + 1].any(axis=0)
     # along each track first: two tracks rarely have points at the same station
-    tracks = fill_gaps(occupied, ROAD_GAP_ALONG, 0)
-    road = fill_gaps(fill_gaps(tracks, ROAD_GAP_ACROSS, 1), ROAD_GAP_ALONG, 0)
+    tracks = fill_gaps(occupied, RIMS.road_gap_along, 0)
+    road = fill_gaps(fill_gaps(tracks, ROAD_GAP_ACROSS, 1), RIMS.road_gap_along, 0)
     return cv2.distanceTransform(road.view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * np.float32(CELL_SIZE)
 
 
 def edge_distance(half_width: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Distance of each cell from the road's edge on its side, whatever hides the road between them.
+    """(rows, columns) float32 m from each cell to the road's edge on its side, whatever hides the road between them; infinite where unknown.
 
-    The rim of an occluded area is no rim of the road: beside parked vehicles it is longer
-    than the rim at the gutter, and the gutter would not be recognised.
-
-    Parameters
-    ----------
-    half_width : (2, rows) mm from the reference to the road's edge on the left and on the right, 0 where it is not known
-    offsets : (columns,) m
-
-    Returns
-    -------
-    (rows, columns) float32 metres; infinite where the edge is not known
+    The rim of an occluded area is no rim of the road: beside parked vehicles it is longer than the rim at the gutter, which would not be recognised.
+    `half_width` : (2, rows) mm from the reference to the edge on the left and on the right, 0 where unknown; `offsets` : (columns,) m.
     """
     distance = np.full((half_width.shape[1], len(offsets)), np.inf, np.float32)
     for side, widest in zip((1, -1), half_width):
@@ -179,225 +130,81 @@ def edge_distance(half_width: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class RimBands:
-    """The cells along one rim, by bands inwards and squares along it; the same for whatever is measured in them.
+    """The cells along one rim, by bands inwards and squares along it; the same for whatever is measured in them."""
 
-    distance : (rows, columns) float32 metres from the rim, of `rim_distance` or `edge_distance`
-    near : (N,) flat numbers of the cells that were scanned within the reach of gutters
-    band : (N,) int32 band of each, from the rim inwards
-    square : (N,) int32 flat number of the square of 20 cm that each lies in
-    place : (N,) int, flat number of square and band
-    seen : (bands, squares along, squares across) cells of a band that were scanned along RIM_REACH either way
-    """
-
-    distance: np.ndarray
-    near: np.ndarray
-    band: np.ndarray
+    distance: np.ndarray   # (rows, columns) float32 metres from the rim, of `rim_distance` or `edge_distance`
+    near: np.ndarray   # (N,) flat numbers of the cells that were scanned within the reach of gutters
+    band: np.ndarray   # (N,) of each its band from the rim inwards, the flat number of its square of 20 cm, and that of square and band
     square: np.ndarray
     place: np.ndarray
-    seen: np.ndarray
+    seen: np.ndarray   # (bands, squares along, squares across) cells of a band that were scanned along RIM_REACH either way
 
     @classmethod
     def of(cls, distance: np.ndarray, scanned: np.ndarray) -> RimBands:
         """The bands along a rim at a distance, (rows, columns) m, of the cells that were scanned, (rows, columns) bool."""
-        near = np.flatnonzero((distance > 0) & (distance < np.float32((GUTTER_BANDS * BAND_CELLS + 0.5) * CELL_SIZE)) & scanned)
-        band = ((distance.take(near) / np.float32(CELL_SIZE) - np.float32(0.5)) / np.float32(BAND_CELLS)).astype(np.int32)
-        band = np.minimum(band, GUTTER_BANDS - 1)
-        rows, columns = (-(-n // COARSE_CELLS) for n in distance.shape)
+        near = np.flatnonzero((distance > 0) & (distance < np.float32((RIMS.gutter_bands * RIMS.band_cells + 0.5) * CELL_SIZE)) & scanned)
+        band = ((distance.take(near) / np.float32(CELL_SIZE) - np.float32(0.5)) / np.float32(RIMS.band_cells)).astype(np.int32)
+        band = np.minimum(band, RIMS.gutter_bands - 1)
+        rows, columns = (-(-n // RIMS.coarse_cells) for n in distance.shape)
         cell = near.astype(np.int32)
         row = cell // np.int32(distance.shape[1])
         column = cell - row * np.int32(distance.shape[1])
-        square = row // np.int32(COARSE_CELLS) * np.int32(columns) + column // np.int32(COARSE_CELLS)
-        place = (square * np.int32(GUTTER_BANDS) + band).astype(np.intp)
-        counts = np.bincount(place, minlength=GUTTER_BANDS * rows * columns).astype(float)
-        return cls(distance, near, band, square, place, _around(counts.reshape(rows, columns, GUTTER_BANDS)))
+        square = row // np.int32(RIMS.coarse_cells) * np.int32(columns) + column // np.int32(RIMS.coarse_cells)
+        place = (square * np.int32(RIMS.gutter_bands) + band).astype(np.intp)
+        counts = np.bincount(place, minlength=RIMS.gutter_bands * rows * columns).astype(float)
+        return cls(distance, near, band, square, place, _around(counts.reshape(rows, columns, RIMS.gutter_bands)))
 
     def sums(self, values: np.ndarray) -> np.ndarray:
         """(bands, squares along, squares across) sums of (N,) values at the cells along RIM_REACH either way."""
-        return _around(np.bincount(self.place, values, self.seen.size).reshape(*self.seen.shape[1:], GUTTER_BANDS))
+        return _around(np.bincount(self.place, values, self.seen.size).reshape(*self.seen.shape[1:], RIMS.gutter_bands))
 
 
 def _around(counts):
     """(bands, squares along, squares across) sums of (squares along, squares across, bands) along RIM_REACH either way."""
-    box = 2 * int(round(RIM_REACH / CELL_SIZE / COARSE_CELLS)) + 1
+    box = 2 * int(round(RIMS.rim_reach / CELL_SIZE / RIMS.coarse_cells)) + 1
     sums = cv2.boxFilter(counts, -1, (box, box), normalize=False, borderType=cv2.BORDER_CONSTANT)
     return np.ascontiguousarray(np.moveaxis(sums, 2, 0))
 
 
 def gutter_cells(z: np.ndarray, rim: RimBands) -> np.ndarray:
-    """Cells of concrete gutters, by our own rule.
-
-    Parameters
-    ----------
-    z : (rows, columns) brightness in spreads above asphalt, NaN where nothing was scanned
-
-    Returns
-    -------
-    (rows, columns) bool
-    """
+    """(rows, columns) bool, cells of concrete gutters, by our own rule; `z` : (rows, columns) spreads above asphalt, NaN where not scanned."""
     found = np.zeros(z.shape, bool)
     if not len(rim.near):
         return found
     value, seen = z.take(rim.near), rim.seen
-    share = rim.sums(value > GUTTER_BRIGHTNESS) / np.maximum(seen, 1e-9)
+    share = rim.sums(value > RIMS.gutter_brightness) / np.maximum(seen, 1e-9)
     # a cell at the rim is half curb: the first band is not tested on its own
-    full = (share >= MIN_BRIGHT_SHARE) & (seen > MIN_CELLS_SEEN)
+    full = (share >= RIMS.min_bright_share) & (seen > RIMS.min_cells_seen)
     full[0] |= full[1]
-    if not full[:MIN_GUTTER_BANDS].all(axis=0).any():
+    if not full[:RIMS.min_gutter_bands].all(axis=0).any():
         return found
     # in whole 64ths: their sums are exact in any order
     height = np.rint(64 * np.clip(value, 0.0, 100.0))
     level = rim.sums(height / 64) / np.maximum(seen, 1e-9)
     inner = np.minimum.accumulate(level[1:], axis=0)
     painted = np.zeros(full.shape, bool)
-    painted[2:] = level[2:] > PAINT_TO_GUTTER * inner[:-1]
+    painted[2:] = level[2:] > RIMS.paint_to_gutter * inner[:-1]
     width = np.cumprod(full & ~painted, axis=0).sum(axis=0)
     # the band in which the gutter ends is half gutter, unless it is paint
-    ends = np.take_along_axis(painted, np.minimum(width, GUTTER_BANDS - 1)[None], axis=0)[0]
-    width = np.where(width >= MIN_GUTTER_BANDS, width + ~ends, 0)
+    ends = np.take_along_axis(painted, np.minimum(width, RIMS.gutter_bands - 1)[None], axis=0)[0]
+    width = np.where(width >= RIMS.min_gutter_bands, width + ~ends, 0)
     found.ravel()[rim.near] = rim.band < width.ravel().take(rim.square)
     return found
-
-
-# Rims that fade: paint ends sharply, but the stones at the rim of a road are bright at the joint with the asphalt and fade into the ground behind
-# them, and so does a sidewalk that was scanned between two parked cars.
-
-FADING_BESIDE = 2, 4   # cells from a run of paint across the road: where its fading is measured
-TOP_REACH = 6          # cells in which the brightest of a run stands for it
-RUN_ALONG = 62         # cells, either way: 5 m of road that fading is averaged over
-RUN_ACROSS = 3         # cells, either way, that the rim may waver
-MIN_CELLS_BESIDE = 60  # that were measured there
-SLIGHT_FADING, CLEAR_FADING = 0.10, 0.22   # of the contrast of a run that is left beside a rim everywhere, and in places
-AREA_WIDTH = 0.35      # m across the road: broader pieces are no lines, and they are judged one by one
-AREA_CELLS_BESIDE = 15  # that were measured beside them
-SPECK_CELLS = 26       # what two points brighten, each the cells no farther than two from it: smaller pieces outside an area are no end of it
-
-
-def side_fading(z: np.ndarray, mask: np.ndarray, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Share of the contrast of each run of bright cells across the road that is left just beside its ends.
-
-    Parameters
-    ----------
-    z : (rows, columns) float32 brightness above asphalt; rows along the road
-    mask : (rows, columns) bool, N bright cells
-    seen : (rows, columns) bool, cells whose brightness was measured
-
-    Returns
-    -------
-    below, above : (N,) float32, towards lower and higher columns, at the cells of the mask in their order; NaN where it is not known
-    """
-    cells, columns = np.flatnonzero(mask), mask.shape[1]
-    if not len(cells):
-        return np.empty(0, np.float32), np.empty(0, np.float32)
-    z = np.where(np.isfinite(z), z, np.float32(0.0)).astype(np.float32, copy=False)
-    top = cv2.dilate(np.where(mask, z, np.float32(0.0)), np.ones((1, 2 * TOP_REACH + 1), np.uint8))
-    counted = (seen & ~cv2.dilate(mask.astype(np.uint8), np.ones((1, 3), np.uint8)).astype(bool)).ravel()
-    # runs of cells of a row
-    begins = np.r_[True, (np.diff(cells) > 1) | (cells[1:] % columns == 0)]
-    first, last = cells[begins], cells[np.r_[begins[1:], True]]
-    row = last // columns * columns
-    found = []
-    for ends, room in ((first, np.minimum(first - np.r_[-1, last[:-1]], first - row + 1)),
-                       (last, np.minimum(np.r_[first[1:], mask.size] - last, row + columns - last))):
-        step = 1 if ends is last else -1
-        sums = np.zeros((3, mask.size), np.float32)
-        for away in range(FADING_BESIDE[0], FADING_BESIDE[1] + 1):
-            # up to the next run, or the end of the row
-            own = ends[room > away]
-            own = own[counted.take(own + step * away)]
-            sums[0, own] += z.take(own + step * away)
-            sums[1, own] += top.take(own)
-            sums[2, own] += 1.0
-        size = 2 * RUN_ACROSS + 1, 2 * RUN_ALONG + 1
-        rest, whole, count = (cv2.boxFilter(a.reshape(mask.shape), -1, size, normalize=False, borderType=cv2.BORDER_CONSTANT).take(ends)
-                              for a in sums)
-        share = np.where(count >= MIN_CELLS_BESIDE, rest / np.maximum(whole, np.float32(1e-6)), np.float32(np.nan))
-        # every cell of a run has what its end has
-        found.append(share.take(np.cumsum(begins) - 1))
-    return found[0], found[1]
-
-
-def without_fading_rims(z: np.ndarray, mask: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    """The bright cells without the runs that fade out on one side; the parameters are those of `side_fading`."""
-    share = np.maximum(*(np.nan_to_num(side) for side in side_fading(z, mask, seen)))
-    if not (share > CLEAR_FADING).any():
-        return mask.copy()
-    fading = np.zeros(mask.shape, np.float32)
-    fading[mask] = share
-    count, label = cv2.connectedComponents((fading > SLIGHT_FADING).astype(np.uint8), connectivity=8, ltype=cv2.CV_32S)
-    clear = np.bincount(label[fading > CLEAR_FADING], minlength=count) > 0
-    return mask & ~clear[label]
-
-
-def without_fading_areas(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, gutter: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """The bright cells without the broad pieces that fade out, or lead on into a gutter, on the side away from the road's middle.
-
-    Parameters
-    ----------
-    z, mask, seen : of `side_fading`
-    gutter : (rows, columns) bool, cells of gutters
-    offsets : (columns,) m from the reference line of the road
-    """
-    count, label, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
-    broad = stats[:, cv2.CC_STAT_WIDTH] > AREA_WIDTH / CELL_SIZE
-    broad[0] = False
-    if not broad.any():
-        return mask
-    refused = np.zeros(count, bool)
-    pieces = mask & (stats[:, cv2.CC_STAT_AREA] >= SPECK_CELLS)[label]
-    # a speck is none of the ground beside an area, and neither are the cells that it brightens
-    ground = seen & np.isfinite(z) & ~cv2.dilate(mask.astype(np.uint8), np.ones((1, 3), np.uint8)).astype(bool)
-    rows = np.flatnonzero(pieces.any(axis=1))
-    for outward in (-1, 1):
-        # the outermost cell of each row
-        columns = (pieces if outward < 0 else pieces[:, ::-1])[rows].argmax(axis=1)
-        columns = columns if outward < 0 else mask.shape[1] - 1 - columns
-        number = label[rows, columns]
-        own = broad[number] & (offsets[columns] * outward > 0)
-        row, column, number = rows[own], columns[own], number[own]
-        reach = np.clip(column[:, None] - outward * np.arange(TOP_REACH + 1), 0, mask.shape[1] - 1)
-        inside = pieces[row[:, None], reach] & np.isfinite(z[row[:, None], reach])
-        top = np.where(inside, z[row[:, None], reach], 0.0).max(axis=1, initial=0.0)
-        # on asphalt or a sidewalk beside it, and in a gutter too
-        rest, whole, cells = np.zeros((2, count)), np.zeros((2, count)), np.zeros((2, count))
-        for away in range(FADING_BESIDE[0], FADING_BESIDE[1] + 1):
-            beside = column + outward * away
-            known = np.flatnonzero((beside >= 0) & (beside < mask.shape[1]))
-            known = known[ground[row[known], beside[known]]]
-            for k, counted in enumerate((known[~gutter[row[known], beside[known]]], known)):
-                rest[k] += np.bincount(number[counted], z[row[counted], beside[counted]], count)
-                whole[k] += np.bincount(number[counted], top[counted], count)
-                cells[k] += np.bincount(number[counted], minlength=count)
-        share = rest / np.maximum(whole, 1e-6)
-        refused |= ((share > [[CLEAR_FADING], [1 / PAINT_TO_GUTTER]]) & (cells >= AREA_CELLS_BESIDE)).any(axis=0)
-    return mask & ~refused[label] if refused.any() else mask
 
 
 # Raised things, such as the ends of traffic islands and the feet of vehicles: a bright square is compared with the plane through the squares of
 # road about it that are not bright, which follows crossfall, crowns and ramps. By our own rule.
 
-SQUARE_CELLS = 5            # squares of 20 cm
-PLANE_SQUARES = 9           # squares, either way, that a plane is fitted to: 1.8 m
-MIN_PLANE_SQUARES = 12      # of them with asphalt, for the plane to be known
-LEAST_RISE = 0.02           # m above it: dropped curbs stand 3 cm high, thick paint lies 6 mm above the road
-RISE_SIGMAS = 5.0           # standard deviations of the squares of asphalt off their planes that a rise is at least
-SIGMAS_OF_MEDIAN = 1.4826   # standard deviations in a median of absolute deviations
-MIN_SQUARES_OF_SPREAD = 30  # squares of asphalt in a window that tell how far they lie off their planes
+SIGMAS_OF_MEDIAN = 1.4826   # derived: standard deviations in a median of absolute deviations
 
 
 def raised_cells(heights: Sequence[tuple[np.ndarray, np.ndarray]], mask: np.ndarray) -> np.ndarray:
-    """Cells of a mask that stand above the asphalt about them.
+    """(rows, columns) bool, cells of a mask of bright cells that stand above the asphalt about them.
 
-    Parameters
-    ----------
-    heights : (flat cell numbers, heights in units of 0.1 mm) of points, in any number of parts
-    mask : (rows, columns) bool, bright cells
-
-    Returns
-    -------
-    (rows, columns) bool, some of the cells of the mask
+    `heights` : (flat cell numbers, heights in units of 0.1 mm) of points, in any number of parts.
     """
-    columns = -(-mask.shape[1] // SQUARE_CELLS)
-    shape = -(-mask.shape[0] // SQUARE_CELLS), columns
+    columns = -(-mask.shape[1] // RIMS.coarse_cells)
+    shape = -(-mask.shape[0] // RIMS.coarse_cells), columns
     size, low = shape[0] * columns, min((int(z.min()) for _, z in heights if len(z)), default=0)
     # of dark cells and of bright ones; sums of whole numbers are the same in any order
     count, total = np.zeros(2 * size), np.zeros(2 * size)
@@ -405,20 +212,20 @@ def raised_cells(heights: Sequence[tuple[np.ndarray, np.ndarray]], mask: np.ndar
     for cell, z in heights:
         row = cell // np.int32(mask.shape[1])
         column = cell - row * np.int32(mask.shape[1])
-        place = row // np.int32(SQUARE_CELLS) * np.int32(columns) + column // np.int32(SQUARE_CELLS) + np.int32(size) * bright.take(cell)
+        place = row // np.int32(RIMS.coarse_cells) * np.int32(columns) + column // np.int32(RIMS.coarse_cells) + np.int32(size) * bright.take(cell)
         count += np.bincount(place, minlength=2 * size)
         total += np.bincount(place, (z - low).astype(float), 2 * size)
     with np.errstate(invalid="ignore", divide="ignore"):
         dark, light = (total / count * COORDINATE_SCALE).reshape(2, *shape)
     off = dark - _planes(dark)
     known = off[np.isfinite(off)]
-    if len(known) < MIN_SQUARES_OF_SPREAD:
+    if len(known) < RIMS.min_squares_of_spread:
         return np.zeros(mask.shape, bool)
-    limit = max(LEAST_RISE, RISE_SIGMAS * SIGMAS_OF_MEDIAN * median(np.abs(known)))
+    limit = max(RIMS.least_rise, RIMS.rise_sigmas * SIGMAS_OF_MEDIAN * median(np.abs(known)))
     with np.errstate(invalid="ignore"):
         # what is raised and not bright is no asphalt, either
         raised = light - _planes(np.where(off <= limit / 2, dark, np.nan)) > limit
-    return np.repeat(np.repeat(raised, SQUARE_CELLS, 0), SQUARE_CELLS, 1)[:mask.shape[0], :mask.shape[1]] & mask
+    return np.repeat(np.repeat(raised, RIMS.coarse_cells, 0), RIMS.coarse_cells, 1)[:mask.shape[0], :mask.shape[1]] & mask
 
 
 def _planes(height):
@@ -426,10 +233,10 @@ def _planes(height):
     known = np.isfinite(height)
     z = np.where(known, height, 0.0)
     weight = known.astype(float)
-    u, v = np.meshgrid(*(np.arange(n) * SQUARE_CELLS * CELL_SIZE for n in height.shape), indexing="ij")
+    u, v = np.meshgrid(*(np.arange(n) * RIMS.coarse_cells * CELL_SIZE for n in height.shape), indexing="ij")
 
     def about(values):
-        return cv2.boxFilter(values, -1, (PLANE_SQUARES, PLANE_SQUARES), normalize=False, borderType=cv2.BORDER_CONSTANT)
+        return cv2.boxFilter(values, -1, (RIMS.plane_squares, RIMS.plane_squares), normalize=False, borderType=cv2.BORDER_CONSTANT)
 
     n = about(weight)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -440,5 +247,5 @@ def _planes(height):
         slope_u, slope_v = (uz * vv - vz * uv) / spread, (vz * uu - uz * uv) / spread
         plane = mean_z + slope_u * (u - mean_u) + slope_v * (v - mean_v)
         # in a row of squares there is no plane
-        flat = spread > 0.1 * (SQUARE_CELLS * CELL_SIZE) ** 4
-    return np.where((n >= MIN_PLANE_SQUARES) & flat, plane, np.nan)
+        flat = spread > 0.1 * (RIMS.coarse_cells * CELL_SIZE) ** 4
+    return np.where((n >= RIMS.min_plane_squares) & flat, plane, np.nan)

@@ -23,29 +23,18 @@ from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
 from ...survey.store.road_points import RoadPoints
-from ..objects.shape import CLOSE_ALONG, painted_cells
+from ..objects.shape import painted_cells
 from ..road_grid import CELL_SIZE, CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
-from .asphalt_level import (
-    MIN_BIN_CELLS,
-    AsphaltBin,
-    AsphaltLevels,
-    OtsuSplit,
-    asphalt_bins,
-    asphalt_profile,
-    bin_edges,
-    dark_cells,
-    flatten,
-    split_bins,
-)
-from .noisy import CellAverages, ViewSamples, faint_lines, noisy_paint_cells, views
-from .not_paint import RimBands, edge_distance, morphology, raised_cells, rim_distance, track_spacing, without_fading_areas, without_fading_rims
+from ..weights import ASPHALT, SHAPES
+from .asphalt_level import AsphaltBin, AsphaltLevels, OtsuSplit, asphalt_bins, asphalt_profile, bin_edges, dark_cells, flatten, split_bins
+from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
+from .not_paint import RimBands, edge_distance, morphology, raised_cells, rim_distance, track_spacing
 from .settings import MarkingSettings
 
-RIM_WIDTH = 0.60         # m from the rim of the road: gutters; asphalt is taken from the cells inside
-THRESHOLD_WINDOW = 500   # cells: thresholds are taken from 20 m of road
-WINDOW_HALO = 100        # cells: 4 m around a window that are read too, for rims and runs that cross its ends
-MAX_HEIGHTS = 30_000     # points of a piece of 5 m whose heights are compared; of twice as many an evenly spread share
-MAX_OFFSET_POINTS = 300_000  # points of a window whose offsets are kept; of twice as many an evenly spread share
+THRESHOLD_WINDOW = 500   # derived: cells: thresholds are taken from 20 m of road
+WINDOW_HALO = 100   # derived: cells: 4 m around a window that are read too, for rims and runs that cross its ends
+MAX_HEIGHTS = 30_000   # derived: points of a piece of 5 m whose heights are compared; of twice as many an evenly spread share
+MAX_OFFSET_POINTS = 300_000   # derived: points of a window whose offsets are kept; of twice as many an evenly spread share
 
 Paint = tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]   # columns of points on paint; local x, y of the mask's pixels, if it is asked for
 Bins = list[tuple[AsphaltBin, OtsuSplit]]   # of one window; none where there are no data
@@ -71,16 +60,8 @@ def place_of(road_points: RoadPoints, windows: Windows) -> str:
 
 
 class PaintSource:
-    """What paint is extracted from.
+    """What paint is extracted from: road points, their image in memory or on disk, and the frame, by default that of the survey.
 
-    Parameters
-    ----------
-    road_points : RoadPoints
-    image : IntensityImage of them, in memory or on disk
-    frame : RoadFrame; by default that of the survey whose points they are
-
-    Attributes
-    ----------
     kept : {road: WindowExtractor} whose windows share what they compute; where there is none, each stretch of windows is worked on by itself
     """
 
@@ -94,16 +75,9 @@ class PaintSource:
 
 
 def levels_of_windows(source: PaintSource, windows: Windows, settings: MarkingSettings, noisy: dict[int, list[int]]) -> list[Bins]:
-    """The phase that finds the level of asphalt.
+    """The phase that finds the level of asphalt: its bins and Otsu's splits in each window, empty where there are no data.
 
-    Parameters
-    ----------
-    windows : Windows of a road
-    noisy : {road: windows with noisy points}, which have no level
-
-    Returns
-    -------
-    bins of asphalt and Otsu's splits of each window; an empty list where there are no data
+    `noisy` : {road: windows with noisy points}, which have no level.
     """
     extractor = WindowExtractor(source, windows, settings, noisy.get(windows[0], ()))
     return [extractor.bins(window) for window in range(*windows[1:])]
@@ -113,11 +87,7 @@ def paint_of_windows(source: PaintSource, item: tuple[Windows, dict[int, Bins]],
                      masked: bool) -> list[Paint]:
     """The phase that extracts paint.
 
-    Parameters
-    ----------
-    item : Windows of a road, and the bins that are known, by window
-    noisy : {road: windows with noisy points}
-    masked : whether the mask's pixels are asked for
+    `item` : Windows of a road, and the bins that are known, by window; `masked` : whether the mask's pixels are asked for.
     """
     windows, bins = item
     road, first, end = windows
@@ -136,14 +106,11 @@ def bins_about(windows: Windows, bins: dict[int, Bins]) -> dict[int, Bins]:
 class WindowExtractor:
     """Extracts paint from the windows of one road, in two steps: the level of asphalt, then the cells that are brighter.
 
-    A window is extracted when the level of its neighbours is known; its data are kept until then. Several threads
-    may extract windows at once, in the order of the road.
+    A window is extracted when the level of its neighbours is known; its data are kept until then. Several threads may extract windows at once, in
+    the order of the road.
 
     Parameters
     ----------
-    source : PaintSource
-    windows : that are asked for
-    settings : MarkingSettings
     masked : whether the mask's pixels are asked for
     noisy : windows with noisy points: there paint is searched for in averages, and no other window's threshold depends on them
     bins : {window: bins} of `bins_about`; none where all windows of the road are asked for
@@ -173,10 +140,7 @@ class WindowExtractor:
         return points_of_rows(self.road_points, self.road, first, last)
 
     def _in_cells(self, window):
-        """[PieceOfRoad] of a window's own points; kept until the window is extracted, as its neighbours use them too.
-
-        Of a window that is not asked for they are those of the halo alone.
-        """
+        """[PieceOfRoad] of a window's own points, kept for its neighbours until it is extracted; of one that is not asked for those of the halo."""
         with self._piece_locks.setdefault(window, threading.Lock()):
             if window not in self._pieces:
                 first, last = window * THRESHOLD_WINDOW, (window + 1) * THRESHOLD_WINDOW
@@ -207,8 +171,8 @@ class WindowExtractor:
     def _bins_of(self, window, view):
         brightness, offsets, rows = view.brightness, view.grid.offsets(), slice(WINDOW_HALO, WINDOW_HALO + THRESHOLD_WINDOW)
         scanned = np.isfinite(brightness)
-        interior = scanned[rows] & (view.rims[0].distance[rows] > np.float32(RIM_WIDTH))
-        if np.count_nonzero(interior) < MIN_BIN_CELLS:
+        interior = scanned[rows] & (view.rims[0].distance[rows] > np.float32(ASPHALT.rim_width))
+        if np.count_nonzero(interior) < ASPHALT.min_bin_cells:
             interior = scanned[rows]
         if not interior.any():
             return []
@@ -216,7 +180,7 @@ class WindowExtractor:
         usual = float(median(brightness[rows][interior])) if self.road_points.has_corrected else np.inf
         if usual < np.inf:
             dark = dark_cells(brightness, usual)
-            if np.count_nonzero(interior & ~dark[rows]) >= MIN_BIN_CELLS:
+            if np.count_nonzero(interior & ~dark[rows]) >= ASPHALT.min_bin_cells:
                 scanned, interior = scanned & ~dark, interior & ~dark[rows]
         columns = np.flatnonzero(interior.any(axis=0))
         edges = bin_edges(np.concatenate([piece.offsets for piece in self._in_cells(window)]), offsets[columns[0]], offsets[columns[-1]])
@@ -252,16 +216,9 @@ class WindowExtractor:
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, view.rims)
         with np.errstate(invalid="ignore"):
-            bright = morphology((z > threshold * scale) & ~gutter, np.isfinite(brightness), self.settings)
-        mask = without_fading_rims(z, bright, view.occupied & ~gutter)
-        # areas are judged as they look and, where they hang together with a rim, without it
-        for area in ((bright, mask) if (mask != bright).any() else (bright,)):
-            mask = mask & without_fading_areas(z, area, view.occupied, gutter, grid.offsets())
+            mask = morphology((z > threshold * scale) & ~gutter, np.isfinite(brightness), self.settings)
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
-        lines, halfway = faint_lines(brightness, view.occupied, view.rims[0].distance, mask, bright & ~mask)
-        least = np.where(lines & ~mask, halfway, least)
-        mask |= lines
         mask &= ~raised_cells([self._heights(part, grid) for part in parts], mask)
         return self._paint_in(parts, grid, view.occupied, mask, least)
 
@@ -291,10 +248,7 @@ class WindowExtractor:
 
     def _paint_in(self, parts: list[PieceOfRoad], grid: RoadGrid, occupied: np.ndarray, mask: np.ndarray,
                   least: np.ndarray | None = None) -> Paint:
-        """Points of the window's own parts in painted cells, brighter than `least` of their cell, and the mask's pixels.
-
-        occupied, mask, least : (rows, columns) of the grid
-        """
+        """Points of the window's own parts in painted cells, brighter than `least` of their cell, and the mask's pixels; arrays as the grid."""
         if not parts:
             return self._nothing()
         rows, cells, before = [], [], 0
@@ -328,13 +282,7 @@ def _arrays(records: Columns) -> dict[str, np.ndarray]:
 
 @dataclass(frozen=True)
 class _WindowView:
-    """The image of a window with its halo.
-
-    grid : RoadGrid
-    brightness : (rows, columns) float32, NaN where there is no data
-    rims : RimBands of the rim of the scanned road and of the road's edges
-    occupied : (rows, columns) bool, cells that points lie in
-    """
+    """The image of a window with its halo: brightness is NaN where there is no data, `rims` are those of the scanned road and of the road's edges."""
 
     grid: RoadGrid
     brightness: np.ndarray
@@ -344,8 +292,8 @@ class _WindowView:
 
 # The mask of markings as a raster, in the pixels of the intensity image.
 
-BURN_BLOCK = 2048   # px: pixels are burnt in blocks of the image, so that a window in a bend reads only the blocks it touches
-BURN_WINDOW = 500   # cells: 20 m of station burnt at a time
+BURN_BLOCK = 2048   # derived: px: pixels are burnt in blocks of the image, so that a window in a bend reads only the blocks it touches
+BURN_WINDOW = 500   # derived: cells: 20 m of station burnt at a time
 
 Burn = Callable[[np.ndarray, np.ndarray], None]   # burns (M,) local x, y
 
@@ -354,11 +302,7 @@ Burn = Callable[[np.ndarray, np.ndarray], None]   # burns (M,) local x, y
 def marking_mask(path: str | PathLike, image: IntensityImage, origin: np.ndarray) -> Iterator[Burn]:
     """Open a byte GeoTIFF, 1 where a marking is, no data elsewhere; gives a function that burns local x, y into it.
 
-    Parameters
-    ----------
-    path : of the GeoTIFF; it appears when the block is left without an error
-    image : IntensityImage whose pixels the mask has
-    origin : map coordinates that local ones leave out, m
+    `path` : of the GeoTIFF, which appears when the block is left without an error; it has the pixels of `image`. `origin` : of local coordinates, m.
     """
     with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as mask:
 
@@ -405,14 +349,8 @@ def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityI
 
 
 def burn_points(burn: Burn, points: RoadPoints, image: IntensityImage, frame: RoadFrame) -> None:
-    """Burn the cells that points lie in, gaps between scan lines closed.
-
-    Parameters
-    ----------
-    burn : function given by `marking_mask`
-    points : RoadPoints on paint
-    """
-    halo = int(np.ceil(CLOSE_ALONG / CELL_SIZE)) + 1
+    """Burn the cells that points on paint lie in, gaps between scan lines closed; `burn` is given by `marking_mask`."""
+    halo = int(np.ceil(SHAPES.close_along / CELL_SIZE)) + 1
     for road in points.roads():
         start, end = points.store.span(road)
         for window in range(int(np.floor(start / CELL_SIZE / BURN_WINDOW)), int(np.ceil(end / CELL_SIZE / BURN_WINDOW))):

@@ -23,8 +23,6 @@ MIN_BED_SLOPE = np.tan(np.radians(CURBS.least_slope))  # rise over run of plants
 class CurbSteps(Rows):
     """Bottom corners found on profiles, one entry each.
 
-    Attributes
-    ----------
     profile : (M,) number of the profile
     s, u, h : (M,) m, station, outward offset, and height above the expected road of the bottom corner
     skew : (M,) m outward per m along, direction of the face
@@ -35,6 +33,8 @@ class CurbSteps(Rows):
     support : (M,) points of road side and face
     behind : (M,) points of the raised ground
     """
+
+    PARTS = (("bottom", "u", "h"),)   # of a curb that each shows, and their offsets and heights
 
     profile: np.ndarray
     s: np.ndarray
@@ -48,19 +48,20 @@ class CurbSteps(Rows):
     support: np.ndarray
     behind: np.ndarray
 
+    @property
+    def upright(self) -> np.ndarray:
+        """(M,) bool, is the face as steep as is usual? Only some methods look for others."""
+        return np.ones(len(self), bool)
+
+
 
 def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray, min_height: float, max_height: float) -> CurbSteps:
     """The step at each rising cell, where it proves to be one.
 
-    Parameters
-    ----------
-    lines : PseudoScanLines
     rows, cells : (M,) profiles and cells in which the ground rises
     min_height, max_height : m, of a step
 
-    Returns
-    -------
-    CurbSteps, at most M, in the order of the cells
+    Returns CurbSteps, at most M, in the order of the cells
     """
     cell_count = lines.shape[1]
     reach = int(round(max(CURBS.road_side_length + CURBS.face_margin, CURBS.behind_length) / lines.spacing)) + 2
@@ -115,8 +116,6 @@ def _measure(lines, rows, cells, owner, index, min_height, max_height):
 class StepPatches:
     """Ground points about M candidate steps, in coordinates outward and along from each candidate's place.
 
-    Parameters
-    ----------
     owner : (N,) candidate of every point
     u, s, h : (N,) m, offset outward, distance along, and height
     scanner_noise : (M,) m
@@ -310,8 +309,6 @@ def _line_per_owner(owner, u, h, count):
 class RunningSums:
     """Running sums over the cells of every profile; differences of them give the line through any range of cells.
 
-    Parameters
-    ----------
     shape : (P, C), profiles and cells
     spacing : m, width of a cell
     """

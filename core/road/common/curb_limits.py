@@ -21,8 +21,6 @@ from ..weights import CURBS
 class CurbLimits:
     """The least height and slope of curbs.
 
-    Attributes
-    ----------
     clear_height : m, from which a step is a curb by its height, and
     clear_slope : radians, by its face
     automatic_height, automatic_slope : may faint steps be lower, or less steep?
@@ -56,8 +54,6 @@ class CurbLimits:
     def faint(self, height: float, slope: float, noise: float, count: int, scatter: float) -> bool:
         """Is a step that is not clear a curb all the same?
 
-        Parameters
-        ----------
         height : m; slope : radians, of the face
         noise : m, scatter of single heights beside it; count : profiles that show it
         scatter : m, of the step about its own running line
@@ -71,8 +67,6 @@ class CurbLimits:
 class CurbSettings:
     """How curbs are recognised.
 
-    Attributes
-    ----------
     block_length : m of road per curb point; 0 = 0.5 to 2.0, shorter in sharp bends
     profile_width : m of road per profile
     point_spacing : m, width of the cells of the pseudo scan-lines

@@ -90,18 +90,11 @@ def curb_points_at(frame: RoadFrame, road: int, places: Sequence[np.ndarray], ro
                    **columns: Any) -> CurbPoints:
     """N points of one road; the pass that drove nearest is found for them.
 
-    Parameters
-    ----------
-    frame : RoadFrame
-    road : number of the road
     places : (N,) x, y and z in map coordinates
     rows : N dicts, what is known of each point beside `columns`: name of an attribute of CurbPoints to value
-    crs : WKT
     columns : attributes of CurbPoints: (N,) arrays, or a value that all points share
 
-    Returns
-    -------
-    CurbPoints; places, stations and offsets to 0.1 mm, as the layer holds them
+    Returns CurbPoints; places, stations and offsets to 0.1 mm, as the layer holds them
     """
     count = len(places[0])
     given = {**(CurbPoints.gathered(rows) if len(rows) else {}), **columns, "road": road}

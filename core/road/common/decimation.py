@@ -36,9 +36,6 @@ class PointDecimation:
 
     The decision is kept in a temporary file, one bit per point: call `close` at the end.
 
-    Parameters
-    ----------
-    survey : Survey
     width, spacing : m; a cell is one profile long and about `spacing` wide
     min_step : m, the least step for which `level_strip` leaves ground out
     """
@@ -74,15 +71,10 @@ class PointDecimation:
                          points_per_cell: int | None = CURBS.points_per_level_cell) -> Iterator[Points]:
         """The points of profiles, block by block along the road, decimated where cells of level ground are dense.
 
-        Parameters
-        ----------
-        road : number of the road
         profiles : (first, last + 1) numbers of profiles
         points_per_cell : points of one pass in a cell of level ground, one of LEVEL_CELL_LIMITS; None takes all points
 
-        Yields
-        ------
-        Points of whole profiles in canonical order. The selection in a cell depends on the points of its profile alone.
+        Yields Points of whole profiles in canonical order. The selection in a cell depends on the points of its profile alone.
         """
         waiting: list[Points] = []
         begins = range(profiles[0] // self._stretch * self._stretch, profiles[1], self._stretch)
@@ -112,15 +104,11 @@ class PointDecimation:
     def level_strip(self, road: int, number: int, profiles: tuple[int, int], across: float, along: float) -> LevelStrip:
         """The level strip about the track of a pass.
 
-        Parameters
-        ----------
         road, number : of the road and of the pass
         profiles : (first, last + 1)
         across, along : m that the strip keeps from ground that is not level
 
-        Returns
-        -------
-        LevelStrip of these profiles
+        Returns LevelStrip of these profiles
         """
         around = int(np.ceil(along / self.width))
         wide = LevelStrip.empty(profiles[0] - around, profiles[1] - profiles[0] + 2 * around, self.width)
@@ -188,8 +176,6 @@ class PointDecimation:
 class LevelGround:
     """Ground about the track of a pass that is left out, since no curb lies in it.
 
-    Parameters
-    ----------
     decimation : PointDecimation that knows it
     across, along : m kept from ground that is not level
     """
@@ -211,8 +197,6 @@ class LevelGround:
 def _blocks_of_profiles(points: Points, start: float, width: float) -> list[Points]:
     """Points along the road cut into blocks of whole profiles, about CURBS.decimation_block_points each.
 
-    Parameters
-    ----------
     points : Points, sorted by station
     start : m, station from which profiles are counted
     width : m of road per profile
@@ -352,8 +336,6 @@ NO_OFFSET = 1 << 28   # derived: 0.1 mm, farther than any offset
 class LevelStrip:
     """Offsets between which the ground of profiles is level; low > high where it is not.
 
-    Attributes
-    ----------
     first : number of the first profile
     width : m of road per profile
     low, high : (P,) int32, offsets in 0.1 mm
@@ -374,8 +356,6 @@ class LevelStrip:
     def shrunk(self, across: float, along: float) -> LevelStrip:
         """The part that keeps a distance from ground that is not level.
 
-        Parameters
-        ----------
         across : m from both ends of every profile
         along : m along the road; the result is shorter by as many profiles at both ends
         """
@@ -412,8 +392,6 @@ def _find_level_strip(track: np.ndarray, count: np.ndarray, total: np.ndarray, s
                      min_height: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """How far the ground about a track is level, profile by profile.
 
-    Parameters
-    ----------
     track : (P,) offset of the vehicle's track, 0.1 mm
     count : (P, 2, C) points of every cell of the left and of the right side, from the reference line outward
     total : (P, 2, C) sum of their heights, 0.1 mm

@@ -20,14 +20,10 @@ from ..weights import CURBS
 class OcclusionGrid:
     """Ground and tall things on one side of a road: profiles along, cells of CURBS.occlusion_cell across.
 
-    Parameters
-    ----------
     width : m of road per profile
     first, count : number of the first profile, and how many there are
     reach : m, the largest outward offset
 
-    Attributes
-    ----------
     ground : (P, C) float32, m, height of the lowest ground above the expected road, NaN where none was seen
     tall : (P, C) bool, is there something that can hide a curb?
     """
@@ -41,8 +37,6 @@ class OcclusionGrid:
     def add_points(self, u: np.ndarray, s: np.ndarray, h: np.ndarray, profiles: tuple[int, int], lines: Any) -> None:
         """Add what one pass saw of some profiles.
 
-        Parameters
-        ----------
         u, s, h : (N,) m, outward offset, station, and height above the expected road of the tall points
         profiles : (first, last + 1)
         lines : PseudoScanLines or HeightGrid of these profiles
@@ -74,8 +68,6 @@ class OcclusionGrid:
     def add_level_ground(self, profiles: tuple[int, int], nearest: np.ndarray, farthest: np.ndarray, height: np.ndarray) -> None:
         """Add ground without gaps.
 
-        Parameters
-        ----------
         profiles : (first, last + 1), P of them
         nearest, farthest : (P,) m, outward offsets between which it lies
         height : (P,) m above the expected road
@@ -88,14 +80,10 @@ class OcclusionGrid:
     def hidden(self, s: np.ndarray, u: np.ndarray, h: np.ndarray, near: np.ndarray) -> np.ndarray:
         """Is the curb that is expected at a place hidden from the scanner?
 
-        Parameters
-        ----------
         s, u, h : (N,) m, station, outward offset, and height of its bottom above the expected road
         near : (N,) m, outward offset of the vehicle's track
 
-        Returns
-        -------
-        (N,) bool
+        Returns (N,) bool
         """
         rows = len(self.ground)
         row = np.clip(np.floor(s / self.width).astype(np.int64) - self.first, 0, rows - 1)
@@ -118,14 +106,10 @@ class OcclusionGrid:
     def rise(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
         """How much higher the ground behind a line is than before it.
 
-        Parameters
-        ----------
         s, u : (N,) m, station and outward offset of places on the line
         skew : (N,) m outward per m along, direction of the line
 
-        Returns
-        -------
-        (N,) m, the median over 2 * CURBS.rise_half_length of road; NaN where nowhere there ground was seen on both sides
+        Returns (N,) m, the median over 2 * CURBS.rise_half_length of road; NaN where nowhere there ground was seen on both sides
         """
         around = int(round(CURBS.rise_half_length / self.width))
         rows = np.floor(s / self.width).astype(np.int64)[:, None] + np.arange(-around, around + 1)

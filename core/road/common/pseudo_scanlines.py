@@ -31,8 +31,6 @@ SIGMA_PER_MEAN_DEVIATION = 1.2533   # derived: sqrt(pi / 2), of a normal distrib
 def lowest_layers(place: np.ndarray, h: np.ndarray, layer_jump: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The lowest layer of every cell: from one layer to the next the height jumps, and what lies above is no ground.
 
-    Parameters
-    ----------
     place : (N,) cell of every point, ascending
     h : (N,) m, heights, ascending within a cell
     layer_jump : m of height between two layers
@@ -69,8 +67,6 @@ def lowest_layers(place: np.ndarray, h: np.ndarray, layer_jump: float) -> tuple[
 def expand_ranges(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """All indices of ranges of different lengths.
 
-    Parameters
-    ----------
     start, end : (M,) first index of each range, and the one after its last
 
     Returns
@@ -88,8 +84,6 @@ def expand_ranges(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.nd
 class PseudoScanLines:
     """Profiles of one side of the road; offsets count outward from the reference line.
 
-    Attributes
-    ----------
     first : number of the first of P profiles; station of profile k's middle is (k + 1/2) * width
     width, spacing : m of road per profile, and m across per cell
     origin : m, outward offset at which the first of C cells begins
@@ -151,18 +145,12 @@ def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.nda
                       spacing: float, layer_jump: float, origin: float, reach: float) -> PseudoScanLines:
     """Cut points of one side into profiles and cells and find the ground in each.
 
-    Parameters
-    ----------
     u, s, h : (N,) m, outward offset, station, and height above the expected road
     along : (N,) m along the road from the vehicle to the point when it was measured
     profiles : (first, last + 1) numbers of the profiles
     width, spacing : m of road per profile, m across per cell
     layer_jump : m of height between two layers
     origin, reach : m, nearest and farthest outward offset
-
-    Returns
-    -------
-    PseudoScanLines
     """
     cells = max(int(np.ceil((reach - origin) / spacing)), 1)
     inside, place = cells_of_points(u, s, h, np.arange(len(u)), profiles, cells, width, spacing, origin)
@@ -174,8 +162,6 @@ def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.nda
 class _ProfileRun:
     """Some of the profiles of a section; attributes as of PseudoScanLines, and in addition:
 
-    Attributes
-    ----------
     profiles : (first, last + 1)
     count : (P, C) points of every cell
     smooth : (P,) m, spread of heights near the ground in the smoother cells, NaN where there are too few of them
@@ -199,8 +185,6 @@ def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: 
                        cells: int, layer_jump: float) -> _ProfileRun:
     """The ground of profiles, cell by cell.
 
-    Parameters
-    ----------
     points : (u, s, h, along), each (K,) m
     inside, place : (N,) indices of the points within the profiles and cells, and their cells (`cells_of_points`)
     profiles : (first, last + 1)
@@ -246,8 +230,6 @@ def cells_of_points(u: np.ndarray, s: np.ndarray, h: np.ndarray, rows: np.ndarra
                     width: float, spacing: float, origin: float) -> tuple[np.ndarray, np.ndarray]:
     """Which of the points `rows` lie within the profiles and cells, and in which.
 
-    Parameters
-    ----------
     u, s, h : (K,) m, outward offset, station, and height above the expected road
     rows : (M,) indices of points
     profiles : (first, last + 1)

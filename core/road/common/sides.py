@@ -25,10 +25,6 @@ SIDE_SIGNS = {"left": 1, "right": -1}   # derived: side -> sign of its offsets
 class OutermostTrack:
     """Outward offset of the outermost driven track on one side.
 
-    Parameters
-    ----------
-    frame : RoadFrame
-    road : number of the road
     sign : of the side's offsets
     """
 
@@ -55,14 +51,10 @@ def work_sections(survey: Survey, road: int, width: float) -> list[tuple[int, in
 def fixed_sections(first: int, last: int, width: float) -> list[tuple[int, int]]:
     """Profiles or planes of a road in sections that are cut from station 0, so that two surveys with the same stations have the same ones.
 
-    Parameters
-    ----------
     first, last : number of the first one, and of the last one + 1
     width : m from one to the next
 
-    Returns
-    -------
-    list of (first, last + 1), each about CURBS.work_section_length long, those at the ends between half of that and one and a half
+    Returns a list of (first, last + 1), each about CURBS.work_section_length long, those at the ends between half of that and one and a half
     """
     length = max(int(round(CURBS.work_section_length / width)), 1)
     cuts = np.arange(first // length + 1, -(-last // length)) * length
@@ -81,18 +73,11 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
                   ) -> Iterator[tuple[str, int, tuple[np.ndarray, ...], PseudoScanLines]]:
     """Profiles of one section, separately for each side and pass.
 
-    Parameters
-    ----------
-    decimation : PointDecimation of the survey
-    road : number of the road
     section : (first, last + 1) profile numbers
     tracks : side -> OutermostTrack
-    settings : CurbSettings
     points_per_cell : see `PointDecimation.decimated_points`; None uses all points, up to CURBS.points_per_uneven_cell of a cell
 
-    Yields
-    ------
-    side, pass number, (u, s, h) of the tall points (each (N,) m), PseudoScanLines
+    Yields side, pass number, (u, s, h) of the tall points (each (N,) m), PseudoScanLines
     """
     survey, width, spacing = decimation.survey, decimation.width, decimation.spacing
     stations = (np.arange(*section) + 0.5) * width
@@ -161,15 +146,10 @@ def ahead_of_vehicle(survey: Survey, points: Points, s: np.ndarray) -> np.ndarra
     A point far ahead or behind is seen at a grazing angle and carries the drift of the
     positions since; a spinning scanner sees every place from both sides.
 
-    Parameters
-    ----------
-    survey : Survey
     points : N Points
     s : (N,) m, their stations
 
-    Returns
-    -------
-    (N,) m, positive ahead; 0 for surveys without times
+    Returns (N,) m, positive ahead; 0 for surveys without times
     """
     if not survey.has_time or not len(points):
         return np.zeros(len(points))
@@ -189,15 +169,11 @@ def ahead_of_vehicle(survey: Survey, points: Points, s: np.ndarray) -> np.ndarra
 def hidden_points(measured: np.ndarray, occlusion: OcclusionGrid, track: OutermostTrack) -> list[dict]:
     """Places in the gaps between curb points where something hides the curb.
 
-    Parameters
-    ----------
     measured : (N, 3) m, station, outward offset and height of the measured points above the expected road
     occlusion : OcclusionGrid of the side
     track : OutermostTrack of the side
 
-    Returns
-    -------
-    list of dict: s, u, h as above, and `fields`, what else is known of the point
+    Returns a list of dict: s, u, h as above, and `fields`, what else is known of the point
     """
     if len(measured) < 2:
         return []
@@ -210,25 +186,19 @@ def hidden_points(measured: np.ndarray, occlusion: OcclusionGrid, track: Outermo
     s = start[gap] + (number + 0.5) * ((end - start) / np.maximum(parts, 1))[gap]
     u, h = (np.interp(s, measured[:, 0], measured[:, k]) for k in (1, 2))
     hidden = occlusion.hidden(s, u, h, track(s))
-    return [dict(s=float(a), u=float(b), h=float(c), fields=dict(status="occluded"))
+    return [dict(s=float(a), u=float(b), h=float(c), fields=dict(status="occluded", part="bottom"))
             for a, b, c in zip(s[hidden], u[hidden], h[hidden])]
 
 
 def hidden_beside(pieces: CurbPoints, main: Mapping[str, np.ndarray], beside: Mapping[str, OcclusionGrid], survey: Survey, road: int) -> CurbPoints:
     """Hidden places in the gaps next to pieces of main curb that were found later than the others.
 
-    Parameters
-    ----------
     pieces : CurbPoints of the main curb of one road, found later
     main : side -> (M, 4) points of the main curb that were known before: station, offset, height above the expected road in m, and
         1 where it was measured and 0 where it is hidden
     beside : side -> OcclusionGrid of the road
-    survey : Survey
-    road : number of the road
 
-    Returns
-    -------
-    CurbPoints of status occluded; none where a place is known to be hidden already
+    Returns CurbPoints of status occluded; none where a place is known to be hidden already
     """
     found = [CurbPoints.filled(0, pieces.crs)]
     for side, sign in SIDE_SIGNS.items():

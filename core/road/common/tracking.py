@@ -27,8 +27,6 @@ from .pseudo_scanlines import expand_ranges
 class StepChain:
     """Steps of one line.
 
-    Attributes
-    ----------
     steps : (K,) indices into the CurbSteps, sorted by station
     start, end : m, first and last station
     low, sloped : is it lower, or less steep, than what is taken for a curb wherever it is seen?
@@ -40,6 +38,11 @@ class StepChain:
     low: bool = False
     sloped: bool = False
 
+    @property
+    def faint(self) -> bool:
+        """Is it lower or less steep?"""
+        return self.low or self.sloped
+
 
 def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
     """Link steps of neighbouring profiles.
@@ -47,14 +50,10 @@ def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
     Each step is linked with the one ahead that continues it best, if that one has
     no better step behind, so chains do not branch.
 
-    Parameters
-    ----------
     steps : M CurbSteps of one side of one road
     profile_width : m of road per profile
 
-    Returns
-    -------
-    (M,) number of the chain of every step, numbered by first station
+    Returns (M,) number of the chain of every step, numbered by first station
     """
     count = len(steps)
     if not count:
@@ -68,14 +67,6 @@ def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
     found = np.empty(count, np.int64)
     found[order] = linked_groups(rows, ahead[rows], count)
     return found
-
-
-def link_apart(steps: CurbSteps, profile_width: float, first: np.ndarray) -> np.ndarray:
-    """`link_steps` of two kinds of steps that are not linked with each other; `first` : (M,) bool, those of the first kind."""
-    label = np.empty(len(steps), np.int64)
-    label[first] = link_steps(steps[first], profile_width)
-    label[~first] = link_steps(steps[~first], profile_width) + label[first].max(initial=-1) + 1
-    return label
 
 
 def _best_partner(steps, width, direction):
@@ -108,67 +99,79 @@ def _best_partner(steps, width, direction):
 def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limits: CurbLimits) -> list[StepChain]:
     """Chains that look like a curb: long, dense, smooth, steep, with raised ground behind.
 
-    Parameters
-    ----------
     steps : M CurbSteps of one side of one road
     label : (M,) chain of each step
     profile_width : m of road per profile
-    limits : CurbLimits
 
-    Returns
-    -------
-    list of StepChain, sorted by start
+    Returns a list of StepChain, sorted by start
     """
     if not len(steps):
         return []
     order = np.lexsort((steps.profile, label))
-    cuts = np.flatnonzero(np.diff(label[order])) + 1
     chains: list[StepChain] = []
     weak: list[StepChain] = []
-    for members in np.split(order, cuts):
+    for members in np.split(order, np.flatnonzero(np.diff(label[order])) + 1):
         check_cancelled()
-        s = steps.s[members]
         length = (steps.profile[members[-1]] - steps.profile[members[0]] + 1) * profile_width
-        if length < CURBS.min_chain_length - 1e-9 or len(members) * profile_width < CURBS.min_chain_density * length:
-            continue
-        height, scanner_noise = np.median(steps.height[members]), np.median(steps.scanner_noise[members])
-        noise, scatter = np.median(steps.noise[members]), _chain_scatter(s, steps.u[members]) if len(members) > 2 else 0.0
-        # blur widens a face and never narrows it, so the sharper profiles show its width
-        slope = np.arctan2(height, max(np.quantile(steps.run[members], 0.3) - 2 * scanner_noise, 0.0))
-        least = limits.clear_height
-        allowance = min(scanner_noise, CURBS.max_noise_allowance * least) if scanner_noise > CURBS.noisy_share * least else 0.0
-        low, sloped = height < least - allowance, slope < limits.clear_slope
-        if sloped and (length < CURBS.min_sloped_length or _wander(steps, members) > CURBS.max_wander) \
-                or noise > max(CURBS.max_road_roughness, 2 * scanner_noise) or np.mean(steps.behind[members] >= 2) < 0.5 \
-                or scatter > CURBS.max_chain_scatter + scanner_noise:
-            continue
-        found = StepChain(members, float(s[0]), float(s[-1]), bool(low), bool(sloped))
-        if not (low or sloped) or limits.automatic and limits.faint(height, slope, noise, len(members), scatter):
-            chains.append(found)
-        elif limits.automatic and limits.faint(height, slope, noise, len(members), scatter / CURBS.weak_scatter_factor):
-            weak.append(found)
+        if length >= CURBS.min_chain_length - 1e-9 and len(members) * profile_width >= CURBS.min_chain_density * length:
+            chain, sure = _as_curb(steps, members, length, limits)
+            if sure:
+                (chains if sure > 1 else weak).append(chain)
     return sorted([*chains, *_continuing(chains, weak, steps)], key=lambda c: (c.start, c.end))
+
+
+def _as_curb(steps, members, length, limits):
+    """A dense chain as StepChain, and 2 where it is a curb by itself, 1 where it is one if it continues another, else 0."""
+    s = steps.s[members]
+    height, noise, scanner_noise = (np.median(v[members]) for v in (steps.height, steps.noise, steps.scanner_noise))
+    # blur widens a face and never narrows it, so the sharper profiles show its width
+    slope = np.arctan2(height, max(np.quantile(steps.run[members], 0.3) - 2 * scanner_noise, 0.0))
+    least, scatter = limits.clear_height, _chain_scatter(s, steps.u[members])
+    allowance = min(scanner_noise, CURBS.max_noise_allowance * least) if scanner_noise > CURBS.noisy_share * least else 0.0
+    chain = StepChain(members, float(s[0]), float(s[-1]), bool(height < least - allowance), bool(slope < limits.clear_slope))
+    if not is_clean(noise, scanner_noise, steps.behind[members], scatter) \
+            or chain.sloped and (length < CURBS.min_sloped_length or _wander(steps, members) > CURBS.max_wander):
+        return chain, 0
+    if not chain.faint:
+        return chain, 2
+    return chain, limits.automatic * sum(limits.faint(height, slope, noise, len(members), scatter / factor)
+                                         for factor in (1.0, CURBS.weak_scatter_factor))
+
+
+def is_clean(noise: float, scanner_noise: float, behind: np.ndarray, scatter: float) -> bool:
+    """Is the road before a line of steps smooth, is ground seen behind most of them, and do they lie in line?
+
+    noise, scanner_noise : m, scatter of heights before the steps, and the scanner's own
+    behind : (N,) points of the raised ground of each step
+    scatter : m, of the steps about their line
+    """
+    return bool(noise <= max(CURBS.max_road_roughness, 2 * scanner_noise) and np.mean(behind >= 2) >= 0.5
+                and scatter <= CURBS.max_chain_scatter + scanner_noise)
 
 
 def _continuing(chains, weak, steps):
     """Those of the weak chains that continue a chain, or another such one: how much a short chain scatters depends on where profiles are cut."""
     found: list[StepChain] = []
-    for onward in (True, False):
-        # by the end that another chain may continue, so that those near a chain are looked up
-        known = sorted(((c.end if onward else c.start, k) for k, c in enumerate([*chains, *found])))
+    for sign in (1, -1):
         numbered = [*chains, *found]
-        for own in sorted(weak, key=lambda c: c.start if onward else -c.end):
-            first = own.start - CURBS.max_chain_gap if onward else own.end
-            last = first + CURBS.max_chain_gap + ROUNDING_TOLERANCE
-            nearby = known[bisect_left(known, (first - ROUNDING_TOLERANCE, -1)):bisect_left(known, (last, -1))]
-            beside = [numbered[k] for tip, k in nearby if 0 < (own.start - tip if onward else tip - own.end) <= CURBS.max_chain_gap]
-            if any(_in_line(steps, *((one.steps, own.steps) if onward else (own.steps, one.steps)))[0] for one in beside):
-                insort(known, (own.end if onward else own.start, len(numbered)))
-                numbered.append(own)
-                found.append(own)
-        there = set(map(id, found))
-        weak = [own for own in weak if id(own) not in there]
+        # by the end that another chain may continue, so that those near a chain are looked up
+        tips = sorted((_along(chain, sign)[1], k) for k, chain in enumerate(numbered))
+        for chain in sorted(weak, key=lambda chain: _along(chain, sign)[0]):
+            begin, end = _along(chain, sign)
+            first, last = (bisect_left(tips, (place, -1)) for place in (begin - CURBS.max_chain_gap - ROUNDING_TOLERANCE, begin + ROUNDING_TOLERANCE))
+            if any(0 < begin - tip <= CURBS.max_chain_gap and _in_line(steps, *(numbered[k].steps, chain.steps)[::sign])[0]
+                   for tip, k in tips[first:last]):
+                insort(tips, (end, len(numbered)))
+                numbered.append(chain)
+                found.append(chain)
+        taken = set(map(id, found))
+        weak = [chain for chain in weak if id(chain) not in taken]
     return found
+
+
+def _along(chain, sign):
+    """Begin and end of a chain along the road (1), or against it (-1)."""
+    return (chain.start, chain.end) if sign > 0 else (-chain.end, -chain.start)
 
 
 def _wander(steps, members):
@@ -186,56 +189,18 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
                       near: Callable[[float], np.ndarray]) -> list[tuple[int, float, float]]:
     """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming, and what continues it.
 
-    Parameters
-    ----------
     chains : list of StepChain of one side
     steps : CurbSteps to which they refer
     near : function, station in m -> outward offset of the outermost track on that side, m
 
-    Returns
-    -------
-    list of (chain index, first station, last station), in order along the road
+    Returns a list of (chain index, first station, last station), in order along the road
     """
-    places = [(steps.s[c.steps], steps.u[c.steps], steps.h[c.steps]) for c in chains]
-    starts, ends = np.array([c.start for c in chains]), np.array([c.end for c in chains])
-    cuts = np.unique(np.r_[starts, ends])
-    waiting = np.argsort(-starts, kind="stable").tolist()   # the next to begin is the last
-    active: list[int] = []                 # chains beside the road at a place, by number, and
-    continued: list[int] = []              # those that a path ends on which may be continued: few, however long the road is
-    tips = np.array([_end_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
-    value = np.full(len(chains), -np.inf)  # of the best path that ends, or last was, on this chain
-    path: list = [None] * len(chains)      # that path: (chain, first, last station, path before)
+    paths = _Paths(chains, steps, near)
+    cuts = np.unique(np.r_[paths.starts, paths.ends])
     for a, b in zip(cuts[:-1], cuts[1:]):
         check_cancelled()
-        # of the chains that ended long ago the best alone is continued
-        best = max((value[k] for k in continued if ends[k] + CURBS.tracking_memory < a), default=-np.inf)
-        value[[k for k in continued if ends[k] + CURBS.tracking_memory < a and value[k] < best]] = -np.inf
-        continued = [k for k in continued if np.isfinite(value[k])]
-        while waiting and starts[waiting[-1]] <= a:
-            insort(active, waiting.pop())
-        active = [c for c in active if ends[c] >= b]
-        known = np.array(continued, np.int64)
-        there = np.array([[np.interp(a, places[k][0], v) for v in places[k][1:]] for k in known]).reshape(-1, 2)
-        middle, found = 0.5 * (a + b), []
-        for c in active:
-            farther = max(np.interp(middle, *places[c][:2]) - near(middle), 0.0)
-            gain = (b - a) * max(1.0 - CURBS.distance_penalty * farther, 0.1) * (CURBS.faint_gain if chains[c].low or chains[c].sloped else 1.0)
-            u, h = (np.interp(a, places[c][0], v) for v in places[c][1:])
-            gap = np.maximum(a - ends[known], 0.0)
-            # a gap is crossed in the mean direction of the end before and the start after it
-            turn = np.minimum(gap, CURBS.max_extrapolation) * 0.5 * (tips[known, 1] + (tips[c, 0] if a <= starts[c] else 0.0))
-            jump = np.maximum(np.abs(u - there[:, 0] - np.where(gap > 0, turn, 0.0)) - 0.05 - 0.1 * gap, 0.0)
-            climb = np.maximum(np.abs(h - there[:, 1]) - 0.03 - 0.003 * gap, 0.0)
-            total = value[known] - np.where(known == c, 0.0, np.minimum(CURBS.jump_cost * jump + CURBS.climb_cost * climb, CURBS.max_jump_cost))
-            best, before = 0.0, None       # the path that begins here
-            if len(known) and total.max() >= best:
-                k = int(np.argmax(total))
-                best, before = total[k], path[known[k]]
-            found.append((c, best + gain, (int(c), float(a), float(b), before)))
-        for c, new_value, step in found:
-            value[c], path[c] = new_value, step
-        continued = sorted({*continued, *active})
-    last = path[int(np.argmax(value))] if len(chains) else None
+        paths.lead_on(a, b)
+    last = paths.path[int(np.argmax(paths.value))] if len(chains) else None
     selected = []
     while last:
         selected.append(last[:3])
@@ -243,33 +208,86 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
     return _continued(_merged(selected[::-1]), chains, steps)
 
 
+class _Paths:
+    """The best path over chains that ends, or last was, on each chain: its value in m of curb, and (chain, first, last station, path before)."""
+
+    def __init__(self, chains, steps, near):
+        self.chains, self.near = chains, near
+        self.places = [(steps.s[c.steps], steps.u[c.steps], steps.h[c.steps]) for c in chains]
+        self.tips = np.array([_end_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
+        self.starts, self.ends = np.array([c.start for c in chains]), np.array([c.end for c in chains])
+        self.value, self.path = np.full(len(chains), -np.inf), [None] * len(chains)
+        self.waiting = np.argsort(-self.starts, kind="stable").tolist()   # the next to begin is the last
+        self.active: list[int] = []      # chains beside the road at a place, by number, and
+        self.continued: list[int] = []   # those that a path ends on which may be continued: few, however long the road is
+
+    def lead_on(self, a, b):
+        """From one station to the next, between which no chain begins or ends."""
+        self._forget(a)
+        while self.waiting and self.starts[self.waiting[-1]] <= a:
+            insort(self.active, self.waiting.pop())
+        self.active = [c for c in self.active if self.ends[c] >= b]
+        known = np.array(self.continued, np.int64)
+        at = np.array([[np.interp(a, self.places[k][0], v) for v in self.places[k][1:]] for k in known]).reshape(-1, 2)
+        middle = 0.5 * (a + b)
+        steps = []
+        for c in self.active:
+            farther = max(np.interp(middle, *self.places[c][:2]) - self.near(middle), 0.0)
+            gain = (b - a) * max(1.0 - CURBS.distance_penalty * farther, 0.1) * (CURBS.faint_gain if self.chains[c].faint else 1.0)
+            best, before = self._before(c, a, known, at)
+            steps.append((c, best + gain, (int(c), float(a), float(b), before)))
+        for c, value, step in steps:
+            self.value[c], self.path[c] = value, step
+        self.continued = sorted({*self.continued, *self.active})
+
+    def _forget(self, a):
+        """Of the chains that ended long ago the best alone is continued."""
+        old = [k for k in self.continued if self.ends[k] + CURBS.tracking_memory < a]
+        best = max(self.value[old], default=-np.inf)
+        self.value[[k for k in old if self.value[k] < best]] = -np.inf
+        self.continued = [k for k in self.continued if np.isfinite(self.value[k])]
+
+    def _before(self, c, a, known, at):
+        """The best path that chain c may continue from station a on, and its value; 0 where a path begins here."""
+        u, h = (np.interp(a, self.places[c][0], v) for v in self.places[c][1:])
+        gap = np.maximum(a - self.ends[known], 0.0)
+        # a gap is crossed in the mean direction of the end before and the start after it
+        turn = np.minimum(gap, CURBS.max_extrapolation) * 0.5 * (self.tips[known, 1] + (self.tips[c, 0] if a <= self.starts[c] else 0.0))
+        jump = np.maximum(np.abs(u - at[:, 0] - np.where(gap > 0, turn, 0.0)) - 0.05 - 0.1 * gap, 0.0)
+        climb = np.maximum(np.abs(h - at[:, 1]) - 0.03 - 0.003 * gap, 0.0)
+        cost = np.where(known == c, 0.0, np.minimum(CURBS.jump_cost * jump + CURBS.climb_cost * climb, CURBS.max_jump_cost))
+        total = self.value[known] - cost
+        if not len(known) or total.max() < 0.0:
+            return 0.0, None
+        k = int(np.argmax(total))
+        return total[k], self.path[known[k]]
+
+
 def _continued(selected, chains, steps):
     """The selection with the chains that go on from a selected one where nothing else was selected.
 
     To the selection a long gap allows a larger jump: that a curb goes on before the jump must not speak against the curb.
     """
-    chosen = {chain for chain, _, _ in selected}
-    free = [number for number in sorted(range(len(chains)), key=lambda k: chains[k].start) if number not in chosen]
-    for onward in (True, False):
-        for number in free if onward else free[::-1]:
-            own = chains[number]
-            at = bisect_left(selected, own.start, key=lambda part: part[1])
-            before, after = selected[at - 1] if at else None, selected[at] if at < len(selected) else None
-            if (before and before[2] > own.start) or (after and after[1] < own.end):
+    free = sorted({*range(len(chains))} - {chain for chain, _, _ in selected}, key=lambda k: (chains[k].start, k))
+    for sign in (1, -1):
+        for number in free[::sign]:
+            chain = chains[number]
+            at = bisect_left(selected, chain.start, key=lambda part: part[1])
+            if any(a < chain.end and b > chain.start for _, a, b in selected[max(at - 1, 0):at + 1]):
                 continue
-            if (before if onward else after) and _goes_on(steps, chains, before if onward else after, own, onward):
-                selected.insert(at, (number, own.start, own.end))
+            parts = selected[at - 1:at] if sign > 0 else selected[at:at + 1]
+            if parts and _goes_on(steps, chains, parts[0], chain, sign):
+                selected.insert(at, (number, chain.start, chain.end))
     return selected
 
 
-def _goes_on(steps, chains, part, own, onward):
-    """Whether a chain continues a selected interval, onward or back, and keeps to its offset."""
+def _goes_on(steps, chains, part, chain, sign):
+    """Does a chain continue a selected interval, along the road (1) or against it (-1), and keep to its offset?"""
     number, a, b = part
-    known = chains[number].steps
-    known = known[(steps.s[known] >= a) & (steps.s[known] <= b)]
-    if not len(known) or np.abs(steps.u[own.steps] - steps.u[known[-1 if onward else 0]]).max() > CURBS.max_steady_jump:
+    members = _between(steps, chains[number].steps, a, b)
+    if not len(members) or np.abs(steps.u[chain.steps] - steps.u[members[::sign][-1]]).max() > CURBS.max_steady_jump:
         return False
-    return any(_in_line(steps, *((known, own.steps) if onward else (own.steps, known))))
+    return any(_in_line(steps, *(members, chain.steps)[::sign]))
 
 
 def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Sequence[StepChain],
@@ -279,25 +297,18 @@ def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Seque
     A curb between parked cars is seen in pieces; a piece with nothing in line with it may be anything. A piece farther away, up to
     CURBS.max_steady_gap, belongs to what is a curb by itself.
 
-    Parameters
-    ----------
     selected : result of `select_along_road`
-    chains : list of StepChain
     steps : CurbSteps to which they refer
 
-    Returns
-    -------
-    list like `selected`
+    Returns list like `selected`
     """
-    if not selected:
-        return []
-    members = [chains[chain].steps[(steps.s[chains[chain].steps] >= a) & (steps.s[chains[chain].steps] <= b)] for chain, a, b in selected]
+    members = [_between(steps, chains[chain].steps, a, b) for chain, a, b in selected]
     group, steady = np.zeros(len(selected), int), np.zeros(len(selected), bool)
     for k in range(1, len(selected)):
         near, steady[k] = _in_line(steps, members[k - 1], members[k])
         group[k] = group[k - 1] + (not near)
     length = np.bincount(group, [b - a for _, a, b in selected])
-    upright = np.bincount(group, [not (chains[chain].low or chains[chain].sloped) for chain, _, _ in selected]) > 0
+    upright = np.bincount(group, [not chains[chain].faint for chain, _, _ in selected]) > 0
     curb = length >= np.where(upright, CURBS.min_curb_length, CURBS.min_faint_length)
     # from one group to the next, along the road and back
     for order in (range(1, len(selected)), range(len(selected) - 1, 0, -1)):
@@ -326,7 +337,9 @@ def _end_directions(steps, members):
 
 
 def _chain_scatter(s, u):
-    """Median distance of the steps of a chain from the chord of their neighbours, m."""
+    """Median distance of the steps of a chain from the chord of their neighbours, m; 0 where there are two."""
+    if len(s) < 3:
+        return 0.0
     f = (s[1:-1] - s[:-2]) / np.maximum(s[2:] - s[:-2], 1e-6)
     return np.median(np.abs(u[1:-1] - u[:-2] - f * (u[2:] - u[:-2])))
 
@@ -334,8 +347,6 @@ def _chain_scatter(s, u):
 def seen_stretch(profile: np.ndarray) -> slice:
     """The rows of a run of steps in which it is seen densely enough: all, or those whose profiles exceed CURBS.min_chain_density by most.
 
-    Parameters
-    ----------
     profile : (N,) int, ascending, numbers of the profiles
     """
     excess = np.arange(len(profile)) - CURBS.min_chain_density * (profile - profile[0])
@@ -368,16 +379,11 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
                         to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[np.ndarray]:
     """The steps of the chosen intervals and, between them, the pieces of curb that lie in their line.
 
-    Parameters
-    ----------
     kept : result of `drop_short_curbs`
-    chains : list of StepChain
     steps : CurbSteps to which they refer
     to_plan : function, stations and outward offsets in m -> x and y in m
 
-    Returns
-    -------
-    list of (K,) indices into the steps, by station, one for every interval and piece, in order along the road
+    Returns a list of (K,) indices into the steps, by station, one for every interval and piece, in order along the road
     """
     found = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
     if not found:
@@ -428,15 +434,9 @@ def pieces_between(before: CurbSteps, after: CurbSteps, others: StepsByStation,
                    to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[PieceInLine]:
     """The pieces of curb on the line between two runs of curb.
 
-    Parameters
-    ----------
     before, after : CurbSteps on both sides of the gap, or any rows with `s`, `u`, `h` and `height`; not empty
     others : the steps that may lie between
     to_plan : function, stations and outward offsets in m -> x and y in m
-
-    Returns
-    -------
-    list of PieceInLine
     """
     a, b = before.s.max(), after.s.min()
     rows, steps = others.rows(a + 1e-6, b - 1e-6), others.steps
@@ -466,23 +466,18 @@ def _is_curb(piece, off, across, height):
     """Is a run of steps near a line a piece of the curb of that line? `off` : m, from the line; `across` : m that it may lead away from it."""
     ratio = np.median(piece.height / height)
     s = piece.s - piece.s.mean()
-    turn, scanner_noise = s @ off / (s @ s), np.median(piece.scanner_noise)
+    turn = s @ off / (s @ s)
     return bool(1 / CURBS.max_height_ratio <= ratio <= CURBS.max_height_ratio and abs(turn) * np.ptp(s) <= across
-                and np.std(off - turn * s) <= CURBS.max_chain_scatter + scanner_noise and np.mean(piece.behind >= 2) >= 0.5
-                and np.median(piece.noise) <= max(CURBS.max_road_roughness, 2 * scanner_noise))
+                and is_clean(np.median(piece.noise), np.median(piece.scanner_noise), piece.behind, np.std(off - turn * s)))
 
 
 class GapLine:
     """A polynomial in plan across a gap.
 
-    Parameters
-    ----------
     before, after : (2, N) and (2, M) m, x and y of the curb on both sides of the gap, in order; those within CURBS.line_fit_length
         of it are used
     max_degree : greatest degree; 2 is an even bend
 
-    Attributes
-    ----------
     miss : m, greatest distance of the places that were used from the line
     """
 
@@ -519,42 +514,3 @@ class GapLine:
         """(N,) m from the line, left positive."""
         t, v = self.place(x, y)
         return v - self.line(t)
-
-
-# The chains of steps that a method found on one side of a road, and curb points of them that it may give later.
-
-@dataclass(frozen=True)
-class SideChains:
-    """The chains of one side of one road.
-
-    steps : CurbSteps of the side
-    chains : list of StepChain of these steps
-    block_points : function, CurbSteps of one chain and a number for it -> a dict for each curb point: s, u, h, and `fields`, what else is known of it
-    """
-
-    steps: CurbSteps
-    chains: list[StepChain]
-    block_points: Callable[[CurbSteps, int], list[dict]]
-
-    def points(self, members: np.ndarray, number: int) -> list[dict]:
-        """Curb points of the steps with the (K,) indices, by station, of one line; they get the number."""
-        return self.block_points(self.steps[members], number)
-
-    def support_along(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
-        """Laser points that show a step on a line.
-
-        Parameters
-        ----------
-        s, u : (N,) m, station and outward offset of places on the line
-        skew : (N,) m outward per m along, direction of the line
-
-        Returns
-        -------
-        (N,) points per metre of road, over CURBS.max_link_length of it, half on either side
-        """
-        order = np.argsort(self.steps.s, kind="stable")
-        by_station = self.steps.s[order]
-        place, row = expand_ranges(*(np.searchsorted(by_station, s + end) for end in (-0.5 * CURBS.max_link_length, 0.5 * CURBS.max_link_length)))
-        row = order[row]
-        near = np.abs(self.steps.u[row] - u[place] - skew[place] * (self.steps.s[row] - s[place])) <= 2 * CURBS.link_tolerance
-        return np.bincount(place[near], self.steps.support[row[near]], len(s)) / CURBS.max_link_length

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 
 from ...common.arrays import mask_runs
 from ..common.sides import SIDE_SIGNS
+from ..common.tracking import is_clean
 from ..weights import CURBS, RETURN
 from .main_curbs import CurbLines
 from .steps import PlanSteps
@@ -28,14 +29,13 @@ if TYPE_CHECKING:
 class CurbReturn:
     """One line of curb away from the road's own.
 
-    Attributes
-    ----------
     steps : N PlanSteps in order, uphill on the right
     s, d : (N,) m, station and offset of each
     side : "left" or "right"
     kind : "main" (a piece of main curb that profiles missed), "corner", "side_street" or "island"
     closed : does it go all around an island?
     sigma : (N,) m, one sigma across that the steps share, of a line that was fitted as a whole; None of steps that were seen one by one
+    falls : (N,) m uphill of each step at which the ground is down again, NaN where it stays up; None where that does not matter
     """
 
     steps: PlanSteps
@@ -45,17 +45,14 @@ class CurbReturn:
     kind: str
     closed: bool = False
     sigma: np.ndarray | None = None
+    falls: np.ndarray | None = None
 
 
 def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarray, settings: CurbSettings) -> bool:
     """Is a line long, dense, steep and smooth enough for a curb?
 
-    Parameters
-    ----------
-    chain : PlanStepChain
     steps : M PlanSteps to which it refers
     scanner_noise : (M,) m
-    settings : CurbSettings
     """
     own = steps[chain.steps]
     length = _length(own.x, own.y)
@@ -67,7 +64,7 @@ def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarr
     if height < limits.clear_height or slope < limits.clear_slope \
             and not (limits.automatic and length >= CURBS.min_faint_length and limits.faint(height, slope, rough, len(own), scatter)):
         return False
-    return bool(rough <= max(CURBS.max_road_roughness, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 and scatter <= CURBS.max_chain_scatter + noise)
+    return is_clean(rough, noise, own.behind, scatter)
 
 
 def _length(x, y):
@@ -88,20 +85,12 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
                    elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = ()) -> list[CurbReturn]:
     """The lines that are curbs, each with its kind and side.
 
-    Parameters
-    ----------
-    chains : list of PlanStepChain
     steps : M PlanSteps to which they refer
     falls : (M,) m uphill of each step at which the ground is down again, NaN where it stays up
     runs : main curbs in plan, uphill on the right: list of (side, (x, y, h)), local m
-    line : Road
     limits : side -> SearchLimit
     passes : of the road
     elsewhere : (x, y) of the main curbs of other roads, local m
-
-    Returns
-    -------
-    list of CurbReturn
     """
     if not chains:
         return []
@@ -110,32 +99,45 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in alone.values())]
     chains = [chain for k, chain in enumerate(chains) if k not in alone]
     main_ends, lines = CurbLines([(x, y) for _, (x, y, _) in runs]), _LinesOfSteps([steps[chain.steps] for chain in chains])
-    places = [place for _, place in runs] + [(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in chains]
-    group = group_lines(places)
+    found, apart = list(alone.values()), []
+    for side, chain in zip(_sides_continued(runs, chains, steps), chains):
+        own = steps[chain.steps]
+        if side:
+            found += classify_continuation(own, *line.locate(own.x, own.y), side, line, limits[side], main_ends)
+        else:
+            curb = _curb_apart(own, falls[chain.steps], chain.closed, line, limits, passes, lines)
+            (found if curb.kind == "side_street" else apart).append(curb)
+    return found + _free_and_islands(apart, found, runs, elsewhere)
+
+
+def _sides_continued(runs, chains, steps):
+    """Of each chain the side of the main curb that it continues, "" where there is none."""
+    group = group_lines([place for _, place in runs] + [(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in chains])
     sides: dict[int, str] = {}
     for number, (side, _) in zip(group, runs):
         sides.setdefault(number, side)
-    found, islands, free = list(alone.values()), [], []
-    for number, chain in zip(group[len(runs):], chains):
-        own = steps[chain.steps]
-        s, d = line.locate(own.x, own.y)
-        if not chain.closed and number in sides:
-            found += classify_continuation(own, s, d, sides[number], line, limits[sides[number]], main_ends)
-            continue
-        behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
-        side = _side(s, d, passes)
-        if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= RETURN.min_island_share:
-            islands.append((CurbReturn(own, s, d, side, "island", chain.closed), falls[chain.steps]))
-        elif _may_be_side_street(own, s, line, behind, lines):
-            # a side street whose corner is hidden
-            straight = _straight_part(own)
-            found.append(CurbReturn(own[straight], s[straight], d[straight], side, "side_street"))
-        elif np.mean(behind) <= RETURN.max_behind_share:
-            free.append(CurbReturn(own, s, d, side, "corner"))
+    return ["" if chain.closed else sides.get(number, "") for number, chain in zip(group[len(runs):], chains)]
+
+
+def _curb_apart(own, falls, closed, line, limits, passes, lines):
+    """A line that continues no main curb, as an island, as a side street whose corner is hidden, or else as a corner or of no kind."""
+    s, d = line.locate(own.x, own.y)
+    behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
+    side = _side(s, d, passes)
+    if np.mean(np.isfinite(falls) & ~behind) >= RETURN.min_island_share:
+        return CurbReturn(own, s, d, side, "island", closed, falls=falls)
+    if _may_be_side_street(own, s, line, behind, lines):
+        straight = _straight_part(own)
+        return CurbReturn(own[straight], s[straight], d[straight], side, "side_street")
+    return CurbReturn(own, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "")
+
+
+def _free_and_islands(apart, found, runs, elsewhere):
+    """Of lines apart the corners that other curbs confirm, and the outlines of islands."""
     own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in found]
     before, beside = CurbLines(own_curbs), CurbLines([*own_curbs, *elsewhere])
-    islands = [(curb, down) for curb, down in islands if not lies_behind(curb.steps, before)]
-    return found + [curb for curb in free if is_free_corner(curb.steps, beside)] + _long_islands(island_outlines(islands))
+    islands = [curb for curb in apart if curb.kind == "island" and not lies_behind(curb.steps, before)]
+    return [curb for curb in apart if curb.kind == "corner" and is_free_corner(curb.steps, beside)] + _long_islands(island_outlines(islands))
 
 
 def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
@@ -175,12 +177,9 @@ def classify_continuation(own: PlanSteps, s: np.ndarray, d: np.ndarray, side: st
                           runs: CurbLines) -> list[CurbReturn]:
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it.
 
-    Parameters
-    ----------
     own : N PlanSteps in order, uphill on the right
     s, d : (N,) m, their stations and offsets
     side : of the main curb
-    line : Road
     limit : SearchLimit of that side
     runs : CurbLines, the main curbs
     """
@@ -247,21 +246,18 @@ def _where_straight(own, order, along):
     return len(x)
 
 
-def island_outlines(islands: Sequence[tuple[CurbReturn, np.ndarray]]) -> list[CurbReturn]:
-    """The lines about islands without those on top of one: a ramp that is lowered for a crossing meets the rest of the island in an edge.
-
-    islands : lines and, of each, (N,) m uphill of its steps at which the ground is down again
-    """
+def island_outlines(islands: Sequence[CurbReturn]) -> list[CurbReturn]:
+    """The lines about islands without those on top of one: a ramp that is lowered for a crossing meets the rest of the island in an edge."""
     inner = []
-    for line, falls in islands:
-        out = np.arange(RETURN.outline_margin, np.nanmax(falls, initial=0.0) - RETURN.outline_margin, RETURN.inner_distance)
-        k, j = np.nonzero(out < (falls - RETURN.outline_margin)[:, None])
+    for line in islands:
+        out = np.arange(RETURN.outline_margin, np.nanmax(line.falls, initial=0.0) - RETURN.outline_margin, RETURN.inner_distance)
+        k, j = np.nonzero(out < (line.falls - RETURN.outline_margin)[:, None])
         own = line.steps
         inner.append(np.c_[own.x[k] + out[j] * own.nx[k], own.y[k] + out[j] * own.ny[k]])
     owner = np.repeat(np.arange(len(inner)), [len(places) for places in inner])
     tree = cKDTree(np.concatenate([np.empty((0, 2)), *inner]))
     found = []
-    for number, (line, _) in enumerate(islands):
+    for number, line in enumerate(islands):
         near = tree.query_ball_point(np.c_[line.steps.x, line.steps.y], RETURN.inner_distance)
         if np.mean([(owner[rows] != number).any() for rows in near]) < RETURN.min_island_share:
             found.append(line)
@@ -290,14 +286,9 @@ def _long_islands(lines):
 def lies_behind(line: PlanSteps, curbs: CurbLines) -> bool:
     """Does one who goes straight down from a line step off another curb before stepping up one?
 
-    Parameters
-    ----------
     line : N PlanSteps in order
-    curbs : CurbLines
 
-    Returns
-    -------
-    whether that holds at most places that meet a curb at all
+    Returns whether that holds at most places that meet a curb at all
     """
     ax, ay, sx, sy = curbs.segments_about(line.x, line.y, 2 * RETURN.road_width).T
     if not len(ax):
@@ -324,8 +315,6 @@ END_MARGIN = 0.01   # derived: m, more than distances are rounded by
 def is_free_corner(own: PlanSteps, curbs: CurbLines) -> bool:
     """Does a line bend evenly about its uphill side, and point at the end of a curb both ways?
 
-    Parameters
-    ----------
     own : N PlanSteps in order
     curbs : CurbLines, the other curbs
     """

@@ -9,17 +9,18 @@ again is an island. Any other step does not belong to the road.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.progress import Progress
-from ...execution.phase import Phase
 from ...survey.frame.placement import PlaceIndex
 from ...survey.frame.road import CORRIDOR
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
+from ..common.side_curbs import phase_along
 from ..common.sides import SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden_beside, work_sections
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_curbs, is_curb_like
@@ -44,21 +45,15 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     Where a piece of main curb is found here, hidden places are looked for in the gaps next to it. A main curb that is the side
     of an island becomes a line about that island where the road's own curb is found behind it.
 
-    Parameters
-    ----------
     curb_points : CurbPoints of every road, of kind main
-    decimation : PointDecimation of the survey
-    settings : CurbSettings
-    progress : Progress
     beside : number of the road -> side -> OcclusionGrid, what was seen beside it; without, no hidden place is added, and main curbs
         are not looked at for islands
     """
-    survey, parts = decimation.survey, []
-    length = dict.fromkeys(KIND_TITLES, 0.0)
+    survey, lines, parts = decimation.survey, [], []
     roads = survey.store.roads()
     aside, behind = on_main_islands(curb_points, survey, beside)
     mains = {road: main_curbs_of(curb_points[~aside], survey, road) for road in roads}
-    runs = {road: [(x, y) for _, (x, y, _) in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
+    runs = {road: [place[:2] for _, place in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         main, chain = mains[road]
@@ -70,18 +65,26 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
             aside &= ~own
             main, chain = main_curbs_of(curb_points, survey, road)
             curbs = find_curb_returns(decimation, road, main, settings, part.part(0.5, 1.0), elsewhere)
-        later: list[CurbPoints] = []
-        for number, curb in enumerate(curbs, chain):
-            points = _points_of(survey, road, curb, number)
-            length[curb.kind] += points.along[-1]
-            parts.append(points)
-            if curb.kind == "main":
-                later.append(points)
-        if later and beside is not None:
-            parts.append(hidden_beside(CurbPoints.join(later, curb_points.crs), main, beside[road], survey, road))
-    found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KIND_TITLES.items() if length[kind])
-    progress.info(f"Curbs away from the road's direction: {found or 'none'}.")
+        points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
+        lines += points
+        parts += points + hidden
+    progress.info(f"Curbs away from the road's direction: {_lengths(lines) or 'none'}.")
     return CurbPoints.join([curb_points[~aside], *parts], curb_points.crs)
+
+
+def _points_of_road(survey, road, curbs, chain, main, beside, crs):
+    """The points of each line, whose chains are numbered from `chain` on, and those hidden next to main curbs among them."""
+    lines = [_points_of(survey, road, curb, number) for number, curb in enumerate(curbs, chain)]
+    later = [points for points, curb in zip(lines, curbs) if curb.kind == "main"]
+    if not later or beside is None:
+        return lines, []
+    return lines, [hidden_beside(CurbPoints.join(later, crs), main, beside[road], survey, road)]
+
+
+def _lengths(lines):
+    """Metres of each kind, for a message."""
+    length = {kind: sum(points.along[-1] for points in lines if points.kind[0] == kind) for kind in KIND_TITLES}
+    return ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KIND_TITLES.items() if length[kind])
 
 
 def _points_of(survey, road, curb, chain):
@@ -99,20 +102,10 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
                       behind: np.ndarray = np.empty((2, 0))) -> list[CurbReturn]:
     """Corners, side streets and islands of one road.
 
-    Parameters
-    ----------
-    decimation : PointDecimation of the survey
-    road : number of the road
     main : side -> (N, 4) points of the main curb, by station: station, offset, height above the expected road in m,
         1 where it was measured and 0 where it is hidden
-    settings : CurbSettings
-    progress : Progress
     elsewhere : (x, y) of the main curbs of other roads, local m
     behind : (2, K) local m, x and y of places that are road although something stands between them and the track
-
-    Returns
-    -------
-    list of CurbReturn
     """
     survey = decimation.survey
     limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
@@ -121,10 +114,8 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     barrier = PlaceIndex(places_along(line, main, RETURN.min_opening_length), CORRIDOR)
     runs = main_runs(main, line)
     tips = FollowedEnds.of([place for _, place in runs], np.full(len(runs), np.nan))
-    phase = Phase(plan_steps_of_section, decimation, (road, limits, known, barrier, tips, settings, behind),
-                  lambda section: survey.stretch(road, *(k * settings.profile_width for k in section)),
-                  lambda section: survey.store.points_between(road, *(k * settings.profile_width for k in section)), _join_parts,
-                  CURBS.sections_together)
+    arguments = road, limits, known, barrier, tips, settings, behind
+    phase = phase_along(plan_steps_of_section, decimation, arguments, settings.profile_width, _join_parts)
     sections = work_sections(survey, road, settings.profile_width)
     found = _join_parts(decimation.executor.run(phase, sections, progress.part(0.0, RETURN.led_progress)))
     if found is None:
@@ -160,68 +151,39 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
                           points_per_cell: int | None = CURBS.points_per_level_cell_in_plan) -> tuple[PlanSteps, np.ndarray, np.ndarray] | None:
     """The phase of curb returns: steps in plan in one section of a road.
 
-    Parameters
-    ----------
-    decimation : PointDecimation of the survey
     section : (first, last + 1) profile numbers
-    road : number of the road
     limits : side -> SearchLimit
     known : places of the main curbs
     barrier : local places that the driven ground does not go beyond
     tips : ends of the main curbs
-    settings : CurbSettings
     behind : (2, K) local x and y of places that are road although something stands between them and the track
     points_per_cell : as in `decimated_points`, where the ground is not uneven nearly everywhere
 
-    Returns
-    -------
-    PlanSteps, (N,) bool where the raised ground behind each ends, and (N,) m the scanner's noise; None where there are no steps
+    Returns PlanSteps, (N,) bool where the raised ground behind each ends, and (N,) m the scanner's noise; None where there are no steps
     """
-    survey, width = decimation.survey, decimation.width
+    survey, width, clear = decimation.survey, decimation.width, settings.limits.clear_height
     margin = int(np.ceil(RETURN.section_margin / width))
     profiles = section[0] - margin, section[1] + margin
-    start, end, first, last = (k * width for k in (*section, *profiles))
-    reach = _Reach(limits, first, last)
     limit = None if points_per_cell is None or decimation.mostly_uneven(road, sum(section) // 2) else points_per_cell
-    seen = [_beside_vehicle(survey, road, part, reach) for part in decimation.decimated_points(road, profiles, limit)]
-    if not seen:
-        return None
-    *place, along, inner = (np.concatenate(column) for column in zip(*seen))
-    raster = ground_raster(place[0], place[1], place[2], settings.layer_jump)
+    x, y, h, along, inner = _beside_vehicle(decimation, road, profiles, limits, limit)
+    raster = ground_raster(x, y, h, settings.layer_jump)
     if raster is None:
         return None
-    dense = len(raster.x) >= RETURN.min_averaging_points * np.isfinite(raster.low).sum()
-    noisy = dense and raster.noise > RETURN.noisy_raster_share * settings.limits.clear_height
+    noisy = _is_noisy(raster, clear)
     if noisy and limit is not None:
         # averages need every point
         return plan_steps_of_section(decimation, section, road, limits, known, barrier, tips, settings, behind, points_per_cell=None)
-    line = survey.frame.road(road)
-    slopes = ground_slopes(raster.low)
-    track = _track(survey, road, first, last)
-    clear = settings.limits.clear_height
-    inside = [np.concatenate([v[inner], more]) for v, more in zip(place[:2], behind)]
+    line, slopes = survey.frame.road(road), ground_slopes(raster.low)
+    inside = np.concatenate([np.array([x, y])[:, inner], behind], axis=1)
     bounds = barrier.places[barrier.within(*raster.box)].T
-    driven, stepped = driven_ground(raster, slopes, track[0], track[1], inside, bounds[0], bounds[1], clear)
-
-    def wanted(x, y, before_curbs=False):
-        own, d = line.locate(x, y)
-        fresh = (own >= start) & (own < end)
-        if before_curbs:
-            fresh &= np.all([limit.outward(own, d) <= 0.0 for limit in limits.values()], axis=0)
-        which = np.flatnonzero(fresh)
-        fresh[which] = ~known.within(x.take(which), y.take(which), RETURN.main_curb_distance)
-        return fresh
-
-    x, y, nx, ny = step_places(raster, slopes, driven, stepped, clear, settings.max_height, wanted)
-    tips = tips[line.within(tips.x, tips.y, start, end)]
-    if not len(x) and not len(tips):
-        return None
-    views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]
-    steps = measure_plan_steps(views, x, y, nx, ny, 0.5 * clear, settings.max_height)
+    driven, stepped = driven_ground(raster, slopes, *_track(survey, road, *(k * width for k in profiles)), inside, bounds[0], bounds[1], clear)
+    views = _averaged_views(raster, (x, y, h), along, settings.layer_jump) if noisy else [raster]
+    wanted = partial(_is_wanted, line=line, limits=limits, known=known, start=section[0] * width, end=section[1] * width)
+    places = step_places(raster, slopes, driven, stepped, clear, settings.max_height, wanted)
+    steps = measure_plan_steps(views, *places, 0.5 * clear, settings.max_height)
+    tips = tips[line.within(tips.x, tips.y, section[0] * width, section[1] * width)]
     ends = FollowedEnds.join([tips, FollowedEnds.of_chains(link_plan_steps(steps), steps)])
-
-    further = followed_steps(views[0], ends, 0.5 * clear, settings.max_height, settings.limits.clear_slope,
-                             lambda x, y: wanted(x, y, before_curbs=True))
+    further = followed_steps(views[0], ends, 0.5 * clear, settings.max_height, settings.limits.clear_slope, partial(wanted, before_curbs=True))
     steps = PlanSteps.join([steps, further])
     if not len(steps):
         return None
@@ -237,24 +199,45 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     return PlanSteps.join([steps, hidden]), falls, np.full(len(falls), raster.noise)
 
 
+def _is_noisy(raster, clear):
+    """Are heights so noisy that cells are averaged, and points so dense that they can be? `clear` : m, the least height of a clear curb."""
+    dense = len(raster.x) >= RETURN.min_averaging_points * np.isfinite(raster.low).sum()
+    return dense and raster.noise > RETURN.noisy_raster_share * clear
+
+
+def _is_wanted(x, y, line, limits, known, start, end, before_curbs=False):
+    """(N,) bool: do local places lie between two stations and beside no main curb, or also before these?"""
+    s, d = line.locate(x, y)
+    fresh = (s >= start) & (s < end)
+    if before_curbs:
+        fresh &= np.all([limit.outward(s, d) <= 0.0 for limit in limits.values()], axis=0)
+    which = np.flatnonzero(fresh)
+    fresh[which] = ~known.within(x.take(which), y.take(which), RETURN.main_curb_distance)
+    return fresh
+
+
 def _behind(raster, slopes, steps):
     return ground_behind(raster, slopes, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, RETURN.max_island_width)
 
 
-def _beside_vehicle(survey, road, points, reach):
-    """Points within reach and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle,
+def _beside_vehicle(decimation, road, profiles, limits, points_per_cell):
+    """Points of profiles within reach and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle,
     and whether each lies between the road's own curbs. The far side of a long island is road, too, but it may not be
     connected with the track within a section."""
-    s, d = points.s, points.d
-    inside, inner = reach(s, d)
-    own = np.flatnonzero(inside)
-    s, d, inner, points = s.take(own), d.take(own), inner.take(own), points[own]
-    along = ahead_of_vehicle(survey, points, s)
-    near = np.flatnonzero(np.abs(along) < CURBS.max_look_along + np.abs(d))
-    if len(near) < len(s):
-        s, inner, along, points = s.take(near), inner.take(near), along.take(near), points[near]
-    h = points.z - expected_height(survey, road, s)
-    return points.x, points.y, h, along, inner & (np.abs(h) < RETURN.max_inner_height)
+    survey, reach = decimation.survey, _Reach(limits, *(k * decimation.width for k in profiles))
+    seen = [np.empty((5, 0))]
+    for points in decimation.decimated_points(road, profiles, points_per_cell):
+        s, d = points.s, points.d
+        inside, inner = reach(s, d)
+        own = np.flatnonzero(inside)
+        along = ahead_of_vehicle(survey, points[own], s.take(own))
+        near = np.flatnonzero(np.abs(along) < CURBS.max_look_along + np.abs(d.take(own)))
+        own, along = own.take(near), along.take(near)
+        points = points[own]
+        h = points.z - expected_height(survey, road, s.take(own))
+        seen.append((points.x, points.y, h, along, inner.take(own) & (np.abs(h) < RETURN.max_inner_height)))
+    *places, inner = (np.concatenate(column) for column in zip(*seen))
+    return *places, inner.astype(bool)
 
 
 class _Reach:

@@ -21,9 +21,9 @@ import numpy as np
 
 from ...common.arrays import Rows
 from ...common.progress import Progress
-from ...execution.phase import Phase
 from ..common.corners import RunningSums, SideLines
 from ..common.decimation import PointDecimation
+from ..common.side_curbs import phase_along
 from ..common.sides import ahead_of_vehicle, expected_height
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_continuation
@@ -115,15 +115,11 @@ class _Average:
 def led_on(ground: GroundRaster, ends: FollowedEnds) -> list[PlanSteps]:
     """The faint curb that leads on from each end.
 
-    Parameters
-    ----------
     ground : GroundRaster, averaged
     ends : K FollowedEnds, RETURN.line_direction_length of sure curb behind each
 
-    Returns
-    -------
-    list of K PlanSteps, RETURN.led_step apart, in order out of the line, about half RETURN.led_length less far than the averages; empty ones
-    where nothing leads on
+    Returns a list of K PlanSteps, RETURN.led_step apart, in order out of the line, about half RETURN.led_length less far than the averages;
+    empty ones where nothing leads on
     """
     return [_led_on(ground, ends[k:k + 1]) for k in range(len(ends))]
 
@@ -245,35 +241,22 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
                 known: KnownPlaces, limits: Mapping[str, SearchLimit], settings: CurbSettings, progress: Progress) -> list[CurbReturn]:
     """The curbs away from main curbs, and what leads on faintly from them and from main curbs.
 
-    Parameters
-    ----------
-    curbs : list of CurbReturn
     runs : main curbs in plan, uphill on the right: list of (side, (x, y, h)), local m
-    decimation : PointDecimation of the survey
-    road : number of the road
     sections : (first, last + 1) profile numbers of those where the scanner is noisy
     known : places of the main curbs
     limits : side -> SearchLimit
-    settings : CurbSettings
-    progress : Progress
-
-    Returns
-    -------
-    list of CurbReturn
     """
     if not sections:
         progress.report(1.0)
         return list(curbs)
-    survey, width = decimation.survey, settings.profile_width
-    line, free = survey.frame.road(road), [curb for curb in curbs if curb.kind in LED_KINDS and not curb.closed]
+    line, free = decimation.survey.frame.road(road), [curb for curb in curbs if curb.kind in LED_KINDS and not curb.closed]
     lines = [place for _, place in runs] + [(curb.steps.x, curb.steps.y, curb.steps.h) for curb in free]
     ends, owner = FollowedEnds.with_lines(lines)
-    met = known.and_places(*(np.concatenate([np.empty(0), *(getattr(curb.steps, axis) for curb in curbs)]) for axis in "xy"))
+    met = known.and_steps([curb.steps for curb in curbs])
     open_ones = np.flatnonzero(~met.within(ends.x + RETURN.leaving_length * ends.tx, ends.y + RETURN.leaving_length * ends.ty,
                                            0.5 * RETURN.leaving_length))
     ends, owner = ends[open_ones], owner[open_ones]
-    phase = Phase(_led_steps_of_section, decimation, (road, ends, settings), lambda section: survey.stretch(road, *(k * width for k in section)),
-                  lambda section: survey.store.points_between(road, *(k * width for k in section)), _join_led)
+    phase = phase_along(_led_steps_of_section, decimation, (road, ends, settings), settings.profile_width, _join_led)
     more: list[CurbReturn] = []
     main_ends = CurbLines([(x, y) for _, (x, y, _) in runs])
     extended = {id(curb): curb for curb in curbs}
@@ -318,17 +301,10 @@ def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
                          settings: CurbSettings) -> list[tuple[int, PlanSteps]]:
     """The phase of faint curbs: what leads on from the ends in one section of a road.
 
-    Parameters
-    ----------
-    decimation : PointDecimation of the survey
     section : (first, last + 1) profile numbers
-    road : number of the road
     ends : FollowedEnds of the curbs
-    settings : CurbSettings
 
-    Returns
-    -------
-    list of (number of the end, PlanSteps)
+    Returns a list of (number of the end, PlanSteps)
     """
     width, line, reach = decimation.width, decimation.survey.frame.road(road), RETURN.max_led_length + RETURN.led_length
     at, _ = line.locate(ends.x, ends.y)
@@ -372,8 +348,6 @@ def _near_ends(survey, road, points, ends):
 class FollowedEnds(Rows):
     """Ends of K lines of curb from which they are followed.
 
-    Attributes
-    ----------
     x, y, h : (K,) m, local place and height of the bottom
     tx, ty : (K,) unit vector out of the line
     uphill : (K,) 1 where uphill is on the right of that vector, else -1
@@ -392,8 +366,6 @@ class FollowedEnds(Rows):
     def of(cls, lines: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]], heights: np.ndarray) -> FollowedEnds:
         """Both ends of lines (x, y, h), uphill on the right, that are long enough for a direction.
 
-        Parameters
-        ----------
         lines : list of K (x, y, h), each (N,) m
         heights : (K,) m, of the steps
         """
@@ -420,17 +392,10 @@ def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, 
                    wanted: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> PlanSteps:
     """Steps in the continuation of lines.
 
-    Parameters
-    ----------
-    raster : GroundRaster
     ends : FollowedEnds of the lines
     min_height, max_height : m, of a step
     least_slope : radians, of its face
     wanted : function, local x, y -> (N,) bool: where curbs are looked for; a line is not followed beyond
-
-    Returns
-    -------
-    PlanSteps
     """
     # the places behind an end, from which its direction follows
     back = RETURN.following_step * np.arange(RETURN.followed_steps, 0, -1)

@@ -23,8 +23,6 @@ from ..weights import CURBS, RETURN
 class GroundRaster:
     """Ground of a stretch of road on a grid of local map coordinates.
 
-    Attributes
-    ----------
     x0, y0 : m, the grid's corner, a whole number of cells from 0
     x, y, h : (N,) m, the points of the lowest layer; h above the expected road
     place : (N,) the cell of each, row * columns + column
@@ -86,8 +84,6 @@ class GroundRaster:
 def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float) -> GroundRaster | None:
     """The ground of points, cell by cell; None where there are none.
 
-    Parameters
-    ----------
     x, y : (N,) local m
     h : (N,) m above the expected road
     layer_jump : m of height between ground and what is above it
@@ -173,13 +169,9 @@ def ground_slopes(low: np.ndarray) -> list[np.ndarray]:
 
     It is the median over a few metres, so that steps do not contribute, and no more than a road's, so that banks are not level.
 
-    Parameters
-    ----------
     low : (rows, columns) m
 
-    Returns
-    -------
-    two (rows, columns) arrays, m per m along columns and along rows
+    Returns two (rows, columns) arrays, m per m along columns and along rows
     """
     rows, columns = low.shape
     padded = np.pad(low, ((0, -rows % RETURN.slope_block_cells), (0, -columns % RETURN.slope_block_cells)), constant_values=np.nan)
@@ -216,9 +208,6 @@ def driven_ground(raster: GroundRaster, slopes: Sequence[np.ndarray], track_x: n
                   min_height: float) -> tuple[np.ndarray, np.ndarray]:
     """Level ground connected with the driven track, and where the ground is stepped.
 
-    Parameters
-    ----------
-    raster : GroundRaster
     slopes : result of `ground_slopes`
     track_x, track_y : (N,) local m, places along the driven tracks, less than RETURN.plan_cell apart
     inner : (x, y), each (K,) local m, places between the road's own curbs

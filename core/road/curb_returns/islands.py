@@ -31,15 +31,10 @@ def on_main_islands(points: CurbPoints, survey: Survey,
                     beside: Mapping[int, Mapping[str, OcclusionGrid]] | None) -> tuple[np.ndarray, dict[int, np.ndarray]]:
     """Which points of main curbs lie on sides of islands, and where is the road behind these?
 
-    Parameters
-    ----------
     points : N CurbPoints of every road, of kind main
-    survey : Survey
     beside : number of the road -> side -> OcclusionGrid; None where that is not known
 
-    Returns
-    -------
-    (N,) bool, and number of the road -> (2, K) local x and y of places on the road behind
+    Returns (N,) bool, and number of the road -> (2, K) local x and y of places on the road behind
     """
     found, behind = np.zeros(len(points), bool), {road: [np.empty((2, 0))] for road in survey.store.roads()}
     across = np.arange(0.0, RETURN.min_road_behind, RETURN.plan_cell)
@@ -61,8 +56,6 @@ def on_main_islands(points: CurbPoints, survey: Survey,
 def are_replaced(points: CurbPoints, curbs: Sequence[CurbReturn]) -> bool:
     """Were lines about the islands found again in plan, and main curbs behind them?
 
-    Parameters
-    ----------
     points : CurbPoints on sides of islands, of one road
     curbs : list of CurbReturn, found without these points
     """
@@ -84,15 +77,11 @@ def island_stretches(s: np.ndarray, u: np.ndarray, h: np.ndarray, height: np.nda
                      beside: OcclusionGrid) -> list[tuple[slice, np.ndarray]]:
     """The stretches of a main curb that are sides of islands.
 
-    Parameters
-    ----------
     s, u, h : (N,) m, station, outward offset, and height above the expected road of the curb's measured points, by station
     height : (N,) m, of the steps
     beside : OcclusionGrid of the side
 
-    Returns
-    -------
-    list of (slice of the N points, m outward from each of these to where the ground is down again, NaN where that is not seen)
+    Returns a list of (slice of the N points, m outward from each of these to where the ground is down again, NaN where that is not seen)
     """
     jump = np.flatnonzero(np.abs(np.diff(u)) > RETURN.min_side_step) + 1
     found = []
@@ -133,15 +122,10 @@ def _down_behind(s, u, h, height, out, beside):
 def far_sides(raster: GroundRaster, steps: PlanSteps, behind: GroundBehind) -> PlanSteps:
     """Steps of the far sides of islands that are hidden by the islands themselves.
 
-    Parameters
-    ----------
-    raster : GroundRaster
     steps : M PlanSteps, among them those of the near sides
     behind : GroundBehind of the M steps
 
-    Returns
-    -------
-    PlanSteps, at most one for each of the M; the bottom is where the plane of the road before the near side goes on
+    Returns PlanSteps, at most one for each of the M; the bottom is where the plane of the road before the near side goes on
     """
     near = np.flatnonzero(behind.edge >= RETURN.min_island_width)
     if not len(near):
@@ -183,14 +167,10 @@ def _largest_gap(owner, inward, above, height):
 def on_island_tops(steps: PlanSteps, behind: GroundBehind) -> np.ndarray:
     """Which steps lie on raised ground that a higher step bounds, and that comes down again behind them?
 
-    Parameters
-    ----------
     steps : M PlanSteps
     behind : GroundBehind of each
 
-    Returns
-    -------
-    (M,) bool
+    Returns (M,) bool
     """
     on_top = np.zeros(len(steps), bool)
     end = np.where(np.isfinite(behind.edge), behind.edge, behind.falls)
@@ -215,8 +195,6 @@ def on_island_tops(steps: PlanSteps, behind: GroundBehind) -> np.ndarray:
 class GroundBehind:
     """What the ground behind M steps does, along a ray uphill from each.
 
-    Attributes
-    ----------
     falls : (M,) m uphill at which the ground is back at the step's bottom, NaN where it stays up
     edge : (M,) m uphill of the last raised ground, if the step down behind it was not seen, because the raised ground itself hid it; else NaN
     slope : (M,) m per m uphill, of the road before the step
@@ -231,9 +209,6 @@ def ground_behind(raster: GroundRaster, slopes: Sequence[np.ndarray], x: np.ndar
                   bottom: np.ndarray, height: np.ndarray, farthest: float) -> GroundBehind:
     """Where the ground behind steps is down again.
 
-    Parameters
-    ----------
-    raster : GroundRaster
     slopes : result of `ground_slopes`
     x, y : (M,) local m, places of the steps
     nx, ny : (M,) unit vectors uphill

@@ -18,6 +18,7 @@ from ..weights import CURBS, RETURN
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
     from ...survey.open_survey import Survey
+    from .steps import PlanSteps
 
 
 def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[dict[str, np.ndarray], int]:
@@ -36,8 +37,6 @@ def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[d
 class SearchLimit:
     """How far out one side is searched: to a little behind the main curb, and everywhere at openings.
 
-    Parameters
-    ----------
     points : (N, 4) of the main curb, as of `find_curb_returns`
     sign : of the side's offsets
     """
@@ -115,8 +114,6 @@ def main_runs(main: Mapping[str, np.ndarray], line: Road) -> list[tuple]:
 class KnownPlaces:
     """Places along main curbs, where no other curb is looked for.
 
-    Parameters
-    ----------
     places : (N, 2) local metres
     """
 
@@ -138,6 +135,10 @@ class KnownPlaces:
             found._trees[-2:] = [cKDTree(np.concatenate([tree.data for tree in found._trees[-2:]]))]
         return found
 
+    def and_steps(self, lines: Sequence[PlanSteps]) -> KnownPlaces:
+        """These and the places of lines of steps."""
+        return self.and_places(*(np.concatenate([np.empty(0), *(getattr(steps, axis) for steps in lines)]) for axis in "xy"))
+
     def within(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
         """(N,) bool, is one of the places within a distance of (N,) local places?"""
         there = np.zeros(len(x), bool)
@@ -156,8 +157,6 @@ Line = tuple[np.ndarray, np.ndarray]
 class CurbLines:
     """Lines of curb.
 
-    Parameters
-    ----------
     lines : L lines (x, y), each (N,) local m, uphill on the right
     """
 

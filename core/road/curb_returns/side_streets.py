@@ -48,37 +48,30 @@ class _CurbCourse:
 def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, road: int, known: KnownPlaces) -> list[CurbReturn]:
     """The curbs away from main curbs, those that leave the corridor led on beyond it.
 
-    Parameters
-    ----------
-    curbs : list of CurbReturn
-    decimation : PointDecimation of the survey
-    road : number of the road
     known : places of the main curbs
 
-    Returns
-    -------
-    list of CurbReturn; places that have no station get that of the end that they lead on from
+    Returns a list of CurbReturn; places that have no station get that of the end that they lead on from
     """
     survey = decimation.survey
     if not any(number < 0 for number in survey.store.numbers()):
         return list(curbs)
-    line, more = survey.frame.road(road), []
-    met = known.and_places(*(np.concatenate([np.empty(0), *(getattr(curb.steps, axis) for curb in curbs)]) for axis in "xy"))
-    for curb in curbs:
-        if curb.closed or curb.kind not in BEYOND_KINDS:
-            continue
-        for at_tail in (True, False):
-            end = _end_of(curb, at_tail, survey, road)
-            if end is None or not _leaves(end, survey.frame.roads):
-                continue
-            x, y = end.ahead(np.ones(1))
-            if met.within(x, y, 0.5).any():
-                continue
-            t, u, z = _ground(decimation, end)
-            course = led_beyond(t, u, z, end)
-            if course is not None:
-                more.append(_led(course, end, curb, at_tail, survey, road, line))
-    return [*curbs, *_distinct(more, met)]
+    met = known.and_steps([curb.steps for curb in curbs])
+    more = [_led_from(curb, at_tail, decimation, road, met) for curb in curbs if not curb.closed and curb.kind in BEYOND_KINDS
+            for at_tail in (True, False)]
+    return [*curbs, *_distinct([curb for curb in more if curb is not None], met)]
+
+
+def _led_from(curb, at_tail, decimation, road, met):
+    """The curb that leads on beyond the corridor from one end of a curb; None where there is none, or it is known."""
+    survey = decimation.survey
+    end = _end_of(curb, at_tail, survey, road)
+    if end is None or not _leaves(end, survey.frame.roads):
+        return None
+    x, y = end.ahead(np.ones(1))
+    if met.within(x, y, 0.5).any():
+        return None
+    course = led_beyond(*_ground(decimation, end), end)
+    return None if course is None else _led(course, end, curb, at_tail, survey, road, survey.frame.road(road))
 
 
 def _end_of(curb, at_tail, survey, road):
@@ -107,30 +100,32 @@ def _leaves(end, roads):
 
 def _ground(decimation, end):
     """Points about the straight continuation of a curb: metres along and uphill, and heights, averaged in cells."""
-    survey, width, found = decimation.survey, decimation.width, []
-    ahead = np.arange(0.0, RETURN.max_corridor_distance + RETURN.led_length + 0.1, 0.5)
-    x, y = end.ahead(ahead)
-    numbers = survey.store.numbers()
+    found = [_beside(part, end) for parts in (_in_corridors(decimation, end), _beyond_corridors(decimation.survey, end)) for part in parts]
+    t, u, z = (np.concatenate(column) for column in zip(*found)) if found else np.empty((3, 0))
+    return _cell_means(t, u, z)
+
+
+def _in_corridors(decimation, end):
+    """Points of all roads beside a continuation."""
+    survey, width = decimation.survey, decimation.width
+    x, y = end.ahead(np.arange(0.0, RETURN.max_corridor_distance + RETURN.led_length + 0.1, 0.5))
     for road in survey.store.roads():
-        line = survey.frame.road(road)
-        s, _ = line.locate(x, y)
+        s, _ = survey.frame.road(road).locate(x, y)
         if np.isfinite(s).any():
             low, high = np.nanmin(s) - RETURN.ground_half_width, np.nanmax(s) + RETURN.ground_half_width
             profiles = int(np.floor(low / width)), int(np.ceil(high / width)) + 1
-            found += [_beside(part, end) for part in decimation.decimated_points(road, profiles, CURBS.points_per_level_cell_in_plan)]
-    reach = RETURN.max_beyond_length + 2 * RETURN.max_corridor_distance
-    for number in numbers:
-        if number >= 0:
-            continue
+            yield from decimation.decimated_points(road, profiles, CURBS.points_per_level_cell_in_plan)
+
+
+def _beyond_corridors(survey, end):
+    """Points beside roads that lie beyond their corridors, within reach of a continuation."""
+    reach, length = RETURN.max_beyond_length + 2 * RETURN.max_corridor_distance, survey.store.section_length
+    for number in [number for number in survey.store.numbers() if number < 0]:
         line = survey.frame.road(road_of(number))
         near = np.flatnonzero(np.hypot(line.x - end.x, line.y - end.y) < reach)
         if len(near):
             low, high = (line.start + NODE_SPACING * k for k in (near[0], near[-1]))
-            for section in survey.store.sections(number):
-                if low - survey.store.section_length <= section * survey.store.section_length <= high:
-                    found.append(_beside(survey.section(number, section), end))
-    t, u, z = (np.concatenate(column) for column in zip(*found)) if found else np.empty((3, 0))
-    return _cell_means(t, u, z)
+            yield from (survey.section(number, section) for section in survey.store.sections(number) if low - length <= section * length <= high)
 
 
 def _beside(points, end):
@@ -152,18 +147,14 @@ def _cell_means(t, u, z):
 def led_beyond(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd) -> _CurbCourse | None:
     """How a curb leads on from its end.
 
-    Parameters
-    ----------
     t, u, z : (N,) m, along and uphill from the end, and heights, of points about it
     end : its end
 
-    Returns
-    -------
-    the course as far as it is seen, None where it is not
+    Returns the course as far as it is seen, None where it is not
     """
     for start in np.arange(0.0, RETURN.max_dropped_length + 0.1, 1.0):
         course, length = None, RETURN.led_length
-        about = _best_arc(t, u, z, end, start, start + length, (0.0, 0.0, 0.0), RETURN.first_arcs)
+        about, *_ = _best_levels(t, u, z, end, start, start + length, (0.0, 0.0, 0.0), RETURN.first_arcs) or (None,)
         while about is not None and start + length <= RETURN.max_beyond_length:
             longer = _fitted(t, u, z, end, start, start + length, about, RETURN.finer_arcs if course is None else RETURN.farther_arcs)
             # the first arc must be seen along both halves
@@ -202,14 +193,11 @@ def _surest(t, u, z, end, course, stop):
     return replace(found or course, spread=to_arc @ spread @ to_arc.T)
 
 
-def _best_arc(t, u, z, end, start, stop, about, arcs):
-    """The arc of those about one that explains the points between two distances best; None where there are too few."""
-    found = _best_levels(t, u, z, end, start, stop, about, arcs)
-    return None if found is None else found[0]
-
-
 def _best_levels(t, u, z, end, start, stop, about, arcs):
-    """The same with what belongs to it: levels, their prior weights, t and z of the points, their design, v across from it, and which count."""
+    """The arc of those about one that explains the points between two distances best, and what belongs to it; None where there are too few.
+
+    That is: levels, their prior weights, t and z of the points, their design, v across from the arc, and which count.
+    """
     ground = GroundAboutArc.about(t, u, z, end, start, stop, about)
     if ground is None:
         return None

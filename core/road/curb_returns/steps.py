@@ -23,8 +23,6 @@ CELL_ROUNDING = 1e-3   # derived: cells, so that rounding leaves no point out
 class PlanSteps(Rows):
     """Bottom corners found in plan, one entry each.
 
-    Attributes
-    ----------
     x, y : (M,) local m
     nx, ny : (M,) unit vector across the curb, uphill
     h : (M,) m above the expected road
@@ -55,16 +53,12 @@ def measure_plan_steps(rasters: Sequence[GroundRaster], x: np.ndarray, y: np.nda
                        min_height: float, max_height: float) -> PlanSteps:
     """The steps at those places in plan where the points prove one.
 
-    Parameters
-    ----------
     rasters : list of GroundRaster, views of the ground; what one does not show is looked for in the next
     x, y : (M,) local m near which a step lies
     nx, ny : (M,) unit vectors uphill, good to some 30 degrees
     min_height, max_height : m, of a step
 
-    Returns
-    -------
-    PlanSteps, at most M
+    Returns PlanSteps, at most M
     """
     if not len(x):
         return PlanSteps.none()
@@ -106,18 +100,13 @@ def _seen_at(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray
             min_height: float, max_height: float) -> tuple[dict[str, np.ndarray], PlanSteps]:
     """What the points about each place show across a direction.
 
-    Parameters
-    ----------
-    raster : GroundRaster
     points : of it, result of `by_cell`
     x, y : (M,) local m
     nx, ny : (M,) unit vectors uphill
     half : m either way along the curb of the points that are used
     min_height, max_height : m, of a step
 
-    Returns
-    -------
-    result of `StepPatches.corners`, and M PlanSteps, of which those are steps that are `good`
+    Returns the result of `StepPatches.corners`, and M PlanSteps, of which those are steps that are `good`
     """
     return steps_of_points(points_about(raster, points, x, y, nx, ny, half), x, y, nx, ny, raster.noise, min_height, max_height)
 
@@ -164,8 +153,7 @@ def points_about(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.nda
     px, py, ph, starts = points
     rows, columns = raster.low.shape
     reach = int(np.ceil(np.hypot(PATCH_HALF_WIDTH, half) / RETURN.plan_cell))
-    row = np.floor(y / RETURN.plan_cell - np.rint(raster.y0 / RETURN.plan_cell)).astype(np.int64)
-    column = np.floor(x / RETURN.plan_cell - np.rint(raster.x0 / RETURN.plan_cell)).astype(np.int64)
+    row, column = raster.cells_at(x, y)
     line = row[:, None] + np.arange(-reach, reach + 1)
     # the columns that the rectangle about the place covers in every row of cells
     low = raster.y0 + line * RETURN.plan_cell - y[:, None]
@@ -205,9 +193,6 @@ def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.n
                 max_height: float, wanted: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None) -> tuple[np.ndarray, ...]:
     """Where the ground rises beside driven ground: place and direction, at most one for every square of two cells.
 
-    Parameters
-    ----------
-    raster : GroundRaster
     slopes : result of `ground_slopes`
     driven, stepped : result of `driven_ground`
     min_height, max_height : m, of a step

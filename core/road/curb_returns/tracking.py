@@ -19,8 +19,6 @@ MAX_LINE_OVERLAP = RETURN.long_half_length   # m that two lines of one curb may:
 class PlanStepChain:
     """Steps of one line.
 
-    Attributes
-    ----------
     steps : (K,) indices into the PlanSteps, in order, uphill on the right
     closed : does the line go all around an island?
     """
@@ -30,16 +28,7 @@ class PlanStepChain:
 
 
 def link_plan_steps(steps: PlanSteps) -> list[PlanStepChain]:
-    """Chains of steps; the uphill side of each is on the right of its direction.
-
-    Parameters
-    ----------
-    steps : PlanSteps
-
-    Returns
-    -------
-    list of PlanStepChain
-    """
+    """Chains of steps; the uphill side of each is on the right of its direction."""
     distinct = without_duplicates(steps)
     ahead = _links(steps[distinct])
     return [PlanStepChain(distinct[members], closed) for members, closed in _paths(ahead)]
@@ -132,13 +121,9 @@ def join_chains(chains: Sequence[PlanStepChain], steps: PlanSteps) -> list[PlanS
 def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> np.ndarray:
     """Which polylines continue each other, a short gap apart in any direction or a long one straight on.
 
-    Parameters
-    ----------
     places : list of K polylines (x, y, h), each (N,) local m, all with their uphill side on the same hand
 
-    Returns
-    -------
-    (K,) number of the line to which each belongs
+    Returns (K,) number of the line to which each belongs
     """
     ends = LineEnds.of(places)
     long = np.array([np.hypot(np.diff(x), np.diff(y)).sum() >= RETURN.line_direction_length for x, y, _ in places])
@@ -152,8 +137,6 @@ def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> 
 class LineEnds:
     """Both ends of K polylines.
 
-    Attributes
-    ----------
     heads, tails : (K, 5) local x, y and h, m, and the unit vector that points out of the line
     """
 
@@ -168,9 +151,7 @@ class LineEnds:
     def straight_successors(self, long: np.ndarray) -> np.ndarray:
         """The line straight ahead of each, up to RETURN.max_straight_gap away; `long` : (K,) bool, lines long enough for a direction.
 
-        Returns
-        -------
-        (K,) indices, -1 where there is none
+        Returns (K,) indices, -1 where there is none
         """
         count = len(self.heads)
         if not count:
@@ -189,14 +170,10 @@ class LineEnds:
     def successors(self, nose: float = 0.0, overlap: float = RETURN.max_join_overlap) -> np.ndarray:
         """The line whose head continues the tail of each line.
 
-        Parameters
-        ----------
         nose : m of gap within which a line may bend about its uphill side as sharply as the nose of an island
         overlap : m that two lines may overlap
 
-        Returns
-        -------
-        (K,) indices, -1 where no line continues
+        Returns (K,) indices, -1 where no line continues
         """
         count = len(self.heads)
         following = np.full(count, -1)

@@ -21,14 +21,7 @@ from .road_edges import EdgePiece, edge_sigma
 def curb_return_lines(curb_points: CurbPoints, frame: RoadFrame) -> dict[int, list[tuple[CurbPoints, np.ndarray]]]:
     """The measured curb points that are not of a main curb, by road and chain, in order along each chain.
 
-    Parameters
-    ----------
-    curb_points : CurbPoints
-    frame : RoadFrame
-
-    Returns
-    -------
-    dict road -> list of (points, (N, 3) map coordinates), chains ascending
+    Returns a dict road -> list of (points, (N, 3) map coordinates), chains ascending
     """
     points = curb_points[~curb_points.of_main_curb & (curb_points.status == "measured") & (curb_points.part == "bottom")]
     points = points[np.lexsort((points.along, points.chain, points.road))]
@@ -46,48 +39,54 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
 
     A corner begins with the vertex at which the main edge ends, so that the two touch.
 
-    Parameters
-    ----------
     edges : pieces of the main edges, to which these are added
-    road : number of the road
     lines : of this road, from `curb_return_lines`
     number : of the first line
     frame : RoadFrame, which says how far the middle of the passes may be off; None if nothing does
 
-    Returns
-    -------
-    The next free line number
+    Returns The next free line number
     """
     ends = _main_ends(edges, road)
     tree = cKDTree(ends[:, :2])
     for points, places in lines:
-        kind = points.kind[0]
-        closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= EDGE.same_place_distance
-        first, last = (None, None) if kind == "island" else (_nearest(ends, tree, places[k]) for k in (0, -1))
-        if first is not None and last is not None and np.array_equal(first, last):
-            near = np.hypot(*(first[:2] - places[0, :2])) <= np.hypot(*(first[:2] - places[-1, :2]))
-            first, last = (first, None) if near else (None, last)
-        # the main edge's own end is a place of the curve, so that an arc stays one where the curb was not seen for a metre
-        places = np.concatenate([*(v[None] for v in (first,) if v is not None), places, *(v[None] for v in (last,) if v is not None)])
-        vertices, residual = _drawn(places)
-        along, shared = _chord_length(*places.T[:2]), np.nan_to_num(points.sigma)
-        shared = np.concatenate([*(shared[:1] for v in (first,) if v is not None), shared, *(shared[-1:] for v in (last,) if v is not None)])
-        vertices = np.round(vertices, COORDINATE_DECIMALS)
-        if closed:
-            vertices[-1] = vertices[0]
-        vertices[0], vertices[-1] = vertices[0] if first is None else first, vertices[-1] if last is None else last
-        vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
+        first, last = _ends_met(places, points.kind[0], ends, tree)
         passes = 0.0 if frame is None else float(np.sqrt(np.mean(frame.passes_sigma(road, points.station) ** 2)))
-        sigma = edge_sigma(along, along, residual, shares=EDGE.curb_return, passes=passes, shared=shared)
-        # where the returns thin out a line is cut; elsewhere one number speaks for all of it
-        at = _chord_length(*vertices.T[:2])
-        sigma = np.interp(at * along[-1] / at[-1], along, sigma) if shared.any() else np.full(len(at), sigma.mean())
-        edges.append(EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
-                               float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), float(np.median(points.height)),
-                               float(np.sqrt(np.mean(residual**2))), kind=kind,
-                               sigma=sigma))
+        edges.append(_edge_of(points, places, first, last, passes, road, number))
         number += 1
     return number
+
+
+def _ends_met(places, kind, ends, tree):
+    """The ends of main edges, (1, 3) each or (0, 3), at which a line begins and ends; one end alone where both are the same."""
+    if kind == "island":
+        return places[:0], places[:0]
+    first, last = (_nearest(ends, tree, places[k]) for k in (0, -1))
+    if len(first) and len(last) and np.array_equal(first, last):
+        away = np.hypot(*(places[[0, -1], :2] - first[0, :2]).T)
+        return (first, last[:0]) if away[0] <= away[1] else (first[:0], last)
+    return first, last
+
+
+def _edge_of(points, places, first, last, passes, road, number):
+    """The piece of one line, from and to the ends of main edges, (1, 3) or (0, 3), that it meets; `passes` : m, one sigma of their middle."""
+    kind = points.kind[0]
+    closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= EDGE.same_place_distance
+    # the main edge's own end is a place of the curve, so that an arc stays one where the curb was not seen for a metre
+    places = np.concatenate([first, places, last])
+    vertices, residual = _drawn(places)
+    along, shared = _chord_length(*places.T[:2]), np.nan_to_num(points.sigma)
+    shared = np.concatenate([shared[:len(first)], shared, shared[len(shared) - len(last):]])
+    vertices = np.round(vertices, COORDINATE_DECIMALS)
+    if closed:
+        vertices[-1] = vertices[0]
+    vertices[:len(first)], vertices[len(vertices) - len(last):] = first, last
+    vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
+    sigma = edge_sigma(along, along, residual, shares=EDGE.curb_return, passes=passes, shared=shared)
+    # where the returns thin out a line is cut; elsewhere one number speaks for all of it
+    at = _chord_length(*vertices.T[:2])
+    sigma = np.interp(at * along[-1] / at[-1], along, sigma) if shared.any() else np.full(len(at), sigma.mean())
+    return EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
+                     height=float(np.median(points.height)), rmse=float(np.sqrt(np.mean(residual**2))), kind=kind, sigma=sigma)
 
 
 def _drawn(places):
@@ -172,9 +171,9 @@ def _main_ends(edges, road):
 
 
 def _nearest(ends, tree, place):
-    """The end within CURBS.max_joined_gap of a place, None where there is none; `tree` : cKDTree of the ends in plan."""
+    """(1, 3) the end within CURBS.max_joined_gap of a place, (0, 3) where there is none; `tree` : cKDTree of the ends in plan."""
     distance, k = tree.query(place[:2])
-    return ends[k] if distance <= CURBS.max_joined_gap else None
+    return ends[k:k + 1] if distance <= CURBS.max_joined_gap else ends[:0]
 
 
 # Corners where the curb is dropped for a crossing: arcs between the ends of edges that bend towards each other.
@@ -199,10 +198,7 @@ class _End:
 def dropped_corners(pieces: Sequence[EdgePiece], frame: RoadFrame, number: int) -> list[EdgePiece]:
     """Arcs across dropped corners, as pieces of status bridged and kind corner.
 
-    Parameters
-    ----------
     pieces : measured and bridged edges of all roads
-    frame : RoadFrame
     number : of the first new line
     """
     lines = [(piece, _uphill_right(piece)) for piece in pieces if piece.kind != "island" and piece.status != "inferred" and piece.part == "bottom"]
@@ -314,5 +310,4 @@ def _arc(tail, head, frame, number):
     piece = tail.piece
     s, _ = frame.road(piece.road).locate(*(vertices[:, :2] - frame.origin[:2]).T)
     s = s[np.isfinite(s)] if np.isfinite(s).any() else np.array([piece.end])
-    return EdgePiece(vertices, piece.road, piece.side, "bridged", number, float(s.min()), float(s.max()),
-                     float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), kind="corner")
+    return EdgePiece(vertices, piece.road, piece.side, "bridged", number, float(s.min()), float(s.max()), kind="corner")

@@ -27,8 +27,6 @@ IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by 
 class EdgeSettings:
     """How curb points become lines.
 
-    Attributes
-    ----------
     max_gap : m that are bridged where something hides the curb; up to twice as long where both parts lie in one line. Longer gaps interrupt the edge
     fallback_width : m between the edges that are drawn where no curb was found; 0 draws none
     """
@@ -44,21 +42,15 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
                    progress: Progress = Progress(), led_across: bool = True) -> RoadEdges:
     """Fit a smoothing cubic B-spline through the curb points of each side.
 
-    Parameters
-    ----------
     curb_points : CurbPoints (those of part `top` are not used)
-    frame : RoadFrame
-    settings : EdgeSettings
-    progress : Progress
     led_across : do even bends lead the curve across gaps? Not needed where only what is measured counts
 
-    Returns
-    -------
-    RoadEdges, along the road, one piece for each stretch of one status. Pieces of one
+    Returns RoadEdges, along the road, one piece for each stretch of one status. Pieces of one
     edge share their end vertices and `chain`.
     """
     found: list[EdgePiece] = []
-    table, returns = _table(curb_points, frame), curb_return_lines(curb_points, frame)
+    points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & np.isin(curb_points.status, ("measured", "occluded"))]
+    table, returns = point_table(points, frame), curb_return_lines(curb_points, frame)
     lines, of_table = 0, np.ascontiguousarray(table["road"])
     for road in frame.roads:
         of_road: list[EdgePiece] = []
@@ -84,9 +76,8 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     return edges
 
 
-def _table(curb_points, frame):
-    """The curb points of bottoms as a structured array, in map coordinates, sorted by road, side and station."""
-    points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & np.isin(curb_points.status, ("measured", "occluded"))]
+def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:
+    """(N,) structured array of curb points in map coordinates, sorted by road, side and station; an unknown height is 0."""
     table = np.empty(len(points), dtype=[("road", int), ("side", "U5"), ("measured", bool), ("s", float), ("d", float), ("x", float),
                                          ("y", float), ("z", float), ("height", float), ("chain", int), ("support", int)])
     places = points.map_places(frame)
@@ -170,13 +161,9 @@ def _with_bridges(points, bridged, frame, road, led_across):
 def without_outliers(points: np.ndarray) -> np.ndarray:
     """Points near the running median of the offsets of their chain.
 
-    Parameters
-    ----------
     points : (N,) structured array, by station, with the fields `chain`, `s` and `d` (m)
 
-    Returns
-    -------
-    (K,) of the same type
+    Returns (K,) of the same type
     """
     inliers = np.ones(len(points), bool)
     order = np.argsort(points["chain"], kind="stable")
@@ -201,15 +188,11 @@ class EdgeCurve:
     The smoothing follows from the noise of the points, so that their weighted squared residuals
     have the expected sum (Dierckx 1993, Curve and Surface Fitting with Splines).
 
-    Parameters
-    ----------
     points : (N,) structured array with the fields `x`, `y`, `z`, `d` (m)
     longest_gap : m that the curve bridges by itself; the longer it is, the stiffer the curve, since the last points before a gap may give a
         poor direction
     measured : numbers of the points whose scatter is that of all; None for all of them
 
-    Attributes
-    ----------
     t : (N,) m, chord length at the points
     residual : (N,) m, distance in plan of the points from the curve
     """
@@ -260,8 +243,7 @@ def _draw(found, frame, road, side, piece, number, led_across):
         passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
         sigma = edge_sigma(along, t, residual, points["support"], passes=passes)
         found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
-                               float(rows["s"][-1]), float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()),
-                               float(np.median(rows["height"])), float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
+                               float(rows["s"][-1]), height=float(np.median(rows["height"])), rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
                                # a bridge is one guess
                                sigma=float(sigma.mean()) if bridged[i] else sigma))
     return float(points["s"][0]), float(points["s"][-1])
@@ -283,7 +265,6 @@ def _draw_fallback(found, frame, road, side, drawn, width, number):
         tracks = np.array([p.at_station(s)[0] for p in passes])
         offset = 0.5 * (tracks.min(0) + tracks.max(0)) + (0.5 if side == "left" else -0.5) * width
         x, y, z = frame.to_map(road.number, s, offset, frame.track_height(road.number, s))
-        found.append(EdgePiece(np.c_[x, y, z], road.number, side, "inferred", number, float(a), float(b),
-                               float(np.hypot(np.diff(x), np.diff(y)).sum())))
+        found.append(EdgePiece(np.c_[x, y, z], road.number, side, "inferred", number, float(a), float(b)))
         number += 1
     return number

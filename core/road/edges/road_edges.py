@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -40,7 +40,7 @@ class EdgePiece:
     chain: int
     station: float
     end: float
-    length: float
+    length: float = np.nan   # of the vertices in plan where nothing else is given
     height: float = np.nan
     rmse: float = np.nan
     part: str = "bottom"
@@ -48,6 +48,10 @@ class EdgePiece:
     what: str = "curb"
     agree: float = np.nan
     sigma: np.ndarray | float = np.nan
+
+    def __post_init__(self) -> None:
+        if np.isnan(self.length):
+            object.__setattr__(self, "length", float(np.hypot(*np.diff(self.vertices[:, :2], axis=0).T).sum()))
 
     def cut_by_sigma(self) -> list[EdgePiece]:
         """The pieces of which one sigma speaks, the mean along them: the worst places of a piece do not speak for all."""
@@ -168,11 +172,14 @@ def joined_pieces(pieces: Sequence[EdgePiece], frame: RoadFrame, crs: str = "") 
     x, y, z = as_written(frame, *np.concatenate([piece.vertices for piece in pieces] or [np.empty((0, 3))]).T)
     start = np.append(0, np.cumsum([len(piece.vertices) for piece in pieces], dtype=int))
     course = FrameLines.at(frame, np.array([piece.road for piece in pieces], int), start, x, y, z)
-    columns: dict[str, Any] = {}
-    for name in (one.name for one in fields(EdgePiece) if one.name not in ("vertices", "road")):
-        values, decimals = [getattr(piece, name) for piece in pieces], EDGE_DECIMALS.get(name)
-        columns[name] = RoadEdges.array_of(name, values if decimals is None else [round(value, decimals) for value in values])
+    columns = {one.name: _column(pieces, one.name) for one in fields(EdgePiece) if one.name not in ("vertices", "road")}
     return RoadEdges(edge=np.arange(len(pieces)), nearest_pass=_nearest_passes(course, columns["station"], frame), **columns, course=course, crs=crs)
+
+
+def _column(pieces, name):
+    """(E,) values of an attribute of pieces, as the layer holds them."""
+    values, decimals = [getattr(piece, name) for piece in pieces], EDGE_DECIMALS.get(name)
+    return RoadEdges.array_of(name, values if decimals is None else [round(value, decimals) for value in values])
 
 
 def _joined(some, more):
@@ -208,20 +215,15 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
                shared: np.ndarray | float = 0.0) -> np.ndarray:
     """One sigma across an edge at places along it.
 
-    Parameters
-    ----------
     at : (K,) m along the line, where it is looked at
     places : (N,) m along the line of all its curb points, rising
     residual : (N,) m, distances of the curb points from the line
     support : (N,) laser points of each; below 1, or None, where that is unknown
-    shares : EdgeUncertainty
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`; one for all or (K,)
     shared : m, one sigma that neighbouring curb points share, as those of a line that was fitted as a whole: they do not scatter about
         it; one for all or (K,)
 
-    Returns
-    -------
-    (K,) m
+    Returns (K,) m
     """
     first, last = np.searchsorted(places, at - EDGE.scatter_reach), np.searchsorted(places, at + EDGE.scatter_reach, side="right")
     # of a line as long as the road, only the points about the piece

@@ -13,14 +13,9 @@ from ..weights import CURBS, PROFILE
 def find_steps(lines: PseudoScanLines, min_height: float, max_height: float) -> CurbSteps:
     """Steps on every single profile of one side.
 
-    Parameters
-    ----------
-    lines : PseudoScanLines
     min_height, max_height : m, of a step
 
-    Returns
-    -------
-    CurbSteps, sorted by profile, then outward
+    Returns CurbSteps, sorted by profile, then outward
     """
     rows, cells = _rising_cells(lines, min_height, max_height)
     return measure_corners(lines, rows, cells, min_height, max_height)
@@ -132,16 +127,12 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
     ahead of the vehicle and behind it separately: positions that drifted between the two views
     blur a face that each of them shows.
 
-    Parameters
-    ----------
     lines : PseudoScanLines; the first and last PROFILE.averaging_length / 2 metres serve the averages of the others
     min_height, max_height : m, of a step
     layer_jump : m of height between two layers
     overgrown : whether steps before plants or a wall are looked for, too
 
-    Returns
-    -------
-    CurbSteps, sorted by profile, then outward. The offset is that of half the height, since a
+    Returns CurbSteps, sorted by profile, then outward. The offset is that of half the height, since a
     blurred face does not separate its bottom from its top.
     """
     least = np.maximum(min_height, PROFILE.all_views_sigmas * lines.spread)[:, None]

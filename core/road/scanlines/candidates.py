@@ -28,8 +28,6 @@ from .grid import LINE_SEPARATION, HeightGrid, Scanlines, row_of_lines
 class ScanlineBoundarySettings:
     """The parameters of table 1 of the paper.
 
-    Attributes
-    ----------
     search_width : m across within which the height must change
     sensor_height : m from the trajectory down to the road; 0 = from the data
     clipping_height : m above the road; higher points are not used
@@ -72,8 +70,6 @@ class ScanlineBoundarySettings:
 class CurbCandidates(Rows):
     """M rises on the scanlines of one side, pass and scanner, sorted by row, then outward.
 
-    Attributes
-    ----------
     row, cell : (M,) int, cell of the grid in which the middle of the rise is crossed
     u : (M,) m, outward offset of that cell
     base : (M,) m above the expected road, height there of the line through the road before the rise
@@ -94,16 +90,9 @@ class CurbCandidates(Rows):
 def find_candidates(side: HeightGrid, measured: np.ndarray, nearest: np.ndarray, settings: ScanlineBoundarySettings) -> CurbCandidates:
     """Rises of at least `min_height` within `search_width`, and not higher than `clipping_height`.
 
-    Parameters
-    ----------
     side : HeightGrid of one side, counted outward, with gaps filled
     measured : (R, C) m, heights before the gaps were filled
     nearest : (R,) m, outward offset on each row from which rises are searched
-    settings : ScanlineBoundarySettings
-
-    Returns
-    -------
-    CurbCandidates
     """
     low = side.low
     span = max(int(round(settings.search_width / SCANLINE.scanline_resolution)), 2)
@@ -174,8 +163,6 @@ def _road_before(low, row, cell):
 def gap_fill_rows(interval: float) -> int:
     """Scanlines on either side from which the gaps of a scanline are filled.
 
-    Parameters
-    ----------
     interval : m between section planes
     """
     return max(int(round(SCANLINE.gap_fill_reach / interval)), 1)
@@ -225,8 +212,6 @@ def _persistent(candidates):
 class ScanlineSamples:
     """N vertices of resampled scanlines, in the order of the lines or, of one side, by row and outward offset.
 
-    Attributes
-    ----------
     first, interval, rows : number of the first section plane, m between planes, count of planes
     row : (N,) int, from 0
     u : (N,) m, offset; outward offset where they are of one side
@@ -256,8 +241,6 @@ def samples_near(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], i
 
     A line is sampled at equal steps from its first vertex, so the samples do not depend on the places.
 
-    Parameters
-    ----------
     lines : Scanlines of one pass and scanner, V vertices
     heights : (V,) m above the expected road
     rows : (first, last + 1) numbers of the section planes
@@ -266,9 +249,7 @@ def samples_near(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], i
     across, along : m and rows around the places
     clipping_height : m above the expected road, up to which vertices are used
 
-    Returns
-    -------
-    ScanlineSamples: all samples that near, and some farther away
+    Returns ScanlineSamples: all samples that near, and some farther away
     """
     row = row_of_lines(lines, rows, interval)
     segments, line = _segments_near(lines, row, rows[1] - rows[0], *places, across, along)

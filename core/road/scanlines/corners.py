@@ -35,8 +35,6 @@ _RANSAC_DRAWS = np.random.default_rng(SCANLINE.ransac_seed).random((SCANLINE.ran
 class Planes(Rows):
     """M planes v = c0 + c1 p + c2 q, one through each set of points.
 
-    Attributes
-    ----------
     coefficients : (M, 3); NaN where a set has fewer than three points
     sigma : (M,) m, standard deviation of the inliers about the plane
     inliers, points : (M,) int
@@ -56,17 +54,11 @@ def _fit_planes(v: np.ndarray, p: np.ndarray, q: np.ndarray, count: np.ndarray, 
                tolerance: np.ndarray | float = 0.0) -> Planes:
     """A plane through each of M sets of points, by RANSAC and least squares.
 
-    Parameters
-    ----------
     v, p, q : (M, N) float32 m, coordinates about an origin of each set; the first count[i] of a row are points,
         the rest is padding
     count : (M,) int
     distance : m, RANSAC distance: points nearer to the plane are inliers
     tolerance : (M,) m or a number; it replaces `distance` where it is larger
-
-    Returns
-    -------
-    Planes
     """
     sets = len(v)
     coefficients, sigma = np.full((sets, 3), np.nan), np.full(sets, np.nan)
@@ -144,31 +136,30 @@ def _least_squares(v, p, q, weight):
 class CurbCorners(CurbSteps):
     """M corners measured with planes: bottom corners as CurbSteps, and the top corners.
 
-    Attributes
-    ----------
     top_u, top_h : (M,) m, outward offset and height above the expected road of the top corner
     residual : (M,) m, standard deviation of the inliers about the three planes
     sloped : (M,) bool, is the face less steep than an upright one?
     """
+
+    PARTS = (*CurbSteps.PARTS, ("top", "top_u", "top_h"))
 
     top_u: np.ndarray
     top_h: np.ndarray
     residual: np.ndarray
     sloped: np.ndarray
 
+    @property
+    def upright(self) -> np.ndarray:
+        """(M,) bool, is the face as steep as is usual?"""
+        return ~self.sloped
+
 
 def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: ScanlineBoundarySettings) -> CurbCorners:
     """Corners of the candidates whose three planes are those of road, face and raised ground.
 
-    Parameters
-    ----------
     side : ScanlineSamples of one side, sorted outward
-    candidates : CurbCandidates
-    settings : ScanlineBoundarySettings
 
-    Returns
-    -------
-    CurbCorners, at most one per candidate, in the order of the candidates; `scanner_noise` equals `noise` here
+    Returns CurbCorners, at most one per candidate, in the order of the candidates; `scanner_noise` equals `noise` here
     """
     limits = settings.limits
     near = _Surroundings(side, candidates, settings)
@@ -280,10 +271,7 @@ def _scatter(owner, values, selected, count):
 def plane_fit_rows(interval: float, settings: ScanlineBoundarySettings) -> int:
     """Scanlines on either side of a candidate from which its planes are fitted.
 
-    Parameters
-    ----------
     interval : m between section planes
-    settings : ScanlineBoundarySettings
     """
     return max(int(np.floor(settings.distance_along / interval + 1e-9)), 1)
 

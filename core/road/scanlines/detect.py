@@ -19,17 +19,16 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...execution.phase import THREADS, Executor, Phase, Recipe
+from ...execution.phase import THREADS, Executor, Recipe
 from ...survey.blocks import sensor_height_of
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
 from ...survey.weights import READING
-from ..common.curb_points import CurbPoints, curb_points_at
+from ..common.curb_points import CurbPoints
 from ..common.occlusion import OcclusionGrid
-from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, hidden_points, join_sections
-from ..common.tracking import SideChains, curb_chains, drop_short_curbs, link_apart, select_along_road, with_pieces_in_line
-from ..edges.fit import EdgeCurve, without_outliers
+from ..common.side_curbs import SideChains, block_bounds, merged_passes, points_of_side, steps_of_road
+from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections
+from ..edges.fit import EdgeCurve, point_table, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
-from ..profiles.detect import block_bounds, block_numbers
 from ..weights import CURBS, EDGE, PROFILE, SCANLINE
 from .candidates import ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
@@ -42,74 +41,43 @@ if TYPE_CHECKING:
     from ..common.decimation import LevelGround
 
 
-_POINT = [("s", float), ("d", float), ("x", float), ("y", float), ("z", float), ("height", float), ("chain", int),
-          ("support", int)]
-
-
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),
                          block_length: float = 0.0, progress: Progress = Progress(),
                          beside: dict[int, dict[str, OcclusionGrid]] | None = None,
                          side_chains: dict[tuple[int, str], SideChains] | None = None) -> CurbPoints:
     """Bottom and top corners of the curb on each side of every road, one of each per block.
 
-    Parameters
-    ----------
     source : SurveyScanlines or LayerScanlines
-    settings : ScanlineBoundarySettings
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
-    progress : Progress
     beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
     side_chains : is given all chains that were found: (number of the road, side) -> SideChains
 
-    Returns
-    -------
-    CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb.
+    Returns CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb.
     """
-    parts, side_chains = [], {} if side_chains is None else side_chains
-    roads = source.roads()
+    parts, beside, side_chains = [], {} if beside is None else beside, {} if side_chains is None else side_chains
+    roads, interval = source.roads(), source.interval
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
-        corners, occlusion = _corners_of_road(source, road, settings, part)
-        if beside is not None:
-            beside[road] = occlusion
-        for side in SIDE_SIGNS:
-            if corners[side] is not None and len(corners[side]):
-                known = side_chains[road, side] = _chains_of_side(source, road, corners[side], settings, block_length)
-                parts.append(_points_of_side(source, road, side, known, occlusion[side]))
+        start, end = source.span(road)
+        sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
+        corners, beside[road] = steps_of_road(corners_of_section, source, road, settings, sections, interval, part)
+        bounds = block_bounds(source.frame.road(road), start, end, block_length)
+        for side in corners:
+            if len(corners[side]):
+                side_chains[road, side] = SideChains.of(_with_scanner_noise(corners[side]), interval, settings.limits, bounds)
+                parts.append(points_of_side(source, road, side, side_chains[road, side], beside[road][side]))
     found = CurbPoints.join(parts, source.crs)
     measured, hidden = (np.count_nonzero((found.part == "bottom") & (found.status == status)) for status in ("measured", "occluded"))
     progress.info(f"Corners of curbs: {measured:,} measured on scanlines, {hidden:,} hidden by objects.")
     return found
 
 
-def _corners_of_road(source, road, settings, progress):
-    """Corners of each side, merged over passes and scanners where they agree, and what was measured beside the road."""
-    interval = source.interval
-    start, end = source.span(road)
-    sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
-    first, last = sections[0][0], sections[-1][1]
-    occlusion = {side: OcclusionGrid(interval, first, last - first, CURBS.max_curb_offset) for side in SIDE_SIGNS}
-    phase = Phase(corners_of_section, source, (road, settings), lambda section: source.stretch(road, *(k * interval for k in section)),
-                  lambda section: source.points_between(road, *(k * interval for k in section)), join_sections, CURBS.sections_together)
-    parts = {side: [] for side in SIDE_SIGNS}
-    for found, beside in source.executor.run(phase, sections, progress):
-        for side, corners in found.items():
-            parts[side].append(corners)
-        for side, seen in beside.items():
-            occlusion[side].add(seen)
-    return {side: _with_scanner_noise(CurbCorners.join(found)) if found else None for side, found in parts.items()}, occlusion
-
-
 def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[int, int], road: int,
                        settings: ScanlineBoundarySettings) -> tuple[dict[str, CurbCorners], dict[str, OcclusionGrid]]:
     """The phase of scanlines: corners in one section of a road.
 
-    Parameters
-    ----------
     source : SurveyScanlines or LayerScanlines
     section : (first, last + 1) numbers of planes
-    road : number of the road
-    settings : ScanlineBoundarySettings
 
     Returns
     -------
@@ -174,15 +142,9 @@ def _corners(lines, heights, rows, interval, candidates, settings):
 def merged_corners(found: Sequence[CurbCorners]) -> CurbCorners:
     """One corner where several passes or scanners measured the same one: their mean, weighted by support.
 
-    Parameters
-    ----------
     found : CurbCorners of each pass and scanner
-
-    Returns
-    -------
-    CurbCorners
     """
-    upright, sloped = (_merged([part[part.sloped == kind] for part in found]) for kind in (False, True))
+    upright, sloped = (merged_passes([part[part.sloped == kind] for part in found]) for kind in (False, True))
     # where one pass or scanner shows an upright face, what others show less sharply is no other curb
     around = np.arange(-SCANLINE.neighbour_lines, SCANLINE.neighbour_lines + 1)[:, None]
     keys = ((upright.profile + around) * LINE_SEPARATION + upright.u).ravel()
@@ -190,84 +152,19 @@ def merged_corners(found: Sequence[CurbCorners]) -> CurbCorners:
     return CurbCorners.join([upright, sloped])
 
 
-def _merged(found):
-    """The mean of corners that lie beside each other in one plane, weighted by support."""
-    corners = CurbCorners.join(found)
-    if len(found) < 2 or not len(corners):
-        return corners
-    corners = corners[np.lexsort((corners.u, corners.profile))]
-    apart = (np.diff(corners.profile) > 0) | (np.diff(corners.u) > PROFILE.pass_merge_across) \
-        | (np.abs(np.diff(corners.h)) > PROFILE.pass_merge_height)
-    group = np.r_[0, np.cumsum(apart)]
-    weight = np.sqrt(np.maximum(corners.support, 1))
-    total = np.bincount(group, weight)
-    values = {name: np.bincount(group, weight * getattr(corners, name)) / total
-              for name in ("s", "u", "h", "skew", "height", "run", "noise", "scanner_noise", "top_u", "top_h", "residual")}
-    return CurbCorners(profile=corners.profile[np.r_[True, apart]], **values, sloped=corners.sloped[np.r_[True, apart]],
-                       support=np.bincount(group, corners.support).astype(np.int64),
-                       behind=np.bincount(group, corners.behind).astype(np.int64))
-
-
 def _with_scanner_noise(corners):
     """The corners with `scanner_noise` set to the median noise of this road."""
-    if len(corners):
-        corners.scanner_noise = np.full(len(corners), np.clip(np.median(corners.noise), CURBS.min_scanner_noise, SCANLINE.max_usual_noise))
+    corners.scanner_noise = np.full(len(corners), np.clip(np.median(corners.noise), CURBS.min_scanner_noise, SCANLINE.max_usual_noise))
     return corners
-
-
-def _chains_of_side(source, road, corners, settings, block_length):
-    """The SideChains of the corners of one side of one road."""
-    edges = block_bounds(source.frame.road(road), *source.span(road), block_length)
-    chains = curb_chains(corners, link_apart(corners, source.interval, ~corners.sloped), source.interval, settings.limits)
-    return SideChains(corners, chains, lambda members, number: _block_points(members, edges, number))
-
-
-def _points_of_side(source, road, side, known, occlusion):
-    """The bottom and top corners of one side of one road, measured and hidden, sorted by station."""
-    frame, sign, corners, chains = source.frame, SIDE_SIGNS[side], known.steps, known.chains
-    track = OutermostTrack(frame, road, sign)
-    stretches = drop_short_curbs(select_along_road(chains, corners, track), chains, corners)
-    stretches = with_pieces_in_line(stretches, chains, corners, lambda s, u: frame.road(road).to_map(s, sign * u))
-    rows = [row for number, part in enumerate(stretches) for row in known.points(part, number)]
-    bottoms = np.array([(r["s"], r["u"], r["h"]) for r in rows if r["fields"]["part"] == "bottom"]).reshape(-1, 3)
-    rows += [{**r, "fields": dict(r["fields"], part="bottom")} for r in hidden_points(bottoms, occlusion, track)]
-    rows.sort(key=lambda r: (r["s"], r["fields"]["part"]))
-    s, u, h = (np.array([r[name] for r in rows], float) for name in ("s", "u", "h"))
-    x, y, z = frame.to_map(road, s, sign * u, h + expected_height(source, road, s))
-    return curb_points_at(frame, road, (x, y, z), [row["fields"] for row in rows], side=side, station=s, offset=sign * u)
-
-
-def _block_points(corners, edges, chain):
-    """A bottom and a top corner per block: the means of the corners of one line."""
-    if not len(corners):
-        return []
-    names, member = np.unique(block_numbers(corners, edges), return_inverse=True)
-    n = np.bincount(member)
-    mean = {name: np.bincount(member, getattr(corners, name)) / n for name in ("s", "u", "h", "top_u", "top_h", "height")}
-    deviation = corners.u - np.interp(corners.s, mean["s"], mean["u"])
-    residual, support = np.sqrt(np.bincount(member, deviation**2) / n), np.bincount(member, corners.support)
-    rows = []
-    for k in range(len(names)):
-        fields = dict(status="measured", height=round(float(mean["height"][k]), 4), chain=chain,
-                      residual=round(float(residual[k]), 4), support=int(support[k]))
-        for part, u, h in (("bottom", "u", "h"), ("top", "top_u", "top_h")):
-            rows.append(dict(s=float(mean["s"][k]), u=float(mean[u][k]), h=float(mean[h][k]), fields=dict(fields, part=part)))
-    return rows
 
 
 def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progress: Progress = Progress()) -> RoadEdges:
     """Smooth lines through corners, separately for bottoms and tops.
 
-    Parameters
-    ----------
     corners : CurbPoints with `part` bottom or top
-    frame : RoadFrame
     max_gap : m between corners that are connected
-    progress : Progress
 
-    Returns
-    -------
-    RoadEdges along the road, one piece for each stretch of one status:
+    Returns RoadEdges along the road, one piece for each stretch of one status:
     measured, bridged (a gap between corners), or occluded (a gap where an object hides the curb). The pieces of one
     line share their end vertices and `chain`.
     """
@@ -278,7 +175,8 @@ def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progre
             own = corners[(corners.road == road.number) & (corners.side == side)]
             hidden = np.sort(own.station[own.status == "occluded"])
             for part in ("bottom", "top"):
-                for points, status in _pieces(_points(own[own.part == part], frame), hidden, max_gap):
+                measured = point_table(own[(own.part == part) & (own.status == "measured")], frame)
+                for points, status in _pieces(without_outliers(measured), hidden, max_gap):
                     passes = frame.passes_sigma(road.number, points["s"])
                     _draw(pieces, points, status, passes, road=road.number, side=side, part=part, chain=number)
                     number += 1
@@ -287,16 +185,6 @@ def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progre
     progress.info(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
     progress.report(1.0)
     return lines
-
-
-def _points(corners, frame):
-    """The measured corners of one kind in map coordinates, sorted by station."""
-    measured = corners[corners.status == "measured"]
-    points, (x, y, z) = np.empty(len(measured), dtype=_POINT), measured.map_places(frame).T
-    for name, values in dict(s=measured.station, d=measured.offset, x=x, y=y, z=z, height=np.nan_to_num(measured.height),
-                             chain=measured.chain, support=measured.support).items():
-        points[name] = values
-    return without_outliers(points[np.argsort(points["s"], kind="stable")])
 
 
 def _pieces(points, hidden, max_gap):
@@ -322,7 +210,7 @@ def _draw(pieces, points, status, passes, **fields):
         along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE.edge_vertex_spacing)), 1) + 1)
         vertices, rows = curve.at(along), points[i:j + 1]
         pieces.append(EdgePiece(vertices, status=str(status[i]), station=float(rows["s"][0]), end=float(rows["s"][-1]),
-                                length=float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), height=float(np.median(rows["height"])),
+                                height=float(np.median(rows["height"])),
                                 rmse=float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))),
                                 sigma=edge_sigma(along, curve.t, curve.residual, points["support"], passes=np.interp(along, curve.t, passes)),
                                 **fields))
@@ -333,17 +221,11 @@ def _draw(pieces, points, status, passes, **fields):
 class SurveyScanlines:
     """The scanlines of a survey, computed on demand.
 
-    Parameters
-    ----------
-    survey : Survey
-    settings : ScanlineSettings
     sensor_height : m from the trajectory down to the road, 0 = from the data
     lattice : ScanLattice, or None to find it here
     progress : Progress of finding it
     level : LevelGround that is left out; None uses all points
 
-    Attributes
-    ----------
     frame : RoadFrame
     crs : WKT
     interval, corridor : m, of the settings
@@ -366,14 +248,6 @@ class SurveyScanlines:
         level = None if self.level is None else self.level.recipe(folder)
         return Recipe("core.road.scanlines.detect:SurveyScanlines", dict(survey=self.survey.recipe(folder), settings=self.settings, level=level,
                                                                     sensor_height=self.sensor_height, lattice=self.lattice))
-
-    def stretch(self, road: int, start: float, end: float) -> str:
-        """What messages call the road between two stations, m."""
-        return self.survey.stretch(road, start, end)
-
-    def points_between(self, road: int, start: float, end: float) -> int:
-        """About how many points lie between two stations (m)."""
-        return self.survey.store.points_between(road, start, end)
 
     def roads(self) -> list[int]:
         """Numbers of the roads."""
@@ -398,16 +272,10 @@ class SurveyScanlines:
 class LayerScanlines:
     """The scanlines of a layer, in the road frame of the trajectory they were made with.
 
-    Parameters
-    ----------
     lines : dict of road number to Scanlines, each sorted by station
-    frame : RoadFrame
     interval : m between section planes
-    crs : WKT
     sensor_height : m from the trajectory down to the road, 0 = from the data
 
-    Attributes
-    ----------
     frame, interval, crs : as given
     corridor : m, greatest offset of a vertex
     level : None; all points are used
@@ -443,14 +311,6 @@ class LayerScanlines:
                 known[p.number] = height
         typical = float(np.median(list(known.values()))) if known else READING.default_sensor_height
         return {p.number: known.get(p.number, typical) for p in self.frame.passes}
-
-    def stretch(self, road: int, start: float, end: float) -> str:
-        """What messages call the road between two stations, m."""
-        return f"road {road}, {start:.0f} to {end:.0f} m"
-
-    def points_between(self, road: int, start: float, end: float) -> int:
-        """Points are not known; 0."""
-        return 0
 
     def roads(self) -> list[int]:
         """Numbers of the roads."""

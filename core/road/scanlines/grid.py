@@ -18,8 +18,6 @@ class HeightGrid:
 
     Row r is the plane at station (first + r) * interval. Heights are above the expected road.
 
-    Attributes
-    ----------
     first : number of the first plane
     interval : m between planes
     origin : m, offset at which the first cell begins
@@ -48,14 +46,8 @@ class HeightGrid:
     def outward(self, sign: int, origin: float) -> HeightGrid:
         """The grid of one side, with cells counted outward.
 
-        Parameters
-        ----------
         sign : 1 for the left side, -1 for the right
         origin : m, outward offset at which it begins, a whole number of cells from the reference line
-
-        Returns
-        -------
-        HeightGrid
         """
         low = self.low[:, ::sign]
         skipped = int(round((origin - self.origin) / SCANLINE.scanline_resolution))
@@ -68,13 +60,7 @@ class HeightGrid:
 
         Lost pulses and shadows leave different gaps on neighbouring scanlines.
 
-        Parameters
-        ----------
         reach : rows on either side from which a gap is filled
-
-        Returns
-        -------
-        HeightGrid
         """
         closed = self.low.copy()
         for ahead in range(1, min(reach, len(closed) - 1) + 1):
@@ -87,8 +73,6 @@ def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], in
                 clipping_height: float) -> HeightGrid:
     """Heights of scanlines across the whole road.
 
-    Parameters
-    ----------
     lines : Scanlines of one pass and scanner, V vertices
     heights : (V,) m above the expected road
     rows : (first, last + 1) numbers of the section planes
@@ -96,9 +80,7 @@ def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], in
     reach : m either side of the reference line
     clipping_height : m above the expected road, up to which points are ground
 
-    Returns
-    -------
-    HeightGrid with origin -reach, or up to a cell less
+    Returns HeightGrid with origin -reach, or up to a cell less
     """
     half = int(np.ceil(reach / SCANLINE.scanline_resolution))
     low = np.full((rows[1] - rows[0], 2 * half), np.nan, np.float32)
@@ -167,15 +149,11 @@ def _lower_to(flat, place, height):
 def row_of_lines(lines: Scanlines, rows: tuple[int, int], interval: float) -> np.ndarray:
     """Rows of scanlines on a grid of section planes.
 
-    Parameters
-    ----------
     lines : L Scanlines
     rows : (first, last + 1) numbers of the section planes of the grid
     interval : m between planes
 
-    Returns
-    -------
-    (L,) int, negative or too large outside the grid
+    Returns (L,) int, negative or too large outside the grid
     """
     return np.rint(lines.station / interval).astype(np.int64) - rows[0]
 

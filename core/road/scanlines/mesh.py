@@ -12,12 +12,12 @@ The paper on normalized scanlines (ISPRS Archives, 2020), section 2.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.arrays import Rows
 from ...survey.lattice.scan_lattice import time_order
 from ...survey.store.records import COORDINATE_SCALE, take_rows
 from ..weights import SCANLINE
@@ -36,8 +36,6 @@ PHASE_STEPS = 65535   # derived: steps of a turn by which vertices are sorted, 1
 class ScannerLines:
     """N points of one pass and scanner in a window, sorted by time, on L scan lines.
 
-    Attributes
-    ----------
     line : (N,) int32, number of the scan line, from 0 without gaps
     phase : (N,) turns, phase of the mirror, 0 to 1
     s, d, z : (N,) m, station, offset and local height
@@ -62,13 +60,11 @@ class ScannerLines:
 
 
 @dataclass
-class Ribs:
+class Ribs(Rows):
     """R sides of the mesh that section planes intersect.
 
     A rib runs from the point `point` to a place between the point `ahead` and the one after it.
 
-    Attributes
-    ----------
     point, ahead : (R,) int, indices of points
     share : (R,) 0 to 1, the place on the way from point `ahead` to the one after it
     near, far : (R,) stations of both ends, in intervals of the planes
@@ -80,28 +76,17 @@ class Ribs:
     near: np.ndarray
     far: np.ndarray
 
-    @classmethod
-    def joined(cls, parts: Sequence[Ribs]) -> Ribs:
-        """The ribs of several parts."""
-        return cls(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(cls)))
-
 
 def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, corridor: float,
                   level: LevelStrip | None = None, intensity: bool = True) -> ScannerLines | None:
     """The points of a scanner on their scan lines.
 
-    Parameters
-    ----------
     records : survey points of one pass and scanner
-    p : Pass
-    mirror : MirrorPhase
     corridor : m either side of the reference line within which points are used
     level : LevelStrip whose points are left out, or None
     intensity : are intensities wanted?
 
-    Returns
-    -------
-    ScannerLines, or None where there are fewer than two lines
+    Returns ScannerLines, or None where there are fewer than two lines
     """
     d = records["d"]
     used = np.abs(d) <= int(round(corridor / COORDINATE_SCALE))
@@ -172,16 +157,8 @@ def _ranges(columns, p, time, line):
 def ribs_of(lines: ScannerLines, direction: int, mirror: MirrorPhase, interval: float) -> Ribs:
     """The ribs of the mesh that section planes intersect.
 
-    Parameters
-    ----------
-    lines : ScannerLines
     direction : 1 where the vehicle drove in the direction of the stations, -1 against it
-    mirror : MirrorPhase
     interval : m between planes
-
-    Returns
-    -------
-    Ribs
     """
     key = lines.line + lines.phase
     number = np.arange(len(key), dtype=np.float64)
@@ -206,7 +183,7 @@ def ribs_of(lines: ScannerLines, direction: int, mirror: MirrorPhase, interval: 
         rest = np.flatnonzero(~hit) if rest is None else rest[~hit]
         if not len(rest):
             break
-    return Ribs.joined(found)
+    return Ribs.join(found)
 
 
 def _ribs_on_surface(lines, station, longest, direction, point, ahead, place):
@@ -231,15 +208,7 @@ def _ribs_on_surface(lines, station, longest, direction, point, ahead, place):
 def slanting_edges(lines: ScannerLines, mirror: MirrorPhase, interval: float) -> Ribs:
     """Edges along scan lines that run far along the road, so that a plane may pass between their ends and no rib.
 
-    Parameters
-    ----------
-    lines : ScannerLines
-    mirror : MirrorPhase
     interval : m between planes
-
-    Returns
-    -------
-    Ribs
     """
     station = lines.s / interval
     point = np.flatnonzero((np.diff(np.ceil(station)) != 0) & lines.joined[:-1])   # most have no plane between them and the next point
@@ -252,8 +221,6 @@ def slanting_edges(lines: ScannerLines, mirror: MirrorPhase, interval: float) ->
 class PlaneVertices:
     """N vertices of one pass and scanner, sorted by plane and by mirror phase from right to left.
 
-    Attributes
-    ----------
     plane : (N,) int, number of the section plane
     phase : (N,) turns
     d, z : (N,) m, offset and local height
@@ -274,16 +241,8 @@ class PlaneVertices:
                   z: np.ndarray) -> PlaneVertices:
         """The vertices with their places relative to the track of a pass.
 
-        Parameters
-        ----------
-        p : Pass
         interval : m between planes
-        mirror : MirrorPhase
         plane, phase, d, z : (N,) as the attributes
-
-        Returns
-        -------
-        PlaneVertices
         """
         first = int(plane[0])
         track_d, track_z = p.at_station(np.arange(first, int(plane[-1]) + 1) * interval)
@@ -295,13 +254,9 @@ class PlaneVertices:
     def side_by_side(self, i: np.ndarray | slice, j: np.ndarray | slice) -> np.ndarray:
         """Whether vertices j are the next ones to the left of vertices i on one surface.
 
-        Parameters
-        ----------
         i, j : indices or slices of M vertices
 
-        Returns
-        -------
-        (M,) bool
+        Returns (M,) bool
         """
         step = self.d[j] - self.d[i]
         side = (self.plane[j] == self.plane[i]) & (step >= -SCANLINE.max_backward) & (step <= SCANLINE.max_edge)
@@ -350,14 +305,10 @@ def plane_order(plane: np.ndarray, phase: np.ndarray) -> np.ndarray:
 
     numpy sorts 16-bit integers by radix, in linear time.
 
-    Parameters
-    ----------
     plane : (N,) int, from 0
     phase : (N,) turns, 0 to 1
 
-    Returns
-    -------
-    (N,) int
+    Returns (N,) int
     """
     by_phase = np.argsort((phase * PHASE_STEPS).astype(np.uint16), kind="stable")
     plane = plane.take(by_phase)
@@ -369,14 +320,10 @@ def increasing(d: np.ndarray, first: np.ndarray) -> np.ndarray:
 
     They are computed in whole OFFSET_UNITs, so that the result of a line does not depend on the lines before it.
 
-    Parameters
-    ----------
     d : (V,) m
     first : (L + 1,) int, first vertex of each line
 
-    Returns
-    -------
-    (V,) m
+    Returns (V,) m
     """
     place = np.rint(d / SCANLINE.offset_unit).astype(np.int64)
     apart = np.repeat(np.arange(len(first) - 1) * LINE_OFFSET_UNITS, np.diff(first))

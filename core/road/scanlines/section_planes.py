@@ -56,17 +56,10 @@ def scanlines_of(survey: Survey, road: int, start: float, end: float, settings: 
                  lattice: ScanLattice | None = None) -> Scanlines:
     """The normalized scanlines of the planes with start <= station < end.
 
-    Parameters
-    ----------
-    survey : Survey
-    road : number of the road
     start, end : m; planes lie at whole multiples of the interval
-    settings : ScanlineSettings
     lattice : ScanLattice of the survey, or None to find it here
 
-    Returns
-    -------
-    Scanlines; of scanners without a lattice those of the points near the planes
+    Returns Scanlines; of scanners without a lattice those of the points near the planes
     """
     lines = Scanlines.join(scanline_runs(survey, road, start, end, settings, lattice))
     if not len(lines):
@@ -80,15 +73,9 @@ def scanline_runs(survey: Survey, road: int, start: float, end: float, settings:
                   float, float], LevelStrip | None] | None = None) -> list[Scanlines]:
     """The normalized scanlines of the planes with start <= station < end, apart for each pass and scanner.
 
-    Parameters
-    ----------
     survey, road, start, end, settings, lattice : as in `scanlines_of`
     intensity : whether intensities are computed; else they are 0
     level : function of pass number, start and end (m) that returns the LevelStrip to be left out; None uses all points
-
-    Returns
-    -------
-    list of Scanlines
     """
     interval = settings.interval
     first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
@@ -121,7 +108,6 @@ def all_scanlines(survey: Survey, road: int, settings: ScanlineSettings = Scanli
     Parameters
     ----------
     survey, road, settings, lattice : as in `scanlines_of`
-    progress : Progress
 
     Yields
     ------
@@ -159,16 +145,24 @@ def _cut(records, p, key, mirror, planes, settings, intensity, level):
     lines = scanner_lines(records, p, mirror, settings.corridor, level, intensity)
     if lines is None:
         return Scanlines.none()
-    ribs = Ribs.joined([ribs_of(lines, p.direction, mirror, settings.interval), slanting_edges(lines, mirror, settings.interval)])
+    ribs = Ribs.join([ribs_of(lines, p.direction, mirror, settings.interval), slanting_edges(lines, mirror, settings.interval)])
     rib, plane = _planes_through(ribs, planes)
     if not len(rib):
         return Scanlines.none()
     near = ribs.near.take(rib)
-    crossed = Crossings(ribs.point.take(rib), ribs.ahead.take(rib), ribs.share.take(rib), (plane - near) / (ribs.far.take(rib) - near))
-    phase, d, z = (crossed.of(values) for values in (lines.phase, lines.d, lines.z))
+    point, ahead, share, along = ribs.point.take(rib), ribs.ahead.take(rib), ribs.share.take(rib), (plane - near) / (ribs.far.take(rib) - near)
+
+    def crossed(values):
+        first, last = values.take(point), values.take(ahead)
+        last += share * (values.take(ahead + 1) - last)
+        last -= first
+        last *= along
+        return first + last
+
+    phase, d, z = (crossed(values) for values in (lines.phase, lines.d, lines.z))
     order = plane_order(plane - planes[0], phase if mirror.leftward else 1.0 - phase)
     plane, phase, d, z = (values.take(order) for values in (plane, phase, d, z))
-    bright = np.zeros(len(d), np.float32) if lines.intensity is None else crossed.of(lines.intensity.astype(np.float64))[order].astype(np.float32)
+    bright = np.zeros(len(d), np.float32) if lines.intensity is None else crossed(lines.intensity.astype(np.float64))[order].astype(np.float32)
     order, first = PlaneVertices.from_track(p, settings.interval, mirror, plane, phase, d, z).lines()
     if order is not None:
         plane, d, z, bright = plane[order], d[order], z[order], bright[order] if intensity else bright
@@ -194,30 +188,6 @@ def _planes_through(ribs, planes):
     return (np.concatenate(ribs_cut), np.concatenate(planes_cut)) if ribs_cut else (np.empty(0, np.int64),) * 2
 
 
-@dataclass
-class Crossings:
-    """M intersections of planes with ribs.
-
-    Attributes
-    ----------
-    point, ahead, share : (M,) of the ribs, as in Ribs
-    along : (M,) 0 to 1, place of the intersection on the rib
-    """
-
-    point: np.ndarray
-    ahead: np.ndarray
-    share: np.ndarray
-    along: np.ndarray
-
-    def of(self, values: np.ndarray) -> np.ndarray:
-        """(M,) values at the intersections, interpolated from the (N,) values of the points."""
-        near, ahead = values.take(self.point), values.take(self.ahead)
-        ahead += self.share * (values.take(self.ahead + 1) - ahead)
-        ahead -= near
-        ahead *= self.along
-        return near + ahead
-
-
 # Scanlines from points near the section planes, where a cloud has no scan lattice to mesh.
 #
 # Spinning multi-beam scanners, thinned clouds and clouds without times have no scan lines. The points within a thin slice around each plane are
@@ -230,17 +200,9 @@ def point_scanlines(survey: Survey, road: int, start: float, end: float, interva
 
     A slice holds the points within interval / 2 of its plane, or within SCANLINE.min_slice_length / 2 where that is more.
 
-    Parameters
-    ----------
-    survey : Survey
-    road : number of the road
     start, end : m, stations
     interval : m between planes
     corridor : m either side of the reference line
-
-    Returns
-    -------
-    Scanlines
     """
     first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
     half = 0.5 * max(SCANLINE.min_slice_length, interval)
@@ -272,15 +234,11 @@ def point_scanlines(survey: Survey, road: int, start: float, end: float, interva
 def slice_lines(d: np.ndarray, z: np.ndarray, half_width: float) -> list[np.ndarray]:
     """The ground's scanline through one slice of points whose road is not known, for a look at it.
 
-    Parameters
-    ----------
     d : (N,) m, offsets from the middle of the road, left positive
     z : (N,) m, heights
     half_width : m either side of the middle that are looked at
 
-    Returns
-    -------
-    list of (V, 2) offset and height, offsets increasing; a new line begins where the ground is interrupted
+    Returns a list of (V, 2) offset and height, offsets increasing; a new line begins where the ground is interrupted
     """
     if not len(d):
         return []

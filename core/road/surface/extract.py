@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 class SurfaceSettings:
     """What counts as road surface.
 
-    Attributes
-    ----------
     max_width : m from the vehicle's track; a surface without an edge ends there at the latest
     height_tolerance : m; points farther above or below the height of the road do not belong to it.
         A smaller tolerance is used where the noise of the scanner allows it
@@ -61,12 +59,6 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     bright ground), at most `max_width` from the track. An opening of up to 30 m in an edge is closed by a
     straight line; where a side street joins there, the surface goes on into it as far as its ground was scanned.
 
-    Parameters
-    ----------
-    survey : Survey
-    edges : RoadEdges or None
-    settings : SurfaceSettings
-    progress : Progress
     ground : MeasuredGround that an earlier stage kept, or None
 
     Returns
@@ -106,18 +98,9 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
                      progress: Progress = Progress(), ground: MeasuredGround | None = None) -> Carriageway | None:
     """Height and limits of one road, row by row.
 
-    Parameters
-    ----------
-    survey : Survey
-    road : number of the road
-    edges : RoadEdges or None
-    settings : SurfaceSettings
-    progress : Progress
     ground : MeasuredGround of the survey, or None to measure it here
 
-    Returns
-    -------
-    Carriageway, or None where no ground was measured near the track
+    Returns Carriageway, or None where no ground was measured near the track
     """
     start, end = survey.store.span(road)
     windows = [SURFACE.window_rows * k for k in range(int(np.floor(start / SURFACE.row_length / SURFACE.window_rows)),
@@ -196,15 +179,11 @@ def _take_points(survey, road, carriageway, road_points, progress):
 def street_ground(cells: GroundCells, ground: np.ndarray, right: np.ndarray, left: np.ndarray) -> np.ndarray:
     """Cells of ground that are no rougher than the road.
 
-    Parameters
-    ----------
     cells : GroundCells, R rows and C columns
     ground : (R, C) bool, cells at the height of the road
     right, left : (R,) m, limits of the road; NaN where unknown
 
-    Returns
-    -------
-    (R, C) bool
+    Returns (R, C) bool
     """
     offsets = cells.offsets
     with np.errstate(invalid="ignore"):
@@ -216,15 +195,9 @@ def street_ground(cells: GroundCells, ground: np.ndarray, right: np.ndarray, lef
 def cells_driven(frame: RoadFrame, road: int, cells: GroundCells) -> np.ndarray:
     """Cells of one road that the reference lines of the other roads run through.
 
-    Parameters
-    ----------
-    frame : RoadFrame
-    road : number of the road
     cells : GroundCells of it, R rows and C columns
 
-    Returns
-    -------
-    (R, C) bool
+    Returns (R, C) bool
     """
     driven = np.zeros(cells.height.shape, bool)
     for other in frame.roads:
@@ -245,8 +218,6 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
 
     A street that was driven itself is another road of the survey, and is left to it.
 
-    Parameters
-    ----------
     limit : (R,) m outward from the reference line, of every row
     closed : (R,) bool, rows in which the limit only closes an opening
     height : (R, C) m, of the ground in cells; NaN where none was measured
@@ -255,9 +226,7 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
     farthest : (R,) m outward, beyond which nothing belongs to the road
     driven : (R, C) bool, cells of `cells_driven`
 
-    Returns
-    -------
-    (R,) m, `limit` or farther
+    Returns (R,) m, `limit` or farther
     """
     result = limit.copy()
     starts = np.flatnonzero(closed & ~np.r_[False, closed[:-1]])
@@ -355,9 +324,6 @@ class Margins:
     def add(self, road: int, carriageway: Carriageway, curbs: dict[str, np.ndarray], pavement: dict[str, np.ndarray]) -> None:
         """Add those of a road.
 
-        Parameters
-        ----------
-        road : number
         carriageway : Carriageway, its limits are taken as they are
         curbs, pavement : side to (R,) bool, the rows beside which a curb, or an edge of the pavement, was drawn
         """

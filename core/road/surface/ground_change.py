@@ -22,8 +22,6 @@ from .ground_grid import GroundCells, known_median
 class HalfProfiles:
     """P profiles of K cells from the reference line outward.
 
-    Attributes
-    ----------
     u : (K,) m, outward offsets of the middles of the cells, ascending
     off : (P, K) m above the height of the road; NaN where nothing was measured, or an obstacle hides the road
     rough : (P, K) m
@@ -43,8 +41,6 @@ class HalfProfiles:
     def changes(self, beside: np.ndarray, max_width: float) -> np.ndarray:
         """(P,) int, the first cell of other ground, or the one at the largest width; -1 where nothing was measured before it.
 
-        Parameters
-        ----------
         beside : (P,) m, outward offset of the track
         max_width : m from the track
         """
@@ -171,16 +167,12 @@ def other_ground_begins(brightness: np.ndarray, stations: np.ndarray, track: np.
 
     A narrower strip along the limit than `pavement_limits` searches is left to it.
 
-    Parameters
-    ----------
     brightness : (P, K) counts, profiles of cells outward
     stations : (P,) m, ascending
     track : (P,) cells, not necessarily whole, of the vehicle's track
     limit : (P,) cells, not necessarily whole, at which the ground changes
 
-    Returns
-    -------
-    (P,) cells; NaN where there is no such ground
+    Returns (P,) cells; NaN where there is no such ground
     """
     begins, step, still = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness)).T
     there = begins >= 0
@@ -240,8 +232,6 @@ def _brighter_from(brightness, track, limit):
 class _RoadHeight:
     """The height of a road on a grid of R rows and C columns.
 
-    Attributes
-    ----------
     height : (R, C) float32 m, local z of the road, also under obstacles
     ground : (R, C) bool, cells that show the road itself
     noise : m, median standard deviation of the points of a cell
@@ -259,14 +249,10 @@ def follow_road(cells: GroundCells, prior: np.ndarray) -> _RoadHeight | None:
     road and correct height and tilt. Other cells (a car, an island, no ground) are skipped, and the prediction is
     continued. Corrections are averaged over neighbouring rows. The method is our own.
 
-    Parameters
-    ----------
     cells : GroundCells of a road, R rows
     prior : (R,) m, local z of the road under the vehicle, accurate to decimetres
 
-    Returns
-    -------
-    _RoadHeight, or None where no ground was measured near the track
+    Returns _RoadHeight, or None where no ground was measured near the track
     """
     offsets = cells.offsets
     track = np.abs(offsets) < SURFACE.track_half_width
@@ -347,14 +333,9 @@ def smooth_road(road: _RoadHeight, cells: GroundCells) -> np.ndarray:
 
     Following lags behind on a crowned road. A mean over 5 rows and 3 columns, weighted by points, does not.
 
-    Parameters
-    ----------
     road : _RoadHeight
-    cells : GroundCells of the same grid
 
-    Returns
-    -------
-    (R, C) m, local z
+    Returns (R, C) m, local z
     """
     # a running mean along the road depends on its rows, and not on other columns
     total, rise = np.empty((2, *road.height.shape), np.float32)

@@ -32,8 +32,6 @@ GOLDEN_RATIO_32 = 0x9E3779B9   # source: golden ratio times 2^32; its multiples,
 class SurfaceProfiles:
     """The ground across the road: P rows of 1 m length with K cells of 0.1 m.
 
-    Attributes
-    ----------
     stations : (P,) m, middles of the rows
     offsets : (K,) m, middles of the cells, ascending
     height : (P, K) m above the expected height of the road under the vehicle
@@ -57,17 +55,11 @@ class SurfaceProfiles:
            road_height: Callable[[np.ndarray], np.ndarray], ahead: Callable[[Points], np.ndarray]) -> SurfaceProfiles:
         """The rows of a window of the road.
 
-        Parameters
-        ----------
         points : Points of the window
         start, length : m, station at which it begins, and its length, whole numbers
         reach : m either side of the reference line
         road_height : function of (N,) stations in m; (N,) local z of the road under the vehicle, accurate to decimetres
         ahead : function of N Points; (N,) m by which they lay ahead of the vehicle when they were measured
-
-        Returns
-        -------
-        SurfaceProfiles
         """
         first_row, rows = int(round(start / SURFACE.profile_row)), int(round(length / SURFACE.profile_row))
         cells = _ground_cells(points, first_row, rows, reach, road_height, SURFACE.profile_row, SURFACE.profile_column,
@@ -88,8 +80,6 @@ class GroundCells:
 
     Row k begins at station row_size * (first_row + k), column j at offset column_size * (first_column + j).
 
-    Attributes
-    ----------
     first_row, first_column : numbers of the first row and column
     row_size, column_size : m
     height : (R, C) float32 m, local z at the middle of a cell; NaN where there is no ground
@@ -125,14 +115,10 @@ def known_median(values: np.ndarray, axis: int) -> np.ndarray:
 
     Unlike `numpy.nanmedian` it raises no warning, so it can run in worker threads.
 
-    Parameters
-    ----------
     values : array of floats
     axis : to be reduced
 
-    Returns
-    -------
-    array of floats without that axis
+    Returns array of floats without that axis
     """
     ordered = np.sort(values, axis=axis)
     count = np.isfinite(ordered).sum(axis=axis, keepdims=True)
@@ -151,18 +137,12 @@ def _ground_cells(points: Points, first_row: int, rows: int, reach: float, road_
                  bright: Callable[[Points], np.ndarray] | None = None) -> GroundCells:
     """The ground cells of a window of the road.
 
-    Parameters
-    ----------
     points : Points of the window
     first_row, rows : number of the first row, and count of rows
     reach : m either side of the reference line
     road_height : function of (N,) stations in m; (N,) local z of the road under the vehicle, accurate to decimetres
     row_size, column_size : m along and across the road
     bright : function of N Points; (N,) bool of those whose intensity counts. None where brightness and scatter are not wanted
-
-    Returns
-    -------
-    GroundCells
     """
     half = _ground_columns(reach, column_size)
     columns = 2 * half
@@ -295,17 +275,13 @@ def at_one_level(intensity: np.ndarray, view: np.ndarray, cell: np.ndarray, shap
     The logarithm of an intensity is that of its cell plus that of its view, which changes evenly across the road; both are
     estimated by least squares from the cells that several views have measured.
 
-    Parameters
-    ----------
     intensity : (N,) raw counts
     view : (N,) number of the view of each point, a scanner on a pass, from 0
     cell : (N,) number of the cell of each point, row by row
     shape : rows and columns of the cells
     column_size : m across the road
 
-    Returns
-    -------
-    (N,) float32 counts; the intensities themselves where there is one view
+    Returns (N,) float32 counts; the intensities themselves where there is one view
     """
     views = int(view.max(initial=0)) + 1
     value = intensity.astype(np.float32)
@@ -356,12 +332,7 @@ Wanted = tuple[int, bool, bool]   # first row of a window, and whether its cells
 
 
 class MeasuredGround:
-    """Ground cells and surface profiles of windows of SURFACE.window_rows rows, kept in a temporary file, however long the road is.
-
-    Parameters
-    ----------
-    survey : Survey
-    """
+    """Ground cells and surface profiles of windows of SURFACE.window_rows rows, kept in a temporary file, however long the road is."""
 
     def __init__(self, survey: Survey):
         self.survey = survey
@@ -372,12 +343,8 @@ class MeasuredGround:
                 progress: Progress = Progress()) -> tuple[GroundCells, SurfaceProfiles | None]:
         """The ground of consecutive windows of a road.
 
-        Parameters
-        ----------
-        road : number of the road
         rows : first row of each window
         profiled : whether the profiles of each window are wanted
-        progress : Progress
 
         Returns
         -------
@@ -414,9 +381,13 @@ class MeasuredGround:
             road, item[0][0] * SURFACE.row_length, (item[-1][0] + SURFACE.window_rows) * SURFACE.row_length))
         self._file = self._file or SpillFile()
         for item, found in zip(items, executor.run(phase, items, progress)):
-            for kind, (kept, parts) in enumerate(zip(self._kept, found), 1):
-                for values, row in zip(parts, [window[0] for window in item if window[kind]]):
-                    kept[road, row] = self._file.put(values.ravel())
+            self._keep(road, item, found)
+
+    def _keep(self, road, item, found):
+        """Put what `ground_of_windows` found of some windows into the file."""
+        for kind, (kept, parts) in enumerate(zip(self._kept, found), 1):
+            for values, row in zip(parts, [window[0] for window in item if window[kind]]):
+                kept[road, row] = self._file.put(values.ravel())
 
     def _read(self, kind, road, row, out):
         """Fill an array with what is kept of a window: 0 its cells, 1 its profiles."""
@@ -426,11 +397,7 @@ class MeasuredGround:
 def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> tuple[np.ndarray, np.ndarray]:
     """The phase that measures the ground.
 
-    Parameters
-    ----------
-    survey : Survey
     windows : what is wanted of each window
-    road : its number
 
     Returns
     -------

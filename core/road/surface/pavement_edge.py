@@ -22,26 +22,8 @@ if TYPE_CHECKING:
     from ..edges.road_edges import RoadEdges
 
 
-@dataclass(frozen=True)
-class _PooledProfiles:
-    """The ground across the road every SURFACE.rows_per_step rows of SurfaceProfiles: medians of the cells of SURFACE.pooled_rows rows.
-
-    stations : (Q,) m; height, rough, brightness : (Q, K)
-    """
-
-    stations: np.ndarray
-    height: np.ndarray
-    rough: np.ndarray
-    brightness: np.ndarray
-
-    @classmethod
-    def of(cls, rows: SurfaceProfiles) -> _PooledProfiles:
-        """Those of P rows."""
-        return cls(rows.stations[::SURFACE.rows_per_step], *(_pooled(values) for values in (rows.height, rows.rough, rows.brightness)))
-
-
 def _pooled(values):
-    """(Q, K) medians of (P, K) cells."""
+    """(Q, K) medians of the cells of SURFACE.pooled_rows of (P, K) rows, every SURFACE.rows_per_step rows."""
     half = SURFACE.pooled_rows // 2
 
     def medians(some):
@@ -79,9 +61,6 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     the limit. Where nothing was measured beyond, the limit may lie farther out. A strip of another brightness before the change
     (gravel along the asphalt) does not belong to the road either.
 
-    Parameters
-    ----------
-    profiles : SurfaceProfiles
     cells : GroundCells of the road, R rows and C columns
     height : (R, C) m, local z of the road
     prior : (R,) m, its expected height, above which that of profiles counts
@@ -89,27 +68,26 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     track : (R,) m, offset of the outermost track on that side
     max_width : m from the track
 
-    Returns
-    -------
-    _GrownLimit
+    Returns _GrownLimit
     """
     stations = cells.stations
     nowhere = np.zeros(len(stations), bool)
     rows = profiles.side(sign)
     above = by_rows(lambda some: rows.height[some] - _rise(height, prior, cells, rows.stations[some], sign * rows.offsets), len(rows.stations))
     rows = replace(rows, height=above)
-    pooled = _PooledProfiles.of(rows)
-    beside = sign * np.interp(pooled.stations, stations, track)
-    halves = HalfProfiles(rows.offsets, pooled.height, pooled.rough)
+    places = rows.stations[::SURFACE.rows_per_step]
+    pooled_height, rough, brightness = (_pooled(values) for values in (rows.height, rows.rough, rows.brightness))
+    beside = sign * np.interp(places, stations, track)
+    halves = HalfProfiles(rows.offsets, pooled_height, rough)
     changes = halves.changes(beside, max_width)
     known = np.flatnonzero(changes >= 0)
     if not len(known):
         return _GrownLimit(track + sign * max_width, np.full(len(track), np.inf), nowhere, nowhere, ~nowhere)
     # at the last cell, nothing beyond it was looked for
     blind = np.pad(halves.blind(), ((0, 0), (0, 1)))[np.arange(len(changes)), changes]
-    changes = np.interp(pooled.stations, pooled.stations[known], _agreed(changes[known], blind[known], len(rows.offsets)))
-    other = other_ground_begins(pooled.brightness, pooled.stations, (beside - rows.offsets[0]) / SURFACE.profile_column, changes)
-    changes = np.interp(rows.stations, pooled.stations, np.where(np.isfinite(other), other, changes))
+    changes = np.interp(places, places[known], _agreed(changes[known], blind[known], len(rows.offsets)))
+    other = other_ground_begins(brightness, places, (beside - rows.offsets[0]) / SURFACE.profile_column, changes)
+    changes = np.interp(rows.stations, places, np.where(np.isfinite(other), other, changes))
     found = pavement_limits(rows, changes)
     outward = np.interp(stations, rows.stations, rows.offsets[0] + (found.cell - 0.5) * SURFACE.profile_column)
     row = np.clip(np.searchsorted(rows.stations + 0.5 * SURFACE.profile_row, stations), 0, len(rows.stations) - 1)
@@ -147,8 +125,6 @@ def _rise(height, prior, cells, stations, offsets):
 class Carriageway:
     """The surface of one road in rows of station.
 
-    Attributes
-    ----------
     cells : GroundCells of the road, R rows and C columns
     height : (R, C) float32 m, local z of the smoothed road
     ground : (R, C) bool, cells that show the road itself
@@ -172,10 +148,6 @@ class Carriageway:
 def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Offsets of the road edges at stations.
 
-    Parameters
-    ----------
-    edges : RoadEdges or None
-    road : number of the road
     stations : (N,) m, ascending
 
     Returns

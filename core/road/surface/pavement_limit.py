@@ -45,14 +45,10 @@ class _PavementLimits:
 def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimits:
     """Where the pavement ends near the change of ground.
 
-    Parameters
-    ----------
     rows : SurfaceProfiles of one side, P rows of cells, outward; heights above that of the road
     change : (P,) cells, not necessarily whole, near which the pavement ends
 
-    Returns
-    -------
-    _PavementLimits
+    Returns _PavementLimits
     """
     whole = np.rint(change).astype(np.int64)
     # cells along the edge, so that rows can be averaged where it bends away from the reference line
@@ -236,15 +232,11 @@ def cheapest_path(costs: np.ndarray, cost_per_place: float, largest_change: floa
     A change costs in proportion to its size, so an even widening costs no more than a sudden one, up to a limit, so that a
     street that joins is followed.
 
-    Parameters
-    ----------
     costs : (P, K) of each place on each profile
     cost_per_place : of a change by one place from one profile to the next
     largest_change : cost of any larger change
 
-    Returns
-    -------
-    (P,) indices of places
+    Returns (P,) indices of places
     """
     count = costs.shape[1]
     places = np.arange(count)

@@ -36,18 +36,11 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
                         progress: Progress = Progress(), ground: MeasuredGround | None = None) -> RoadEdges:
     """The edges and, where there is no curb, edges of the pavement.
 
-    Parameters
-    ----------
-    survey : Survey
     edges : RoadEdges, of curbs
     settings : EdgeSettings, of which `max_gap` counts
-    surface : SurfaceSettings
-    progress : Progress
     ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
-    Returns
-    -------
-    RoadEdges, the given ones first; the others have `what` pavement and no height
+    Returns RoadEdges, the given ones first; the others have `what` pavement and no height
     """
     pieces: list[EdgePiece] = []
     roads = survey.store.roads()
@@ -64,18 +57,12 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
 def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges: RoadEdges, max_gap: float, chain: int = 0) -> list[EdgePiece]:
     """Edges of the pavement of one road.
 
-    Parameters
-    ----------
-    frame : RoadFrame
-    road : number of the road
     carriageway : Carriageway found with the edges
     edges : RoadEdges, where which of a side have an offset nothing is drawn
     max_gap : m, the longest bridged gap
     chain : number of the first line
 
-    Returns
-    -------
-    list of EdgePiece, along the road, side by side
+    Returns a list of EdgePiece, along the road, side by side
     """
     found: list[EdgePiece] = []
     stations = carriageway.cells.stations
@@ -88,27 +75,39 @@ def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edge
         # beside a curb that goes on from it the edge is shown, too
         shown = grown.shown & (free | there & (np.abs(np.nan_to_num(curb, nan=np.inf) - grown.offset) <= SURFACE.max_row_jump))
         agreeing = uniform_filter1d(shown.astype(float), int(SURFACE.agreeing_length / SURFACE.row_length) | 1, mode="constant") > 0.5
-        places, rows = np.array(frame.to_map(road, stations, grown.offset)), free
-        known: dict[tuple[tuple[int, int], ...], tuple[list[EdgePiece], np.ndarray]] = {}   # lines drawn so far, and where they cross curbs
-        while True:
+        places = np.array(frame.to_map(road, stations, grown.offset))
+
+        def lines_of(rows):
             likely = rows & grown.likely
-            possible = likely | rows & grown.hidden
-            lines = [tuple(runs) for runs in _lines(rows & agreeing, agreeing & (rows | ~free), likely, possible, grown.offset, places, max_gap)]
-            for runs in lines:
-                if runs not in known:
-                    check_cancelled()
-                    pieces = _drawn(frame, road, side, carriageway, grown, runs)
-                    known[runs] = pieces, np.concatenate([_crossings(piece, curb_lines) for piece in pieces])
-            # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
-            more = np.concatenate([np.empty(0), *(known[runs][1] for runs in lines)])
-            taken = rows & (_distance(stations, more) <= SURFACE.agreeing_length)
-            if not taken.any():
-                break
-            rows = rows & ~taken
-        for runs in lines:
+            return [tuple(runs) for runs in _lines(rows & agreeing, agreeing & (rows | ~free), likely, likely | rows & grown.hidden,
+                                                   grown.offset, places, max_gap)]
+
+        lines = _clear_of_curbs(lines_of, lambda runs: _drawn(frame, road, side, carriageway, grown, runs), free, stations, curb_lines)
+        for pieces in lines:
             number = chain + len(found)
-            found += [replace(piece, chain=number) for piece in known[runs][0]]
+            found += [replace(piece, chain=number) for piece in pieces]
     return found
+
+
+def _clear_of_curbs(lines_of, drawn, rows, stations, curb_lines):
+    """The pieces of lines through those of the rows that show no edge where a line crosses a curb.
+
+    lines_of : function, (R,) bool rows -> runs of lines; drawn : function, runs -> pieces
+    """
+    known: dict[tuple[tuple[int, int], ...], tuple[list[EdgePiece], np.ndarray]] = {}   # lines drawn so far, and where they cross curbs
+    while True:
+        lines = lines_of(rows)
+        for runs in lines:
+            if runs not in known:
+                check_cancelled()
+                pieces = drawn(runs)
+                known[runs] = pieces, np.concatenate([_crossings(piece, curb_lines) for piece in pieces])
+        # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
+        more = np.concatenate([np.empty(0), *(known[runs][1] for runs in lines)])
+        taken = rows & (_distance(stations, more) <= SURFACE.agreeing_length)
+        if not taken.any():
+            return [known[runs][0] for runs in lines]
+        rows = rows & ~taken
 
 
 def _distance(places, others):
@@ -137,27 +136,26 @@ def _lines(shown, confirmed, likely, possible, offset, places, max_gap):
     `confirmed` : (R,) bool, rows that show the edge, those where a curb goes on from it included
     """
     broken = np.abs(np.diff(offset)) > SURFACE.max_row_jump
-    runs = _runs(shown, broken)
     lines: list[list[tuple[int, int]]] = []
-    for run in runs:
+    for run in _runs(shown, broken):
         last = lines[-1][-1] if lines else (0, -len(offset))
         gap = slice(last[1], run[0])
-        if not lines or not _go_on(offset, gap, EDGE.in_line_gap_factor * max_gap) or not possible[gap].mean() >= EDGE.min_hidden_share \
-                or (gap.stop - gap.start) * SURFACE.row_length > max_gap and not _in_line(places[:, slice(*last)], places[:, slice(*run)]):
+        if not lines or not _go_on(offset, gap, possible, places, last, run, max_gap):
             lines.append([run])
         elif likely[gap].mean() >= SURFACE.min_likely_share:
             lines[-1][-1] = (last[0], run[1])
         else:
             lines[-1].append(run)
     seen = np.array(_runs(confirmed, broken)).reshape(-1, 2)
+    return [line for line in lines if _long_enough(line, seen)]
 
-    def long_enough(line):
-        first, end = line[0][0], line[-1][1]
-        begin, stop = seen[np.searchsorted(seen[:, 0], first, "right") - 1, 0], seen[np.searchsorted(seen[:, 1], end), 1]
-        own = sum(b - a for a, b in line)
-        return own * SURFACE.row_length >= MIN_OWN_LENGTH and (own + first - begin + stop - end) * SURFACE.row_length >= SURFACE.min_pavement_length
 
-    return [line for line in lines if long_enough(line)]
+def _long_enough(line, seen):
+    """Are the runs of a line long enough, and with the seen runs (K, 2) about them?"""
+    first, end = line[0][0], line[-1][1]
+    begin, stop = seen[np.searchsorted(seen[:, 0], first, "right") - 1, 0], seen[np.searchsorted(seen[:, 1], end), 1]
+    own = sum(b - a for a, b in line)
+    return own * SURFACE.row_length >= MIN_OWN_LENGTH and (own + first - begin + stop - end) * SURFACE.row_length >= SURFACE.min_pavement_length
 
 
 def _runs(rows, broken):
@@ -166,10 +164,13 @@ def _runs(rows, broken):
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:]) if rows[a]]
 
 
-def _go_on(offset, gap, max_gap):
-    """Whether a line may go on after a gap of rows."""
+def _go_on(offset, gap, possible, places, last, run, max_gap):
+    """Whether a line may go on from its last run to another one after a gap of rows."""
     length = (gap.stop - gap.start) * SURFACE.row_length
-    return 0 < length <= max_gap and abs(offset[gap.stop] - offset[gap.start - 1]) <= EDGE.max_edge_jump + SURFACE.max_bridged_skew * length
+    near = 0 < length <= EDGE.in_line_gap_factor * max_gap
+    if not near or abs(offset[gap.stop] - offset[gap.start - 1]) > EDGE.max_edge_jump + SURFACE.max_bridged_skew * length:
+        return False
+    return possible[gap].mean() >= EDGE.min_hidden_share and (length <= max_gap or _in_line(places[:, slice(*last)], places[:, slice(*run)]))
 
 
 def _in_line(before, after):
@@ -201,8 +202,7 @@ def _drawn(frame, road, side, carriageway, grown, runs):
         near = stretch_of(stations[rows], start, end)
         passes = frame.passes_sigma(road, s)
         rmse = float(np.sqrt(np.mean(residual[near] ** 2)))
-        length = float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum())
-        found.append(EdgePiece(vertices, road, side, status, -1, float(start), float(end), length, rmse=rmse,
+        found.append(EdgePiece(vertices, road, side, status, -1, float(start), float(end), rmse=rmse,
                                what="pavement", sigma=float(np.sqrt(np.mean(sigma[near] ** 2) + rmse**2 + np.mean(passes**2)))))
     return found
 

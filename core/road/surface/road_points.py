@@ -21,15 +21,11 @@ if TYPE_CHECKING:
 def covered_by_obstacles(road_points: Points, above: Points) -> np.ndarray:
     """Road points under or right beside an obstacle.
 
-    Parameters
-    ----------
     road_points : N Points of the road
     above : Points SURFACE.min_obstacle_height to SURFACE.max_obstacle_height above it; both must reach one square farther along the road
         than the points that are asked for
 
-    Returns
-    -------
-    (N,) bool
+    Returns (N,) bool
     """
     if not len(above) or not len(road_points):
         return np.zeros(len(road_points), bool)
@@ -63,8 +59,6 @@ def _squares(*points):
 class _SurfaceOfSection:
     """The points of the road surface in one section.
 
-    Attributes
-    ----------
     number : of the section
     bits : (B,) uint8 of `packed_mask`, which of its points
     half_width : (M,) uint16 mm
@@ -84,10 +78,6 @@ class _SurfaceOfSection:
 def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: float) -> Carriageway:
     """The rows of a carriageway that tell of the points of a stretch of it, what stands beside them, and no more.
 
-    Parameters
-    ----------
-    carriageway : Carriageway
-    stretch : Stretch of its road
     section_length : m
     """
     cells, count = carriageway.cells, len(carriageway.height)
@@ -104,9 +94,6 @@ def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: fl
 def surface_points(survey: Survey, item: tuple[Stretch, Carriageway]) -> list[_SurfaceOfSection]:
     """The phase that selects the points of the road surface, section by section.
 
-    Parameters
-    ----------
-    survey : Survey
     item : Stretch of a road, and what `surface_about` says of it
     """
     stretch, carriageway = item
@@ -135,8 +122,6 @@ def _points_of_section(survey, road, number, carriageway):
 class _OnRoad:
     """Points of a window by their index.
 
-    Attributes
-    ----------
     surface : (M,) int, points of the road surface
     half_width : (M,) uint16 mm, from the reference line to the limit of the road on the side of each point
     above : (K,) int, points SURFACE.min_obstacle_height to SURFACE.max_obstacle_height above the surface
@@ -153,14 +138,7 @@ def points_on_road(points: Points, carriageway: Carriageway) -> _OnRoad:
     Limits are interpolated linearly between the middles of rows; beside a row without road those of the nearer row are
     used. Heights are bilinear between the middles of cells.
 
-    Parameters
-    ----------
-    points : Points
-    carriageway : Carriageway
-
-    Returns
-    -------
-    _OnRoad
+    Returns _OnRoad
 
     Notes
     -----

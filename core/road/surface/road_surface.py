@@ -63,16 +63,10 @@ class SurfaceOutlines(LayerRows):
 def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_row: np.ndarray) -> list[tuple]:
     """The stretches of one road; consecutive ones share two vertices.
 
-    Parameters
-    ----------
-    frame : RoadFrame
-    road : number of the road
     carriageway : Carriageway with R rows
     points_per_row : (R,) int, points of the surface in each row
 
-    Returns
-    -------
-    list of rows of a SurfaceOutlines: road, status, station, end, area, points and outline
+    Returns a list of rows of a SurfaceOutlines: road, status, station, end, area, points and outline
     """
     found = []
     cells = carriageway.cells
@@ -84,26 +78,25 @@ def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_r
         if not kind[a]:
             continue
         # the next stretch begins with the last vertices of this one
-        last = min(b, len(kind) - 1) if b < len(kind) and kind[b] else b - 1
-        rows = np.arange(a, last + 1)
-        if len(rows) < 2:
-            continue
-        stations = cells.stations[rows]
-        sides = []
-        for offset in (carriageway.left[rows], carriageway.right[rows]):
-            column = np.clip(np.floor(offset / SURFACE.column_width).astype(int) - cells.first_column, 0, cells.height.shape[1] - 1)
-            x, y, z = frame.to_map(road, stations, offset, carriageway.height[rows, column].astype(float))
-            sides.append(np.c_[x, y, z])
-        ring = np.round(np.concatenate([sides[0], sides[1][::-1]]), COORDINATE_DECIMALS)
-        polygon = shapely.Polygon(ring)
-        if not polygon.is_valid:
-            polygon = _largest(shapely.make_valid(polygon))
+        rows = np.arange(a, b + 1 if b < len(kind) and kind[b] else b)
+        polygon = None if len(rows) < 2 else _polygon(frame, road, carriageway, rows)
         if polygon is None or polygon.is_empty:
             continue
         local = shapely.transform(polygon, lambda places: places - frame.origin, include_z=True)
-        found.append((road, "measured" if kind[a] == 2 else "grown", round(float(stations[0]), 3), round(float(stations[-1]), 3),
-                      round(float(polygon.area), 3), int(points_per_row[a:b].sum()), local))
+        station, end = (round(float(cells.stations[row]), 3) for row in rows[[0, -1]])
+        status, area = "measured" if kind[a] == 2 else "grown", round(float(polygon.area), 3)
+        found.append((road, status, station, end, area, int(points_per_row[a:b].sum()), local))
     return found
+
+
+def _polygon(frame, road, carriageway, rows):
+    """The outline of some rows in map coordinates, the largest part of it where it crosses itself; None where nothing is left."""
+    cells, sides = carriageway.cells, []
+    for offset in (carriageway.left[rows], carriageway.right[rows]):
+        column = np.clip(np.floor(offset / SURFACE.column_width).astype(int) - cells.first_column, 0, cells.height.shape[1] - 1)
+        sides.append(np.c_[frame.to_map(road, cells.stations[rows], offset, carriageway.height[rows, column].astype(float))])
+    polygon = shapely.Polygon(np.round(np.concatenate([sides[0], sides[1][::-1]]), COORDINATE_DECIMALS))
+    return polygon if polygon.is_valid else _largest(shapely.make_valid(polygon))
 
 
 def _as_far_as_measured(there, points):

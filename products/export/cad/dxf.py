@@ -69,19 +69,7 @@ def _colour_of(layer: str) -> str:
 
 
 def write_dxf(lines: list[_DxfLine], path: str, crs: str = "") -> None:
-    """Write the file by GDAL, in the units of the survey's own CRS.
-
-    Parameters
-    ----------
-    lines : list of _DxfLine
-    path : of the file
-    crs : WKT, metric, of the lines, "" where unknown
-
-    Raises
-    ------
-    RoadExtractionError
-        If there is no GDAL.
-    """
+    """Write the file by GDAL, in the units of the survey's own CRS, metric WKT, or ""; RoadExtractionError if there is no GDAL."""
     try:
         from osgeo import gdal, ogr
     except ImportError as problem:

@@ -28,12 +28,7 @@ NAMESPACE = "http://www.landxml.org/schema/LandXML-1.2"
 def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Road map", date: str = "2000-01-01", time: str = "00:00:00") -> str:
     """The file as text.
 
-    Parameters
-    ----------
-    alignments : list of Alignment
-    crs : WKT, metric, "" where unknown; where it is that of a survey in feet, so is the file, heights too
-    name : of the project
-    date, time : of the file, ISO 8601
+    `crs`: WKT, metric, "" where unknown; where it is that of a survey in feet, so is the file, heights too. `name`: of the project.
     """
     root = XmlElement("LandXML", {"xmlns": NAMESPACE, "version": "1.2", "date": date, "time": time, "language": "English", "readOnly": "false"})
     file_wkt, units = as_in_file(crs)
@@ -166,17 +161,7 @@ class Alignment:
 
 
 def alignments_of(source: RoadMapSource, tolerance: float) -> list[Alignment]:
-    """The axis of every road, and every driving line.
-
-    Parameters
-    ----------
-    source : RoadMapSource, checked; without driving lines the middles of the lanes are taken
-    tolerance : metres that a line may be missed in plan and in height
-
-    Returns
-    -------
-    list of Alignment
-    """
+    """The axis of every road, and every driving line or, without these, the middles of the lanes, within a tolerance in plan and height, m."""
     draft = draft_opendrive(source, OpenDriveSettings(tolerance))
     origin = np.array(draft.map.offset[:2])
     found = []

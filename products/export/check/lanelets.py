@@ -43,19 +43,7 @@ WALKED = ("crosswalk", "walkway", "stairs")
 
 
 def check_lanelets(whole: LaneletMap, places: np.ndarray, crs: str = "", progress: Progress = Progress()) -> Findings:
-    """Everything that is wrong with a map.
-
-    Parameters
-    ----------
-    whole : LaneletMap
-    places : (N, 3) metres of its nodes, as `node_places` gives them
-    crs : WKT of the places
-    progress : told of the share that was looked at
-
-    Returns
-    -------
-    Findings
-    """
+    """Everything that is wrong with a map, whose nodes lie at (N, 3) metres as `node_places` gives them in `crs`."""
     check = _LaneletCheck(whole, places, Findings(crs=crs))
     for kind, id, line in whole.twice:
         check.findings.add("id twice", f"{kind} {id}", f"Line {line}: there is another {kind} of this id.", np.zeros(3))

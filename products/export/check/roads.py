@@ -45,18 +45,7 @@ FOLD_STEP = 1.0              # m between the places at which borders are held ag
 
 
 def check_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> Findings:
-    """Everything that is wrong with a map.
-
-    Parameters
-    ----------
-    whole : OpenDriveMap
-    crs : WKT of its coordinates, "" where unknown
-    progress : told of the share of the roads
-
-    Returns
-    -------
-    Findings
-    """
+    """Everything that is wrong with a map; `crs` is that of its coordinates, "" where unknown."""
     report = _RoadCheck(whole, Findings(crs=crs))
     seen: set[str] = set()
     for line, text in whole.problems:
@@ -495,12 +484,7 @@ class _Statement(NamedTuple):
 
 
 def statements(root: XmlElement) -> Iterator[_Statement]:
-    """Every statement of a file that the format does not allow.
-
-    Parameters
-    ----------
-    root : the element <OpenDRIVE>
-    """
+    """Every statement of the element <OpenDRIVE> that the format does not allow."""
     header = root.find("header")
     if header is not None:
         yield from _header(header)

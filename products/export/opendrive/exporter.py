@@ -80,12 +80,6 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     Parameters
     ----------
     source : RoadMapSource, checked
-    settings : OpenDriveSettings
-    progress : told of the share of the roads
-
-    Returns
-    -------
-    OpenDriveDraft
     """
     source = with_driven_middles(source, MIDDLES_SHARE * settings.tolerance)
     lanes = source.lanes
@@ -363,12 +357,7 @@ class _Touch(NamedTuple):
 
 
 def _link_roads(whole: OpenDriveMap, drafts: list[_DraftRoad]) -> list[str]:
-    """Fill in the links of lanes and roads, and the junctions.
-
-    Returns
-    -------
-    list of sentences on what OpenDRIVE cannot say
-    """
+    """Fill in the links of lanes and roads, and the junctions; sentences on what OpenDRIVE cannot say."""
     places = [(cell, _Place(k, j, number)) for k, draft in enumerate(drafts) for j, (one, ids) in enumerate(zip(draft.strip, draft.numbers))
               for cell, number in zip(one.cells, ids)]
     place = {id(cell): here for cell, here in places}
@@ -501,14 +490,7 @@ NAME_OF_CLASS = {"hatch": "hatched area", "arrow": "arrow", "bicycle": "bicycle 
 
 
 def _add_objects(whole: OpenDriveMap, markings: Features | None, origin: np.ndarray) -> None:
-    """Give the roads the objects that lie on them.
-
-    Parameters
-    ----------
-    whole : OpenDriveMap with its roads
-    markings : the layer MARKINGS in map coordinates, or None
-    origin : (3,) metres of the file's false origin
-    """
+    """Give the roads the objects of the layer MARKINGS, in map coordinates, that lie on them; `origin` is the file's false origin, (3,) m."""
     shapes = list(_painted_shapes(markings))
     if not shapes:
         return

@@ -28,18 +28,10 @@ LEAST_WIDTH = 0.05     # m: lanes that are narrower everywhere are none
 
 
 def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
-    """Lanes, painted borders and edges of a map.
+    """Lanes, painted borders and edges of a map; `crs` is the WKT of its coordinates, "" where unknown.
 
-    Parameters
-    ----------
-    whole : OpenDriveMap
-    crs : WKT of its coordinates, "" where unknown
-    progress : told of the share of the roads
-
-    Returns
-    -------
-    MapLayers. Every section of a lane is a piece, whose lane_id is "road.lane.section"; lanes of roads in junctions are connectors.
-    Sidewalks are no lanes of ours: where one begins there is an edge
+    Every section of a lane is a piece, whose lane_id is "road.lane.section"; lanes of roads in junctions are connectors.
+    Sidewalks are no lanes of ours: where one begins there is an edge.
     """
     rows: list[dict[str, Any]] = []
     found, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)

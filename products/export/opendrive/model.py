@@ -254,8 +254,6 @@ GAP, KINK = 1e-4, 1e-4  # m and rad between elements of the reference line from 
 class RoadSurface:
     """The borders of one road's lanes.
 
-    Parameters
-    ----------
     road : MapRoad
     """
 

@@ -339,12 +339,7 @@ def _in_order(elements):
 
 
 def polynomial_reference(points: np.ndarray) -> PlanView:
-    """A line of parametric cubics through all points, joined without a kink: for borders that no other element follows.
-
-    Parameters
-    ----------
-    points : (N, 2) metres in order
-    """
+    """A line of parametric cubics through (N, 2) points, joined without a kink: for borders that no other element follows."""
     from scipy.interpolate import CubicSpline
 
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))

@@ -273,13 +273,9 @@ def _beside(line, place, end):
 
 def add_lanes(road: MapRoad, shape: _RoadShape, strip: list[Slice], centres: list[int], tolerance: float,
               directions: dict[int, float]) -> list[list[int]]:
-    """Give a road its lane offset and sections with widths.
+    """Give a road its lane offset and sections with widths; the number of the lane of every cell of every slice.
 
-    directions : {number of a vertex: radians} of the borders where the road meets others
-
-    Returns
-    -------
-    the number of the lane of every cell of every slice
+    `directions`: {number of a vertex: radians} of the borders where the road meets others.
     """
     sections = []
     for k, (courses, centre, start, end) in enumerate(zip(shape.courses, centres, shape.starts[:-1], shape.starts[1:])):
@@ -406,16 +402,10 @@ class _Profile(NamedTuple):
 
 
 def add_heights(road: MapRoad, shape: _RoadShape, tolerance: float) -> None:
-    """Give a road its elevation, and a superelevation where the cross-section is a plane, else its shape.
+    """Give a road its elevation, and a superelevation where the cross-section is a plane, else its shape, within a tolerance, m.
 
     A superelevation is taken only where its roll moves no border by more than a millimetre: readers differ on whether it does. The shape has
     as many cross-sections as it takes to meet the heights of all vertices.
-
-    Parameters
-    ----------
-    road : MapRoad, whose elevation, superelevation and shape are set
-    shape : _RoadShape of the same road
-    tolerance : metres by which a height may be missed
     """
     level = np.concatenate([z.ravel() for z in shape.z])
     if np.ptp(level) == 0:

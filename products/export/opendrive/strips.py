@@ -118,15 +118,9 @@ class Slice:
 
 
 def cut_into_cells(lanes: Lanes) -> list[Cell]:
-    """Every lane cut wherever a lane beside it begins, ends or is cut; connectors are left whole.
+    """Every lane, with local coordinates, cut wherever a lane beside it begins, ends or is cut, and linked along the road; connectors are left whole.
 
-    Parameters
-    ----------
-    lanes : Lanes, with local coordinates
-
-    Returns
-    -------
-    list of Cell, linked along the road. Lanes driven against the road are turned round; connectors run with their traffic
+    Lanes driven against the road are turned round; connectors run with their traffic.
     """
     numbers, _ = numbered(np.concatenate([lanes.left, lanes.right]))
     left, right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
@@ -224,11 +218,8 @@ def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tu
 
 
 def directions_where_met(cells: list[Cell]) -> dict[int, float]:
-    """The direction of borders where some end and others go on: one for all of them, so that no lane has a kink where roads meet.
-
-    Returns
-    -------
-    {number of a vertex: radians, either way along}; vertices where nothing goes on, or a border turns, are left out
+    """{number of a vertex: radians, either way along}, the direction of borders where some end and others go on: one for all of them, so that no
+    lane has a kink where roads meet. Vertices where nothing goes on, or a border turns, are left out.
     """
     ways: dict[int, dict[int, np.ndarray]] = defaultdict(dict)
     for cell in cells:
@@ -290,17 +281,7 @@ def _ends_beyond(one, at_end, owner):
 
 
 def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Slice]]:
-    """Slices end to end, each with one before and one after.
-
-    Parameters
-    ----------
-    slices : list of Slice
-    breaks : (id of a slice, id of the next) between which a strip ends
-
-    Returns
-    -------
-    list of lists of Slice, in order along the road
-    """
+    """Slices end to end, each with one before and one after, in order along the road; (id, id of the next) in `breaks` end a strip."""
     owner = _owners(slices)
     pairs = {(k, owner[id(other)]) for k, one in enumerate(slices) for cell in one.cells for other in cell.after
              if id(other) in owner and other.direction * cell.direction >= 0}

@@ -20,21 +20,9 @@ LONGEST_ROAD, LONGEST_MAP = 200_000.0, 1_000_000.0   # m of one road, and of all
 
 
 def read_opendrive(path: str, progress: Progress = Progress()) -> OpenDriveMap:
-    """Read a file.
+    """Read an .xodr file; what could not be read of it, such as a road without geometry, is in `problems`.
 
-    Parameters
-    ----------
-    path : of the .xodr file
-    progress : told of the share that was read
-
-    Returns
-    -------
-    OpenDriveMap; what could not be read of it, such as a road without geometry, is in `problems`
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file is no OpenDRIVE, hostile, or has no road that can be read.
+    Raises RoadExtractionError if the file is no OpenDRIVE, hostile, or has no road that can be read.
     """
     root = read_xml(path, "OpenDRIVE", XODR_KIND, progress)
     found = _opendrive_of(root)

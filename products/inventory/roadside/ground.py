@@ -257,7 +257,8 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
     rows = np.arange(slices)
     low, place = lowest[rows, j], u[rows, j]
     beyond = u - place[:, None]
-    outer, inner = (_highest(profile, (beyond * way > 0) & (beyond * way < reach)) for way, reach in ((1, OUTER_REACH), (-1, INNER_REACH)))
+    outer, inner = (np.where((beyond * way > 0) & (beyond * way < reach) & np.isfinite(profile), profile, -np.inf).max(axis=1)
+                    for way, reach in ((1, OUTER_REACH), (-1, INNER_REACH)))
     # water stays where the ground rises outward from the lowest point on: a verge that falls on is none
     falls_on = np.where((beyond > 0) & (beyond < OUTER_REACH) & np.isfinite(profile), profile, np.inf).min(axis=1) < low
     found = np.flatnonzero(np.isfinite(low) & (outer - low > OUTER_RISE) & (inner - low > INNER_RISE) & ~falls_on)
@@ -278,5 +279,3 @@ def _mean(grid: SurfaceGrid) -> np.ndarray:
     return np.where(n > 0, total / np.maximum(n, 1), np.nan)
 
 
-def _highest(profile, where):
-    return np.where(where & np.isfinite(profile), profile, -np.inf).max(axis=1)

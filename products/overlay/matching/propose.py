@@ -56,7 +56,8 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
         for chosen in tried:
             pairs = _pair_corners(chosen.placement, paint, photo, x, y, settings)
             if pairs is not None:
-                rivals = [rival_elsewhere(chosen.scores, other.scores, _shift(chosen.placement, other.placement, image))
+                middle = _middle_on_map(chosen.placement, image)
+                rivals = [rival_elsewhere(chosen.scores, other.scores, tuple((_middle_on_map(other.placement, image) - middle).tolist()))
                           for other in tried if other is not chosen]
                 near = nearby_rival(pairs.placement, paint, photo, x, y)
                 rival = min([*rivals, *([near] if near else [])], key=lambda one: one.margin, default=None)
@@ -73,7 +74,7 @@ def _followed(image, photo, paint, bounds, sign, x, y, progress):
     places = find_places(photo.contrast, paint.contrast, paint.cell, bounds.of_pixels(photo.factor), sign, progress.part(0.0, 0.8))
     for place in places[:_CANDIDATES]:
         progress.check_cancelled()
-        start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, _middle(image), place.sign)
+        start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, (image.width / 2, image.height / 2), place.sign)
         placement = _align(start, paint, photo, progress)
         if placement is not None and not any(_same(placement, other.placement, x, y) for other in tried):
             tried.append(_Tried(placement, corner_scores(placement, paint, photo, x, y)))
@@ -126,27 +127,18 @@ def _spread(x, y, count):
     return np.array(kept)
 
 
-def _middle(image):
-    return image.width / 2, image.height / 2
-
-
-def _corners_on_map(placement, image):
-    """(5, 2) m, of the image's corners and its middle, by the affine part of the placement."""
+def _middle_on_map(placement, image):
+    """(2,) m, of the image's middle, by the affine part of the placement."""
     polynomial = placement.polynomial
     centre = np.array([polynomial.centre])
     slope = polynomial.jacobian(centre[:, 0], centre[:, 1])[0]
-    at = np.column_stack(polynomial.to_map(centre[:, 0], centre[:, 1]))
-    corners = np.array([(a * image.width, b * image.height) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.5))])
-    return centre + np.linalg.solve(slope, (corners - at).T).T
+    at = np.column_stack(polynomial.to_map(centre[:, 0], centre[:, 1]))[0]
+    return polynomial.centre + np.linalg.solve(slope, np.array([0.5 * image.width, 0.5 * image.height]) - at)
 
 
 def _same(one, other, x, y):
     # of most corners: those beyond the photo are extrapolated
     return bool(np.median(np.hypot(*one.metres(x, y, *other.pixels(x, y)).T)) < _SAME)
-
-
-def _shift(one, other, image):
-    return tuple(float(v) for v in _corners_on_map(other, image)[4] - _corners_on_map(one, image)[4])
 
 
 def _range(rough, bounds):

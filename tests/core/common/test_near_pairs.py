@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from lanewright.core.common import arrays as near_pairs
 from lanewright.core.markings.objects import classify as classes
-from lanewright.core.markings.objects.classify import MAX_DOUBLE_LINE_SPACING, classify_markings
+from lanewright.core.markings.objects.classify import classify_markings
 from lanewright.core.markings.objects.repeating import give_way_blocks
 from lanewright.core.markings.objects.shape import Shape
 from lanewright.core.markings.objects.split_merge import join_fragments
+from lanewright.core.markings.weights import CLASSES, GROUPS
 
 
 def pieces(count, length, longest, seed=0):
@@ -43,7 +44,7 @@ def partners_among_all(column, line):
     rows = np.flatnonzero(line)
     s0, s1, d = (column[name][rows] for name in ("s0", "s1", "offset"))
     overlap = np.minimum(s1[:, None], s1) - np.maximum(s0[:, None], s0)
-    near = (np.abs(d[:, None] - d) <= MAX_DOUBLE_LINE_SPACING) & (overlap > 0.5 * (s1 - s0)[:, None])
+    near = (np.abs(d[:, None] - d) <= CLASSES.max_double_line_spacing) & (overlap > 0.5 * (s1 - s0)[:, None])
     np.fill_diagonal(near, False)
     result = np.zeros(len(line), bool)
     result[rows] = near.any(axis=1)
@@ -61,12 +62,12 @@ def test_lines_of_a_double_line_are_those_among_all_pairs(at_a_time, count):
 
 def strips_beyond_lines_among_all(column, line, room):
     s0, s1, d, length = (column[name] for name in ("s0", "s1", "offset", "length"))
-    short = column["along"] & (s1 - s0 > column["d1"] - column["d0"]) & (room < classes.RIM_CLEARANCE)
+    short = column["along"] & (s1 - s0 > column["d1"] - column["d0"]) & (room < CLASSES.rim_clearance)
     found = np.zeros(len(line), bool)
     for k in np.flatnonzero(short):
         outward = np.sign(d[k]) * (d[k] - d)
-        times = 1.0 if room[k] < column["width"][k] / 2 + classes.EDGE_CONTACT else classes.EDGE_LINE_LENGTH_RATIO
-        reach = classes.STRIP_REACH_AT_ROAD_EDGE if room[k] < classes.ROAD_EDGE_CLEARANCE else classes.STRIP_REACH_BEYOND_EDGE_LINE
+        times = 1.0 if room[k] < column["width"][k] / 2 + CLASSES.edge_contact else CLASSES.edge_line_length_ratio
+        reach = CLASSES.strip_reach_at_road_edge if room[k] < GROUPS.road_edge_clearance else CLASSES.strip_reach_beyond_edge_line
         beside = (outward > 0.1) & (outward < reach) & (np.minimum(s1, s1[k]) - np.maximum(s0, s0[k]) > 0)
         found[k] = (line & beside & (length > times * length[k])).any()
     return found
@@ -77,7 +78,7 @@ def test_strips_beyond_an_edge_line_are_those_among_all_pairs(at_a_time):
     line, room = column["along"] & (column["length"] > 2.0), 4.0 - np.abs(column["offset"])
     found = classes._beyond_the_edge_line(column, line, room)
     np.testing.assert_array_equal(found, strips_beyond_lines_among_all(column, line, room))
-    assert 5 < found.sum() < (room < classes.RIM_CLEARANCE).sum()
+    assert 5 < found.sum() < (room < CLASSES.rim_clearance).sum()
 
 
 def away(column, k):
@@ -90,10 +91,10 @@ def test_bars_of_hatching_and_their_outlines_are_those_among_all_pairs(at_a_time
     column = pieces(300, 900.0, 8.0)
     kinds = np.where(np.arange(300) % 3 > 0, "hatch", "symbol")
     bars, symbols = kinds == "hatch", np.flatnonzero(kinds == "symbol")
-    outlines = [k for k in symbols if (bars & (away(column, k) < classes.MAX_BAR_TO_OUTLINE)).any()]
+    outlines = [k for k in symbols if (bars & (away(column, k) < CLASSES.max_bar_to_outline)).any()]
     np.testing.assert_array_equal(classes._outlines(column, kinds.tolist()), outlines)
-    others = [bars & (away(column, k) < classes.MAX_HATCHING_PITCH) & (np.arange(300) != k) for k in range(300)]
-    lone = [k for k in np.flatnonzero(bars) if not others[k].any() and (column["s1"] - column["s0"])[k] < classes.MIN_HATCHING_LENGTH]
+    others = [bars & (away(column, k) < CLASSES.max_hatching_pitch) & (np.arange(300) != k) for k in range(300)]
+    lone = [k for k in np.flatnonzero(bars) if not others[k].any() and (column["s1"] - column["s0"])[k] < CLASSES.min_hatching_length]
     np.testing.assert_array_equal(classes._single_bars(column, kinds.tolist()), lone)
     assert 5 < len(outlines) < len(symbols) and 5 < len(lone) < bars.sum()
 

@@ -12,7 +12,7 @@ from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.curb_points import curb_points_at
 from lanewright.core.road.common.occlusion import OcclusionGrid
-from lanewright.core.road.common.tracking import SideChains
+from lanewright.core.road.common.side_curbs import SideChains
 from lanewright.core.road.detect_boundaries import (
     BoundarySettings,
     CurbEvidence,
@@ -99,7 +99,7 @@ def shown_by(points_per_step):
     ones = np.ones(len(s))
     steps = CurbSteps(profile=np.arange(len(s)), s=s, u=3.5 * ones, h=0 * ones, skew=0 * ones, height=0.03 * ones, run=0 * ones, noise=0.003 * ones,
                       scanner_noise=0.003 * ones, support=points_per_step * ones.astype(int), behind=5 * ones.astype(int))
-    return CurbEvidence(chains={(0, "left"): SideChains(steps, [], lambda members, number: [])})
+    return CurbEvidence(chains={(0, "left"): SideChains(steps, [], np.empty(0))})
 
 
 @pytest.mark.parametrize("swapped", [False, True])

@@ -75,14 +75,6 @@ def test_leverage_sums_to_the_coefficients_and_grows_outside_the_points():
     assert fit.leverage_at(np.array([-300.0]), np.array([-300.0]))[0] > 5 * fit.leverage.max()
 
 
-@pytest.mark.parametrize("order", ORDERS)
-def test_a_place_goes_to_the_map_and_back(order):
-    _, fit = fitted(order, noise=0.01, twist=0.01)
-    pixel, line = np.meshgrid(np.linspace(0, WIDTH, 9), np.linspace(0, HEIGHT, 9))
-    back = fit.polynomial.to_pixel(*fit.polynomial.to_map(pixel.ravel(), line.ravel()))
-    np.testing.assert_allclose(back, [pixel.ravel(), line.ravel()], atol=1e-6)
-
-
 def test_moving_the_survey_moves_the_map_and_nothing_else():
     points, fit = fitted(3)
     moved = fit_image_polynomial(points.pixel, points.line, points.easting + 5e5, points.northing - 3e6, 3)

@@ -122,12 +122,6 @@ def test_bars_side_by_side_are_hatching_one_alone_is_not_and_at_the_edge_it_is_t
     assert len(markings_of([slanting(20, 5.5, 0.7)], density=3000)) == 0
 
 
-@pytest.mark.parametrize("offset, kind", [(0.9, "hatch"), (3.5, "arrow")], ids=["in the row of bars", "beside it"])
-def test_the_tip_of_a_hatched_area_is_no_arrow(offset, kind):
-    bars = [slanting(s, 0.5) for s in (20, 21.5, 23)]
-    assert classes(markings_of(bars + [arrow(25.0, offset)], density=3000)) == sorted(["hatch"] * 3 + [kind])
-
-
 def askew(s0, d0, length, width, turn=0.75):
     """A stroke from s0, d0 on, turned to the left of the road."""
     def painted(s, d):

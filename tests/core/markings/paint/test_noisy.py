@@ -6,7 +6,8 @@ from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.markings.objects.repeating import dashes_beyond, rows_of_dashes
 from lanewright.core.markings.objects.shape import measure
 from lanewright.core.markings.paint.extract import extract_markings
-from lanewright.core.markings.paint.noisy import SPOT_SIGMA, CellAverages, ViewSamples, noisy_paint_cells
+from lanewright.core.markings.paint.noisy import CellAverages, ViewSamples, noisy_paint_cells
+from lanewright.core.markings.weights import NOISY
 from scipy.ndimage import gaussian_filter
 from spun_streets import spun
 
@@ -121,8 +122,8 @@ def test_a_long_thin_piece_is_a_line_though_it_is_faint_and_a_short_or_broad_one
     rng, shape = np.random.default_rng(3), (180, 140)
     mark = np.zeros(shape, bool)
     mark[rows, columns] = True
-    noise = gaussian_filter(rng.normal(size=shape), SPOT_SIGMA)
-    contrast = (0.4 * noise / noise.std() + gaussian_filter(2.2 * mark, SPOT_SIGMA)).astype(np.float32)
+    noise = gaussian_filter(rng.normal(size=shape), NOISY.spot_sigma)
+    contrast = (0.4 * noise / noise.std() + gaussian_filter(2.2 * mark, NOISY.spot_sigma)).astype(np.float32)
     averages = CellAverages(contrast, np.full(shape, 50.0), np.ones(shape, np.float32), np.zeros((2, *shape), np.float32))
     cell = np.arange(contrast.size)
     found = noisy_paint_cells(averages, np.full(shape, 3.0), ViewSamples(cell, contrast.ravel(), np.zeros(contrast.size, bool)), threshold=3.0)

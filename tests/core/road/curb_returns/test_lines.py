@@ -68,16 +68,15 @@ def test_two_steps_are_no_line():
     assert not is_curb_like(PlanStepChain(np.array([0, 3])), steps, 0.003 * ones, CurbSettings())
 
 
-def side_of_an_island(y, uphill, start=0.0, end=10.0):
-    """A line along x, with the ground uphill on one side of it."""
+def side_of_an_island(y, uphill, width, start=0.0, end=10.0):
+    """A line along x, with the ground uphill on one side of it, which is down again so many metres on."""
     x = np.arange(start, end, 0.25)
     ones = np.ones(len(x))
     steps = PlanSteps(x, y * ones, 0 * x, uphill * ones, 0 * x, 0.12 * ones, 0 * x, 0.003 * ones, 50 * ones, 20 * ones)
-    return CurbReturn(steps, x, steps.y, "left", "island")
+    return CurbReturn(steps, x, steps.y, "left", "island", falls=width * ones)
 
 
 def test_what_lies_on_top_of_an_island_is_none_of_its_sides():
-    near, far, bed = side_of_an_island(0.0, 1.0), side_of_an_island(3.0, -1.0), side_of_an_island(1.2, 1.0, 4.0, 7.0)
-    falls = [np.full(len(line.s), width) for line, width in ((near, 3.0), (far, 3.0), (bed, 0.6))]
-    assert island_outlines(list(zip((near, far, bed), falls))) == [near, far]
+    near, far, bed = side_of_an_island(0.0, 1.0, 3.0), side_of_an_island(3.0, -1.0, 3.0), side_of_an_island(1.2, 1.0, 0.6, 4.0, 7.0)
+    assert island_outlines([near, far, bed]) == [near, far]
     assert island_outlines([]) == []

@@ -6,7 +6,7 @@ import pytest
 from curbed_streets import driven, measured, parked_car, ringed_street, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.road.common.curb_limits import CurbSettings
-from lanewright.core.road.profiles.detect import block_bounds
+from lanewright.core.road.common.side_curbs import block_bounds
 from road_layers import detect_curbs
 
 

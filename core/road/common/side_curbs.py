@@ -1,0 +1,207 @@
+"""The curb on one side of a road, whatever method finds its steps: sections searched, passes merged, chains chosen, points in blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...common.progress import Progress
+from ...execution.phase import Phase
+from ..weights import CURBS
+from .corners import CurbSteps
+from .curb_limits import CurbLimits
+from .curb_points import CurbPoints, curb_points_at
+from .occlusion import OcclusionGrid
+from .pseudo_scanlines import expand_ranges
+from .sides import SIDE_SIGNS, OutermostTrack, expected_height, hidden_points, join_sections
+from .tracking import StepChain, curb_chains, drop_short_curbs, link_steps, select_along_road, with_pieces_in_line
+
+if TYPE_CHECKING:
+    from ...survey.frame.road import Road
+
+
+def steps_of_road(function: Callable, source: Any, road: int, settings: Any, sections: Sequence[tuple[int, int]], width: float,
+                  progress: Progress) -> tuple[dict[str, CurbSteps], dict[str, OcclusionGrid]]:
+    """Steps of each side on which there are any, and what was seen beside the road.
+
+    function : the phase; (source, section, road, settings) -> side -> CurbSteps, and side -> OcclusionGrid
+    source : PointDecimation of a survey, or scanlines
+    sections : (first, last + 1) numbers of profiles or planes
+    width : m from one to the next
+    """
+    first, last = sections[0][0], sections[-1][1]
+    occlusion = {side: OcclusionGrid(width, first, last - first, CURBS.max_curb_offset) for side in SIDE_SIGNS}
+    parts: dict[str, list[CurbSteps]] = {side: [] for side in SIDE_SIGNS}
+    for found, beside in source.executor.run(phase_along(function, source, (road, settings), width, join_sections), sections, progress):
+        for side, steps in found.items():
+            parts[side].append(steps)
+        for side, seen in beside.items():
+            occlusion[side].add(seen)
+    return {side: type(found[0]).join(found) for side, found in parts.items() if found}, occlusion
+
+
+def phase_along(function: Callable, source: Any, arguments: tuple[Any, ...], width: float, join: Callable) -> Phase:
+    """A phase over sections of profiles or planes of a road, whose number is the first argument; `width` : m from one to the next."""
+    road, survey = arguments[0], getattr(source, "survey", None)
+
+    def place(section):
+        start, end = (k * width for k in section)
+        return f"road {road}, {start:.0f} to {end:.0f} m" if survey is None else survey.stretch(road, start, end)
+
+    def size(section):
+        return 0 if survey is None else survey.store.points_between(road, *(k * width for k in section))
+
+    return Phase(function, source, arguments, place, size, join, CURBS.sections_together)
+
+
+def merged_passes(found: Sequence[CurbSteps]) -> CurbSteps:
+    """One step where several passes or scanners saw the same one: the mean, weighted by support."""
+    steps = type(found[0]).join(found)
+    if len(found) < 2 or not len(steps):
+        return steps
+    steps = steps[np.lexsort((steps.u, steps.profile))]
+    apart = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > CURBS.pass_merge_across) | (np.abs(np.diff(steps.h)) > CURBS.pass_merge_height)
+    first, group = np.r_[True, apart], np.r_[0, np.cumsum(apart)]
+    weight = np.sqrt(np.maximum(steps.support, 1))
+    total = np.bincount(group, weight)
+
+    def merged(name):
+        values = getattr(steps, name)
+        if name in ("support", "behind"):
+            return np.bincount(group, values).astype(np.int64)
+        return values[first] if name in ("profile", "sloped") else np.bincount(group, weight * values) / total
+
+    return type(steps)(**{one.name: merged(one.name) for one in fields(steps)})
+
+
+@dataclass(frozen=True)
+class SideChains:
+    """The chains of one side of one road.
+
+    steps : CurbSteps of the side
+    chains : list of StepChain of these steps
+    bounds : (K,) m, stations at which blocks begin and end
+    """
+
+    steps: CurbSteps
+    chains: list[StepChain]
+    bounds: np.ndarray
+
+    @staticmethod
+    def of(steps: CurbSteps, width: float, limits: CurbLimits, bounds: np.ndarray) -> SideChains:
+        """The chains of steps, upright and sloped ones apart; `width` : m of road per profile."""
+        label = np.empty(len(steps), np.int64)
+        upright = steps.upright
+        label[upright] = link_steps(steps[upright], width)
+        label[~upright] = link_steps(steps[~upright], width) + label[upright].max(initial=-1) + 1
+        return SideChains(steps, curb_chains(steps, label, width, limits), bounds)
+
+    def points(self, members: np.ndarray, number: int) -> list[dict]:
+        """Curb points of the steps with the (K,) indices, by station, of one line: one of each part per block.
+
+        Returns a list of dict: s, u, h in m, and `fields`, what else is known of it, with the number of the line
+        """
+        steps = self.steps[members]
+        if not len(steps):
+            return []
+        blocks, member = np.unique(_block_numbers(steps, self.bounds), return_inverse=True)
+        n = np.bincount(member)
+        names = {"s", "u", "height", *(name for _, *place in steps.PARTS for name in place)}
+        mean = {name: np.bincount(member, getattr(steps, name)) / n for name in names}
+        residual = np.sqrt(np.bincount(member, (steps.u - np.interp(steps.s, mean["s"], mean["u"])) ** 2) / n)
+        support = np.bincount(member, steps.support)
+        return [dict(s=float(mean["s"][k]), u=float(mean[u][k]), h=float(mean[h][k]),
+                     fields=dict(status="measured", height=round(float(mean["height"][k]), 4), chain=number, part=part,
+                                 residual=round(float(residual[k]), 4), support=int(support[k])))
+                for k in range(len(blocks)) for part, u, h in steps.PARTS]
+
+    def support_along(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
+        """Laser points that show a step on a line.
+
+        s, u : (N,) m, station and outward offset of places on the line
+        skew : (N,) m outward per m along, direction of the line
+
+        Returns (N,) points per metre of road, over CURBS.max_link_length of it, half on either side
+        """
+        order = np.argsort(self.steps.s, kind="stable")
+        by_station = self.steps.s[order]
+        place, row = expand_ranges(*(np.searchsorted(by_station, s + end) for end in (-0.5 * CURBS.max_link_length, 0.5 * CURBS.max_link_length)))
+        row = order[row]
+        near = np.abs(self.steps.u[row] - u[place] - skew[place] * (self.steps.s[row] - s[place])) <= 2 * CURBS.link_tolerance
+        return np.bincount(place[near], self.steps.support[row[near]], len(s)) / CURBS.max_link_length
+
+
+def points_of_side(source: Any, road: int, side: str, found: SideChains, occlusion: OcclusionGrid) -> CurbPoints:
+    """Curb points of one side of one road, measured and hidden, in order of station.
+
+    source : Survey, or scanlines: what has `frame` and `road_height`
+    """
+    frame, sign, steps, chains = source.frame, SIDE_SIGNS[side], found.steps, found.chains
+    track = OutermostTrack(frame, road, sign)
+    selected = drop_short_curbs(select_along_road(chains, steps, track), chains, steps)
+    lines = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u))
+    rows = [row for number, members in enumerate(lines) for row in found.points(members, number)]
+    bottoms = np.array([(row["s"], row["u"], row["h"]) for row in rows if row["fields"]["part"] == "bottom"]).reshape(-1, 3)
+    rows += hidden_points(bottoms, occlusion, track)
+    return points_of_rows(source, road, side, sorted(rows, key=lambda row: (row["s"], row["fields"]["part"])))
+
+
+def points_of_rows(source: Any, road: int, side: str, rows: Sequence[dict], crs: str = "") -> CurbPoints:
+    """CurbPoints from dicts of s, u, h in m and `fields`, as of `SideChains.points`; `source` as of `points_of_side`."""
+    s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))
+    d = SIDE_SIGNS[side] * u
+    places = source.frame.to_map(road, s, d, h + expected_height(source, road, s))
+    return curb_points_at(source.frame, road, places, [row["fields"] for row in rows], crs, side=side, station=s, offset=d)
+
+
+def block_bounds(road: Road, start: float, end: float, block_length: float) -> np.ndarray:
+    """Stations at which blocks begin and end, counted from station 0.
+
+    Automatic blocks are CURBS.min_block_length to CURBS.max_block_length long, so that the road turns no
+    more than CURBS.max_block_turn within one; the length is decided for every 20 m of road.
+
+    start, end : m, stations that the blocks cover
+    block_length : m, 0 for automatic
+
+    Returns (K,) m, ascending
+    """
+    if block_length:
+        return np.arange(np.floor(start / block_length), np.ceil(end / block_length) + 1) * block_length
+    whole = CURBS.block_section_length
+    first, last = int(np.floor(start / whole)), int(np.ceil(end / whole))
+    bounds = []
+    for k in range(first, last):
+        bend = np.abs(road.curvature(np.arange(k * whole, (k + 1) * whole, 0.5))).max()
+        length = np.clip(CURBS.max_block_turn / max(bend, 1e-9), CURBS.min_block_length, CURBS.max_block_length)
+        bounds.append(np.linspace(k * whole, (k + 1) * whole, int(np.ceil(whole / length)) + 1)[:-1])
+    return np.r_[np.concatenate(bounds), last * whole] if bounds else np.array([start, end])
+
+
+def _block_numbers(steps: CurbSteps, bounds: np.ndarray) -> np.ndarray:
+    """The block of each step of a chain.
+
+    Blocks in which the curb bends are divided into four, and both ends of a chain are blocks of their own.
+
+    steps : M CurbSteps of one chain, by station
+    bounds : (K,) m, result of `block_bounds`
+
+    Returns (M,) numbers, ascending along the road
+    """
+    block = np.searchsorted(bounds, steps.s, side="right")
+    names, member = np.unique(block, return_inverse=True)
+    n = np.bincount(member)
+    ds = steps.s - (np.bincount(member, steps.s) / n)[member]
+    du = steps.u - (np.bincount(member, steps.u) / n)[member]
+    slope = np.bincount(member, ds * du) / (np.bincount(member, ds * ds) + 1e-3)
+    off = np.sqrt(np.bincount(member, (du - slope[member] * ds) ** 2) / n)
+    start, length = bounds[names - 1], np.diff(bounds)[np.minimum(names, len(bounds) - 1) - 1]
+    quarter = np.clip(np.floor(4 * (steps.s - start[member]) / length[member]), 0, 3).astype(np.int64)
+    block = 8 * block + 2 * np.where(off[member] > CURBS.max_block_bend, quarter, 0)  # even numbers leave odd ones for the ends
+    # the ends of a chain keep their own place instead of the middle of their blocks
+    if len(steps) > 2 * CURBS.chain_end_steps:
+        block[:CURBS.chain_end_steps] = block[0] - 1
+        block[-CURBS.chain_end_steps:] = block[-1] + 1
+    return block
