@@ -18,6 +18,7 @@ from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from ..survey.frame.placement import located
 from .corrections import ACCEPTED, DRAWN, Correction, Corrections
+from .weights import CORRECTING
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
@@ -124,21 +125,13 @@ def _with_heights(kind, correction):
 
 # Which stretches of lines a correction is about, and lines cut there.
 
-STEP = 0.25            # m between the places at which a line is compared with a correction
-SHORTEST = 1.0         # m of a line along a correction that counts: a line that only crosses it does not
-SHORTEST_REST = 0.5    # m: a shorter rest of a line goes with the stretch that is cut from it
-NO_LENGTH = 1e-3      # m
-ALONG = 0.5            # share of its length by which a stretch advances along the correction: one that crosses it does not
-MOVED_FROM = 2.0       # m beside its new place at most that a line is moved from; half of a lane is more than that
-NEAR_VERTICES = 10.0    # m within which the map's own vertices tell the height of what was drawn
-HEIGHT_NEIGHBOURS = 8  # vertices whose heights are averaged, by the inverse of their distance
 
 Span = tuple[int, float, float]   # (number of the line, from, to), metres along it
 
 
 def _distance_of(correction: Correction, reach: float) -> float:
     """m beside a correction within which it is about a line."""
-    return max(MOVED_FROM, reach) if correction.action == "move" else reach
+    return max(CORRECTING.moved_from, reach) if correction.action == "move" else reach
 
 
 def spans_along(lines: Sequence[np.ndarray], correction: Correction, reach: float) -> list[Span]:
@@ -166,20 +159,20 @@ def spans_along(lines: Sequence[np.ndarray], correction: Correction, reach: floa
 def _beside(line, number, places, reach):
     """(mean distance, number, from, to, first, last along the correction) of each stretch of a line beside a correction."""
     arcs = _arcs(line)
-    at = np.unique(np.r_[np.arange(0.0, arcs[-1], STEP), arcs[-1]])
+    at = np.unique(np.r_[np.arange(0.0, arcs[-1], CORRECTING.step), arcs[-1]])
     xy = np.c_[np.interp(at, arcs, line[:, 0]), np.interp(at, arcs, line[:, 1])]
     course = shapely.linestrings(places)
     u = shapely.line_locate_point(course, shapely.points(xy))
     away = shapely.distance(course, shapely.points(xy))
     head, tail = _excess(xy, places[0], places[1]), _excess(xy, places[-1], places[-2])
-    inside = (away <= reach) & ~((u <= 0) & (head > STEP)) & ~((u >= course.length) & (tail > STEP))
-    least = min(SHORTEST, course.length / 2)
+    inside = (away <= reach) & ~((u <= 0) & (head > CORRECTING.step)) & ~((u >= course.length) & (tail > CORRECTING.step))
+    least = min(CORRECTING.shortest, course.length / 2)
     for i, j in mask_runs(inside):
         a, b = at[i], at[j - 1]
         first, last = u[i:j].min(), u[i:j].max()
-        if b - a < least and b - a < arcs[-1] / 2 or last - first < ALONG * (b - a) or b <= a:
+        if b - a < least and b - a < arcs[-1] / 2 or last - first < CORRECTING.along * (b - a) or b <= a:
             continue
-        a, b = 0.0 if a < SHORTEST_REST else a, arcs[-1] if arcs[-1] - b < SHORTEST_REST else b
+        a, b = 0.0 if a < CORRECTING.shortest_rest else a, arcs[-1] if arcs[-1] - b < CORRECTING.shortest_rest else b
         yield float(away[i:j].mean()), number, float(a), float(b), float(first), float(last)
 
 
@@ -210,7 +203,7 @@ def pieces_of(length: float, spans: Sequence[tuple[float, float]]) -> list[tuple
         found += [(at, a, False), (a, b, True)]
         at = b
     # sums of lengths differ in their last digits
-    return [(a, b, along) for a, b, along in [*found, (at, length, False)] if b - a > NO_LENGTH]
+    return [(a, b, along) for a, b, along in [*found, (at, length, False)] if b - a > CORRECTING.no_length]
 
 
 def _heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
@@ -221,8 +214,8 @@ def _heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -
         return z
     z[lacking] = otherwise[lacking]
     if len(known):
-        count = min(HEIGHT_NEIGHBOURS, len(known))
-        away, row = cKDTree(known[:, :2]).query(places[lacking, :2], count, distance_upper_bound=NEAR_VERTICES)
+        count = min(CORRECTING.height_neighbours, len(known))
+        away, row = cKDTree(known[:, :2]).query(places[lacking, :2], count, distance_upper_bound=CORRECTING.near_vertices)
         away, row = away.reshape(len(lacking), count), row.reshape(len(lacking), count)
         weight = np.where(np.isfinite(away), 1.0 / np.maximum(away, 0.05), 0.0)
         total = weight.sum(1)

@@ -13,15 +13,14 @@ from ..driving.layers import CurveElements, DrivingLines, Lanes
 from ..survey.frame.placement import located
 from .apply import LineKind, apply_corrections, spans_along
 from .corrections import DRAWN, Correction, Corrections
+from .weights import CORRECTING
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
 
-LANE_REACH = 1.0        # m: half of the narrowest lane
-TAKEN_REACH, TAKEN_SHARE = 0.5, 0.8   # m beside its place, and share of its length, of a lane that the estimate made as it was taken
+LANE_REACH = 1.0   # derived: m, half of the narrowest lane
 NO_LINES = "none|none"
-SURE = 1.0         # confidence of what an analyst confirmed or drew
-MOST_LOST = 0.5    # share of a curve that may be taken away before its elements go with it
+SURE = 1.0   # derived: confidence of what an analyst confirmed or drew
 
 
 class _DrivingLines(LineKind):
@@ -125,8 +124,8 @@ def _taken(correction, pieces, frame):
         order = np.argsort(s * way)
         drawn = replace(correction, action="draw", places=np.c_[x, y, correction.places[:, 2]][order], offset=offset, width=width)
         same = [piece["places"] for piece in pieces if piece["direction"] == way]
-        length = sum(last - first for _, first, last in spans_along(same, replace(drawn, action="accept"), TAKEN_REACH))
-        if length >= TAKEN_SHARE * np.hypot(*np.diff(drawn.places[:, :2], axis=0).T).sum():
+        length = sum(last - first for _, first, last in spans_along(same, replace(drawn, action="accept"), CORRECTING.taken_reach))
+        if length >= CORRECTING.taken_share * np.hypot(*np.diff(drawn.places[:, :2], axis=0).T).sum():
             # what the estimate made is accepted, and not deleted with the lane beside it
             found = [one for one in found if one.action != "delete"]
             found.append(replace(drawn, action="accept"))
@@ -186,7 +185,7 @@ def _remaining(elements: CurveElements, before: list[dict[str, Any]], after: lis
         lane = (elements.road[k], elements.lane[k])
         held, left = (sum(max(min(elements.end[k], row["end"]) - max(elements.station[k], row["station"]), 0.0) for row in rows
                           if (row["road"], row["lane"]) == lane and row["status"] != DRAWN) for rows in (before, after))
-        keep[k] = left >= (1 - MOST_LOST) * held
+        keep[k] = left >= (1 - CORRECTING.most_lost) * held
     rows = np.flatnonzero(keep)
     arrays = {one.name: getattr(elements, one.name)[rows] for one in fields(elements) if isinstance(getattr(elements, one.name), np.ndarray)}
     return replace(elements, **arrays, arc=[elements.arc[k] for k in rows])

@@ -297,16 +297,11 @@ def _border(track, lines, paint, rows):
     names, of = np.unique(np.where(painted, lines.number[np.where(painted, rows, 0), columns], -1), return_inverse=True)
     square = np.array([paint.get(one, np.nan) ** 2 if one >= 0 else np.nan for one in names.tolist()])[of]
     away = np.zeros(len(track))
-    for begin, end in zip(*_runs(np.where(painted, rows, -1))):
+    cuts = np.r_[0, np.flatnonzero(np.diff(np.where(painted, rows, -1))) + 1, len(rows)].tolist()
+    for begin, end in zip(cuts[:-1], cuts[1:]):
         if painted[begin]:
             away[begin:end] = _distance_to_paint(lines.seen, int(rows[begin]), track.first + begin, track.first + end)
     return painted, square, away
-
-
-def _runs(values):
-    """Lists of where runs of equal values begin and end (exclusive)."""
-    cuts = np.r_[0, np.flatnonzero(np.diff(values)) + 1, len(values)].tolist()
-    return cuts[:-1], cuts[1:]
 
 
 def _distance_to_paint(seen, row, first, end):

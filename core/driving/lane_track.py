@@ -67,10 +67,6 @@ class LaneTrack:
         first = parts[0]
         return first if len(parts) == 1 else replace(first, **first._each(lambda name, v: np.concatenate([getattr(part, name) for part in parts])))
 
-    def followed_by(self, other: LaneTrack) -> LaneTrack:
-        """This track and one that begins at the next station."""
-        return LaneTrack.joined([self, other])
-
     def stretched(self, first: int, d: np.ndarray, width: np.ndarray, row: int) -> LaneTrack:
         """A track from station `first` on that is in all but its place and width as this one is at a row."""
         alike = replace(self, first=first, **self._each(lambda name, v: np.repeat(v[row], len(d))))

@@ -86,7 +86,7 @@ def _to_its_ends(track, boundaries):
             ahead = np.sort(ahead)
             d_left, d_right = boundaries.d[left, ahead], boundaries.d[right, ahead]
             more = track.stretched(int(ahead[0]), (d_left + d_right) / 2, d_left - d_right, tip)
-            track = more.followed_by(track) if head else track.followed_by(more)
+            track = LaneTrack.joined([more, track] if head else [track, more])
     return track
 
 
@@ -167,23 +167,30 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
         return None
     painted = [bool(boundaries.bounding[row]) for row in sides]
     made_of = [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]
+    seen = np.stack([boundaries.seen[row, rows] for row in sides])
     begin, width = lane_places(left, right, *made_of, span.count, lane_width, boundaries.bend[rows])
-    # a lane that has all the room between a line and the curb of an island is placed by both
-    seen = [boundaries.seen[row, rows] for row in sides]
-    left_over = float(np.median(np.abs(left - right - span.count * width)))
-    both = all(painted) or bool(beside_island(*made_of)) and min(one.mean() for one in seen) > 0.5 and left_over < TRACKS.full_room \
-        and not line_distance
+    both = all(painted) or not line_distance and _has_all_room(made_of, seen, left - right - span.count * width)
     beside_one = any(painted) and not both
     if beside_one and (line_distance or beside_surface_end(*made_of)):
         # the end of the surface is ragged, a lane is not
         width = np.full(len(left), 2 * line_distance or np.median(width))
         begin = left if painted[0] else right + width * span.count
     d = begin - width * (span.count - span.place - 0.5)
-    shown = sum(one.astype(int) for one, paint in zip(seen, painted) if paint or both)
+    shown = seen.sum(axis=0) if both else seen[painted].sum(axis=0)
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 else INFERRED])
-    left_use = span.left if span.place == span.count - 1 else -1
-    right_use = span.right if span.place == 0 else -1
-    about = (beside_one, left_use, right_use, span.left_border, span.right_border, span.probability, span.confidence, span.directed)
+    return _track_of(span, first, d, width, status, beside_one)
+
+
+def _has_all_room(made_of, seen, left_over):
+    """Whether a lane has all the room between a line and the curb of an island: it is placed by both."""
+    return bool(beside_island(*made_of)) and seen.mean(axis=1).min() > 0.5 and float(np.median(np.abs(left_over))) < TRACKS.full_room
+
+
+def _track_of(span, first, d, width, status, beside_one):
+    """The LaneTrack of a span at some places, (N,) m; `beside_one` : whether the place comes from one line only."""
+    left = span.left if span.place == span.count - 1 else -1
+    right = span.right if span.place == 0 else -1
+    about = (beside_one, left, right, span.left_border, span.right_border, span.probability, span.confidence, span.directed)
     second = np.full(len(d), None, object)
     second[:] = [span.second] * len(d)
     return LaneTrack(first, d, width, status, *(np.full(len(d), value) for value in about), span.direction, second)

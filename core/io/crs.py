@@ -142,6 +142,21 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
         If clouds contradict themselves or each other, the CRS is geographic or none but the coordinates look so, the CRS is of another kind
         that has no metres, lengths in it are not those on the ground, or x and y are exchanged.
     """
+    stated = _crs_of_clouds(files, given)
+    wkt = stated or given or trajectory_crs
+    if not stated and not given:
+        _refuse_degrees(files, trajectory_crs)
+    crs = parse_crs(wkt)
+    if crs is None:
+        return ""
+    wkt = in_metres(wkt if wkt == stated or len(wkt) > 20 else crs.to_wkt())[0]
+    check_metric(parse_crs(wkt), "The point cloud")
+    check_extent(wkt, _bounds(files), "The point cloud")
+    return wkt
+
+
+def _crs_of_clouds(files, given):
+    """WKT of the CRS that clouds state, which must be one for all; "" where they state none."""
     contradictory = next((file for file in files if file.crs_problem), None)
     if contradictory is not None and not given:
         raise RoadExtractionError(f"What {contradictory.path} says about its coordinates cannot be used: {contradictory.crs_problem}. Give the CRS "
@@ -150,28 +165,25 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
     for file in files:
         if file.crs:
             known.setdefault(file.crs, file.path)
-    parsed = [(parse_crs(wkt), path) for wkt, path in known.items()]
-    if not known and not given and trajectory_crs and horizontal_part(parse_crs(trajectory_crs)).is_geographic and not _in_degrees(files):
+    (first, path), *others = [(horizontal_part(parse_crs(wkt)), path) for wkt, path in known.items()] or [(None, "")]
+    for crs, other in others:
+        if not crs.equals(first, ignore_axis_order=True):
+            raise RoadExtractionError(f"The point clouds use different CRSs: {path} is in {first.name}, "
+                                      f"{other} in {crs.name}. Reproject them to one CRS first.")
+    return next(iter(known), "")
+
+
+def _refuse_degrees(files, trajectory_crs):
+    """Refuse clouds without a CRS where that of the trajectory does not help: it is geographic and they are not, or there is none and they are."""
+    crs = horizontal_part(parse_crs(trajectory_crs))
+    if crs is not None and crs.is_geographic and not _in_degrees(files):
         raise RoadExtractionError(
-            f"The point cloud carries no CRS, and the trajectory is in {horizontal_part(parse_crs(trajectory_crs)).name} (degrees), so "
+            f"The point cloud carries no CRS, and the trajectory is in {crs.name} (degrees), so "
             "the position of one relative to the other is unknown. Give the CRS of the point cloud by the parameter CRS.")
-    for crs, path in parsed[1:]:
-        if not horizontal_part(crs).equals(horizontal_part(parsed[0][0]), ignore_axis_order=True):
-            raise RoadExtractionError(
-                f"The point clouds use different CRSs: {parsed[0][1]} is in {horizontal_part(parsed[0][0]).name}, "
-                f"{path} in {horizontal_part(crs).name}. Reproject them to one CRS first.")
-    wkt = next(iter(known), "") or given or trajectory_crs
-    crs = parse_crs(wkt)
-    if crs is None:
-        if _in_degrees(files):
-            raise RoadExtractionError(
-                "The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees: it is less than 1 m wide if they "
-                "are metres. Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
-        return ""
-    wkt = in_metres(wkt if wkt in known or len(wkt) > 20 else crs.to_wkt())[0]
-    check_metric(parse_crs(wkt), "The point cloud")
-    check_extent(wkt, _bounds(files), "The point cloud")
-    return wkt
+    if crs is None and _in_degrees(files):
+        raise RoadExtractionError(
+            "The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees: it is less than 1 m wide if they "
+            "are metres. Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
 
 
 def _bounds(files):
@@ -291,24 +303,30 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
             raise RoadExtractionError(
                 f"{what} has x and y exchanged: x is about {x:.0f} and y about {y:.0f}, and in its CRS {crs.name} only the place with y as the "
                 f"easting lies in the area of this CRS ({_named(area)}). Export it with the easting as x and the northing as y, and run again.")
-    outside = beside > IO.min_exchanged and area
     if beside > IO.max_outside_area and max(abs(x), abs(y)) < IO.max_local:
         return (f"{what} says that it is in {crs.name}, but its coordinates (about {x:.0f}, {y:.0f}) are those of a local system, or lack their "
                 "leading digits. They are taken as metres as they are; the results lie elsewhere on a map until the coordinates are complete.")
     if not there.true_to_scale:
-        known = there.scale == there.scale
-        named = f"{crs.name}, at {_degrees(there)}, outside the area of this CRS ({_named(area)})" if outside else crs.name
-        lengths = (f"It has no place with x about {x:.0f} and y about {y:.0f}" if not known
-                   else f"Lengths in it are {there.scale:.3f} times those on the ground" if outside
-                   else f"Lengths in it are {there.scale:.3f} times those on the ground at {_degrees(there)}")
-        zone = f", such as UTM zone {_utm_zone(there)}," if known and not outside else ""
-        raise RoadExtractionError(
-            f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that is made for this "
-            f"place{zone} or correct the CRS.")
+        raise _not_true_to_scale(what, crs, place, there, area if beside > IO.min_exchanged else None)
     if beside > IO.max_outside_area:
         return (f"{what} lies at {_degrees(there)}, outside the area of its CRS {crs.name} ({_named(area)}): if the survey was not made there, its "
                 "CRS is wrong, and so is that of the results. Correct it in the data.")
     return ""
+
+
+def _not_true_to_scale(what, crs, place, there, area):
+    """The error for a survey at a _MapPlace where lengths are not those on the ground; `area` of the CRS where it lies outside, else None."""
+    named = f"{crs.name}, at {_degrees(there)}, outside the area of this CRS ({_named(area)})" if area else crs.name
+    if there.scale != there.scale:
+        lengths, zone = f"It has no place with x about {place[0]:.0f} and y about {place[1]:.0f}", ""
+    elif area:
+        lengths, zone = f"Lengths in it are {there.scale:.3f} times those on the ground", ""
+    else:
+        lengths = f"Lengths in it are {there.scale:.3f} times those on the ground at {_degrees(there)}"
+        zone = f", such as UTM zone {_utm_zone(there)},"
+    return RoadExtractionError(
+        f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that is made for this "
+        f"place{zone} or correct the CRS.")
 
 
 def check_extent(wkt: str, bounds: Sequence[Sequence[float]], what: str) -> str:

@@ -192,21 +192,22 @@ def _recognise_format(lines):
     """(delimiter, number of columns, style of numbers) that explain the most lines; None where none does."""
     lines = lines[:IO.sample_lines]
     styles = [style for style in STYLES if not style.grouping or any(map(style.grouped.search, lines))]
-    best = (0, False, 0, False, None)
+    formats = []
     for delimiter in DELIMITERS:
         split = [fields for fields in (_fields(line, delimiter) for line in lines) if len(fields) >= IO.min_number_columns]
-        for style in styles:
-            if delimiter in (style.decimal, style.grouping):
-                continue
-            counts = Counter(len(fields) for fields in split if _is_row(fields, len(fields), style))
-            if not counts:
-                continue
-            columns, count = counts.most_common(1)[0]
-            more_numbers = sum(2 * _numbers_among(fields, style) - columns for fields in split if len(fields) == columns)  # than words
-            # between tabs that hold nothing but numbers, blanks stand within numbers
-            whole = delimiter == "\t" and all(_numbers_among(fields, style) == columns for fields in split if _is_row(fields, columns, style))
-            best = max(best, (count, whole, more_numbers, style.decimal == ".", (delimiter, columns, style)), key=lambda found: found[:4])
-    return best[4]
+        formats += [_explained(split, delimiter, style) for style in styles if delimiter not in (style.decimal, style.grouping)]
+    best = max(formats, key=lambda found: found[:4])
+    return best[4] if best[0] else None
+
+
+def _explained(split, delimiter, style):
+    """(rows, whether they are whole, more numbers than words, whether with a decimal point, format) of lines split at a delimiter."""
+    counts = Counter(len(fields) for fields in split if _is_row(fields, len(fields), style))
+    columns, rows = next(iter(counts.most_common(1)), (0, 0))
+    more_numbers = sum(2 * _numbers_among(fields, style) - columns for fields in split if len(fields) == columns)
+    # between tabs that hold nothing but numbers, blanks stand within numbers
+    whole = delimiter == "\t" and all(_numbers_among(fields, style) == columns for fields in split if _is_row(fields, columns, style))
+    return rows, whole and rows > 0, more_numbers, style.decimal == ".", (delimiter, columns, style)
 
 
 def _refuse_ambiguous_commas(first_row, above, path):

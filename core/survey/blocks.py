@@ -12,7 +12,7 @@ import numpy as np
 from ..common.parallel import ScratchBuffers
 from .frame.projection import RoadProjection
 from .frame.road_frame import RoadFrame
-from .las.point_fields import EVER, SCANNER_FIELDS, IntensitySource, LasAxis, flagged, times_by_value, valid_points
+from .las.point_fields import EVER, MAX_INTENSITY, SCANNER_FIELDS, IntensitySource, LasAxis, ScannerCensus, flagged, valid_points
 from .las.samples import TimeSlots
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
@@ -28,46 +28,28 @@ DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "cla
 
 @dataclass
 class BlockSummary:
-    """What a block contributes to the knowledge of the whole cloud.
+    """What points contribute to the knowledge of the whole cloud.
 
-    scanners : {LAS field: {value: (first time, last time, count)}}; darkest, brightest : lowest and highest intensity
+    census : of the fields that may tell scanners apart; darkest, brightest : lowest and highest intensity
     without_time, excluded : numbers of points at a time of no pass, and of those that are withheld or classified as noise
     """
 
-    scanners: dict[str, dict[int, tuple[float, float, int]]] = field(default_factory=dict)
-    darkest: int = 65535
+    census: ScannerCensus = field(default_factory=ScannerCensus)
+    darkest: int = MAX_INTENSITY
     brightest: int = 0
     without_time: int = 0
     excluded: int = 0
 
     def join(self, other: BlockSummary) -> None:
-        """Add what another block contributes."""
+        """Add what other points contribute."""
         self.darkest, self.brightest = min(self.darkest, other.darkest), max(self.brightest, other.brightest)
         self.without_time += other.without_time
         self.excluded += other.excluded
-        for name, times in other.scanners.items():
-            self._note(name, times)
+        self.census.join(other.census)
 
-    def add(self, columns: dict[str, np.ndarray]) -> None:
-        """Count points of the block, of which `columns` has (N,) intensity."""
-        self.darkest = min(self.darkest, int(columns["intensity"].min()))
-        self.brightest = max(self.brightest, int(columns["intensity"].max()))
-
-    def add_scanners(self, columns: dict[str, np.ndarray], names: set[str], at: np.ndarray, span: tuple[float, float] = EVER) -> None:
-        """Count points by the fields that may tell scanners apart, of which the file has `names`; `columns` has (N,) source and scanner.
-
-        at : (N,) s, their times; m, their stations where there are none
-        span : s, (first, last) time of the drive: points at other times say nothing of the scanners
-        """
-        for name, key in zip(SCANNER_FIELDS, ("source", "scanner")):
-            if name in names:
-                self._note(name, times_by_value(columns[key], at, span))
-
-    def _note(self, name, times):
-        seen = self.scanners.setdefault(name, {})
-        for value, (start, end, number) in times.items():
-            first, last, count = seen.get(value, (start, end, 0))
-            seen[value] = min(first, start), max(last, end), count + number
+    def add_intensity(self, intensity: np.ndarray) -> None:
+        """Count the (N,) intensities of points."""
+        self.darkest, self.brightest = min(self.darkest, int(intensity.min())), max(self.brightest, int(intensity.max()))
 
 
 class HeightFilter:
@@ -120,22 +102,76 @@ class PointChoice:
         return (*DECODED_LAYERS, *self.intensity.layers)
 
 
-class _BlockProjector:
-    """Turns blocks into compact records in the road frame; safe to use in several threads."""
+@dataclass
+class ChosenPoints:
+    """What the points that are kept say of the survey: the HeightHistogram of those on the vehicle's own track, and samples.
 
-    def __init__(self, frame: RoadFrame, choice: PointChoice):
-        self.frame, self.choice, self.corridor, self.has_time = frame, choice, choice.corridor, choice.has_time
+    sampled : (N,) times and (N, 3) units of 0.1 mm of some points; without times none
+    """
+
+    histogram: HeightHistogram
+    sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
+
+
+class BlockReader:
+    """Turns blocks into compact records in the road frame, chooses those near the road and partitions them by section.
+
+    Safe to use in several threads. slots : of the points that are sampled
+    """
+
+    def __init__(self, frame: RoadFrame, choice: PointChoice, slots: TimeSlots):
+        self.frame, self.choice, self.slots = frame, choice, slots
+        self.tracks = VehicleTracks(frame)
         self.dtype = point_dtype(SURVEY_POINT, frame.farthest)
         self.projection = RoadProjection(frame, choice.corridor) if choice.has_time else None
         self._span = (min(p.time[0] for p in frame.passes), max(p.time[-1] for p in frame.passes)) if choice.has_time else EVER
         self.roads = np.array([p.road for p in frame.passes] + [-1])
         self._scratch = ScratchBuffers()
 
-    def read(self, block: laspy.ScaleAwarePointRecord, found: BlockSummary,
-             ground: HeightFilter | None = None) -> Iterator[tuple[int, Columns, np.ndarray | None]]:
+    def ground(self, drop: float) -> HeightFilter:
+        """What is near a road that lies `drop` metres below the trajectory."""
+        return HeightFilter(self.frame, drop, self.choice.above_road)
+
+    def chosen(self, drop: float) -> ChosenPoints:
+        """No points yet, of a road that lies about `drop` metres below the trajectory."""
+        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop))
+
+    def unfiltered(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary) -> list[tuple[int, Columns]]:
+        """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
+        return [(road, points.copy() if own is None else points.take(own).load_all()) for road, points, own in self._near_roads(block, summary)]
+
+    def read(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
+             store: SectionStore) -> list[PartitionedPoints]:
+        """The points of a block near the road, ready for the store; `summary` and `chosen` are updated."""
+        return [self._partition(road, points, own, chosen, store) for road, points, own in self._near_roads(block, summary, ground)]
+
+    def filtered(self, parts: Iterable[tuple[int, Columns]], ground: HeightFilter, chosen: ChosenPoints,
+                 store: SectionStore) -> Iterator[PartitionedPoints]:
+        """Yield those of `unfiltered` that lie near the road, as `read` would have given them."""
+        for road, points in parts:
+            if road < 0:
+                near = ground.level(road_of(road), points["s"], points["z"])
+            else:
+                near = ground.near(road, points["s"], points["z"], ScratchBuffers().of(len(points)))
+            if near.any():
+                yield self._partition(road, points, near, chosen, store)
+
+    def _partition(self, road, points, own, chosen, store):
+        if road < 0:
+            return store.partition(road, points, own)
+        for number, drops in self.tracks.drops(road, points, own):
+            chosen.histogram.add(number, drops)
+        if self.choice.has_time:
+            kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
+            rows = np.flatnonzero(kept if own is None else kept & own)
+            if len(rows):
+                chosen.sampled.append((points["time"][rows], np.stack([points[name][rows] for name in "xyz"], axis=1)))
+        return store.partition(road, points, own)
+
+    def _near_roads(self, block, summary, ground=None):
         """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
 
-        found : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken. Yields road number, Columns of
+        summary : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken. Yields road number, Columns of
         a piece, and (N,) bool of the points to use, None for all; for ground beyond the corridor the number is that of `beside_road`, and
         stations are the vehicle's.
         """
@@ -143,27 +179,21 @@ class _BlockProjector:
         axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
         # small pieces stay in the processor cache
         for first in range(0, len(block), FRAME.points_per_projection):
-            yield from self._piece(block[first:first + FRAME.points_per_projection], names, axes, found, ground)
+            yield from self._piece(block[first:first + FRAME.points_per_projection], names, axes, summary, ground)
 
-    def _piece(self, piece, names, axes, found, ground):
+    def _piece(self, piece, names, axes, summary, ground):
         buffers = self._scratch.of(len(piece))
         columns = self._columns(piece, names, buffers)
-        found.add(columns)
-        usable = valid_points(piece)
-        if usable is not None:
-            found.excluded += len(usable) - int(np.count_nonzero(usable))
-        for axis, name in zip(axes, "xyz"):
-            columns[name], there = axis.units(piece.array, buffers)
-            usable = _both(usable, there)
+        summary.add_intensity(columns["intensity"])
+        usable = self._usable(piece, axes, columns, summary, buffers)
         columns["s"], columns["d"] = buffers("s", np.int32), buffers("d", np.int32)
         columns["pass_number"], inside, lost = self._placed(columns, usable)
-        found.without_time += lost
-        self._add_scanners(columns, names, inside, found)
+        summary.without_time += lost
+        self._add_scanners(columns, names, inside, summary)
         if inside is not None:
-            # points outside get a valid station of this piece
-            columns["s"][~inside] = columns["s"][inside.argmax()] if inside.any() else 0
+            _fill_outside(columns["s"], inside)
         points = Columns(columns, self.dtype, len(piece))
-        if inside is not None and self.has_time:
+        if inside is not None and self.choice.has_time:
             yield from self._beyond(columns, points, inside, ground)
             if not inside.any():
                 return
@@ -174,13 +204,23 @@ class _BlockProjector:
             if own is None or own.any():
                 yield number, points, own
 
-    def _add_scanners(self, columns, names, inside, found):
-        """Scanners measure together: at the same times, or without times along the same stretches of road."""
-        if self.has_time:
-            found.add_scanners(columns, names, columns["time"], self._span)
-        else:
-            own = slice(None) if inside is None else inside
-            found.add_scanners({key: columns[key][own] for key in ("source", "scanner")}, names, columns["s"][own] * COORDINATE_SCALE)
+    def _usable(self, piece, axes, columns, summary, buffers):
+        """Fill the columns x, y and z; (N,) bool of the points that are valid and no outliers, None for all."""
+        usable = valid_points(piece)
+        if usable is not None:
+            summary.excluded += len(usable) - int(np.count_nonzero(usable))
+        for axis, name in zip(axes, "xyz"):
+            columns[name], there = axis.units(piece.array, buffers)
+            usable = _both(usable, there)
+        return usable
+
+    def _add_scanners(self, columns, names, inside, summary):
+        """Scanners measure together: at the same times of the drive, or without times along the same stretches of road."""
+        own = slice(None) if self.choice.has_time or inside is None else inside
+        at = columns["time"] if self.choice.has_time else columns["s"][own] * COORDINATE_SCALE
+        for name, key in zip(SCANNER_FIELDS, ("source", "scanner")):
+            if name in names:
+                summary.census.add(name, columns[key][own], at, self._span)
 
     def _beyond(self, columns, points, inside, ground):
         """As `read`, the ground beyond the corridor that the vehicle saw about as high as its road."""
@@ -209,8 +249,8 @@ class _BlockProjector:
         road = self.roads[pass_number.view(np.int16)]
         if inside is not None:
             road = np.where(inside, road, -1)
-        found = np.unique(road)
-        return [(number, None if len(found) == 1 else road == number) for number in found.tolist() if number >= 0]
+        numbers = np.unique(road)
+        return [(number, None if len(numbers) == 1 else road == number) for number in numbers.tolist() if number >= 0]
 
     def _columns(self, piece, names, buffers):
         """Columns copied from the file: time, intensity, source, returns, scanner."""
@@ -235,30 +275,35 @@ class _BlockProjector:
             passes, inside = self._located(*map(columns.get, names))
             return passes.view(np.uint16), inside, self._lost(passes)
         rows = np.flatnonzero(usable)
-        some = [columns[name].take(rows) for name in names]
-        found, there = self._located(*some)
+        columns_of_rows = [columns[name].take(rows) for name in names]
+        located, within = self._located(*columns_of_rows)
         passes, inside = np.full(len(usable), -1, np.int16), np.zeros(len(usable), bool)
-        passes[rows], inside[rows] = found, True if there is None else there
-        for name, values in zip(names[3:], some[3:]):
+        passes[rows], inside[rows] = located, True if within is None else within
+        for name, values in zip(names[3:], columns_of_rows[3:]):
             columns[name][rows] = values
-        return passes.view(np.uint16), inside, self._lost(found)
+        return passes.view(np.uint16), inside, self._lost(located)
 
     def _lost(self, passes):
-        if not self.has_time or not len(passes) or passes.strides[0] == 0 and passes[0] >= 0:
+        if not self.choice.has_time or not len(passes) or passes.strides[0] == 0 and passes[0] >= 0:
             return 0
         return int(np.count_nonzero(passes < 0))
 
     def _located(self, x, y, time, s, d):
         """Pass numbers and `inside`, as by `RoadProjection.project_units`, with or without times."""
-        if self.has_time:
+        if self.choice.has_time:
             return self.projection.project_units(x, y, time, s, d)
-        road, along, across = self.frame.locate_nearest(x * COORDINATE_SCALE, y * COORDINATE_SCALE, self.corridor)
+        road, along, across = self.frame.locate_nearest(x * COORDINATE_SCALE, y * COORDINATE_SCALE, self.choice.corridor)
         fill_units(along, s)
         fill_units(across, d)
         passes = np.full(len(x), -1, np.int16)
         for p in self.frame.passes[::-1]:
             passes[road == p.road] = p.number
         return passes, road >= 0
+
+
+def _fill_outside(stations, inside):
+    """Give points outside the frame a valid station of their piece."""
+    stations[~inside] = stations[inside.argmax()] if inside.any() else 0
 
 
 def unwrap_week(time: np.ndarray) -> np.ndarray:
@@ -276,66 +321,6 @@ def _both(one, other):
     if one is None or other is None:
         return other if one is None else one
     return one & other
-
-
-@dataclass
-class ChosenPoints:
-    """What the points that are kept say of the survey: the HeightHistogram of those on the vehicle's own track, and samples.
-
-    sampled : (N,) times and (N, 3) units of 0.1 mm of some points; without times none
-    """
-
-    histogram: HeightHistogram
-    sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
-
-
-class BlockReader:
-    """Chooses the points of blocks that lie near the road and partitions them by section; safe to use in several threads."""
-
-    def __init__(self, frame: RoadFrame, choice: PointChoice, slots: TimeSlots):
-        self.frame, self.choice, self.slots = frame, choice, slots
-        self.tracks = VehicleTracks(frame)
-        self._blocks = _BlockProjector(frame, choice)
-
-    def ground(self, drop: float) -> HeightFilter:
-        """What is near a road that lies `drop` metres below the trajectory."""
-        return HeightFilter(self.frame, drop, self.choice.above_road)
-
-    def chosen(self, drop: float) -> ChosenPoints:
-        """No points yet, of a road that lies about `drop` metres below the trajectory."""
-        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop))
-
-    def unfiltered(self, block: laspy.ScaleAwarePointRecord, found: BlockSummary) -> list[tuple[int, Columns]]:
-        """Road and Columns of the points of a block within the corridor, whatever their height; `found` is updated."""
-        return [(road, points.copy() if own is None else points.take(own).load_all()) for road, points, own in self._blocks.read(block, found)]
-
-    def read(self, block: laspy.ScaleAwarePointRecord, found: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
-             store: SectionStore) -> list[PartitionedPoints]:
-        """The points of a block near the road, ready for the store; `found` and `chosen` are updated."""
-        return [self._partition(road, points, own, chosen, store) for road, points, own in self._blocks.read(block, found, ground)]
-
-    def filtered(self, parts: Iterable[tuple[int, Columns]], ground: HeightFilter, chosen: ChosenPoints,
-                 store: SectionStore) -> Iterator[PartitionedPoints]:
-        """Yield those of `unfiltered` that lie near the road, as `read` would have given them."""
-        for road, points in parts:
-            if road < 0:
-                near = ground.level(road_of(road), points["s"], points["z"])
-            else:
-                near = ground.near(road, points["s"], points["z"], ScratchBuffers().of(len(points)))
-            if near.any():
-                yield self._partition(road, points, near, chosen, store)
-
-    def _partition(self, road, points, own, chosen, store):
-        if road < 0:
-            return store.partition(road, points, own)
-        for number, drops in self.tracks.drops(road, points, own):
-            chosen.histogram.add(number, drops)
-        if self.choice.has_time:
-            kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
-            rows = np.flatnonzero(kept if own is None else kept & own)
-            if len(rows):
-                chosen.sampled.append((points["time"][rows], np.stack([points[name][rows] for name in "xyz"], axis=1)))
-        return store.partition(road, points, own)
 
 
 # The height of the sensor above the road, from the points on the track of the vehicle itself.
@@ -421,14 +406,14 @@ class HeightHistogram:
             k = k[(k >= 0) & (k < size)]
         least = int(k.min(initial=size))
         k -= least
-        found = np.bincount(k)
+        counted = np.bincount(k)
         with self._lock:
-            self.counts[number][least:least + len(found)] += found
+            self.counts[number][least:least + len(counted)] += counted
 
     def join(self, counts: dict[int, np.ndarray]) -> None:
         """Add the counts of another histogram of the same passes and the same first estimate."""
-        for number, found in counts.items():
-            self.counts[number] += found
+        for number, counted in counts.items():
+            self.counts[number] += counted
 
     def heights(self) -> dict[int, float]:
         """{pass number: metres of the trajectory above the road, to millimetres}; a pass without points on its track gets the median of others.
@@ -436,10 +421,10 @@ class HeightHistogram:
         The road makes the peak of the histogram, the fullest decimetre. Its height is the median of the points within half a metre of the peak, so
         that bridges and trees above do not count.
         """
-        found = {number: _road_height(counts, self.origin) for number, counts in self.counts.items()}
-        known = [height for height in found.values() if height is not None]
+        heights = {number: _road_height(counts, self.origin) for number, counts in self.counts.items()}
+        known = [height for height in heights.values() if height is not None]
         usual = float(np.median(known)) if known else READING.default_sensor_height
-        return {number: usual if height is None else height for number, height in found.items()}
+        return {number: usual if height is None else height for number, height in heights.items()}
 
     def uneven(self) -> tuple[float, float] | None:
         """(median absolute deviation, height) of the trajectory above the road in metres, where it varies by more than a vehicle can cause.
@@ -448,9 +433,9 @@ class HeightHistogram:
         below it, whatever is parked or grows on the rest. The pass with the largest deviation counts; None if none exceeds `max_suspension_travel`.
         """
         heights = self.heights()
-        found = [(_half_within(counts, self.origin, heights[number]), heights[number])
-                 for number, counts in self.counts.items() if counts.sum() > READING.min_track_points]
-        off, height = max(found, default=(0.0, 0.0))
+        deviations = [(_half_within(counts, self.origin, heights[number]), heights[number])
+                      for number, counts in self.counts.items() if counts.sum() > READING.min_track_points]
+        off, height = max(deviations, default=(0.0, 0.0))
         return (off, height) if off > READING.max_suspension_travel else None
 
 

@@ -171,8 +171,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     RoadExtractionError
         If a file cannot be read, the CRS is geographic or not in metres, or the trajectory does not overlap the cloud in space or time.
     """
-    if settings.intensity_from == "rgb":
-        check_coloured(files)
+    check_coloured(files, settings.intensity_from)
     crs = _metric_crs(files, trajectory, settings, progress)
     trajectory = reproject_trajectory(trajectory, crs)
     refuse_standstill(trajectory)
@@ -180,61 +179,89 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if time_note:
         progress.info(time_note)
     fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
-    trajectory = fitted.trajectory
-    frame = _frame_of(files, trajectory, crs, has_time, progress)
+    frame = _frame_of(files, fitted.trajectory, crs, has_time, progress)
     samples = sample_files(files)
-    intensity, intensity_note = intensity_source_of(samples, settings.intensity_from)
-    coarse_note, rounding = coarse_coordinates(samples)
-    for note in (coarse_note, intensity_note):
-        if note:
-            progress.warn(note)
+    intensity, rounding = _intensity_source(samples, settings, progress)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
                          settings.memory_limit, folder=None if shared is None else shared.points)
     reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
     again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = READING.read_progress if again else 1.0
-    if shared is None:
-        reader.read(files, settings.block, progress.part(0.0, read_at))
-    else:
-        shared.points.mkdir(exist_ok=True)
-        reader.read_in_parts(files, settings.block, shared.reading, progress.part(0.0, READING.parts_progress * read_at))
+    _read_points(reader, files, settings.block, shared, progress.part(0.0, read_at))
     _say_left_out(files, frame, reader, settings, progress)
     height = float(np.mean(list(reader.heights.values())))
-    feet = _check_height(height, crs, fitted.seen or reader.uneven, progress)
-    total = sum(file.count for file in files)
-    scanner_field, scanners = reader.census.choose(settings.scanner_field)
-    survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
-                    reader.brightest > reader.darkest, has_time,
-                    dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
-    progress.info(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
-                 f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
+    feet = _check_height(height, crs, (fitted.seen, reader.uneven), progress)
+    survey = _survey_of(files, frame, reader, settings, crs, progress)
+    progress.info(f"Points read: {survey.counts['read']:,} from {len(files)} file(s), {store.count:,} near the road kept; "
+                 f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); "
                  f"sensor {height:.2f} m above the road.")
-    time, place = _sampled(files, reader, has_time, progress)
-    if intensity.field == "rgb":
-        progress.info("The brightness of the points' colours is taken as their intensity.")
-    if not survey.has_intensity and (note := without_intensity(files, settings.intensity_from, list(samples[0].fields))):
-        progress.warn(note)
-    if has_time and len(scanners) == 1:
-        at = read_at if shared is None else READING.parts_progress * read_at
-        _tell_scanners_apart(survey, time, place, reader.slots.stride, progress.part(at, at))
-    if shared is not None:
-        shared.ordered.mkdir(exist_ok=True)
-        survey.put_in_order(shared.ordered, shared.ordering, progress.part(READING.parts_progress * read_at, read_at))
-    if has_time and not feet:   # a scanner that rides three times too high sees three times too far
-        _check_clock(survey, progress)
-    measured = survey.store
-    mounted = lay_scanners(survey, progress.part(read_at, read_at), shared.points if shared else None) if has_time and not feet else 0.0
-    if again:
-        adjust_passes(survey, progress.part(READING.read_progress, 1.0), shared.points if shared else None)
-    _see_passes(survey, settings.fit_passes, measured, shared, progress)
+    _say_brightness(survey, intensity, settings, samples, progress)
+    at = read_at if shared is None else READING.parts_progress * read_at
+    _tell_scanners_apart(survey, reader, progress.part(at, at))
+    _put_in_order(survey, shared, progress.part(at, read_at))
+    mounted = _lay_scanners_and_passes(survey, again, bool(feet), shared, progress)
+    _see_passes(survey, settings.fit_passes, store, shared, progress)
     # what the user says overrules what lies beside the trajectory
-    if across := max(settings.trajectory_sigma or trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted):
-        # what passes differ by is part of the same error
-        differ = survey.frame.pass_sigma
-        survey.frame.pass_sigma = {road: differ.get(road, SigmaAlong.everywhere(0.0)).at_least(across) for road in range(len(frame.roads))}
+    _widen_sigma(survey.frame, max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted))
     if shared is not None:
         survey.keep(shared.ordered)
     return survey
+
+
+def _intensity_source(samples, settings, progress):
+    """How intensities are read, and m that coarse coordinates leave open across."""
+    intensity, intensity_note = intensity_source_of(samples, settings.intensity_from)
+    coarse_note, rounding = coarse_coordinates(samples)
+    for note in filter(None, (coarse_note, intensity_note)):
+        progress.warn(note)
+    return intensity, rounding
+
+
+def _read_points(reader, files, block, shared, progress):
+    if shared is None:
+        reader.read(files, block, progress)
+    else:
+        shared.points.mkdir(exist_ok=True)
+        reader.read_in_parts(files, block, shared.reading, progress.part(0.0, READING.parts_progress))
+
+
+def _survey_of(files, frame, reader, settings, crs, progress):
+    """The Survey of points as they were read."""
+    total, store = sum(file.count for file in files), reader.store
+    scanner_field, scanners = reader.summary.census.choose(settings.scanner_field)
+    return Survey(files, frame, store, crs, reader.heights, scanner_field, scanners, reader.summary.brightest > reader.summary.darkest,
+                  frame.has_time, dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
+
+
+def _put_in_order(survey, shared, progress):
+    if shared is not None:
+        shared.ordered.mkdir(exist_ok=True)
+        survey.put_in_order(shared.ordered, shared.ordering, progress)
+
+
+def _say_brightness(survey, intensity, settings, samples, progress):
+    if intensity.field == "rgb":
+        progress.info("The brightness of the points' colours is taken as their intensity.")
+    if not survey.has_intensity and (note := without_intensity(survey.files, settings.intensity_from, list(samples[0].fields))):
+        progress.warn(note)
+
+
+def _lay_scanners_and_passes(survey, again, feet, shared, progress):
+    """Lay scanners on each other and, where they drive `again`, passes; m that the mounting of scanners leaves open across."""
+    folder, mounted = shared.points if shared else None, 0.0
+    if survey.has_time and not feet:   # a scanner that rides three times too high sees three times too far
+        _check_clock(survey, progress)
+        read_at = READING.read_progress if again else 1.0
+        mounted = lay_scanners(survey, progress.part(read_at, read_at), folder)
+    if again:
+        adjust_passes(survey, progress.part(READING.read_progress, 1.0), folder)
+    return mounted
+
+
+def _widen_sigma(frame, across):
+    """Know the passes of a frame no better than to `across` m; what they differ by is part of the same error."""
+    if across:
+        frame.pass_sigma = {road: frame.pass_sigma.get(road, SigmaAlong.everywhere(0.0)).at_least(across) for road in range(len(frame.roads))}
 
 
 def _metric_crs(files, trajectory, settings, progress):
@@ -267,13 +294,13 @@ def _frame_of(files, trajectory, crs, has_time, progress):
 
 def _say_left_out(files, frame, reader, settings, progress):
     """Refuse clouds that do not lie at the road, and tell of points that were not taken and of heights that change."""
-    total = sum(file.count for file in files)
+    total, left = sum(file.count for file in files), reader.summary
     if not reader.store.count:
         raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
-    if reader.excluded:
-        progress.info(f"{reader.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
-    if reader.unplaced_time:
-        progress.warn(f"{reader.unplaced_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
+    if left.excluded:
+        progress.info(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
+    if left.without_time:
+        progress.warn(f"{left.without_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
                       "trajectory's.")
     if reader.uneven:
         progress.warn("The trajectory does not keep to one height above the road: half of the points under the vehicle lie more than "
@@ -290,7 +317,7 @@ def _check_height(height, crs, explained, progress):
             "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
     if feet := unit_note(height, crs):
         progress.warn(feet)
-    elif not explained and not 0.0 < height < READING.highest_sensor:
+    elif not any(explained) and not 0.0 < height < READING.highest_sensor:
         progress.warn(f"The trajectory lies {abs(height):.1f} m {'above' if height > 0 else 'below'} the road; scanners ride up to "
                       f"{READING.highest_sensor:g} m above it. Heights of cloud and trajectory seem to be of two kinds (above the ellipsoid and "
                       "above sea level), in feet, or upside down. Export both anew with one kind of heights in metres.")
@@ -320,10 +347,10 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     return max((length for length in lengths if length * density <= READING.section_points), default=STORE.section_length)
 
 
-def _sampled(files, reader, has_time, progress):
-    """Times and places of the points sampled, each once, and a word on those that files have in common; empty without times."""
+def _sampled(survey, reader, progress):
+    """Times and places of the points sampled, each once, and a word on those that files have in common."""
     time, place = (np.concatenate(column) for column in zip((np.empty(0), np.empty((0, 3), np.int32)), *reader.sampled))
-    if not has_time or len(files) == 1 or not may_overlap(files):
+    if len(survey.files) == 1 or not may_overlap(survey.files):
         return time, place
     rows = distinct_rows(time, place)
     if len(rows) < len(time):
@@ -332,15 +359,18 @@ def _sampled(files, reader, has_time, progress):
     return time[rows], place[rows]
 
 
-def _tell_scanners_apart(survey, time, place, stride, progress):
+def _tell_scanners_apart(survey, reader, progress):
     """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey tell them apart."""
     from .estimation.estimate import splitter_of
     from .estimation.interleaved import told_apart
     from .estimation.samples import samples_of
 
-    if not len(time) or time.min() == time.max():
+    if not survey.has_time:
         return
-    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), stride)
+    time, place = _sampled(survey, reader, progress)
+    if len(survey.scanners) > 1 or not len(time) or time.min() == time.max():
+        return
+    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), reader.slots.stride)
     survey.splitter = splitter_of(samples, progress)
     if survey.splitter is not None:
         survey.scanners = list(range(survey.splitter.poses.scanners))
@@ -409,6 +439,19 @@ def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     if _runs_through(low, high, y, x, reach):
         return ("In one of them x and y are exchanged: where the trajectory's x is its easting or it is in longitude and latitude, export the cloud "
                 "with the easting as x; otherwise name the trajectory's columns the other way round, or swap them.")
+    if advice := _advice_on_units(low, high, x, y, crs, reach):
+        return advice
+    if crs and _runs_through(low, high, *_angles_exchanged(x, y, crs), reach):
+        return ("The trajectory's longitude and latitude are exchanged: it runs through the cloud where each is taken for the other. Name its "
+                "columns the other way round, and run again.")
+    if trajectory_crs:
+        return f"Both were taken to be in {crs_name(crs)}. Check that they belong to one survey, and the CRS of the trajectory."
+    cloud = f"The cloud is in {crs_name(crs)}, the trajectory" if crs else "The trajectory"
+    return f"{cloud} carries no CRS. Give it the one its coordinates are in (Import trajectory does), and check that both belong to one survey."
+
+
+def _advice_on_units(low, high, x, y, crs, reach):
+    """The advice where cloud or trajectory seem to be in feet, in degrees, or counted from the centre of the earth; "" where they do not."""
     if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         if not as_in_file(crs)[1].metric:
             return "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does."
@@ -417,18 +460,12 @@ def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         return ("The trajectory's coordinates are the cloud's in feet: give it the CRS in feet that it is in, as Import trajectory does, or convert "
                 "it to metres.")
-    if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:
+    if np.abs([low[:2], high[:2]]).max() <= 180 and (high - low)[:2].max() < 1.0:
         return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
     if EARTH_RADIUS[0] < np.linalg.norm((low + high) / 2) < EARTH_RADIUS[1]:
         return ("The cloud's coordinates are as far from 0, 0, 0 as the ground is from the centre of the earth: reproject it from those "
                 "earth-centred coordinates to a projected CRS, such as the UTM zone of the survey.")
-    if crs and _runs_through(low, high, *_angles_exchanged(x, y, crs), reach):
-        return ("The trajectory's longitude and latitude are exchanged: it runs through the cloud where each is taken for the other. Name its "
-                "columns the other way round, and run again.")
-    if trajectory_crs:
-        return f"Both were taken to be in {crs_name(crs)}. Check that they belong to one survey, and the CRS of the trajectory."
-    cloud = f"The cloud is in {crs_name(crs)}, the trajectory" if crs else "The trajectory"
-    return f"{cloud} carries no CRS. Give it the one its coordinates are in (Import trajectory does), and check that both belong to one survey."
+    return ""
 
 
 def _angles_exchanged(x, y, crs):
@@ -441,13 +478,13 @@ def _angles_exchanged(x, y, crs):
 
 
 def _no_overlap(files, frame, reader, corridor):
-    if reader.excluded == sum(file.count for file in files):
+    if reader.summary.excluded == sum(file.count for file in files):
         return ("All points are withheld or classified as noise (LAS classes 7 and 18), which are left out. Give the cloud as it was before its "
                 "classification, or with these classes corrected.")
-    if reader.unplaced_time:
+    if reader.summary.without_time:
         starts, ends = [p.time[0] for p in frame.passes], [p.time[-1] for p in frame.passes]
         times = f"{min(starts):.1f} s to {max(ends):.1f} s"
-        return (f"No point was measured while the trajectory was driven: {reader.unplaced_time} points lie outside "
+        return (f"No point was measured while the trajectory was driven: {reader.summary.without_time} points lie outside "
                 f"its time, {times}. Set the trajectory's time system, or check that both belong to one survey.")
     return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that "
             "cloud and trajectory belong to one survey and use one CRS.")

@@ -88,6 +88,9 @@ EXTRA_FIELDS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", Non
 CORRECTED_FIELD = ("intensity_corrected", "float32", "Intensity, range corrected", None)
 CLUSTER_FIELD = ("cluster", "int32", "Cluster of paint", None)
 SPACING_FIELD = ("spacing", "uint16", "Spacing across the road", MILLIMETRE)
+COPIED_FIELDS = {"time": "gps_time", "intensity": "intensity", "source": "point_source_id", "pass_number": "pass"}
+SCALED_FIELDS = (("s", "station_m", COORDINATE_SCALE), ("d", "offset_m", COORDINATE_SCALE), ("half_width", "half_width", MILLIMETRE),
+                 ("spacing", "spacing", MILLIMETRE))
 REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 
 
@@ -134,9 +137,9 @@ def _farthest(road_points):
     return max(ends, default=0) * COORDINATE_SCALE + READING.max_correction
 
 
-def _whole(units, share):
-    """Coordinates in units of the file, of which one unit of 0.1 mm is `share`."""
-    return units if abs(share - 1.0) < 1e-12 else np.rint(units * share)
+def _whole(numbers, share):
+    """Whole numbers in another unit, of which one of theirs is `share`."""
+    return numbers if abs(share - 1.0) < 1e-12 else np.rint(numbers * share)
 
 
 def _record(road_points, road, number, header):
@@ -178,30 +181,11 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         origin, scales, total = np.asarray(header.offsets, float), np.asarray(header.scales), header.point_count
         # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
         farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
-        dtype = point_dtype(ROAD_POINT, farthest)
         crs, moves, sigma = cloud_crs(header), PassCorrections.of_records(header.vlrs), sigma_of_records(header.vlrs)
-    has_corrected, has_cluster, has_spacing = (name in names for name in ("intensity_corrected", "cluster", "spacing"))
-    store = SectionStore(dtype)
+    store = SectionStore(point_dtype(ROAD_POINT, farthest))
     done = 0
     for block in read_blocks(path, LAS.points_per_block):
-        records = np.zeros(len(block), dtype)
-        # another program may have rewritten the file with its own scale
-        for _axis, (name, scale) in enumerate(zip("xyz", scales)):
-            raw = np.asarray(block[name.upper()])
-            records[name] = raw if abs(scale - COORDINATE_SCALE) < 1e-12 else np.rint(raw * (scale / COORDINATE_SCALE))
-        records["time"] = block["gps_time"]
-        records["intensity"], records["source"] = block["intensity"], block["point_source_id"]
-        records["returns"] = np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
-        records["pass_number"] = block["pass"]
-        records["scanner"] = block["scanner"] if "scanner" in names else 0
-        records["s"] = np.rint(np.asarray(block["station_m"], float) / COORDINATE_SCALE)
-        records["d"] = np.rint(np.asarray(block["offset_m"], float) / COORDINATE_SCALE)
-        records["half_width"] = np.rint(np.asarray(block["half_width"], float) / MILLIMETRE)
-        records["corrected"] = block["intensity_corrected"] if has_corrected else np.nan
-        records["cluster"] = block["cluster"] if has_cluster else 0
-        records["covered"] = block["covered"] if "covered" in names else 0
-        if has_spacing:
-            records["spacing"] = np.rint(np.asarray(block["spacing"], float) / MILLIMETRE)
+        records = _read_records(block, names, scales, store.dtype)
         if moves is not None:
             for name, moved in zip("xyz", moves.units(records)):
                 records[name] += moved
@@ -212,4 +196,22 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         progress.report(done / max(total, 1))
     if not store.count:
         raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
-    return RoadPoints(store, origin, crs, has_corrected, has_cluster, moves, has_spacing, sigma)
+    return RoadPoints(store, origin, crs, "intensity_corrected" in names, "cluster" in names, moves, "spacing" in names, sigma)
+
+
+def _read_records(block, names, scales, dtype):
+    """The records of a laspy block, of which the file has the fields `names`; those that it lacks have their defaults."""
+    records = np.zeros(len(block), dtype)
+    # another program may have rewritten the file with its own scale
+    for name, scale in zip("xyz", scales):
+        records[name] = _whole(np.asarray(block[name.upper()]), scale / COORDINATE_SCALE)
+    for name, source in COPIED_FIELDS.items():
+        records[name] = block[source]
+    records["returns"] = np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
+    for name, source, unit in SCALED_FIELDS:
+        if source in names:
+            records[name] = np.rint(np.asarray(block[source], float) / unit)
+    records["corrected"] = block["intensity_corrected"] if "intensity_corrected" in names else np.nan
+    for name in ("scanner", "cluster", "covered"):
+        records[name] = block[name] if name in names else 0
+    return records

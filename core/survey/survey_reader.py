@@ -22,7 +22,7 @@ from .blocks import BlockReader, BlockSummary, ChosenPoints, HeightFilter, Point
 from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
 from .las.parallel_reader import ParallelCloudReader
-from .las.point_fields import ScannerCensus, numbers_by_value
+from .las.point_fields import numbers_by_value
 from .las.reader import CloudHeader
 from .las.samples import TimeSlots
 from .store.columns import Columns
@@ -35,8 +35,7 @@ from .weights import READING
 class SurveyReader:
     """Reads files into a section store and gathers statistics of the whole survey, complete after `read` or `read_in_parts`.
 
-    darkest, brightest : lowest and highest intensity
-    unplaced_time, excluded : numbers of points at a time of no pass, and of those that are withheld or classified as noise
+    summary : BlockSummary of all points
     heights, uneven : {pass number: metres from the trajectory down to the road}, and as of `HeightHistogram.uneven`
     slots, sampled : TimeSlots of the points by which scanners are told apart that no field distinguishes; their (N,) times and (N, 3) units
         of 0.1 mm, in no order; without times none
@@ -44,7 +43,7 @@ class SurveyReader:
 
     def __init__(self, frame: RoadFrame, store: SectionStore, choice: PointChoice):
         self.frame, self.store, self.choice = frame, store, choice
-        self.census, self.darkest, self.brightest, self.unplaced_time, self.excluded = ScannerCensus(), 65535, 0, 0, 0
+        self.summary = BlockSummary()
         self.slots = TimeSlots(1)
         self._blocks: BlockReader
         # both are created once the rough height of the road is known; until then parts of blocks wait
@@ -116,13 +115,14 @@ class SurveyReader:
 
     def _read_block(self, load):
         """BlockSummary, points by road, whether these are filtered by height and partitioned, and the size of the block."""
-        block, ground, found = load(), self._ground, BlockSummary()
-        parts: Any = self._blocks.unfiltered(block, found) if ground is None else self._blocks.read(block, found, ground, self._chosen, self.store)
-        return found, parts, ground is not None, len(block)
+        block, ground, summary = load(), self._ground, BlockSummary()
+        parts: Any = self._blocks.unfiltered(block, summary) if ground is None else \
+            self._blocks.read(block, summary, ground, self._chosen, self.store)
+        return summary, parts, ground is not None, len(block)
 
-    def _take(self, found, parts, parted, count):
+    def _take(self, summary, parts, parted, count):
         """Take the result of a block, in the order of the files."""
-        self._hear(found)
+        self.summary.join(summary)
         if parted:
             for part in parts:
                 self.store.add(part)
@@ -137,18 +137,11 @@ class SurveyReader:
 
     def _take_part(self, part):
         """Take a part that somebody else read, in the order of the files."""
-        self._hear(part.found)
+        self.summary.join(part.summary)
         self._chosen.histogram.join(part.drops)
         self._chosen.sampled.append((part.times, part.places))
         if self.store.folder is not None:
             self.store.adopt(part.index, self.store.folder)
-
-    def _hear(self, found):
-        self.darkest, self.brightest = min(self.darkest, found.darkest), max(self.brightest, found.brightest)
-        self.unplaced_time += found.without_time
-        self.excluded += found.excluded
-        for name, times in found.scanners.items():
-            self.census.take(name, times)
 
     def _settle(self):
         """Estimate the rough height of the road and store the points that waited for it."""
@@ -172,13 +165,13 @@ class SurveyReader:
 
 @dataclass(frozen=True)
 class _PartOfFiles:
-    """What was found in a range of points: where those lie that were kept, and what all contribute to the knowledge of the cloud.
+    """What a range of points shows: where those lie that were kept, and what all contribute to the knowledge of the cloud.
 
     drops : {pass number: counts of its HeightHistogram}; times, places : (N,) s and (N, 3) units of 0.1 mm of the sampled points
     """
 
     index: StoreIndex
-    found: BlockSummary
+    summary: BlockSummary
     drops: dict[int, np.ndarray]
     times: np.ndarray
     places: np.ndarray
@@ -234,26 +227,26 @@ def _parts_of_files(columns: list[list[str]], section_length: float, memory_limi
 
 def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
     """The phase of reading: the points of some blocks, (first, last + 1) of their numbers, that lie near the road."""
-    chosen, found = source.reader.chosen(source.drop), BlockSummary()
+    chosen, summary = source.reader.chosen(source.drop), BlockSummary()
     with source.store.part() as store:
         for number, first, count in source.ranges[item[0]:item[1]].tolist():
             for points in source.clouds.points(source.files[number], first, count, source.block):
                 check_cancelled()
-                for part in source.reader.read(points, found, source.ground, chosen, store):
+                for part in source.reader.read(points, summary, source.ground, chosen, store):
                     store.add(part)
         index = store.index()
     sampled = list(zip(*chosen.sampled)) or [[np.empty(0)], [np.empty((0, 3), np.int32)]]
-    return _PartOfFiles(index, found, chosen.histogram.counts, *(np.concatenate(column) for column in sampled))
+    return _PartOfFiles(index, summary, chosen.histogram.counts, *(np.concatenate(column) for column in sampled))
 
 
 def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
     """One part of several that follow each other."""
-    found = BlockSummary()
+    summary = BlockSummary()
     drops: dict[int, np.ndarray] = {}
     for part in parts:
-        found.join(part.found)
+        summary.join(part.summary)
         drops = {number: counts + drops.get(number, 0) for number, counts in part.drops.items()}
-    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), found, drops, *(np.concatenate([getattr(part, name) for part in parts])
+    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), summary, drops, *(np.concatenate([getattr(part, name) for part in parts])
                                                                                    for name in ("times", "places")))
 
 
@@ -278,8 +271,8 @@ class UnorderedPoints:
             return self.store.points_between(item[0], item[1] * length, item[2] * length)
 
         phase = Phase(_order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length), points)
-        found = list(executor.run(phase, self.store.stretches(STRETCH_POINTS, self.store.numbers()), progress))
-        self.store.take_over(StoreIndex.join(found), self.folder)
+        parts = list(executor.run(phase, self.store.stretches(STRETCH_POINTS, self.store.numbers()), progress))
+        self.store.take_over(StoreIndex.join(parts), self.folder)
 
 
 def _unordered_points(contents: dict[str, Any], points_folder: str, finishing: Finishing | None, folder: str) -> UnorderedPoints:

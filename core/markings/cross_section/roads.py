@@ -18,10 +18,9 @@ from ...survey.store.road_points import RoadPoints
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..weights import ROADS
-from .candidates import Boundaries, Candidates, boundary_candidates, gather_boundaries
+from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import (
-    Evidence,
     between_ends,
     borders_of_hatching,
     driven_offsets,
@@ -74,58 +73,71 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     taken : second readings that an analyst took
     """
     drives = {number: driven_offsets(frame, number, of_road.s) for number, of_road in lines.items()}
-    arrows = {number: arrows_of(markings, frame, number) for number in lines} if markings is not None else {}
-    # lanes lead as they were driven; which of them lead alike arrows tell even then
-    against = side == "automatic" and weights.arrow_against * sum(
-        driven_against(found, lines[number].s, *drives[number]) for number, found in arrows.items()) > weights.against_arrows
-    if against:
-        arrows = {number: found * (1, 1, -1) for number, found in arrows.items()}
+    arrows, against = _arrows_and_drive(markings, frame, lines, drives, side == "automatic", weights)
     if width_asked:
         weights = replace(weights, width_sigma=weights.width_sigma_asked, other_width=0.0, odd_width=weights.odd_width_asked)
     if side != "automatic":
         weights = replace(weights, driven_against=weights.driven_against_asked)
-
-    def known_of(number: int, of_road: CrossSections) -> tuple[Boundaries, Candidates, Evidence]:
-        s, driven, likely = of_road.s, drives[number], _likely_ends(of_road, usual_width)
-        covered, ends = _surface(road_points, paint, number, s, likely)
-        open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
-        hatched, borders = _closed_areas(markings, frame, number, s, driven[0])
-        bends = np.abs(frame.road(number).curvature(s)) > 1 / ROADS.widened_radius
-        boundaries = gather_boundaries(of_road, (curbs or {}).get(number), ends, open_ends, bends, borders, (pavement or {}).get(number),
-                                       dash_lengths(of_road, markings, number))
-        candidates = boundary_candidates(boundaries, weights)
-        evidence = evidence_of(candidates, s, *driven, covered, hatched, arrows.get(number), markings, number, other_carriageway(frame, number, s))
-        return boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, s))
-
     known = {}
     for k, (number, of_road) in enumerate(lines.items()):
-        known[number] = known_of(number, of_road)
+        edges = [(sections or {}).get(number) for sections in (curbs, pavement)]
+        known[number] = _evidence_of_road(of_road, number, frame, edges, (road_points, paint), markings, arrows.get(number), drives[number],
+                                          usual_width, weights, taken)
         progress.report(0.4 * (k + 1) / len(lines))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
-    found = dict(zip(sides, ordered_map(lambda first: _estimates(known, first, usual_width, weights), sides, progress.part(0.4, 0.7))))
-    total, unnamed, once = ({first: sum(getattr(one, name) for one in of_roads.values()) + (weights.left_hand if first > 0 else 0.0)
-                             for first, of_roads in found.items()} for name in ("total", "unnamed_total", "once_total"))
-    best = min(total, key=lambda first: total[first])
-    # names that decide the side are not made from the same evidence
-    named = min(unnamed, key=lambda first: unnamed[first]) != best
-    behind = np.inf if len(sides) == 1 or named else once[-best] - once[best]
-    opposite = np.inf if len(sides) == 1 or named else weights.left_hand * -best + sum(
-        (found[-best][number].unnamed_total - estimate.unnamed_total) * min(1.0, weights.repeats / max(float(estimate.candidates.length.sum()), 1.0))
-        for number, estimate in found[best].items())
+    estimates = _estimates(known, sides, usual_width, weights, progress.part(0.4, 0.7))
+    best, named, behind, opposite = _best_side(estimates, weights)
     used = tuple(first for first in sides if first == best or behind < ROADS.sure_side or opposite < weights.doubt)
-    width = usual_width if width_asked else _usual_width(known, found[best], usual_width)
+    width = usual_width if width_asked else _usual_width(known, estimates[best], usual_width)
     # the road's own width tells lanes better than that of a country
     if width != usual_width:
-        found = dict(zip(used, ordered_map(lambda first: _estimates(known, first, width, weights), used, progress.part(0.7, 1.0))))
+        estimates = _estimates(known, used, width, weights, progress.part(0.7, 1.0))
     roads = {}
-    for number, estimate in found[best].items():
+    for number, estimate in estimates[best].items():
         if named:
             estimate = replace(estimate, unnamed=np.full(len(estimate.choice), -1))
         elif len(used) > 1:
-            other = found[-best][number]
+            other = estimates[-best][number]
             estimate = replace(estimate, other=other if behind < ROADS.sure_side else None, behind=behind, opposite=other, opposite_behind=opposite)
         roads[number] = EstimatedRoad(lines[number], known[number][0], estimate)
     return RoadEstimates(roads, "right" if best < 0 else "left", behind >= ROADS.sure_side, width, against)
+
+
+def _arrows_and_drive(markings, frame, lines, drives, automatic, weights):
+    """The arrows of each road, turned where the survey was driven against them, and whether it was: which lanes lead alike they tell even then."""
+    arrows = {number: arrows_of(markings, frame, number) for number in lines} if markings is not None else {}
+    against = automatic and weights.arrow_against * sum(
+        driven_against(of_road, lines[number].s, *drives[number]) for number, of_road in arrows.items()) > weights.against_arrows
+    return {number: of_road * (1, 1, -1) for number, of_road in arrows.items()} if against else arrows, against
+
+
+def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, driven, usual_width, weights, taken):
+    """Boundaries, Candidates and Evidence of one road; `edges` with and without a curb, `points` of the road and of paint, each may be None."""
+    s, likely, (curbs, pavement) = of_road.s, _likely_ends(of_road, usual_width), edges
+    covered, ends = _surface(*points, number, s, likely)
+    open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
+    hatched, borders = _closed_areas(markings, frame, number, s, driven[0])
+    bends = np.abs(frame.road(number).curvature(s)) > 1 / ROADS.widened_radius
+    boundaries = gather_boundaries(of_road, curbs, ends, open_ends, bends, borders, pavement, dash_lengths(of_road, markings, number))
+    candidates = boundary_candidates(boundaries, weights)
+    evidence = evidence_of(candidates, s, *driven, covered, hatched, arrows, markings, number, other_carriageway(frame, number, s))
+    return boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, s))
+
+
+def _best_side(estimates, weights):
+    """The most probable side of traffic, whether names of lines decide it, and by how many nats the other is behind, once and as a second reading.
+
+    Names that decide the side are not made from the same evidence.
+    """
+    total, unnamed, once = ({first: sum(getattr(estimate, name) for estimate in of_roads.values()) + (weights.left_hand if first > 0 else 0.0)
+                             for first, of_roads in estimates.items()} for name in ("total", "unnamed_total", "once_total"))
+    best, best_unnamed = (min(nats, key=nats.__getitem__) for nats in (total, unnamed))
+    if len(estimates) == 1 or best != best_unnamed:
+        return best, best != best_unnamed, np.inf, np.inf
+    opposite = weights.left_hand * -best + sum(
+        (estimates[-best][number].unnamed_total - estimate.unnamed_total)
+        * min(1.0, weights.repeats / max(float(estimate.candidates.length.sum()), 1.0)) for number, estimate in estimates[best].items())
+    return best, False, once[-best] - once[best], opposite
 
 
 def _taken_on(taken, number, candidates, s):
@@ -170,8 +182,12 @@ def _likely_ends(lines, width):
     return found + np.array([[width], [-width]])
 
 
-def _estimates(known, first_direction, width, weights):
-    return {number: estimate_road(candidates, evidence, first_direction, width, weights) for number, (_, candidates, evidence) in known.items()}
+def _estimates(known, sides, width, weights, progress):
+    """{side of traffic: {number of the road: RoadEstimate}}."""
+    def of_side(first):
+        return {number: estimate_road(candidates, evidence, first, width, weights) for number, (_, candidates, evidence) in known.items()}
+
+    return dict(zip(sides, ordered_map(of_side, sides, progress)))
 
 
 def _usual_width(known, estimates, usual):

@@ -13,17 +13,15 @@ from scipy.spatial import cKDTree
 from ...common.parallel import check_cancelled
 from ...curves.line_segments import SegmentIndex, single_lines
 from ...survey.store.records import Points
+from ..weights import STRANDS
 
-CURVATURE_KERNEL = 0.2       # m, radius of the neighbourhood, as in the driving-line thesis
-MAX_CANDIDATES = 1800        # marking points, evenly spread, that are tested for being beside a line,
-MAX_CURVATURE_POINTS = 600   # and of which so many have their curvature computed
-MIN_KERNEL_POINTS = 12       # neighbours, twice the coefficients of a quadric
-MIN_WIDTH_RATIO = 0.03       # of the variances along the second and the first principal direction: below, the neighbours lie in a line
-MAX_QUADRIC_CONDITION = 1e3  # condition number of the normal equations of the quadric
-MAX_PAINT_DISTANCE = 0.25    # m from a fitted line within which a point is its paint
-KERNELS_PER_BATCH = 100      # neighbourhoods solved at a time
-HASHED_CELLS = 2**20         # hash values of cells of the kernel's size
-POINTS_LOOKED_AT = 2**18     # marking points looked at together
+CURVATURE_KERNEL = 0.2   # source: m, radius of the neighbourhood, as in the driving-line thesis
+MAX_CANDIDATES = 1800   # derived: marking points, evenly spread, that are tested for being beside a line,
+MAX_CURVATURE_POINTS = 600   # derived: and of which so many have their curvature computed
+MIN_KERNEL_POINTS = 12   # derived: neighbours, twice the coefficients of a quadric
+KERNELS_PER_BATCH = 100   # derived: neighbourhoods solved at a time
+HASHED_CELLS = 2**20   # derived: hash values of cells of the kernel's size
+POINTS_LOOKED_AT = 2**18   # derived: marking points looked at together
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,7 @@ def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[flo
     which = _spread(len(points), MAX_CANDIDATES)
     some = points[which]
     nearest = segments.nearest(np.c_[some.x, some.y])
-    beside = np.flatnonzero((nearest.distance <= MAX_PAINT_DISTANCE) & np.isfinite(nearest.z))
+    beside = np.flatnonzero((nearest.distance <= STRANDS.max_paint_distance) & np.isfinite(nearest.z))
     if len(beside) < MIN_KERNEL_POINTS:
         return None
     beside = beside[_spread(len(beside), MAX_CURVATURE_POINTS)]
@@ -123,7 +121,7 @@ def _before_and_after(xyz, which, nearest, segments):
         owner, member = _around(tree, xyz, which[rows], CURVATURE_KERNEL)
         own = rows[owner]
         step = xyz[member, :2] - nearest.xy[own]
-        beside = np.abs(step[:, 1] * ahead[own, 0] - step[:, 0] * ahead[own, 1]) <= MAX_PAINT_DISTANCE
+        beside = np.abs(step[:, 1] * ahead[own, 0] - step[:, 0] * ahead[own, 1]) <= STRANDS.max_paint_distance
         owner, member, own, step = owner[beside], member[beside], own[beside], step[beside]
         count = np.bincount(owner, minlength=len(rows))
         off = xyz[member] - xyz[which[own]]
@@ -192,6 +190,6 @@ def _quadrics(off, count, radius):
     _, b, c, d, e, g = np.linalg.solve(normal, right[:, :, None])[:, :, 0].T
     fx, fy, fxx, fxy, fyy = b / radius, c / radius, 2 * d / radius**2, e / radius**2, 2 * g / radius**2
     bend = ((1 + fx**2) * fyy - 2 * fx * fy * fxy + (1 + fy**2) * fxx) / (2 * (1 + fx**2 + fy**2)**1.5)
-    wide = values[:, 1] > MIN_WIDTH_RATIO * np.maximum(values[:, 2], 1e-12)
-    enough = (count >= MIN_KERNEL_POINTS) & wide & (np.linalg.cond(normal) < MAX_QUADRIC_CONDITION)
+    wide = values[:, 1] > STRANDS.min_width_ratio * np.maximum(values[:, 2], 1e-12)
+    enough = (count >= MIN_KERNEL_POINTS) & wide & (np.linalg.cond(normal) < STRANDS.max_quadric_condition)
     return np.where(enough, bend, np.nan)

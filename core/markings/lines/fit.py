@@ -77,7 +77,8 @@ class _LineShape:
     fit: CurveFit
     s: np.ndarray
     _station_to_u: tuple
-    _height: Callable[[np.ndarray], np.ndarray]
+    _height: Callable[[np.ndarray], np.ndarray]   # above the trajectory
+    _track_height: Callable[[np.ndarray], np.ndarray]
 
     def u(self, s: np.ndarray) -> np.ndarray:
         """Arc length on the curve at stations s, going on evenly beyond the ends."""
@@ -92,7 +93,7 @@ class _LineShape:
         u = np.linspace(ends[0], ends[1], count)
         stations, lengths = self._station_to_u
         s = np.interp(u, lengths, stations) + np.minimum(u - lengths[0], 0.0) + np.maximum(u - lengths[-1], 0.0)
-        return np.c_[self.fit.curve.at(u), self._height(s)]
+        return np.c_[self.fit.curve.at(u), self._height(s) + self._track_height(s)]
 
 
 def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], road: Road, trend: CommonTrend, edges: EdgesBeside,
@@ -135,14 +136,8 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
             fit = CurveFit(fit.curve, e[course.own], fit.parameters)
         rising = np.maximum.accumulate(u)
         keep = np.append(True, np.diff(rising) > 1e-6)
-        found.append(_LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]),
-                               _height_above(height, track_height)))
+        found.append(_LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]), height, track_height))
     return found, replaced
-
-
-def _height_above(height, track_height):
-    """The function of stations that gives the height of a line from that above the trajectory."""
-    return lambda s: height(s) + track_height(s)
 
 
 @dataclass

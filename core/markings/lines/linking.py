@@ -14,7 +14,7 @@ import numpy as np
 import shapely
 from scipy.optimize import linear_sum_assignment
 
-from ...common.arrays import linked_groups
+from ...common.arrays import linked_groups, mask_runs
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ...survey.frame.row_table import RowSpans
@@ -44,29 +44,24 @@ def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reac
     if not lines:
         return []
     places = [line.places() for line in lines]
-    counts = [len(s) for s, *_ in places]
-    owner = np.repeat(np.arange(len(lines)), counts)
+    owner = np.repeat(np.arange(len(lines)), [len(s) for s, *_ in places])
     s, d, weight = (np.concatenate([columns[k] for columns in places]) for k in (0, 1, 3))
     tips = np.array([line.first if at_start else line.last for line in lines])
+    # every line has a place near its tip
     near = np.flatnonzero(np.abs(s - tips[owner]) <= reach)
     owner, s, weight = owner[near], s[near], np.minimum(weight[near], 10.0)
     d = d[near] - trend.at(s)
-    starts = np.flatnonzero(np.r_[True, np.diff(owner) != 0]) if len(owner) else np.empty(0, int)
+    starts = np.flatnonzero(np.diff(owner, prepend=-1))
     count = np.diff(np.append(starts, len(owner)))
-    total = np.add.reduceat(weight, starts) if len(owner) else weight
-    middle, offset = (np.add.reduceat(v * weight, starts) / total if len(owner) else v for v in (s, d))
-    span = np.maximum.reduceat(s, starts) - np.minimum.reduceat(s, starts) if len(owner) else s
+    middle, offset = (np.add.reduceat(v * weight, starts) / np.add.reduceat(weight, starts) for v in (s, d))
+    span = np.maximum.reduceat(s, starts) - np.minimum.reduceat(s, starts)
     order = np.lexsort((d, owner))
     level = weighted_medians(d[order], weight[order], starts)
     away = s - np.repeat(middle, count)
-    squares = np.add.reduceat(weight * away**2, starts) if len(owner) else s
-    slope = np.add.reduceat(weight * away * (d - np.repeat(offset, count)), starts) / np.where(span < 1.0, 1.0, squares) if len(owner) else s
+    squares = np.where(span < 1.0, 1.0, np.add.reduceat(weight * away**2, starts))
+    slope = np.add.reduceat(weight * away * (d - np.repeat(offset, count)), starts) / squares
     slope = np.where(span < 1.0, 0.0, np.clip(slope, -TREND.max_line_slope, TREND.max_line_slope))
-    found = [_End(float(tip), float("nan"), 0.0, 0.0) for tip in tips]
-    for k, lv, sl, m, reached in zip(owner[starts].tolist(), level.tolist(), slope.tolist(), middle.tolist(), span.tolist()):
-        tip = float(tips[k])
-        found[k] = _End(tip, lv + sl * (tip - m), sl, reached)
-    return found
+    return [_End(*end) for end in np.column_stack([tips, level + slope * (tips - middle), slope, span]).tolist()]
 
 
 def _lateral_mismatch(before: _End, after: _End) -> float:
@@ -424,7 +419,7 @@ def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: Road
         states = [_states(road_points, road, course, some, seen) for some in steps]
         known = np.concatenate([*states, np.empty(0, int)])
         if np.count_nonzero(known == BARE) <= TREND.max_bare_share * np.count_nonzero(known != UNKNOWN):
-            found = [run for some, state in zip(steps, states) for run in _runs(some, state == FREE)]
+            found = [(some[a], some[b]) for some, state in zip(steps, states) for a, b in mask_runs(state == FREE)]
             unseen[k] = np.array([(a, b, seen.width) for a, b in found if b - a >= TREND.shortest_unseen]).reshape(-1, 3)
     return replace(lines, unseen=unseen)
 
@@ -520,12 +515,6 @@ def _states(road_points, road, course, steps, seen):
     room, nearest = high - low, np.minimum(high, -low)
     bare = (room < TREND.min_free_share * seen.width) | (nearest < TREND.core_share * seen.width)
     return np.where(bare, BARE, np.where(painted | (room <= TRACKS.max_track_gap), FREE, UNKNOWN))
-
-
-def _runs(steps, on):
-    """(K, 2) stations that runs of steps begin and end at."""
-    change = np.flatnonzero(np.diff(np.r_[False, on, False]))
-    return np.column_stack([steps[change[::2]], steps[change[1::2]]]).tolist()
 
 
 def with_paint_between_tracks(markings: MarkingObjects, lines: PaintedLines) -> MarkingObjects:

@@ -225,10 +225,8 @@ def _aside(strands):
 
 def _meet(one, other):
     """Whether one strand begins where the other ends."""
-    for a, b in ((one, other), (other, one)):
-        if abs(b.first - a.last) <= SELECTION.max_border_gap and abs(b.d[0] - a.d[-1]) <= SELECTION.max_bar_end_offset:
-            return True
-    return False
+    return any(abs(b.first - a.last) <= SELECTION.max_border_gap and abs(b.d[0] - a.d[-1]) <= SELECTION.max_bar_end_offset
+               for a, b in ((one, other), (other, one)))
 
 
 def _areas(hatched):

@@ -18,9 +18,8 @@ from ...intensity.tiled_image import TiledImage
 from ...io.geotiff import IntensityImage
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
-from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
+from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.store.road_points import RoadPoints
-from ...survey.store.section_store import SectionStore
 from ..road_grid import CELL_UNITS
 from ..weights import ASPHALT
 from .settings import MarkingSettings, PaintMethod
@@ -106,40 +105,12 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
             known[road].update(enumerate(found, first))
     phase = Phase(paint_of_windows, source, (settings, noisy, masked), lambda item: place_of(road_points, item[0]))
     items = [(stretch, {} if alone else bins_about(stretch, known[stretch[0]])) for stretch in stretches]
-    sections = _SectionWriter(paint.store)
     for (road, *_), painted in zip(stretches, executor.run(phase, items, progress.part(0.1 if alone else 0.4, 1.0))):
         for columns, x, y in painted:
-            sections.add(road, Columns(columns, road_points.store.dtype))
+            paint.store.append(road, Columns(columns, paint.store.dtype))
             if burn is not None:
                 burn(x, y)
-    sections.finish()
     return paint
-
-
-class _SectionWriter:
-    """Puts points, which come road by road and in the order of the road, into the sections of a store."""
-
-    def __init__(self, store: SectionStore):
-        self.store = store
-        self.key: tuple[int, int] | None = None
-        self.parts: list[Columns] = []
-
-    def add(self, road: int, records: Columns) -> None:
-        """Add Columns that follow all those added before."""
-        section = np.floor(records["s"] * COORDINATE_SCALE / self.store.section_length).astype(np.int64)
-        cuts = np.flatnonzero(np.diff(section)) + 1
-        for first, end in zip([0, *cuts], [*cuts, len(section)]):
-            if end > first:
-                if (road, section[first]) != self.key:
-                    self.finish()
-                    self.key = road, int(section[first])
-                self.parts.append(records[first:end])
-
-    def finish(self) -> None:
-        """Put the section that is not complete yet."""
-        if self.parts and self.key is not None:
-            self.store.put(*self.key, join_columns(self.parts, self.store.dtype))
-        self.parts = []
 
 
 # The scatter of single points of each scanner on asphalt decides whether the scanner is noisy: half of asphalt's intensity under multi-beam

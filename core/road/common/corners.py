@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from typing import ClassVar
 
 import numpy as np
 
@@ -34,7 +35,7 @@ class CurbSteps(Rows):
     behind : (M,) points of the raised ground
     """
 
-    PARTS = (("bottom", "u", "h"),)   # of a curb that each shows, and their offsets and heights
+    PARTS: ClassVar[tuple[tuple[str, str, str], ...]] = (("bottom", "u", "h"),)   # of a curb that each shows, and their offsets and heights
 
     profile: np.ndarray
     s: np.ndarray

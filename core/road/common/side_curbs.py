@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -21,6 +21,8 @@ from .tracking import StepChain, curb_chains, drop_short_curbs, link_steps, sele
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
+
+AnySteps = TypeVar("AnySteps", bound=CurbSteps)
 
 
 def steps_of_road(function: Callable, source: Any, road: int, settings: Any, sections: Sequence[tuple[int, int]], width: float,
@@ -57,7 +59,7 @@ def phase_along(function: Callable, source: Any, arguments: tuple[Any, ...], wid
     return Phase(function, source, arguments, place, size, join, CURBS.sections_together)
 
 
-def merged_passes(found: Sequence[CurbSteps]) -> CurbSteps:
+def merged_passes(found: Sequence[AnySteps]) -> AnySteps:
     """One step where several passes or scanners saw the same one: the mean, weighted by support."""
     steps = type(found[0]).join(found)
     if len(found) < 2 or not len(steps):

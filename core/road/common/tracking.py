@@ -186,7 +186,7 @@ def _wander(steps, members):
 
 
 def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
-                      near: Callable[[float], np.ndarray]) -> list[tuple[int, float, float]]:
+                      near: Callable[..., np.ndarray]) -> list[tuple[int, float, float]]:
     """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming, and what continues it.
 
     chains : list of StepChain of one side

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,7 +35,7 @@ class CurbReturn:
     kind : "main" (a piece of main curb that profiles missed), "corner", "side_street" or "island"
     closed : does it go all around an island?
     sigma : (N,) m, one sigma across that the steps share, of a line that was fitted as a whole; None of steps that were seen one by one
-    falls : (N,) m uphill of each step at which the ground is down again, NaN where it stays up; None where that does not matter
+    falls : (N,) m uphill of each step at which the ground is down again, NaN where it stays up; empty where that does not matter
     """
 
     steps: PlanSteps
@@ -45,7 +45,7 @@ class CurbReturn:
     kind: str
     closed: bool = False
     sigma: np.ndarray | None = None
-    falls: np.ndarray | None = None
+    falls: np.ndarray = field(default_factory=lambda: np.empty(0))
 
 
 def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarray, settings: CurbSettings) -> bool:
@@ -99,7 +99,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in alone.values())]
     chains = [chain for k, chain in enumerate(chains) if k not in alone]
     main_ends, lines = CurbLines([(x, y) for _, (x, y, _) in runs]), _LinesOfSteps([steps[chain.steps] for chain in chains])
-    found, apart = list(alone.values()), []
+    found, apart = list(alone.values()), list[CurbReturn]()
     for side, chain in zip(_sides_continued(runs, chains, steps), chains):
         own = steps[chain.steps]
         if side:
@@ -250,7 +250,7 @@ def island_outlines(islands: Sequence[CurbReturn]) -> list[CurbReturn]:
     """The lines about islands without those on top of one: a ramp that is lowered for a crossing meets the rest of the island in an edge."""
     inner = []
     for line in islands:
-        out = np.arange(RETURN.outline_margin, np.nanmax(line.falls, initial=0.0) - RETURN.outline_margin, RETURN.inner_distance)
+        out = np.arange(RETURN.outline_margin, float(np.nanmax(line.falls, initial=0.0)) - RETURN.outline_margin, RETURN.inner_distance)
         k, j = np.nonzero(out < (line.falls - RETURN.outline_margin)[:, None])
         own = line.steps
         inner.append(np.c_[own.x[k] + out[j] * own.nx[k], own.y[k] + out[j] * own.ny[k]])

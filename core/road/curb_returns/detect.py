@@ -176,11 +176,12 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     line, slopes = survey.frame.road(road), ground_slopes(raster.low)
     inside = np.concatenate([np.array([x, y])[:, inner], behind], axis=1)
     bounds = barrier.places[barrier.within(*raster.box)].T
-    driven, stepped = driven_ground(raster, slopes, *_track(survey, road, *(k * width for k in profiles)), inside, bounds[0], bounds[1], clear)
+    track = _track(survey, road, *(k * width for k in profiles))
+    driven, stepped = driven_ground(raster, slopes, track[0], track[1], inside, bounds[0], bounds[1], clear)
     views = _averaged_views(raster, (x, y, h), along, settings.layer_jump) if noisy else [raster]
     wanted = partial(_is_wanted, line=line, limits=limits, known=known, start=section[0] * width, end=section[1] * width)
-    places = step_places(raster, slopes, driven, stepped, clear, settings.max_height, wanted)
-    steps = measure_plan_steps(views, *places, 0.5 * clear, settings.max_height)
+    x, y, nx, ny = step_places(raster, slopes, driven, stepped, clear, settings.max_height, wanted)
+    steps = measure_plan_steps(views, x, y, nx, ny, 0.5 * clear, settings.max_height)
     tips = tips[line.within(tips.x, tips.y, section[0] * width, section[1] * width)]
     ends = FollowedEnds.join([tips, FollowedEnds.of_chains(link_plan_steps(steps), steps)])
     further = followed_steps(views[0], ends, 0.5 * clear, settings.max_height, settings.limits.clear_slope, partial(wanted, before_curbs=True))

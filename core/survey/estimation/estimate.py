@@ -19,7 +19,7 @@ from ..weights import ESTIMATE, HEAD, MIRROR, RAYS, TRACK
 from .adjustment import Adjusted, Returns, grown_poses
 from .interleaved import ScannerSplitter, lines_of_each, scan_line_directions, steps_of, told_apart
 from .poses import YAW, Poses, Spinning, first_poses, known_intervals, spinning_scanners
-from .samples import UNKNOWN_SCANNER, FirstTrack, Samples, first_track, read_samples, ridge_of, rounding_of
+from .samples import UNKNOWN_SCANNER, FirstTrack, Samples, first_track, read_samples, ridge_of, rounding_of, thinned
 from .turning_head import HeadTrack, head_heights, turning_heads
 
 WAYS = {"rays": "the rays of the mirrors", "turns": "the turns of a many-beam head", "density": "the density of the points, which is rough"}
@@ -119,7 +119,7 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
     found = None
     if by_field := samples.scanners > 1 and _all_take_part(samples, scanners):
         found = _adjusted(samples, tracks, scanners, progress)
-    if found is None or found.unexplained > RAYS.max_unexplained:
+    if not _explains(found):
         # a field may have numbered tiles or files
         if (apart := separated(samples, tracks, progress)) is not None:
             result = _of_rays(apart[0], tracks, *apart[1:], wkt)
@@ -128,7 +128,7 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
         if not by_field:
             refuse_handheld(tracks, scanners)
             found = _adjusted(samples, tracks, scanners, progress) if scanners else None
-    if found is not None and found.unexplained <= RAYS.max_unexplained:
+    if _explains(found):
         return _of_rays(samples, tracks, scanners, found, wkt)
     refuse_handheld(tracks, [])
     if found is None or not _could_be_driven(found):
@@ -141,6 +141,11 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
     result.notes.append(f"Returns lie {found.unexplained:.2f} m off the rays of a mirror (median), as those of tilted heads of many beams do: the "
                         "trajectory is less certain than where they keep to them.")
     return result
+
+
+def _explains(found):
+    """Whether returns lie on the rays of adjusted poses, None for none."""
+    return found is not None and found.unexplained <= RAYS.max_unexplained
 
 
 def _could_be_driven(found):
@@ -175,14 +180,14 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
     if len(scanners) < 2:
         return None
     found = _adjusted(apart, tracks, scanners, progress.part(0.0, 0.6))
-    if found.unexplained > RAYS.max_unexplained:
+    if not _explains(found):
         return None
     # the rays tell the other points apart, too, and the few that were wrong
     splitter = ScannerSplitter(found.poses, 0.0, np.zeros(3))
     apart = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
     scanners = [replace(one, number=number) for number, one in enumerate(scanners)]
     found = grown_poses(found.poses, np.isfinite(found.misfit), _returns(apart, found.poses, scanners), progress.part(0.6, 1.0))
-    return (apart, scanners, found) if found.unexplained <= RAYS.max_unexplained else None
+    return (apart, scanners, found) if _explains(found) else None
 
 
 def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSplitter | None:
@@ -204,10 +209,7 @@ def _returns(samples: Samples, poses: Poses, scanners: list[Spinning]) -> Return
         interval, share = knots.interval(samples.time[drive])
         key = (interval - knots.first) * (poses.scanners + 1) + scanner + 1
         by_key = np.argsort(key, kind="stable")
-        ordered = key[by_key]
-        rank = np.arange(len(key)) - np.searchsorted(ordered, ordered)
-        thinned = rank % -(-np.bincount(ordered)[ordered] // RAYS.per_interval) == 0
-        rows = np.sort(by_key[thinned & (scanner[by_key] >= 0)])
+        rows = np.sort(by_key[thinned(key[by_key], RAYS.per_interval) & (scanner[by_key] >= 0)])
         parts.append((interval[rows], share[rows], samples.time[drive][rows], samples.place[drive][rows], scanner[rows]))
     interval, share, time, place, scanner = (np.concatenate(column) for column in zip(*parts))
     return Returns(interval, share, time, place, scanner, rounding_of(samples.time, samples.start))

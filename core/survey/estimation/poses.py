@@ -9,7 +9,7 @@ import numpy as np
 from ...curves.robust import robustly_smoothed
 from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
 from ..weights import LATTICE, MIRROR, TRACK
-from .samples import FirstTrack, Samples, headings_of
+from .samples import FirstTrack, Samples, headings_of, thinned
 
 X, Y, Z, ROLL, PITCH, YAW, POSE = range(7)   # columns of the control values, and the first of the phases of the scanners
 
@@ -148,9 +148,7 @@ def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: floa
     rate : Hz, positive where directions turn counter-clockwise seen from ahead, looking back
     """
     window = np.clip(((time - track.time[0] + TRACK.window / 2) / TRACK.window).astype(np.int64), 0, len(track.time) - 1)
-    rank = np.arange(len(window)) - np.searchsorted(window, window)
-    held = np.bincount(window, minlength=len(track.time))
-    kept = rank % -(-held // MIRROR.max_window_points)[window] == 0
+    kept = thinned(window, MIRROR.max_window_points)
     time, place, window = time[kept], place[kept], window[kept]
     size = len(track.time)
     foot, heading = track.at(time)

@@ -170,8 +170,7 @@ def first_track(time: np.ndarray, place: np.ndarray) -> FirstTrack:
     begin = float(time[0])
     window = ((time - begin) / TRACK.window).astype(np.int64)
     size = int(window[-1]) + 1
-    rank = np.arange(len(window)) - np.searchsorted(window, window)
-    kept = rank % -(-np.bincount(window) // TRACK.max_window_samples)[window] == 0
+    kept = thinned(window, TRACK.max_window_samples)
     time, place, window = time[kept], place[kept], window[kept]
     count = np.bincount(window, minlength=size)
     start = np.r_[0, np.cumsum(count)[:-1]]
@@ -189,6 +188,12 @@ def first_track(time: np.ndarray, place: np.ndarray) -> FirstTrack:
     reach = np.where(count > 0, far[order][np.minimum(start + count // 2, len(far) - 1)], np.nan)
     middles = begin + (np.arange(size) + 0.5) * TRACK.window
     return FirstTrack(middles, track, headings_of(track), count, reach)
+
+
+def thinned(group: np.ndarray, most: int) -> np.ndarray:
+    """(N,) bool: every n-th of the members of groups, (N,) ascending numbers, so that at most `most` of each are left."""
+    rank = np.arange(len(group)) - np.searchsorted(group, group)
+    return rank % -(-np.bincount(group) // most)[group] == 0
 
 
 def headings_of(track: np.ndarray, about: np.ndarray | None = None) -> np.ndarray:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...curves.robust import MAD_TO_SIGMA
 from ..weights import HEAD
-from .samples import FirstTrack, Samples, headings_of
+from .samples import FirstTrack, Samples, headings_of, thinned
 
 
 @dataclass
@@ -115,8 +115,7 @@ def _turns(time, flat, period):
     size = np.bincount(raw)
     first = np.r_[0, np.cumsum(size)[:-1]]
     whole = (time[first + size - 1] - time[first] >= HEAD.min_seen_share_of_turn * period) & (size >= HEAD.min_turn_samples)
-    rank = np.arange(len(raw)) - first[raw]
-    kept = whole[raw] & (rank % -(-size // HEAD.max_turn_samples)[raw] == 0)
+    kept = whole[raw] & thinned(raw, HEAD.max_turn_samples)
     return time[kept], flat[kept], (np.cumsum(whole) - 1)[raw[kept]]
 
 

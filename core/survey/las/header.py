@@ -7,6 +7,7 @@ import os
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import BinaryIO
 
 import numpy as np
@@ -368,24 +369,21 @@ def _lengths(fields, records, size):
     base = _base_size(fields.point_format)
     if base is None:
         return fields
-    described = base + _extra_bytes_described(records)
     if fields.compressed:
         # the decoder cannot do without the record that says of what its points consist
         point_size = next((record.compression.point_size for record in records if record.compression is not None), 0)
         return replace(fields, record_size=point_size) if base <= point_size <= MAX_RECORD_SIZE else fields
-    behind = records[-1].end if records else fields.header_size
-    end = fields.end_of_points(size)
-
-    def fits(points_at, record_size):
-        return points_at <= size and base <= record_size <= MAX_RECORD_SIZE and any(points_at + count * record_size == end for count in fields.counts)
-
-    if fits(fields.points_at, fields.record_size):
-        return fields
-    for points_at in (fields.points_at, behind):
-        for record_size in (fields.record_size, described, base):
-            if fits(points_at, record_size):
-                return replace(fields, points_at=points_at, record_size=record_size)
+    places = fields.points_at, records[-1].end if records else fields.header_size
+    sizes = fields.record_size, base + _extra_bytes_described(records), base
+    for points_at, record_size in product(places, sizes):
+        if base <= record_size <= MAX_RECORD_SIZE and _fills(fields, points_at, record_size, size):
+            return replace(fields, points_at=points_at, record_size=record_size)
     return fields
+
+
+def _fills(fields, points_at, record_size, size):
+    """Whether as many points as are stated, of so many bytes each, end where the points of the file end."""
+    return points_at <= size and fields.end_of_points(size) in [points_at + count * record_size for count in fields.counts]
 
 
 def _mended_records(records, fields):
@@ -467,17 +465,25 @@ def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = Non
         least = _base_size(fields.point_format)
         if least is not None and fields.record_size < least:
             return f"its header states {fields.record_size} bytes per point, and points of format {fields.point_format} have {least}"
-        if not fields.compressed:
-            there = (size - fields.points_at) // fields.record_size if fields.record_size else 0
-            return f"its header promises {fields.count:,} points, and {there:,} are there" if fields.count > there else ""
-        compression = _compression(file)
-        if compression is None:
-            return "it is compressed, but the record that describes the compression is missing"
-        if compression.point_size != fields.record_size:
-            return f"its header states {fields.record_size} bytes per point, the compressor {compression.point_size}"
-        if compression.chunk_size != VARIABLE_CHUNKS and not 0 < compression.chunk_size <= LAS.max_chunk_size:
-            return f"its compressor states chunks of {compression.chunk_size:,} points"
-        return _chunk_table_damage(file, fields.points_at, size, compression)
+        return _damage_of_chunks(file, fields, size) if fields.compressed else _missing_points(fields, size)
+
+
+def _missing_points(fields, size):
+    """What is wrong with the number of points of an uncompressed file."""
+    there = (size - fields.points_at) // fields.record_size if fields.record_size else 0
+    return f"its header promises {fields.count:,} points, and {there:,} are there" if fields.count > there else ""
+
+
+def _damage_of_chunks(file, fields, size):
+    """What is wrong with the compression of an open file."""
+    compression = _compression(file)
+    if compression is None:
+        return "it is compressed, but the record that describes the compression is missing"
+    if compression.point_size != fields.record_size:
+        return f"its header states {fields.record_size} bytes per point, the compressor {compression.point_size}"
+    if compression.chunk_size != VARIABLE_CHUNKS and not 0 < compression.chunk_size <= LAS.max_chunk_size:
+        return f"its compressor states chunks of {compression.chunk_size:,} points"
+    return _chunk_table_damage(file, fields.points_at, size, compression)
 
 
 def with_points_of_chunks(path: str | os.PathLike[str], mended: _MendedHeader) -> _MendedHeader:
@@ -527,22 +533,28 @@ def _points_of(file, compression, begin, table, fields):
         return sum(points for points, _ in table)
     if not table or compressor not in (CHUNKED_COMPRESSOR, LAYERED_COMPRESSOR):
         return fields.count
-    full, length = size * (len(table) - 1), table[-1][1]
+    full = size * (len(table) - 1)
     file.seek(begin + sum(nbytes for _, nbytes in table[:-1]))
-    chunk = file.read(length)
-    if compressor == LAYERED_COMPRESSOR:
-        raw = compression.point_size
-        return full + struct.unpack_from("<I", chunk, raw)[0] if len(chunk) >= raw + 4 else fields.count
-    stated = next((count for count in fields.counts if full < count <= full + size), 0)
-    if min(size, stated - full if stated else size) > LAS.max_decoded:
-        return stated or fields.count
-    if stated and not _holds(compression, chunk[:length - max(LAS.flushed_bytes, length // 100)], stated - full):
+    chunk = file.read(table[-1][1])
+    if compressor == CHUNKED_COMPRESSOR:
+        stated = next((count - full for count in fields.counts if full < count <= full + size), 0)
+        last = _points_decoded(compression, chunk, size, stated)
+        return full + last if last else fields.count
+    raw = compression.point_size
+    return full + struct.unpack_from("<I", chunk, raw)[0] if len(chunk) >= raw + 4 else fields.count
+
+
+def _points_decoded(compression, chunk, size, stated):
+    """The points of a chunk that holds up to `size` of them, by decoding it; those stated, 0 for none, where that takes too much or agrees."""
+    if min(size, stated or size) > LAS.max_decoded:
         return stated
-    low, high = max(stated - full, 1), size + 1   # points that can be decoded, and that cannot
+    if stated and not _holds(compression, chunk[:len(chunk) - max(LAS.flushed_bytes, len(chunk) // 100)], stated):
+        return stated
+    low, high = max(stated, 1), size + 1   # points that can be decoded, and that cannot
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (middle, high) if _holds(compression, chunk, middle) else (low, middle)
-    return full + low
+    return low
 
 
 def _holds(compression, chunk, points):

@@ -28,9 +28,9 @@ class ScannerCensus:
 
     spans: dict[str, dict[int, tuple[float, float, int]]] = field(default_factory=lambda: {"scanner_channel": {}, "point_source_id": {}})
 
-    def add(self, name: str, values: np.ndarray, time: np.ndarray) -> None:
-        """Add a block: (N,) values of one LAS field and (N,) gps_time."""
-        self.take(name, times_by_value(values, time))
+    def add(self, name: str, values: np.ndarray, time: np.ndarray, span: tuple[float, float] = EVER) -> None:
+        """Add a block: (N,) values of one LAS field and (N,) gps_time; times out of the span do not count."""
+        self.take(name, times_by_value(values, time, span))
 
     def take(self, name: str, times: dict[int, tuple[float, float, int]]) -> None:
         """Add the result of `times_by_value` for a block."""
@@ -40,6 +40,11 @@ class ScannerCensus:
         for value, (start, end, number) in times.items():
             first, last, count = seen.get(value, (np.inf, -np.inf, 0))
             seen[value] = min(first, start), max(last, end), count + number
+
+    def join(self, other: ScannerCensus) -> None:
+        """Add what was gathered elsewhere."""
+        for name, times in other.spans.items():
+            self.take(name, times)
 
     def choose(self, wanted: str | None = "automatic") -> tuple[str | None, list[Any]]:
         """The LAS field that identifies the scanners, None for one scanner, and the values of each scanner, a tuple for several recordings.
@@ -195,16 +200,21 @@ def intensity_source_of(samples: Sequence[FileSample], wanted: str) -> tuple[Int
         example = int(values.max())
         return source, (f"The intensities are numbers with a sign, written into 16 bits without one: {example:,} stands for {example - 2 * SIGN:,}. "
                         f"They are read as {_unit(source)}.")
-    names = [name for part in USUAL_FIELDS for name in samples[0].fields if part in name.lower()] if samples else []
-    for name in dict.fromkeys(names):
-        if all(name in sample.fields for sample in samples):
-            numbers = np.concatenate([sample.fields[name] for sample in samples])
-            numbers = numbers[np.isfinite(numbers)]
-            if len(numbers) and numbers.min() < numbers.max():
-                source = _source(name, numbers)
-                return source, (f"The intensity of all points is the same, {int(values.max(initial=0))}; the extra field {name} is read in its "
-                                f"place, as {_unit(source)}.")
+    for name, numbers in _fields_of_intensity(samples):
+        source = _source(name, numbers)
+        return source, (f"The intensity of all points is the same, {int(values.max(initial=0))}; the extra field {name} is read in its "
+                        f"place, as {_unit(source)}.")
     return IntensitySource(), ""
+
+
+def _fields_of_intensity(samples):
+    """Yield the extra fields that may hold what a scanner received, the best first: name and finite values, which differ."""
+    shared = [name for name in samples[0].fields if all(name in sample.fields for sample in samples)] if samples else []
+    for name in (name for part in USUAL_FIELDS for name in shared if part in name.lower()):
+        numbers = np.concatenate([sample.fields[name] for sample in samples])
+        numbers = numbers[np.isfinite(numbers)]
+        if len(np.unique(numbers)) > 1:
+            yield name, numbers
 
 
 def _wrapped(values):
@@ -243,10 +253,10 @@ def luminance(points: Any) -> np.ndarray:
     return np.rint(sum(weight * np.asarray(points[name], np.float32) for name, weight in zip(COLOUR_FIELDS, LUMINANCE_WEIGHTS))).astype(np.uint16)
 
 
-def check_coloured(files: Sequence[CloudHeader]) -> None:
-    """Raise RoadExtractionError where the point format of a file that has points holds no colours."""
+def check_coloured(files: Sequence[CloudHeader], taken_from: str) -> None:
+    """Raise RoadExtractionError where intensity is taken from "rgb", and a file that has points holds no colours."""
     grey = [file for file in files if file.count and not file.has_colour]
-    if grey:
+    if grey and taken_from == "rgb":
         raise RoadExtractionError(
             f"The points of {grey[0].path} have no colours (point format {grey[0].point_format}), from which the intensity was to be taken. "
             "Set Intensity from to intensity, or export the points with red, green and blue.")

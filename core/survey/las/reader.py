@@ -207,8 +207,7 @@ def _bounds_of_points(path, units):
     return low, high
 
 
-def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], None] | None = None,
-                 given: str = "") -> list[CloudHeader]:
+def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], None] = lambda note: None, given: str = "") -> list[CloudHeader]:
     """The headers of several files, in the order given; a file that is given twice, by whatever path, is read once.
 
     Parameters
@@ -228,12 +227,11 @@ def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], 
     if not unique:
         raise RoadExtractionError("No point cloud was given. Choose one or more LAS, LAZ or COPC files.")
     files = [read_header(path, given) for path in unique]
-    if not sum(file.count for file in files):
+    if not any(file.count for file in files):
         named = f"The file {unique[0]} holds" if len(files) == 1 else f"The files {', '.join(unique[:3])} hold"
         raise RoadExtractionError(f"{named} no points. Check the export of the survey.")
-    if warn is not None:
-        for note in (note for file in files for note in file.notes):
-            warn(note)
+    for note in (note for file in files for note in file.notes):
+        warn(note)
     return files
 
 
@@ -308,47 +306,57 @@ def crs_of_records(header: Any) -> tuple[str, str]:
 @lru_cache(maxsize=256)
 def _stated(text, keys, doubles, place):
     """As of `crs_of_records`, of the contents of the records."""
-    import numpy as np
-
-    table = np.frombuffer(keys[:len(keys) // 8 * 8], "<u2").reshape(-1, 4)[1:].tolist()
-    sizes = np.frombuffer(doubles[:len(doubles) // 8 * 8], "<f8").tolist()
-    values = {key: value if where == 0 else sizes[value] for key, where, _, value in table
-              if where == 0 or where == DOUBLES_RECORD and value < len(sizes)}
-    written, (plane, vertical, problem) = _parsed(text.split(b"\0")[0].decode("utf-8", "replace")), _of_keys(values)
-    if written is None:
-        return _joined(plane, vertical), problem
+    written, (plane, vertical, problem) = _parsed(text.split(b"\0")[0].decode("utf-8", "replace")), _of_keys(_key_values(keys, doubles))
     if _of_heights(written):
         written, vertical = plane, written
+        if written is None:
+            return "", problem or ("" if _same_unit(vertical, 1.0) else f"only the CRS of its heights is known ({vertical.name})")
     if written is None:
-        return "", problem or ("" if _same_unit(vertical, 1.0) else f"only the CRS of its heights is known ({vertical.name})")
+        return _joined(plane, vertical), problem
+    heights = written.sub_crs_list[-1] if written.is_compound else None
+    return _joined(written, vertical if heights is None else None), problem or _contradiction(written, heights, plane, vertical, place)
+
+
+def _key_values(keys, doubles):
+    """{GeoKey: number} of the contents of the records of keys and of doubles."""
+    table = np.frombuffer(keys[:len(keys) // 8 * 8], "<u2").reshape(-1, 4)[1:].tolist()
+    sizes = np.frombuffer(doubles[:len(doubles) // 8 * 8], "<f8").tolist()
+    return {key: value if where == 0 else sizes[value] for key, where, _, value in table
+            if where == 0 or where == DOUBLES_RECORD and value < len(sizes)}
+
+
+def _contradiction(written, heights, plane, vertical, place):
+    """What the GeoKeys, which name `plane` and `vertical`, say otherwise than the CRS that was written as WKT, and its heights; "" for nothing."""
     if plane is not None and moved_by(plane, horizontal_part(written), place) > IO.same_datum:
-        problem = problem or f"its WKT says {horizontal_part(written).name}, its GeoKeys say {plane.name}"
-    own = written.sub_crs_list[-1] if written.is_compound else None
-    if own is not None and vertical is not None and not _same_unit(own, vertical.axis_info[0].unit_conversion_factor):
-        problem = problem or f"its WKT says that heights are in {own.axis_info[0].unit_name}, its GeoKeys say {vertical.axis_info[0].unit_name}"
-    return _joined(written, None if own is not None else vertical), problem
+        return f"its WKT says {horizontal_part(written).name}, its GeoKeys say {plane.name}"
+    if heights is not None and vertical is not None and not _same_unit(heights, vertical.axis_info[0].unit_conversion_factor):
+        return f"its WKT says that heights are in {heights.axis_info[0].unit_name}, its GeoKeys say {vertical.axis_info[0].unit_name}"
+    return ""
 
 
 def _of_keys(values: Mapping[int, Any]) -> tuple[CRS | None, CRS | None, str]:
     """The horizontal and vertical CRS that GeoKeys name, None where they do not, and what contradicts itself in them."""
-    plane = _coded(values.get(PROJECTED)) or _coded(values.get(GEODETIC))
+    plane, vertical = _coded(values.get(PROJECTED)) or _coded(values.get(GEODETIC)), _coded(values.get(VERTICAL))
     if _of_heights(plane):
         plane = None
-    factor, unit = _length(values.get(LENGTH_UNIT), values.get(LENGTH_SIZE))
-    problem = ""
-    if factor and plane is None and abs(factor - 1.0) > IO.same_unit:
-        problem = f"its x and y are in {unit}, and the CRS that they lie in is not known"
-    elif factor and plane is not None and not plane.is_geographic and not _same_unit(plane, factor):
-        problem = f"its code says {plane.name}, whose unit is {plane.axis_info[0].unit_name}, and its unit key says {unit}"
-    vertical = _coded(values.get(VERTICAL))
     if not _of_heights(vertical):   # codes of datums, which older files have there
         vertical = None
     factor, unit = _length(values.get(HEIGHT_UNIT), None)
     if factor and (vertical is None or not _same_unit(vertical, factor)):
         vertical = _vertical(vertical, factor, unit)
-    if not problem and plane is None and vertical is not None and not _same_unit(vertical, 1.0):
-        problem = f"its heights are in {vertical.axis_info[0].unit_name}, and the CRS of its x and y is not known"
-    return plane, vertical, problem
+    return plane, vertical, _problem_of_units(plane, vertical, *_length(values.get(LENGTH_UNIT), values.get(LENGTH_SIZE)))
+
+
+def _problem_of_units(plane, vertical, factor, unit):
+    """What contradicts itself where x and y have a unit of `factor` metres, None where that is not said."""
+    if plane is None:
+        if factor and abs(factor - 1.0) > IO.same_unit:
+            return f"its x and y are in {unit}, and the CRS that they lie in is not known"
+        if vertical is not None and not _same_unit(vertical, 1.0):
+            return f"its heights are in {vertical.axis_info[0].unit_name}, and the CRS of its x and y is not known"
+    elif factor and not plane.is_geographic and not _same_unit(plane, factor):
+        return f"its code says {plane.name}, whose unit is {plane.axis_info[0].unit_name}, and its unit key says {unit}"
+    return ""
 
 
 def _joined(plane, vertical):

@@ -136,20 +136,20 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
     """
     files = read_headers(paths, progress.warn)
     units = files[0].units   # of the map, in which the results of these clouds are
-    x, y = units.in_metres((x, y))
-    files = [file for file in files if file.count and file.minimum[0] <= x + radius and file.maximum[0] >= x - radius
-             and file.minimum[1] <= y + radius and file.maximum[1] >= y - radius]
+    place = units.in_metres((x, y))
+    low, high = place - radius, place + radius
+    files = [file for file in files if file.count and (file.minimum[:2] <= high).all() and (file.maximum[:2] >= low).all()]
     total, read = sum(file.count for file in files), 0
-    found = [np.empty((0, 4))]
+    parts = [np.empty((0, 4))]
     for file in files:
         for block in read_blocks(file.path, layers=("z", "intensity"), units=file.units):
             read += len(block)
             progress.report(read / total)
-            near = np.flatnonzero((np.abs(np.asarray(block.x) - x) <= radius) & (np.abs(np.asarray(block.y) - y) <= radius))
-            if len(near):
-                places = np.c_[np.asarray(block.x)[near], np.asarray(block.y)[near], np.asarray(block.z)[near]]
-                found.append(np.c_[places if units.metric else units.in_file(places), np.asarray(block.intensity)[near]])
-    return np.concatenate(found)
+            away = np.abs(np.stack([np.asarray(block.x), np.asarray(block.y)]) - place[:, None])
+            near = np.flatnonzero((away <= radius).all(axis=0))
+            places = np.stack([np.asarray(block[name])[near] for name in "xyz"], axis=1)
+            parts.append(np.c_[places if units.metric else units.in_file(places), np.asarray(block.intensity)[near]])
+    return np.concatenate(parts)
 
 
 # Copies of files and of points among the files of a survey: they would count twice.
