@@ -16,7 +16,8 @@ class ImportTrajectory(Algorithm):
         "Columns may come in any order, with or without a header, in degrees, radians or degrees with minutes and seconds. Rows are sorted by time; "
         "repeated and unusable rows are dropped and counted. The dialog shows what was understood of a file, and lets you assign its columns.\n\n"
         "Times are GPS seconds. Clock times are read where the file says what the clock shows: GPS time as it is, UTC with the leap seconds "
-        "of its date. Other clock times, and seconds since 1970, are refused, as their leap seconds are unknown."
+        "of its date. Days (modified Julian, Julian, and those of spreadsheets) are read as dates with clocks. Other clock times, and seconds since "
+        "1970, are refused, as their leap seconds are unknown."
     )
     TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time", "nmea", "gpx", "rtklib")
     NUMBERS = (("ROWS", tr("Positions")),)

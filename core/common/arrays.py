@@ -12,7 +12,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 FEW = 500        # numbers that numpy's lexsort takes less time for
-RADIX_BITS = 16  # numpy sorts integers of up to 16 bits in linear time (radix sort)
+RADIX_BITS = 16  # derived: numpy sorts integers of up to 16 bits in linear time (radix sort)
 
 
 def order_by(*keys: np.ndarray) -> np.ndarray:
@@ -36,8 +36,6 @@ def order_by(*keys: np.ndarray) -> np.ndarray:
 def bucket_argsort(cell: np.ndarray, count: int, own: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Rows, of all or those of a mask (N,), sorted by cell, stable; in linear time for fewer than 2**16 cells.
 
-    Parameters
-    ----------
     cell : (N,) cell numbers, 0 to count - 1
 
     Returns
@@ -158,8 +156,6 @@ def stretch_of(places: np.ndarray, start: float, end: float) -> slice:
 def best_within(place: np.ndarray, row: np.ndarray, score: np.ndarray, span: int) -> np.ndarray:
     """(N,) bool, which scores are the greatest of their surroundings; equal ones all are.
 
-    Parameters
-    ----------
     place : (N,) cells, counted row by row, ascending
     row : (N,) rows of cells
     span : cells of a row on either side that are compared
@@ -184,8 +180,6 @@ def overlapping_pairs(first: np.ndarray, last: np.ndarray, other_first: np.ndarr
 
     Every pair comes once, a stretch with itself too; some that lie a hair farther apart are among them.
 
-    Parameters
-    ----------
     first, last : (N,) m, first <= last
     other_first, other_last : (M,) m, likewise
     """

@@ -40,8 +40,6 @@ class _Column:
 def column(name: str = "", unknown: Any = None) -> dict[str, Any]:
     """The metadata of an attribute of LayerRows that is a field of the layer, for `dataclasses.field`.
 
-    Parameters
-    ----------
     name : of the field, "" for that of the attribute
     unknown : what the attribute holds where a layer that is read has NULL, an empty text or no such field, and then every value of the attribute
         is written as it is, but NaN; None for NaN, -1 or "" by the type of the field, which are written as NULL, as is any whole number below 0

@@ -45,15 +45,10 @@ def ordered_map(function: Callable[[Item], Result], items: Iterable[Item], progr
     interpreter lock in their heavy loops, which is where most of the time is spent. Whatever the function raises is raised, and the remaining items
     are dropped.
 
-    Parameters
-    ----------
     progress : reports the share of the items that are done
     threads : number of threads; by default one per processor core, at most four
 
-    Raises
-    ------
-    Cancelled
-        If the user cancelled; the worker threads end at their next `check_cancelled`.
+    Raises Cancelled if the user cancelled; the worker threads end at their next `check_cancelled`.
     """
     items = list(items)
     threads = threads or min(MAX_WORKERS, os.cpu_count() or 1)
@@ -190,7 +185,7 @@ def trim_heap() -> None:
             trim(0)
 
 
-M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3   # parameters of glibc's mallopt
+M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3   # source: glibc, malloc.h: parameters of glibc's mallopt
 LARGEST_REUSED = 32 * 2**20                    # bytes of an array whose memory is used again; glibc takes no more on 64 bits
 
 

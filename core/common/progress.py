@@ -23,10 +23,7 @@ class Progress:
     def report(self, fraction: float) -> None:
         """Report the fraction of this computation that is done, 0 to 1.
 
-        Raises
-        ------
-        Cancelled
-            If the user cancelled. Call it at least once per section of road.
+        Raises Cancelled if the user cancelled. Call it at least once per section of road.
         """
 
     def check_cancelled(self) -> None:

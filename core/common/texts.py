@@ -18,8 +18,6 @@ _language = "en"
 def set_translation(translate: Callable[[str], str] | None, tell: Callable[[str], str] | None = None, language: str = "en") -> None:
     """Set the user's language.
 
-    Parameters
-    ----------
     translate : from a text that the code marks by `tr` to its translation; None for none
     tell : from a whole sentence that the code made, numbers and names in it, to its translation; None for none
     language : two letters, of ISO 639

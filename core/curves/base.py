@@ -12,12 +12,8 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial import cKDTree
 
 from ..common.parallel import check_cancelled
-from .robust import SOFT_L1_SCALE, percentiles
-
-ARC_LENGTH_STEP = 0.25    # m between the nodes of the arc length table of curves without a formula for it
-MAX_PROJECTION_STEPS = 8  # Newton steps of a projection
-PROJECTION_TOLERANCE = 1e-9  # m; a shorter step ends the projection
-END_TOLERANCE = 1e-6      # m; farther beyond an end, a tabulated curve is straight
+from .robust import percentiles
+from .weights import FITS
 
 
 class Curve:
@@ -50,8 +46,6 @@ class Curve:
     def project(self, x: np.ndarray, y: np.ndarray, near: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Orthogonal projection of (N,) points onto the curve, by Newton's method.
 
-        Parameters
-        ----------
         near : (N,) arc lengths near the projections, if known; else the nearest points of the curve are searched
 
         Returns
@@ -64,11 +58,11 @@ class Curve:
             nodes = np.linspace(0.0, self.length, max(3, int(np.ceil(self.length)) + 1))
             near = nodes[cKDTree(self.at(nodes)).query(np.stack([x, y], axis=1))[1]]
         u = near
-        for _ in range(MAX_PROJECTION_STEPS):
+        for _ in range(FITS.max_projection_steps):
             along, e, curvature = self._separation(x, y, u)
             step = along / np.minimum(np.maximum(1.0 - curvature * e, 0.3), 3.0)
             u = u + np.minimum(np.maximum(step, -2.0), 2.0) if self.length > 2.0 else u + step
-            if not len(step) or np.abs(step).max() < PROJECTION_TOLERANCE:
+            if not len(step) or np.abs(step).max() < FITS.projection_tolerance:
                 break
         return u, self._separation(x, y, u)[1]
 
@@ -115,7 +109,7 @@ class TabulatedCurve(Curve):
         rough = self._place(np.linspace(first, last, 200))
         length = np.hypot(*np.diff(rough, axis=0).T).sum()
         # Gauss-Legendre between nodes: exact to the micrometre for any road
-        t = np.linspace(first, last, max(8, int(np.ceil(length / ARC_LENGTH_STEP))) + 1)
+        t = np.linspace(first, last, max(8, int(np.ceil(length / FITS.arc_length_step))) + 1)
         g, w = np.polynomial.legendre.leggauss(3)
         h = np.diff(t)[:, None]
         speed = np.hypot(*self._slope((t[:-1, None] + h * (g + 1) / 2).ravel()).T).reshape(len(h), 3)
@@ -145,7 +139,7 @@ class TabulatedCurve(Curve):
         speed = np.hypot(sx, sy)
         c, s = sx / speed, sy / speed
         dx, dy = x - points[:, 0] - beyond * c, y - points[:, 1] - beyond * s
-        curvature = np.where(np.abs(beyond) < END_TOLERANCE, (sx * by - sy * bx) / speed**3, 0.0)
+        curvature = np.where(np.abs(beyond) < FITS.end_tolerance, (sx * by - sy * bx) / speed**3, 0.0)
         return dx * c + dy * s, dy * c - dx * s, curvature
 
     def u_of(self, t: np.ndarray) -> np.ndarray:
@@ -168,7 +162,7 @@ class TabulatedCurve(Curve):
     def curvature(self, u: np.ndarray | float) -> np.ndarray:
         t, beyond = self._t(u)
         (dx, dy), (ax, ay) = self._slope(t).T, self._bend(t).T
-        return np.where(np.abs(beyond) < END_TOLERANCE, (dx * ay - dy * ax) / (dx * dx + dy * dy) ** 1.5, 0.0)
+        return np.where(np.abs(beyond) < FITS.end_tolerance, (dx * ay - dy * ax) / (dx * dx + dy * dy) ** 1.5, 0.0)
 
 
 def _rising(t, values):
@@ -257,7 +251,6 @@ class Arc(Curve):
 
 # The result of a fit: a curve with its residuals and information criteria.
 
-NOISE_FLOOR = 0.004  # m; a residual below it does not justify a more complex curve
 
 
 @dataclass(frozen=True)
@@ -286,8 +279,8 @@ class CurveFit:
     @cached_property
     def _information(self) -> float:
         n = len(self.residuals)
-        mean_loss = 2 * SOFT_L1_SCALE**2 * np.sum(np.sqrt(1 + (self.residuals / SOFT_L1_SCALE) ** 2) - 1) / n
-        return n * np.log(max(mean_loss, NOISE_FLOOR**2))
+        mean_loss = 2 * FITS.soft_l1_scale**2 * np.sum(np.sqrt(1 + (self.residuals / FITS.soft_l1_scale) ** 2) - 1) / n
+        return n * np.log(max(mean_loss, FITS.noise_floor**2))
 
     @property
     def bic(self) -> float:
@@ -297,16 +290,13 @@ class CurveFit:
 
 def bic_lower_bound(points: int, parameters: float) -> float:
     """Lower bound of the BIC of every fit to so many points with at least so many parameters."""
-    return points * np.log(NOISE_FLOOR**2) + parameters * np.log(points)
+    return points * np.log(FITS.noise_floor**2) + parameters * np.log(points)
 
 
 def checked_points(x: np.ndarray, y: np.ndarray, min_points: int) -> tuple[np.ndarray, np.ndarray]:
     """The points of a line, x and y (N,) metres, as float64; `min_points` is how many the curve needs.
 
-    Raises
-    ------
-    ValueError
-        If the arrays differ in shape or are too short: a mistake of the caller, not of the data.
+    Raises ValueError if the arrays differ in shape or are too short: a mistake of the caller, not of the data.
     """
     check_cancelled()  # every fit begins here, and a long drive has hundreds
     x, y = np.asarray(x, float), np.asarray(y, float)

@@ -15,14 +15,10 @@ from scipy.sparse import csc_matrix, csr_matrix
 
 from ..common.parallel import check_cancelled
 from .base import CurveFit, TabulatedCurve, bic_lower_bound, checked_points
-from .robust import MAD_TO_SIGMA, SOFT_L1_SCALE, batches, median, row_medians
+from .robust import MAD_TO_SIGMA, batches, median, row_medians
+from .weights import FITS
 
-SPLINE_DEGREE = 3
-BANDWIDTHS = (1.0, 1.4, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)  # m; waves shorter than six of them are smoothed away
-SPLINE_POINTS_PER_BATCH = 4096  # points of a line times bandwidths; fits the processor's cache
-MAX_REWEIGHTINGS = 8            # of a spline in the plane,
-MAX_PROFILE_REWEIGHTINGS = 6    # and of a profile
-WEIGHT_TOLERANCE = 1e-6         # a smaller change of the weights moves the curve by less than a micrometre
+SPLINE_DEGREE = 3   # derived: cubic, as the penalty is on the third derivative
 
 
 def _knot_intervals(length: float, bandwidth: float) -> int:
@@ -36,8 +32,6 @@ class _SplineBasis:
     Each pair of a line and a bandwidth is a block. The equations of all blocks are solved as one banded system in which they are independent: most
     lines have a few hundred points, for which the overhead of a numpy call exceeds its work.
 
-    Parameters
-    ----------
     lines : list of (t, bandwidths): (N,) metres rising from 0, and (B,) metres
     """
 
@@ -82,7 +76,7 @@ class _SplineBasis:
             control = self._solve(weight, values)
             residuals = residuals_of(self._values @ control, self._slopes @ control)
             before, weight = weight, self._weights(residuals)
-            settled = np.maximum.reduceat(np.abs(weight - before), self.rows) < WEIGHT_TOLERANCE
+            settled = np.maximum.reduceat(np.abs(weight - before), self.rows) < FITS.weight_tolerance
             for k in np.flatnonzero(settled | (turn == rounds - 1)).tolist():
                 rows, points = slice(self.rows[k], self.rows[k] + self.sizes[k]), slice(self.starts[k], self.starts[k] + self.counts[k])
                 solved[k] = solved[k] or (control[points], residuals[rows])
@@ -113,7 +107,7 @@ class _SplineBasis:
             while alike < len(self.sizes) and self.sizes[alike] == count:
                 alike += 1
             rows = slice(self.rows[k], self.rows[k] + count * (alike - k))
-            scale = np.maximum(SOFT_L1_SCALE, MAD_TO_SIGMA * row_medians(size[rows].reshape(-1, count)))
+            scale = np.maximum(FITS.soft_l1_scale, MAD_TO_SIGMA * row_medians(size[rows].reshape(-1, count)))
             found[rows] = (size[rows].reshape(-1, count) / scale).ravel()
             k = alike
         found *= found
@@ -185,12 +179,10 @@ def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[
     """Fit a penalised cubic B-spline to each line, from its first point to its last, by robust least squares.
 
     The penalty is on the third derivative: arcs are not affected, only changes of
-    curvature are smoothed. The bandwidth is selected by BIC among BANDWIDTHS, with the effective number of parameters of a smoothing spline of
+    curvature are smoothed. The bandwidth is selected by BIC among those of FITS, with the effective number of parameters of a smoothing spline of
     this order, L / (3 bandwidth) + 3 per coordinate [1]_; one coordinate is counted, since
     only the deviation across the line is an observation.
 
-    Parameters
-    ----------
     lines : list of (x, y), each (N,) metres, N >= 4, ordered along the line; gaps are allowed
     along : for each line its (N,) rising distances, metres, such as stations, or None for the chord lengths of its points
     bandwidth : metres, or None to select it for each line
@@ -213,10 +205,10 @@ def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[
 
 
 def _next_batch(waiting):
-    """[(line, number of its bandwidths)] that are fitted together: SPLINE_POINTS_PER_BATCH points, but at least one bandwidth of the first line."""
+    """[(line, number of its bandwidths)] that are fitted together: `spline_points_per_batch`, but at least one bandwidth of the first line."""
     batch, size = [], 0
     for line in waiting:
-        count = min(max((SPLINE_POINTS_PER_BATCH - size) // len(line.t), 0 if batch else 1), len(line.waiting))
+        count = min(max((FITS.spline_points_per_batch - size) // len(line.t), 0 if batch else 1), len(line.waiting))
         if not count:
             break
         batch.append((line, count))
@@ -231,7 +223,7 @@ class _SplineSelection:
         self.x, self.y = x, y
         self.t = _chord_lengths(x, y) if along is None else np.asarray(along, float) - along[0]
         self.length = float(self.t[-1])
-        self.waiting = [bandwidth] if bandwidth else [b for b in BANDWIDTHS[::-1] if b < max(self.length, 2.5)]
+        self.waiting = [bandwidth] if bandwidth else [b for b in FITS.bandwidths[::-1] if b < max(self.length, 2.5)]
         self.best = None
 
     def take(self, fitted):
@@ -285,7 +277,7 @@ def _penalised(lines):
         return (gap[:, 1] * slope[:, 0] - gap[:, 0] * slope[:, 1]) / np.maximum(np.hypot(slope[:, 0], slope[:, 1]), 1e-12)
 
     return [(knots, control + middle, residuals)
-            for knots, middle, (control, residuals) in zip(basis.knots, middles, basis.robustly_solved(places, across, MAX_REWEIGHTINGS))]
+            for knots, middle, (control, residuals) in zip(basis.knots, middles, basis.robustly_solved(places, across, FITS.max_reweightings))]
 
 
 def smooth_profiles(profiles: Sequence[tuple[np.ndarray, np.ndarray]], bandwidth: float) -> list[Callable[[np.ndarray], np.ndarray]]:
@@ -301,7 +293,7 @@ def smooth_profiles(profiles: Sequence[tuple[np.ndarray, np.ndarray]], bandwidth
             found[k] = _constant(median(values))
         else:
             which.append(k)
-    for first, end in batches([len(profiles[k][0]) for k in which], SPLINE_POINTS_PER_BATCH):
+    for first, end in batches([len(profiles[k][0]) for k in which], FITS.spline_points_per_batch):
         check_cancelled()
         some = which[first:end]
         for k, smooth in zip(some, _smooth([profiles[k] for k in some], bandwidth)):
@@ -317,7 +309,7 @@ def _smooth(profiles, bandwidth):
     basis = _SplineBasis([(t - t[0], [bandwidth]) for t, _ in profiles])
     levels = [median(values) for _, values in profiles]
     places = np.concatenate([values - level for (_, values), level in zip(profiles, levels)])
-    solved = basis.robustly_solved(places[:, None], lambda at, slope: places - at[:, 0], MAX_PROFILE_REWEIGHTINGS)
+    solved = basis.robustly_solved(places[:, None], lambda at, slope: places - at[:, 0], FITS.max_profile_reweightings)
     return [_profile(knots, control[:, 0], level, t[0]) for knots, (control, _), level, (t, _) in zip(basis.knots, solved, levels, profiles)]
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from .base import Curve, CurveFit, checked_points
 from .robust import PointGroups, fit_batch
 from .simple_curves import chords
+from .weights import FITS
 
 
 def _gauss(count):
@@ -20,16 +21,12 @@ def _gauss(count):
 
 # Gauss-Legendre rules that integrate a clothoid to 1e-12 of its length, by how far it turns
 GAUSS_RULES = _gauss(8), _gauss(14), _gauss(24)
-MEDIUM_RULE_TURN, FINE_RULE_TURN = 0.8, 3.0  # radians from which on the second and the third rule serve
 STEP_RULE = _gauss(3)    # for steps of decimetres
-MAX_NEWTON_STEPS = 10
-NEWTON_TOLERANCE = 1e-5  # m; after so short a step the error is about 1e-10 m
-MAX_START_BINS = 12      # of the points of a line, from whose medians the start is made
 
 
 def gauss_rule(turn: float | np.ndarray) -> int | np.ndarray:
     """Index of the GAUSS_RULES for a clothoid that turns by so many radians (float or array)."""
-    return (turn >= MEDIUM_RULE_TURN) * 1 + (turn >= FINE_RULE_TURN) * 1
+    return (turn >= FITS.medium_rule_turn) * 1 + (turn >= FITS.fine_rule_turn) * 1
 
 
 @dataclass(frozen=True)
@@ -90,8 +87,6 @@ def fit_clothoids(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: fl
     The start is a parabola through the headings of chords between bins of points (theta is a parabola of u on a clothoid); the unknowns are those
     at the middle, where they are correlated least.
 
-    Parameters
-    ----------
     lines, max_misfit : as of `fit_batch`, N >= 5
     """
     return fit_batch([checked_points(x, y, 5) for x, y in lines], _ClothoidProblem, max_misfit)
@@ -138,10 +133,10 @@ class _ClothoidProblem:
         lengths = np.stack([u, u**2, u**3 / 2])
         cosines, sines = cosines * lengths, sines * lengths
         moving = np.ones(len(groups.counts), bool)
-        for _ in range(MAX_NEWTON_STEPS):
+        for _ in range(FITS.max_newton_steps):
             along, across, *_ = self._separation(x, y, direction + (bend + 0.5 * change * u) * u)
             step = along / np.minimum(np.maximum(1 - (bend + change * u) * across, 0.3), 3.0)
-            settled = groups.maxima(np.abs(step)) < NEWTON_TOLERANCE
+            settled = groups.maxima(np.abs(step)) < FITS.newton_tolerance
             step *= moving[groups.owner]
             nodes = u + np.multiply.outer(STEP_RULE[0], step)
             turn = direction + (bend + 0.5 * change * nodes) * nodes
@@ -186,13 +181,13 @@ def _moments(groups, unknown, direction, bend, change, u):
 def _start(groups, x, y):
     """Unknowns (L, 5) at the middles of the points of every line, and (N,) arc lengths of the points."""
     lines, owner = np.arange(len(groups.counts)), groups.owner
-    count = np.clip(groups.counts // 3, 3, MAX_START_BINS)
+    count = np.clip(groups.counts // 3, 3, FITS.max_start_bins)
     # bins of successive points, the first of them one point larger
     size, larger = (values[owner] for values in (groups.counts // count, groups.counts % count))
     within = np.arange(len(owner)) - groups.starts[owner]
     bins = np.where(within < larger * (size + 1), within // (size + 1), (within - larger) // size)
-    binned = PointGroups(np.bincount(owner * MAX_START_BINS + bins, minlength=len(lines) * MAX_START_BINS).reshape(len(lines), -1)[
-        np.arange(MAX_START_BINS) < count[:, None]])
+    binned = PointGroups(np.bincount(owner * FITS.max_start_bins + bins, minlength=len(lines) * FITS.max_start_bins).reshape(len(lines), -1)[
+        np.arange(FITS.max_start_bins) < count[:, None]])
     first, last = np.cumsum(count) - count, np.cumsum(count) - 1
     bx, by = binned.medians(x), binned.medians(y)
     # chords between bins; the last of a line leads nowhere and takes the point of the one before

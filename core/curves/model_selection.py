@@ -13,14 +13,13 @@ from ..common.parallel import check_cancelled
 from .base import CurveFit, bic_lower_bound
 from .bspline import fit_splines
 from .clothoid import fit_clothoids
-from .robust import COARSE_POINTS, PointGroups
-from .simple_curves import MIN_ELLIPSE_TURN, fit_circles, fit_ellipse, fit_lines, fit_polynomial
+from .robust import PointGroups
+from .simple_curves import fit_circles, fit_ellipse, fit_lines, fit_polynomial
+from .weights import FITS
 
 CURVES = ("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")
-MAX_RESIDUAL_P95 = 0.05  # m; a simpler curve is selected only if 95 % of the points are nearer
-MIN_CURVE_PARAMETERS = 3  # of any curve but a straight line
-MAX_MISFIT = 10 * MAX_RESIDUAL_P95  # m; a curve farther off is not fitted to the millimetre
-BIC_MARGIN = 6.0  # a simpler curve is selected if its BIC is within this of the best
+MIN_CURVE_PARAMETERS = 3  # derived: of any curve but a straight line
+MAX_MISFIT = 10 * FITS.max_residual_p95  # derived: m; a curve farther off is not fitted to the millimetre
 
 
 def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: int = 2) -> CurveFit:
@@ -61,7 +60,7 @@ def fit_curves(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> list[CurveFit]
 
     If no kind is acceptable, it is the one with the smallest 95th percentile of the residuals.
     """
-    choices = select_each(lines, (*ALIGNMENT_CURVES, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)), MAX_RESIDUAL_P95)
+    choices = select_each(lines, (*ALIGNMENT_CURVES, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)), FITS.max_residual_p95)
     return [choice.best or min(choice.found, key=lambda fit: fit.residual_p95) for choice in choices]
 
 
@@ -72,7 +71,7 @@ def _ellipses(lines):
 
 def _ellipse(x, y):
     check_cancelled()
-    rows = PointGroups([len(x)]).subsampled(COARSE_POINTS)
+    rows = PointGroups([len(x)]).subsampled(FITS.coarse_points)
     try:
         few = fit_ellipse(x[rows], y[rows], MAX_MISFIT)
         if len(rows) == len(x):
@@ -91,8 +90,6 @@ def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
                 kinds: Sequence[tuple[str, int, Callable[..., Any]]] = ALIGNMENT_CURVES, max_residual: float = np.inf) -> list[_ModelSelection]:
     """Select the kind of curve of each of many lines; kinds that cannot change a selection are not fitted.
 
-    Parameters
-    ----------
     lines : list of (x, y), each (N,) metres, ordered along the line
     kinds : as ALIGNMENT_CURVES, simplest first
     max_residual : metres; largest acceptable 95th percentile of the residuals
@@ -100,7 +97,7 @@ def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
     choices = [_ModelSelection(max_residual) for _ in lines]
     for name, fewest, fit_all in kinds:
         open_ones = [k for k, choice in enumerate(choices) if not choice.decided and len(lines[k][0]) >= fewest
-                     and (name != "ellipse" or choice.turn > MIN_ELLIPSE_TURN)]
+                     and (name != "ellipse" or choice.turn > FITS.min_ellipse_turn)]
         for k, fit in zip(open_ones, fit_all([lines[k] for k in open_ones])):
             if fit is not None:
                 choices[k].add(fit)
@@ -126,9 +123,9 @@ class _ModelSelection:
         self.found.append(fit)
         least = bic_lower_bound(len(fit.residuals), MIN_CURVE_PARAMETERS)
         for one in self._acceptable():
-            if one.bic <= least + BIC_MARGIN:
+            if one.bic <= least + FITS.bic_margin:
                 self.decided = True  # whatever may follow
-            if one.bic <= self._best_bic() + BIC_MARGIN:
+            if one.bic <= self._best_bic() + FITS.bic_margin:
                 break                # what follows decides
 
     def _acceptable(self):
@@ -140,7 +137,7 @@ class _ModelSelection:
     @property
     def best(self) -> CurveFit | None:
         """The selected fit, or None if none is acceptable."""
-        return next((fit for fit in self._acceptable() if fit.bic <= self._best_bic() + BIC_MARGIN), None)
+        return next((fit for fit in self._acceptable() if fit.bic <= self._best_bic() + FITS.bic_margin), None)
 
     @property
     def turn(self) -> float:

@@ -10,18 +10,18 @@ from scipy.linalg import solveh_banded
 
 from ..common.arrays import quantile_in_order
 from ..common.parallel import check_cancelled
+from .weights import FITS
 
-SOFT_L1_SCALE = 0.03  # m; the weight of larger residuals falls off (soft L1)
-MAD_TO_SIGMA = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
+MAD_TO_SIGMA = 1.4826  # derived: standard deviation of a normal distribution / its median absolute deviation
 
 
 def robust_weights(residuals: np.ndarray) -> np.ndarray:
     """Weights of soft L1, ``1 / sqrt(1 + (r / c)^2)``, of (..., N) residuals in metres.
 
-    The scale c of each row is 1.4826 times the median of ``|r|``, at least `SOFT_L1_SCALE`.
+    The scale c of each row is 1.4826 times the median of ``|r|``, at least `soft_l1_scale`.
     """
     residuals = np.asarray(residuals)
-    scale = np.maximum(SOFT_L1_SCALE, MAD_TO_SIGMA * row_medians(np.abs(residuals)))
+    scale = np.maximum(FITS.soft_l1_scale, MAD_TO_SIGMA * row_medians(np.abs(residuals)))
     return 1.0 / np.sqrt(1.0 + (residuals / scale) ** 2)
 
 
@@ -51,14 +51,6 @@ def row_medians(values: np.ndarray) -> np.ndarray:
 # Each curve has a few hundred points only, for which the overhead of a numpy call exceeds its work, so the points of many lines are processed as
 # one array.
 
-FIT_POINTS_PER_BATCH = 8192        # fits the processor's cache
-COARSE_POINTS = 128            # points of a line to which it is fitted first
-FIT_TOLERANCE = 1e-7          # share of a sensible step below which a fit has converged,
-COARSE_FIT_TOLERANCE = 1e-3   # and of a fit to the coarse points of a longer line
-STALLED_GAIN = 1e-3            # relative gain of a step below which a curve with a large misfit is given up
-MAX_MISFIT_SHARE = 0.05        # share of the points beyond `max_misfit` above which a fit is not refined
-MAX_STEPS = 100                # accepted steps of Levenberg-Marquardt
-MAX_DAMPING = 1e8              # at which a fit that finds no better step ends
 
 
 class PointGroups:
@@ -96,7 +88,7 @@ class PointGroups:
         return np.repeat(self.starts, sizes) + np.rint(within * np.repeat(step, sizes)).astype(np.int64)
 
 
-def batches(counts: Sequence[int] | np.ndarray, max_points: int = FIT_POINTS_PER_BATCH) -> list[tuple[int, int]]:
+def batches(counts: Sequence[int] | np.ndarray, max_points: int = FITS.fit_points_per_batch) -> list[tuple[int, int]]:
     """[(first, end)] of successive lines with at most `max_points` points together; a single line may have more."""
     found, first, size = [], 0, 0
     for k, count in enumerate(counts):
@@ -112,8 +104,6 @@ def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callab
 
     Each curve is fitted to a subsample of its line first, which takes most of the steps, then to all points, unless its misfit is too large.
 
-    Parameters
-    ----------
     lines : list of (x, y), each (N,) metres, ordered along the line
     problem_of : makes a problem for `_minimise_batch` from PointGroups, x and y; it also has `start()`, (L, P), `scale`,
         `fit(k, unknown, x, y, residuals, state)`, which gives what is returned for line k, and
@@ -122,16 +112,16 @@ def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callab
     """
     found = [None] * len(lines)
     counts = np.array([len(x) for x, _ in lines], np.int64)
-    for first, end in batches(np.minimum(counts, COARSE_POINTS)):
+    for first, end in batches(np.minimum(counts, FITS.coarse_points)):
         numbers = np.arange(first, end)
         whole = PointGroups(counts[numbers])
         x, y = (np.concatenate([lines[k][axis] for k in numbers]) for axis in (0, 1))
-        rows = whole.subsampled(COARSE_POINTS)
-        problem = problem_of(PointGroups(np.minimum(whole.counts, COARSE_POINTS)), x[rows], y[rows])
-        tolerance = np.where(whole.counts <= COARSE_POINTS, FIT_TOLERANCE, COARSE_FIT_TOLERANCE)
+        rows = whole.subsampled(FITS.coarse_points)
+        problem = problem_of(PointGroups(np.minimum(whole.counts, FITS.coarse_points)), x[rows], y[rows])
+        tolerance = np.where(whole.counts <= FITS.coarse_points, FITS.fit_tolerance, FITS.coarse_fit_tolerance)
         solved = _minimise_batch(problem, problem.start(), problem.scale, tolerance, max_misfit)
-        _store_fits(found, numbers, np.flatnonzero(whole.counts <= COARSE_POINTS), problem, lines, *solved)
-        long = np.flatnonzero(whole.counts > COARSE_POINTS)
+        _store_fits(found, numbers, np.flatnonzero(whole.counts <= FITS.coarse_points), problem, lines, *solved)
+        long = np.flatnonzero(whole.counts > FITS.coarse_points)
         for a, b in batches(whole.counts[long]):
             there = np.concatenate([np.arange(whole.starts[k], whole.starts[k] + whole.counts[k]) for k in long[a:b]])
             state = tuple(np.interp(there, rows, values) for values in solved[2])
@@ -143,7 +133,7 @@ def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callab
 def _refine(found, numbers, problem, lines, unknown, max_misfit):
     """Fit the lines of a problem from unknowns that are nearly right; those with a large misfit stay as they are."""
     residuals, state = problem.evaluate(unknown, problem.state)
-    missed = problem.groups.sums((np.abs(residuals) > max_misfit).astype(float)) > MAX_MISFIT_SHARE * problem.groups.counts
+    missed = problem.groups.sums((np.abs(residuals) > max_misfit).astype(float)) > FITS.max_misfit_share * problem.groups.counts
     _store_fits(found, numbers, np.flatnonzero(missed), problem, lines, unknown, residuals, state)
     left = np.flatnonzero(~missed)
     if len(left):
@@ -158,7 +148,7 @@ def _store_fits(found, numbers, which, problem, lines, unknown, residuals, state
         found[numbers[k]] = problem.fit(k, unknown[k], x, y, residuals[own], tuple(values[own] for values in state))
 
 
-def _minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, tolerance: float | np.ndarray = FIT_TOLERANCE,
+def _minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, tolerance: float | np.ndarray = FITS.fit_tolerance,
                     max_misfit: float = np.inf) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
     """Parameters of each line that minimise the soft L1 loss of its residuals, by Levenberg-Marquardt.
 
@@ -183,9 +173,9 @@ def _minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, toleranc
     """
     exact = np.broadcast_to(tolerance, len(start))
     found, residuals, state = _levenberg_marquardt(problem, np.array(start, float), scale, np.full(len(start), np.inf), problem.state,
-                                                   np.maximum(exact, COARSE_FIT_TOLERANCE / 10), max_misfit)
+                                                   np.maximum(exact, FITS.coarse_fit_tolerance / 10), max_misfit)
     misfit = MAD_TO_SIGMA * problem.groups.medians(np.abs(residuals))
-    return _levenberg_marquardt(problem, found, scale, np.maximum(SOFT_L1_SCALE, misfit), state, exact, max_misfit)
+    return _levenberg_marquardt(problem, found, scale, np.maximum(FITS.soft_l1_scale, misfit), state, exact, max_misfit)
 
 
 def _levenberg_marquardt(problem, found, scale, f_scale, state, exact, max_misfit):
@@ -216,8 +206,8 @@ def _levenberg_marquardt(problem, found, scale, f_scale, state, exact, max_misfi
         better, small = then <= now, np.abs(step).max(axis=1) < exact
         steps += better
         gain = now - then
-        given_up = (gain <= STALLED_GAIN * now) & (then > groups.counts * max_misfit**2)
-        over = np.where(better, (gain <= 1e-4 * exact * now) & small | given_up | (steps >= MAX_STEPS), (damping > MAX_DAMPING) | small)
+        given_up = (gain <= FITS.stalled_gain * now) & (then > groups.counts * max_misfit**2)
+        over = np.where(better, (gain <= 1e-4 * exact * now) & small | given_up | (steps >= FITS.max_steps), (damping > FITS.max_damping) | small)
         damping = np.where(better, np.maximum(damping / 8, 1e-10), damping * 8)
         if better.all():
             found, residuals, state, now = proposed, tried, new, then
@@ -278,22 +268,16 @@ class _SingleCurve:
 
 # Robust smoothing of evenly spaced values, with gaps.
 
-ROBUST_ROUNDS = 5
-OUTLIER_FACTOR = 3.0   # of the median deviation, at which a value has half its weight
 
 
 def robustly_smoothed(values: np.ndarray, weight: np.ndarray, stiffness: float) -> np.ndarray:
     """Smooth columns of values by a penalty on their second differences (Whittaker's smoother), outliers weighted down.
 
-    Parameters
-    ----------
     values : (N, C), evenly spaced; those of no weight may be anything finite
     weight : (N,) 0 for gaps, which are bridged; ends without weight are extrapolated
     stiffness : weight of a squared second difference against that of a squared deviation
 
-    Returns
-    -------
-    (N, C) float64
+    Returns (N, C) float64.
     """
     values = np.asarray(values, float)
     if len(values) < 3:
@@ -304,11 +288,11 @@ def robustly_smoothed(values: np.ndarray, weight: np.ndarray, stiffness: float) 
             penalty[2 - (i - j), i:len(values) - 2 + i] += stiffness * one * other
     robust = np.ones(len(values))
     found = values
-    for _ in range(ROBUST_ROUNDS):
+    for _ in range(FITS.robust_rounds):
         matrix = penalty.copy()
         matrix[2] += weight * robust + 1e-9
         found = solveh_banded(matrix, (weight * robust)[:, None] * values, check_finite=False)
         off = np.linalg.norm(values - found, axis=1)
         usual = float(np.median(off[weight > 0])) if (weight > 0).any() else 0.0
-        robust = 1.0 / (1.0 + (off / (OUTLIER_FACTOR * usual + 1e-9)) ** 2)
+        robust = 1.0 / (1.0 + (off / (FITS.outlier_factor * usual + 1e-9)) ** 2)
     return found

@@ -10,16 +10,9 @@ from ..common.parallel import check_cancelled
 from .base import checked_points
 from .bspline import fit_splines
 from .robust import MAD_TO_SIGMA, median
+from .weights import FITS
 
-ELEMENT_NODE_SPACING = 4.0   # m between the nodes at which elements may join
-MIN_ELEMENT_LENGTH = 8.0     # m
-MAX_ELEMENT_LENGTH = 1000.0  # m; longer elements are found in parts
-MIN_ELEMENT_SIGMA = 0.008    # m; no line is known better, when evidence is counted
-# Each element costs its free parameters and its end. The factor accounts for correlated errors of
-# neighbouring points (worn paint, trajectory drift), which plain BIC mistakes for shape.
-ELEMENT_COST_FACTOR = 2.0
-COST_MARGIN = 1.0            # of cost, beyond all rounding
-ELEMENT_DEGREES = {"line": 1, "circle": 2, "clothoid": 3}  # of the polynomial of arc length that stands for the element
+ELEMENT_DEGREES = {"line": 1, "circle": 2, "clothoid": 3}  # derived: of the polynomial of arc length that stands for the element
 _EXPONENTS, _DIAGONAL = np.arange(7), np.arange(4)
 _EXPONENT_SUMS = np.add.outer(_DIAGONAL, _DIAGONAL)
 
@@ -31,13 +24,9 @@ def element_ranges(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> list[list[
     arc length, an arc of degree 2 and a clothoid of degree 3 (to first order in the few centimetres of residual). The best of all divisions at
     nodes 4 m apart is found by dynamic programming with a BIC cost per element.
 
-    Parameters
-    ----------
     lines : list of (x, y), each (N,) metres, ordered, one point per 0.25 to 1 m
 
-    Returns
-    -------
-    of each line: first and last arc length, m, and kind of its elements, in order and without gaps
+    Returns of each line: first and last arc length, m, and kind of its elements, in order and without gaps.
     """
     ranges = []
     points = [checked_points(x, y, 4) for x, y in lines]
@@ -45,16 +34,16 @@ def element_ranges(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> list[list[
         u, e = base.curve.project(x, y)
         order = np.argsort(u, kind="stable")
         u, e = np.clip(u[order], 0, base.curve.length), e[order]
-        sigma = max(MAD_TO_SIGMA * median(np.abs(e)), MIN_ELEMENT_SIGMA)
+        sigma = max(MAD_TO_SIGMA * median(np.abs(e)), FITS.min_element_sigma)
         ranges.append(_divide(base.curve, u, e, sigma, base.curve.length))
     return ranges
 
 
 def _divide(curve, u, e, sigma, length):
     """[(first, last, kind)] of the cheapest division."""
-    count = max(1, int(round(length / ELEMENT_NODE_SPACING)))
+    count = max(1, int(round(length / FITS.element_node_spacing)))
     nodes = np.linspace(0.0, length, count + 1)
-    shortest = max(1, int(np.ceil(MIN_ELEMENT_LENGTH / (length / count))))
+    shortest = max(1, int(np.ceil(FITS.min_element_length / (length / count))))
     if count < 2 * shortest:
         nodes = nodes[[0, -1]]
         count = shortest = 1
@@ -62,11 +51,11 @@ def _divide(curve, u, e, sigma, length):
     best, beaten = np.full(count + 1, np.inf), np.full(count + 1, count)
     best[0] = 0.0
     came_from, came_by = np.zeros((2, count + 1), int)
-    prices = ELEMENT_COST_FACTOR * np.log(max(len(u), 2)) * np.array([degree + 2 for degree in ELEMENT_DEGREES.values()])
+    prices = FITS.element_cost_factor * np.log(max(len(u), 2)) * np.array([degree + 2 for degree in ELEMENT_DEGREES.values()])
     begun = np.empty(0, np.int64)   # nodes at which an element may begin that is not yet beaten
     for j in range(1, count + 1):
         check_cancelled()
-        begun = begun[(beaten[begun] > j - shortest) & (nodes[begun] >= nodes[j] - MAX_ELEMENT_LENGTH - 1e-9)]
+        begun = begun[(beaten[begun] > j - shortest) & (nodes[begun] >= nodes[j] - FITS.max_element_length - 1e-9)]
         if np.isfinite(best[j - 1]):
             begun = np.append(begun, j - 1)
         costs.extend(begun, j)
@@ -78,7 +67,7 @@ def _divide(curve, u, e, sigma, length):
         first = int(total.argmin())
         best[j], came_from[j], came_by[j] = total.flat[first], long_enough[first // len(ELEMENT_DEGREES)], first % len(ELEMENT_DEGREES)
         # an element that ends here at more than the least cost is dropped: a new one from here is cheaper than its extension
-        lost = long_enough[best[long_enough] + cost.min(axis=1) > best[j] + COST_MARGIN]
+        lost = long_enough[best[long_enough] + cost.min(axis=1) > best[j] + FITS.cost_margin]
         beaten[lost] = np.minimum(beaten[lost], j)
     cuts, j, names = [], count, list(ELEMENT_DEGREES)
     while j:

@@ -10,6 +10,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from .base import Arc, CurveFit, TabulatedCurve, checked_points
 from .robust import PointGroups, fit_batch, minimise, robust_weights
+from .weights import FITS
 
 
 def fit_lines(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
@@ -23,8 +24,6 @@ def fit_circles(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: floa
     The unknowns are heading, offset and curvature at the points' middle, so that a nearly straight line is as easy as a tight bend. Kasa's simpler
     fit is not used: it is biased towards small radii on short arcs.
 
-    Parameters
-    ----------
     lines, max_misfit : as of `fit_batch`, N >= 3
 
     References
@@ -143,7 +142,6 @@ class _LineProblem(_CircleProblem):
 
 # An ellipse through points.
 
-MIN_ELLIPSE_TURN = np.radians(60.0)  # on a shorter arc an ellipse cannot be distinguished from a circle
 
 
 @dataclass(frozen=True)
@@ -235,7 +233,7 @@ def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> Cur
     cx, cy, a, b, tilt = unknown
     t = np.unwrap(t)
     found = Ellipse(float(cx), float(cy), abs(float(a)), abs(float(b)), float(tilt), float(t[0]), float(t[-1]))
-    if abs(found.heading(np.array([found.length]))[0] - found.heading(np.zeros(1))[0]) < MIN_ELLIPSE_TURN:
+    if abs(found.heading(np.array([found.length]))[0] - found.heading(np.zeros(1))[0]) < FITS.min_ellipse_turn:
         raise RoadExtractionError(
             "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. "
             "Choose curve = automatic or circle.")
@@ -289,7 +287,6 @@ def _nearest_angle(x, y, unknown):
 
 # A polynomial of degree k across the chord of the points.
 
-POLYNOMIAL_REWEIGHTINGS = 15
 
 
 @dataclass(frozen=True)
@@ -361,7 +358,7 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
     scale = max(float(np.abs(along).max()), 1e-3)
     design = np.vander(along / scale, degree + 1, increasing=True)
     weight = np.ones(len(x))
-    for _ in range(POLYNOMIAL_REWEIGHTINGS):
+    for _ in range(FITS.polynomial_reweightings):
         root = np.sqrt(weight)
         found = np.linalg.lstsq(design * root[:, None], across * root, rcond=None)[0]
         weight = robust_weights(across - design @ found)

@@ -11,11 +11,8 @@ from .cluster import Cluster, check_address, cluster_of
 from .phase import Executor, Threads
 from .processes import WorkerProcesses
 from .tasks import find_interpreter
+from .weights import EXECUTION
 from .work_folder import KeptResults, WorkFolder
-
-WORKER_POINTS = 8_000_000   # points of the files for each worker: starting takes it a second, about as long as decoding so many
-TWO_WORKERS_POINTS = 100_000_000   # points of the files from which two workers pay, all that two cores can do with
-MOST_AUTOMATIC_WORKERS = 8   # each takes some hundred MB
 
 
 @dataclass(frozen=True)
@@ -65,8 +62,8 @@ def automatic_workers(points: int) -> int:
     are for surveys in which the start does not matter. More processes gain more (docs/scale.md).
     """
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    workers = min(cores, MOST_AUTOMATIC_WORKERS, int(points / WORKER_POINTS))
-    return workers if workers > 2 or workers == 2 and points >= TWO_WORKERS_POINTS else 0
+    workers = min(cores, EXECUTION.most_automatic_workers, int(points / EXECUTION.worker_points))
+    return workers if workers > 2 or workers == 2 and points >= EXECUTION.two_workers_points else 0
 
 
 def _executor_for(points, settings, progress):

@@ -26,29 +26,17 @@ from ..common.parallel import POLL_INTERVAL
 from ..common.progress import Progress
 from .phase import Executor, Phase, name_of, read_plain, write_plain
 from .tasks import BEAT, NEEDED, ShippedPhase, items_done, items_together, look_around, raise_answer, sees_files, versions
+from .weights import EXECUTION
 from .work_folder import WorkFolder, code_digest
-
-BEAT_TIME = 2.0         # s between two signs of life of the caller
-CALLER_LOST = 300.0     # s without one after which workers remove the caller's folder; a computer may be suspended for a while
-SCHEDULER_LOST = 15.0   # s without a connection to the scheduler after which the run ends
-CLOSE_TIME = 5.0        # s for the last tasks to let go of the folder
-PAUSED_TIME = 20.0      # s without a result after which is looked whether memory makes all workers pause: they may do so for ever
-ITEMS_PER_TASK = 4      # usually: a task costs caller, scheduler and worker 11 ms of the processor, an item of road 50 ms or more
-RESULT_TIME = 30.0      # s until a result written by another machine is seen here: network file systems remember that it was not there
 
 
 def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: Progress = Progress()) -> Cluster:
     """The cluster of a running scheduler, checked and ready for work; close it at the end.
 
-    Parameters
-    ----------
     address, insecure : as of `client_of`
     work : folder of the user's that all machines see; None takes one for temporary files, which all workers on this computer see
 
-    Raises
-    ------
-    RoadExtractionError
-        If the cluster cannot be used: see `client_of`, `_check_versions` and `_check_workers`.
+    Raises RoadExtractionError if the cluster cannot be used: see `client_of`, `_check_versions` and `_check_workers`.
     """
     client = client_of(address, insecure)
     cluster = None
@@ -83,8 +71,6 @@ class _Part:
 class Cluster(Executor):
     """Executor that uses the workers of a Dask cluster, whose memory is theirs.
 
-    Parameters
-    ----------
     client : distributed.Client, closed at the end
     work : folder that all workers see; None takes one for temporary files
     threads : of all workers together, as far as they are there already
@@ -99,24 +85,21 @@ class Cluster(Executor):
         self.folder: Path = Path(tempfile.mkdtemp(prefix="lanewright-")) if work is None else work / f"run-{uuid4().hex[:8]}"
         self.folder.mkdir(exist_ok=True)
         self._left = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
-        (self.folder / BEAT).write_text(str(CALLER_LOST), encoding="utf-8")
+        (self.folder / BEAT).write_text(str(EXECUTION.caller_lost), encoding="utf-8")
         self._numbers, self._closed = count(), threading.Event()
         threading.Thread(target=_beat, args=(self.folder / BEAT, self._closed), daemon=True).start()
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order; see `Executor`. Successive ones go to one worker together, the largest of these begin.
 
-        Raises
-        ------
-        RoadExtractionError
-            Of the phase; or if workers ended at half an item, the scheduler is lost, or a folder cannot be used.
+        Raises RoadExtractionError of the phase; or if workers ended at half an item, the scheduler is lost, or a folder cannot be used.
         """
         shipped = self.folder / f"phase{next(self._numbers)}.plain"
         work = _Work(self, phase, shipped)
         try:
             write_plain(shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
             parts = [_Part(item, keep[k] if keep else self.new_file(), phase.size(item)) for k, item in enumerate(items)]
-            work.submit(parts, items_together(phase, len(parts), self.threads, ITEMS_PER_TASK))
+            work.submit(parts, items_together(phase, len(parts), self.threads, EXECUTION.items_per_task))
             for part in parts:
                 while not part.done:
                     progress.report(work.done / len(parts))
@@ -147,7 +130,7 @@ class Cluster(Executor):
         self._closed.set()
         self.client.close()
         self._left.detach()
-        until = time.monotonic() + CLOSE_TIME
+        until = time.monotonic() + EXECUTION.close_time
         while self.folder.exists() and time.monotonic() < until:
             shutil.rmtree(self.folder, ignore_errors=True)
 
@@ -241,7 +224,7 @@ class _Work:
         self._finish(part)
 
     def result(self, part):
-        until = time.monotonic() + RESULT_TIME
+        until = time.monotonic() + EXECUTION.result_time
         while not part.file.exists() and time.monotonic() < until:
             time.sleep(POLL_INTERVAL)
         return read_plain(part.file)
@@ -252,12 +235,12 @@ class _Work:
             self._check_workers()
             return
         self.lost_since = self.lost_since or time.monotonic()
-        if self.client.status == "closed" or time.monotonic() - self.lost_since > SCHEDULER_LOST:
+        if self.client.status == "closed" or time.monotonic() - self.lost_since > EXECUTION.scheduler_lost:
             raise self._lost()
 
     def _check_workers(self):
         """Refuse to wait for workers that all pause, and go on doing so."""
-        if time.monotonic() - self.heard < PAUSED_TIME:
+        if time.monotonic() - self.heard < EXECUTION.paused_time:
             return
         paused = _all_paused(self.client)
         if paused and self.paused:
@@ -283,7 +266,7 @@ class _Work:
 
 
 def _beat(file, closed):
-    while not closed.wait(BEAT_TIME):
+    while not closed.wait(EXECUTION.beat_time):
         try:
             os.utime(file)
         except OSError:
@@ -300,9 +283,6 @@ def _disk_error(folder, error):
 # Dask sends pickled functions, and whoever can talk to a scheduler can run programs as its workers. So a connection that leaves this computer is
 # encrypted, with certificates that Dask's own configuration names, unless the user says otherwise.
 
-CONNECT_TIME = 20.0      # s for a scheduler to answer
-WORKERS_TIME = 60.0      # s for the first worker to come
-LEAST_MEMORY = 1 << 30   # bytes: a section of a dense survey, its surroundings and what is imported (about 0.5 GB, measured) twice
 ADDRESS = re.compile(r"([a-z]+://)?(?P<host>\[[0-9a-fA-F:.%]+\]|[^\s:/@?#\[\]]+):[0-9]+/?")
 PACKAGE = "lanewright"
 INSTALL = 'pip install "lanewright[cluster]"'
@@ -322,10 +302,7 @@ def is_loopback(address: str) -> bool:
 def check_address(address: str, insecure: bool) -> None:
     """Refuse an address to which the connection would not be encrypted.
 
-    Raises
-    ------
-    RoadExtractionError
-        If it is none, or does not begin with tls://, leaves this computer, and `insecure` is not set.
+    Raises RoadExtractionError if it is none, or does not begin with tls://, leaves this computer, and `insecure` is not set.
     """
     if not ADDRESS.fullmatch(address):
         raise RoadExtractionError(
@@ -341,10 +318,7 @@ def check_address(address: str, insecure: bool) -> None:
 def client_of(address: str, insecure: bool = False) -> Any:
     """A distributed.Client of a running scheduler at tls://host:port, or tcp:// on this computer; elsewhere only where `insecure` is set.
 
-    Raises
-    ------
-    RoadExtractionError
-        If dask.distributed is missing, the address is not safe, certificates are missing, or nothing answers there.
+    Raises RoadExtractionError if dask.distributed is missing, the address is not safe, certificates are missing, or nothing answers there.
     """
     check_address(address, insecure)
     try:
@@ -360,7 +334,7 @@ def client_of(address: str, insecure: bool = False) -> Any:
             "client.cert and client.key there, or the variables DASK_DISTRIBUTED__COMM__TLS__CA_FILE, …__CLIENT__CERT and …__CLIENT__KEY.")
     try:
         _check_greeting(address, security)
-        return Client(address, timeout=CONNECT_TIME, security=security, set_as_default=False, name=PACKAGE)
+        return Client(address, timeout=EXECUTION.connect_time, security=security, set_as_default=False, name=PACKAGE)
     # of wrong certificates, names and ports, each library has errors of its own
     except Exception as error:
         raise RoadExtractionError(
@@ -377,7 +351,7 @@ def _check_greeting(address, security):
     if scheme not in ("", "tcp", "tls"):
         return
     try:
-        connection = socket.create_connection((host.strip("[]"), int(port)), CONNECT_TIME)
+        connection = socket.create_connection((host.strip("[]"), int(port)), EXECUTION.connect_time)
     except OSError:
         return
     with connection:
@@ -394,8 +368,8 @@ def _check_greeting(address, security):
 
 
 def wait_for_workers(client: Any, progress: Progress) -> dict[str, int]:
-    """{address: threads} of the workers, as soon as there is one; refused if none came within WORKERS_TIME."""
-    until = time.monotonic() + WORKERS_TIME
+    """{address: threads} of the workers, as soon as there is one; refused if none came within `workers_time`."""
+    until = time.monotonic() + EXECUTION.workers_time
     while not (workers := client.nthreads()):
         if time.monotonic() > until:
             raise RoadExtractionError(f"The scheduler {client.scheduler.address} has no workers. Start some: dask worker {client.scheduler.address}.")
@@ -441,9 +415,9 @@ def _check_workers(client: Any, folder: Path, word: str, named: bool, progress: 
                                           "see under the same path and may write to.")
             raise RoadExtractionError(f"The worker {worker} cannot use the folder {folder}: {problem}. Where workers are on other computers, or "
                                       "belong to another user, WORK_FOLDER must name a folder that all of them see.")
-        if 0 < found["memory"] < LEAST_MEMORY:
+        if 0 < found["memory"] < EXECUTION.least_memory:
             progress.warn(f"The worker {worker} may take {found['memory'] / 2**20:.0f} MiB of memory; a dense survey needs about "
-                          f"{LEAST_MEMORY / 2**20:.0f}. Start it with a higher --memory-limit if workers end.")
+                          f"{EXECUTION.least_memory / 2**20:.0f}. Start it with a higher --memory-limit if workers end.")
     threads = max(client.nthreads().values())
     if threads > 1:
         progress.warn(f"Workers have up to {threads} threads, which wait for each other in Python. Workers of one thread are faster: start more of "

@@ -135,12 +135,9 @@ class Executor:
 
 
 def name_of(function: Any) -> str:
-    """ "module:name" of a function or class of the package.
+    """"module:name" of a function or class of the package.
 
-    Raises
-    ------
-    TypeError
-        If it is not a public one of a module of the package.
+    Raises TypeError if it is not a public one of a module of the package.
     """
     package, _, module = function.__module__.partition(f"{PACKAGE}.")
     if package or not module or "." in function.__qualname__ or function.__qualname__.startswith("<"):
@@ -168,19 +165,12 @@ CHECKED_AT_ONCE = 1 << 20   # bytes, which fit the processor's cache
 def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> None:
     """Write a value to a file, which appears whole or not at all.
 
-    Parameters
-    ----------
     path : of the file
     value : None, bool, int, float, str, numpy arrays and numbers, lists, tuples and dicts of these, and objects of classes of
         the package whose attributes are such values. A class may leave attributes out by `__getstate__`
     unfinished_in : folder on the same disk that has the unfinished file; by default that of the file
 
-    Raises
-    ------
-    TypeError
-        If it holds anything else.
-    OSError
-        With a file name, if it cannot be written.
+    Raises TypeError if it holds anything else. OSError with a file name, if it cannot be written.
     """
     contents, check = _contents(value), 0
     for part in contents:
@@ -213,10 +203,7 @@ def _contents(value):
 def read_plain(path: Path) -> Any:
     """The value that `write_plain` wrote.
 
-    Raises
-    ------
-    OSError
-        If the file cannot be read, is none of these, or ends early.
+    Raises OSError if the file cannot be read, is none of these, or ends early.
     """
     with open(path, "rb") as file:
         if file.read(len(FORMAT)) != FORMAT:

@@ -19,10 +19,7 @@ from ..common.parallel import POLL_INTERVAL, check_cancelled, ordered_map
 from ..common.progress import Progress
 from .phase import Executor, Phase, name_of, read_plain, write_plain
 from .tasks import ShippedPhase, command_of, environment, import_folders, items_together, no_window, raise_answer
-
-TRIALS = 2          # of an item whose worker ended; what kills two workers kills a third
-END_TIME = 5.0      # s that a worker may take to end by itself
-LAST_WORDS = 2000   # characters of what a dead worker wrote that are passed on
+from .weights import EXECUTION
 
 
 class WorkerProcesses(Executor):
@@ -31,8 +28,6 @@ class WorkerProcesses(Executor):
     Workers are started when they are first needed and kept until `close`. What a phase reads from is put into a folder, once;
     each result is written there by its worker under a temporary name, renamed, and read and removed by the caller.
 
-    Parameters
-    ----------
     interpreter : path of a Python interpreter that `find_interpreter` tried
     workers : number of processes
     """
@@ -50,10 +45,7 @@ class WorkerProcesses(Executor):
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order; see `Executor`. Nothing is kept by it.
 
-        Raises
-        ------
-        RoadExtractionError
-            Of the phase; or if a worker process ended TRIALS times at one item, ran out of memory, or the folder is full.
+        Raises RoadExtractionError of the phase; or if a worker process ended `trials` times at one item, ran out of memory, or the folder is full.
         """
         items = list(items)
         shipped = f"phase{next(self._numbers)}.plain"
@@ -84,7 +76,7 @@ class WorkerProcesses(Executor):
     def _ask(self, phase, item, task):
         """Have a task done; raises what went wrong."""
         last = ""
-        for _ in range(TRIALS):
+        for _ in range(EXECUTION.trials):
             worker = self._take()
             try:
                 answer = worker.answer_to(task)
@@ -100,7 +92,7 @@ class WorkerProcesses(Executor):
             raise_answer(answer, phase, item, "A worker process")
             return
         raise RoadExtractionError(
-            f"Worker processes ended {TRIALS} times while they worked on {phase.place(item)}; usually the computer is out of memory. "
+            f"Worker processes ended {EXECUTION.trials} times while they worked on {phase.place(item)}; usually the computer is out of memory. "
             f"Try fewer workers, or 0 for the automatic choice. {last}".rstrip())
 
     def disk_error(self, error: OSError) -> RoadExtractionError:
@@ -183,9 +175,9 @@ class _Worker:
 
     def last_words(self):
         """The end of what the worker wrote about itself, and how it ended."""
-        code = self._process.wait(END_TIME)
+        code = self._process.wait(EXECUTION.end_time)
         self._words.seek(0)
-        words = self._words.read().decode(errors="replace").strip()[-LAST_WORDS:]
+        words = self._words.read().decode(errors="replace").strip()[-EXECUTION.last_words:]
         return f"The last one ended with code {code}" + (f": {words}" if words else ".")
 
     def kill(self):
@@ -199,7 +191,7 @@ class _Worker:
     def end(self):
         """Wait for a process that was told to end."""
         try:
-            self._process.wait(END_TIME)
+            self._process.wait(EXECUTION.end_time)
         except subprocess.TimeoutExpired:
             self._process.kill()
         self._finish()

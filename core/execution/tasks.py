@@ -24,10 +24,8 @@ from ..common.errors import Cancelled, RoadExtractionError
 from ..common.parallel import cancellation_scope, free_memory, is_lack_of_memory, reuse_freed_memory, trim_heap
 from ..common.progress import Progress
 from .phase import Phase, Recipe, named, read_plain, write_plain
+from .weights import EXECUTION
 from .work_folder import code_digest
-
-OPEN_PHASES = 2   # phases kept open in a worker: the current one and the one before
-WORK_ROUNDS = 8   # of work that a worker has in a phase at least, where its items come several together, so that all end at about the same time
 
 
 def items_together(phase: Phase, count: int, workers: int, usual: int = 1) -> int:
@@ -35,7 +33,7 @@ def items_together(phase: Phase, count: int, workers: int, usual: int = 1) -> in
 
     As many as the phase asks for, at least the `usual` number, but no more than leave every worker some rounds of work.
     """
-    return max(min(max(phase.together, usual), count // (WORK_ROUNDS * max(workers, 1))), 1)
+    return max(min(max(phase.together, usual), count // (EXECUTION.work_rounds * max(workers, 1))), 1)
 
 
 @dataclass(frozen=True)
@@ -63,15 +61,11 @@ class Tasks:
     def answer(self, phase: Path, item: Path, result: Path) -> dict[str, str]:
         """Compute one item.
 
-        Parameters
-        ----------
         phase : file of a ShippedPhase
         item : file of the item
         result : file that the result is written to; unfinished, it lies beside the phase
 
-        Returns
-        -------
-        empty, or what went wrong: one of the keys "refused", "cancelled", "memory", "disk" and "bug", and words
+        Returns empty, or what went wrong: one of the keys "refused", "cancelled", "memory", "disk" and "bug", and words.
         """
         try:
             function, source, arguments = self._phase(phase)
@@ -98,7 +92,7 @@ class Tasks:
             if path not in self._open:
                 shipped: ShippedPhase = read_plain(path)
                 self._open[path] = named(shipped.function), shipped.source.open(self._sources), shipped.arguments
-                while len(self._open) > OPEN_PHASES:
+                while len(self._open) > EXECUTION.open_phases:
                     self._open.popitem(last=False)
             return self._open[path]
 
@@ -106,14 +100,8 @@ class Tasks:
 def raise_answer(answer: dict[str, str], phase: Phase, item: Any, worker: str) -> None:
     """Raise what went wrong with an item, by the answer of `Tasks.answer`; `worker` is what messages call the worker.
 
-    Raises
-    ------
-    RoadExtractionError
-        Of the phase, or if the worker ran out of memory.
-    OSError
-        If a file could not be read or written.
-    RuntimeError
-        Of a bug, with its traceback.
+    Raises RoadExtractionError of the phase, or if the worker ran out of memory; OSError if a file could not be read or written; RuntimeError of a
+    bug, with its traceback.
     """
     if "refused" in answer:
         raise RoadExtractionError(answer["refused"])
@@ -131,8 +119,6 @@ def raise_answer(answer: dict[str, str], phase: Phase, item: Any, worker: str) -
 # the file BEAT, and where it does no longer, the workers remove the folder.
 
 BEAT = "beat"          # file that the caller touches; it holds the seconds after which a caller is taken for dead that did not
-LOOK_TIME = 0.5        # s between two looks whether a phase is still wanted
-WATCH_TIME = 2.0       # s between two looks at BEAT
 
 _tasks = Tasks()
 _watched: set[str] = set()
@@ -142,8 +128,6 @@ _lock = threading.Lock()
 def look_around(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
     """What the caller must know of a worker, which Dask gives as `dask_worker`.
 
-    Parameters
-    ----------
     folder : of the caller
     word : file in it that the worker must see
 
@@ -206,7 +190,7 @@ class _WhileWanted(Progress):
         self.phase, self.looked = phase, time.monotonic()
 
     def check_cancelled(self):
-        if time.monotonic() - self.looked > LOOK_TIME:
+        if time.monotonic() - self.looked > EXECUTION.look_time:
             self.looked = time.monotonic()
             if not self.phase.exists():
                 raise Cancelled
@@ -230,7 +214,7 @@ def _remove_after(folder):
             now = beat.stat().st_mtime_ns
             if now != last:
                 last, since = now, time.monotonic()
-            time.sleep(WATCH_TIME)
+            time.sleep(EXECUTION.watch_time)
         shutil.rmtree(folder, ignore_errors=True)
     except (OSError, ValueError):
         pass   # the caller removed the folder
@@ -246,7 +230,6 @@ def _remove_after(folder):
 WORKER = Path(__file__).with_name("worker.py")
 NEEDED = ("numpy", "scipy", "shapely")   # packages whose versions must be equal, or results could differ
 IMPORTED = ("laspy", "lazrs", "cv2")     # packages whose results are the same in all versions
-TRIAL_TIME = 30.0   # s that a trial may take on a busy computer
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS")   # the last is lazrs's
 
 
@@ -313,7 +296,7 @@ def _can_work(path: str) -> bool:
     try:
         done = subprocess.run(  # nosec B603
             command_of(path, "--try", *imported), input=json.dumps(import_folders()), env=environment(), capture_output=True, text=True,
-            timeout=TRIAL_TIME, creationflags=no_window(), check=False)
+            timeout=EXECUTION.trial_time, creationflags=no_window(), check=False)
         return done.returncode == 0 and json.loads(done.stdout) == versions()
     except (OSError, ValueError, subprocess.SubprocessError):
         return False

@@ -19,17 +19,13 @@ from uuid import uuid4
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .phase import Executor, Phase, checksum, digest, is_whole, name_of, read_plain, write_plain
-
-LONGEST_NOTE = 1 << 24   # bytes; what a run says in a thousand lines is a hundredth of it
+from .weights import EXECUTION
 
 
 class WorkFolder:
     """A folder for finished work, which is made where it is missing.
 
-    Raises
-    ------
-    RoadExtractionError
-        If nothing can be written there.
+    Raises RoadExtractionError if nothing can be written there.
     """
 
     def __init__(self, path: str):
@@ -71,7 +67,7 @@ class WorkFolder:
         """The folder and the messages that were kept under a name; None where there are none, or not all as they were written."""
         note = self.path / f"{name}.json"
         try:
-            if note.stat().st_size > LONGEST_NOTE:
+            if note.stat().st_size > EXECUTION.longest_note:
                 return None
             found = json.loads(note.read_bytes())
             folder, messages = found["folder"], [(str(kind), str(text)) for kind, text in found["messages"]]

@@ -10,12 +10,11 @@ import numpy as np
 from ..common.arrays import ascending, quantile_in_order
 from ..survey.frame.passes import Pass
 from ..survey.store.records import COORDINATE_SCALE, Points
+from .weights import ASPHALT
 
 # Where points lie relative to the vehicle at the time they were measured, looked up in small tables.
 
-VEHICLE_TICK = 5e-4    # s between the times at which the vehicle's position is tabulated: 1 cm of driving
-UNKNOWN_DISTANCE = np.int32(2**30)   # of a point during whose time no pass drove
-PASS_MARGIN = 1.0      # s before and after a pass in which its points may still have been measured
+UNKNOWN_DISTANCE = np.int32(2**30)   # derived: of a point during whose time no pass drove
 ACROSS_TRACK, FROM_VEHICLE = 0, 1    # kinds of distance: across the vehicle's track, or horizontally from the vehicle
 
 
@@ -26,8 +25,6 @@ class VehicleDistances:
     scanner, even one yawed by 45 degrees, meets each distance across the road once per turn, at one range. A spinning scanner with many beams meets
     it at many ranges, but there the horizontal distance from the scanner determines the range.
 
-    Parameters
-    ----------
     passes : of the road frame
     time : (N,) s, of all points that will be asked for; the ticks are those of a pass, whatever points are asked for
     """
@@ -36,8 +33,8 @@ class VehicleDistances:
         self._tables: list[_PassTable] = []
         if len(time):
             first, last = float(time.min()), float(time.max())
-            self._tables = [_PassTable(p, max(first, p.time[0] - PASS_MARGIN), min(last, p.time[-1] + PASS_MARGIN)) for p in passes
-                            if first <= p.time[-1] + PASS_MARGIN and last >= p.time[0] - PASS_MARGIN]
+            self._tables = [_PassTable(p, max(first, p.time[0] - ASPHALT.pass_margin), min(last, p.time[-1] + ASPHALT.pass_margin)) for p in passes
+                            if first <= p.time[-1] + ASPHALT.pass_margin and last >= p.time[0] - ASPHALT.pass_margin]
 
     def of(self, points: Points, kinds: Sequence[int] = (ACROSS_TRACK, FROM_VEHICLE)) -> list[np.ndarray]:
         """Signed distances of (N) points from the vehicle, (N,) int32 of 0.1 mm for each of the kinds, left of travel positive.
@@ -58,25 +55,25 @@ class VehicleDistances:
 
 
 class _PassTable:
-    """Positions of the vehicle during a part of one pass, at every VEHICLE_TICK."""
+    """Positions of the vehicle during a part of one pass, at every `vehicle_tick`."""
 
     def __init__(self, driven: Pass, first: float, last: float):
         self.driven, self.begin = driven, driven.time[0]
-        self.first = int(np.floor((first - self.begin) / VEHICLE_TICK))
-        self.ticks = self.begin + VEHICLE_TICK * np.arange(self.first, int(np.floor((last - self.begin) / VEHICLE_TICK)) + 2)
+        self.first = int(np.floor((first - self.begin) / ASPHALT.vehicle_tick))
+        self.ticks = self.begin + ASPHALT.vehicle_tick * np.arange(self.first, int(np.floor((last - self.begin) / ASPHALT.vehicle_tick)) + 2)
         self._positions: dict[str, np.ndarray] = {}
 
     def rows(self, time: np.ndarray, number: np.ndarray) -> np.ndarray | None:
         """Indices of the points of this pass; None for all of them."""
         rows = number == self.driven.number
-        start, end = self.begin - PASS_MARGIN, self.driven.time[-1] + PASS_MARGIN
+        start, end = self.begin - ASPHALT.pass_margin, self.driven.time[-1] + ASPHALT.pass_margin
         if time.min() < start or time.max() > end:
             rows &= (time >= start) & (time <= end)
         return None if rows.all() else np.flatnonzero(rows)
 
     def distances(self, points: Points, time: np.ndarray, kinds: Sequence[int]) -> Iterator[np.ndarray]:
         tick = time - self.begin
-        tick *= 1.0 / VEHICLE_TICK
+        tick *= 1.0 / ASPHALT.vehicle_tick
         tick += 0.5
         k = np.floor(tick, out=tick).astype(np.intp)
         k -= self.first
@@ -101,22 +98,12 @@ class _PassTable:
         return np.subtract(units.astype(np.int32, copy=False), vehicle, out=vehicle)
 
 
-DISTANCE_BIN = 0.5      # m
-MAX_DISTANCE = 30.0     # m; farther road counts with the last bin
-DISTANCE_BINS = int(2 * MAX_DISTANCE / DISTANCE_BIN)   # both sides of the vehicle
-INTENSITY_LEVELS = 1024     # logarithmic, 64 to a doubling: 1.1 % each
+DISTANCE_BINS = int(2 * ASPHALT.max_distance / ASPHALT.distance_bin)   # derived: both sides of the vehicle
+INTENSITY_LEVELS = 1024     # derived: logarithmic, 64 to a doubling: 1.1 % each
 LEVELS_PER_DOUBLING = 64
-MIN_ASPHALT_POINTS = 200    # points of a bin, below which its asphalt is unknown
-MAX_JOINED_BINS = 10    # 5 m of neighbouring bins with fewer points are taken together
-MIXED_BIN_SPREAD = 1.5  # times the spread of its neighbours: a bin of paint and asphalt, left out
-MIXED_BIN_NEIGHBOURS = 4    # bins either side that a bin is compared with
-PAINT_SIGMAS = 3.0      # lower spreads above the median of asphalt: what is brighter is taken for paint
-LOWER_QUANTILE = 0.5 - 0.3413  # one standard deviation below the median of a normal distribution
-DARK_SIGMAS = 4.0       # standard deviations below the median of asphalt: what is darker is something else
+LOWER_QUANTILE = 0.5 - 0.3413  # derived: one standard deviation below the median of a normal distribution
 INNER_QUANTILE, INNER_SIGMAS = 0.30, 0.5244    # of a normal distribution: so many standard deviations below the median
-CLEANING_ROUNDS = 4     # of taking the median and leaving out paint and what is dark
-POINTS_AT_ONCE = 1 << 15    # points corrected or counted at a time: what fits the processor's cache
-# corrections are looked up in steps of 2**4 units of 0.1 mm, 52 m to either side; beyond MAX_DISTANCE they are all alike
+# corrections are looked up in steps of 2**4 units of 0.1 mm, 52 m to either side; beyond `max_distance` they are all alike
 LOOKUP_SHIFT, LOOKUP_STEPS = 4, 2**16
 LOOKUP_HALF = LOOKUP_STEPS << LOOKUP_SHIFT >> 1
 LEVEL_OF_COUNT = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * LEVELS_PER_DOUBLING), 0, INTENSITY_LEVELS - 1).astype(np.int32)
@@ -129,13 +116,13 @@ def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
     of dark repairs and water. How much that is, the 30 % quantile tells, which they move less than the lower spread. Three rounds are enough.
     """
     values = ascending(values)
-    for _ in range(CLEANING_ROUNDS):
+    for _ in range(ASPHALT.cleaning_rounds):
         count = len(values)
         low, inner, median = (quantile_in_order(values, count, q) for q in (LOWER_QUANTILE, INNER_QUANTILE, 0.5))
         least = 1e-6 * max(abs(median), 1.0)
         spread = max(median - low, least)
-        first = int(np.searchsorted(values, median - DARK_SIGMAS * max((median - inner) / INNER_SIGMAS, least)))
-        last = int(np.searchsorted(values, median + PAINT_SIGMAS * spread, side="right"))
+        first = int(np.searchsorted(values, median - ASPHALT.dark_sigmas * max((median - inner) / INNER_SIGMAS, least)))
+        last = int(np.searchsorted(values, median + ASPHALT.paint_sigmas * spread, side="right"))
         if last - first == count:
             break
         values = values[first:last]
@@ -144,8 +131,8 @@ def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
 
 def _distance_bin(distances: np.ndarray) -> np.ndarray:
     """(N,) int32 bin of (N,) int32 signed distances, units of 0.1 mm."""
-    number = distances + np.int32(MAX_DISTANCE / COORDINATE_SCALE)
-    number //= np.int32(DISTANCE_BIN / COORDINATE_SCALE)
+    number = distances + np.int32(ASPHALT.max_distance / COORDINATE_SCALE)
+    number //= np.int32(ASPHALT.distance_bin / COORDINATE_SCALE)
     return np.clip(number, 0, DISTANCE_BINS - 1, out=number)
 
 
@@ -183,8 +170,6 @@ class IntensityHistograms:
               kinds: Sequence[int] = (ACROSS_TRACK, FROM_VEHICLE)) -> list[BinCounts]:
         """Counts of some points, to be added with `add`; a point whose distance or intensity is not known counts nowhere.
 
-        Parameters
-        ----------
         scanner : (N,) int
         distances : for each of `kinds` (N,) int32 of `VehicleDistances.of`
         intensity : (N,) NaN where it could not be corrected
@@ -239,17 +224,17 @@ def asphalt_of_histograms(histograms: np.ndarray) -> tuple[np.ndarray, np.ndarra
     and left out, and the median is taken again: paint never raises it.
     """
     total = histograms.sum(axis=-1)
-    known = total >= MIN_ASPHALT_POINTS
+    known = total >= ASPHALT.min_asphalt_points
     median, sigma = np.full(total.shape, np.nan), np.full(total.shape, np.nan)
     counts = histograms[known].astype(float)
     if not len(counts):
         return median, sigma
     limit = np.full(len(counts), INTENSITY_LEVELS)
-    for _ in range(CLEANING_ROUNDS):
+    for _ in range(ASPHALT.cleaning_rounds):
         remaining = np.where(np.arange(INTENSITY_LEVELS) <= limit[..., None], counts, 0.0)
         low, middle = _histogram_quantile(remaining, LOWER_QUANTILE), _histogram_quantile(remaining, 0.5)
         # a level is 1.1 %: no smaller spread can be resolved
-        limit = middle + PAINT_SIGMAS * np.maximum(middle - low, 1.0)
+        limit = middle + ASPHALT.paint_sigmas * np.maximum(middle - low, 1.0)
     median[known] = to_intensity(middle)
     sigma[known] = median[known] - to_intensity(low)
     return median, sigma
@@ -306,11 +291,11 @@ class AsphaltTable:
     def lookup(self) -> np.ndarray:
         """Corrections at each distance: (scanners, LOOKUP_STEPS + 1) float32 factors, or summands where `logarithmic`.
 
-        Asphalt farther away than MAX_DISTANCE is taken for that at MAX_DISTANCE, on either side. NaN for a scanner whose
+        Asphalt farther away than `max_distance` is taken for that there, on either side. NaN for a scanner whose
         asphalt is unknown, and in the last column, which is that of UNKNOWN_DISTANCE.
         """
         distance = (((np.arange(LOOKUP_STEPS) << LOOKUP_SHIFT) - LOOKUP_HALF) + (1 << LOOKUP_SHIFT) / 2) * COORDINATE_SCALE
-        position = np.clip((distance + MAX_DISTANCE) / DISTANCE_BIN - 0.5, 0, DISTANCE_BINS - 1)
+        position = np.clip((distance + ASPHALT.max_distance) / ASPHALT.distance_bin - 0.5, 0, DISTANCE_BINS - 1)
         asphalt = np.stack([np.interp(position, np.arange(DISTANCE_BINS), row) for row in self.asphalt])
         found = self.reference - asphalt if self.logarithmic else self.reference / np.maximum(asphalt, 1e-6)
         return np.pad(found.astype(np.float32), ((0, 0), (0, 1)), constant_values=np.nan)
@@ -339,7 +324,7 @@ def is_logarithmic(median: np.ndarray, sigma: np.ndarray, weight: np.ndarray) ->
     if not use.any():
         return False
     level, spread = np.log(median[use]), np.log(sigma[use])
-    w = np.minimum(weight[use], 10 * MIN_ASPHALT_POINTS).astype(float)
+    w = np.minimum(weight[use], 10 * ASPHALT.min_asphalt_points).astype(float)
     w /= w.sum()
     level = level - (w * level).sum()
     variance = (w * level * level).sum()
@@ -355,11 +340,11 @@ def weighted_median(values: np.ndarray, weights: np.ndarray) -> float:
 
 def _mixed(spread):
     """Bins whose relative spread stands out from their neighbours': a line painted at one distance fills much of them."""
-    n = MIXED_BIN_NEIGHBOURS
+    n = ASPHALT.mixed_bin_neighbours
     around = np.stack([np.roll(np.pad(spread, ((0, 0), (n, n)), constant_values=np.nan), k, axis=1)[:, n:-n] for k in range(-n, n + 1)])
     known = np.isfinite(spread)  # so that each has at least one neighbour: itself
     found = np.zeros(spread.shape, bool)
-    found[known] = spread[known] > MIXED_BIN_SPREAD * np.nanmedian(around[:, known], axis=0)
+    found[known] = spread[known] > ASPHALT.mixed_bin_spread * np.nanmedian(around[:, known], axis=0)
     return found
 
 
@@ -371,9 +356,9 @@ def _sparse_bins_joined(histograms):
         for side in (range(DISTANCE_BINS // 2, DISTANCE_BINS), range(DISTANCE_BINS // 2 - 1, -1, -1)):
             group: list[int] = []
             for k in side:
-                group = [*group[1 - MAX_JOINED_BINS:], k] if 0 < counts[scanner, k] < MIN_ASPHALT_POINTS else []
+                group = [*group[1 - ASPHALT.max_joined_bins:], k] if 0 < counts[scanner, k] < ASPHALT.min_asphalt_points else []
                 own = counts[scanner, group]
-                if own.sum() >= MIN_ASPHALT_POINTS:
+                if own.sum() >= ASPHALT.min_asphalt_points:
                     joined[scanner, int(np.rint((own * group).sum() / own.sum()))] = histograms[scanner, group].sum(axis=0)
                     group = []
     return joined
@@ -387,7 +372,7 @@ def _smoothed(values, weight, sigma=0.7):
     # intensity falls by a share per metre: its logarithm is closer to a line
     found = np.log(np.maximum(values[known], 1e-3))
     u = (known - known[:, None]).astype(float)
-    w = np.exp(-0.5 * (u / sigma) ** 2) * np.minimum(weight[known], 20 * MIN_ASPHALT_POINTS)
+    w = np.exp(-0.5 * (u / sigma) ** 2) * np.minimum(weight[known], 20 * ASPHALT.min_asphalt_points)
     s0, s1, s2 = w.sum(axis=1), (w * u).sum(axis=1), (w * u * u).sum(axis=1)
     t0, t1 = (w * found).sum(axis=1), (w * u * found).sum(axis=1)
     determinant = s0 * s2 - s1 * s1

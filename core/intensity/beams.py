@@ -19,18 +19,11 @@ from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.columns import Columns
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
-from .asphalt_model import INTENSITY_LEVELS, MIN_ASPHALT_POINTS, PASS_MARGIN, asphalt_of_histograms, is_logarithmic, to_level, weighted_median
+from .asphalt_model import INTENSITY_LEVELS, asphalt_of_histograms, is_logarithmic, to_level, weighted_median
+from .weights import ASPHALT, BEAMS
 
-LOWEST_ELEVATION = -45.0        # degrees; elevations of road reach from here to 0
-ELEVATION_BIN = 0.05            # degrees
-ELEVATION_BINS = 900
-MIN_SHARPNESS = 1.5     # times as full as the mean of a degree around them: bins that are rings of beams
-UNEQUAL_BEAMS = 0.05    # of asphalt's level: beams that differ less from their neighbours are alike
-NEIGHBOUR_BEAMS = 3     # beams either side
-SAMPLE_WINDOWS, SAMPLE_WINDOW = 12, 5.0     # windows of each road that are searched for beams; their length, m
-MAX_SAMPLE_POINTS = 8_000   # points of one scanner in a window that are examined
-MAX_TURN_TIME = 1.0          # s, the longest turn of a spinning scanner
-SOURCE_IDS = 2**16      # numbers that point_source_id may have
+ELEVATION_BINS = round(-BEAMS.lowest_elevation / BEAMS.elevation_bin)
+SOURCE_IDS = 2**16      # source: LAS 1.4, numbers that point_source_id may have
 SAMPLE_COLUMNS = "time", "x", "y", "z", "source", "pass_number"   # needed for the elevation seen from the vehicle
 ANGLE_SIGNS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # sign conventions of roll and pitch that are tried; 0 ignores them
 
@@ -62,7 +55,7 @@ class _ScannerTurns:
         number = number[np.argsort(first[number], kind="stable")]
         begin, end = first[number], last[number]
         # not every turn begins and ends over the road: two consecutive turns share the time between them
-        follows = begin[1:] - end[:-1] < MAX_TURN_TIME / 2
+        follows = begin[1:] - end[:-1] < BEAMS.max_turn_time / 2
         between = (end[:-1] + begin[1:]) / 2
         begin[1:][follows], end[:-1][follows] = between[follows], between[follows]
         # a turn without a predecessor or a successor is as long as the others
@@ -72,7 +65,7 @@ class _ScannerTurns:
             begin = np.where(np.r_[False, follows] | ~np.r_[follows, False], begin, end - length)
             end = np.where(np.r_[follows, False] | ~np.r_[False, follows], end, begin + length)
         middle = np.full(SOURCE_IDS, np.nan)
-        turn = (end - begin < MAX_TURN_TIME) & (end > begin)
+        turn = (end - begin < BEAMS.max_turn_time) & (end > begin)
         middle[number[turn]] = (begin[turn] + end[turn]) / 2
         return cls(middle)
 
@@ -92,7 +85,7 @@ def _may_be_turns(samples):
     order = np.argsort(source, kind="stable")
     source, time = source[order], time[order]
     begins = np.flatnonzero(np.r_[True, source[1:] != source[:-1]])
-    return bool((np.maximum.reduceat(time, begins) - np.minimum.reduceat(time, begins) < MAX_TURN_TIME).any())
+    return bool((np.maximum.reduceat(time, begins) - np.minimum.reduceat(time, begins) < BEAMS.max_turn_time).any())
 
 
 @dataclass
@@ -124,7 +117,7 @@ class _ElevationModel:
             middle = self.turns.middle[points.source]
             time = np.where(np.isfinite(middle), middle, time)
         for p in self.passes:
-            rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - PASS_MARGIN) & (time <= p.time[-1] + PASS_MARGIN))
+            rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - ASPHALT.pass_margin) & (time <= p.time[-1] + ASPHALT.pass_margin))
             if len(rows):
                 yield rows, _BeamGeometry.of(p, points[rows], time[rows])
 
@@ -158,7 +151,7 @@ class _BeamGeometry:
     def elevation_bin(self, signs: tuple[int, int]) -> np.ndarray:
         """(N,) int; `signs` are those of roll and pitch."""
         elevation = np.degrees(np.arctan2(self.rise + signs[0] * self.by_roll + signs[1] * self.by_pitch, self.reach))
-        return np.clip(np.floor((elevation - LOWEST_ELEVATION) / ELEVATION_BIN), -1, ELEVATION_BINS - 1).astype(int)
+        return np.clip(np.floor((elevation - BEAMS.lowest_elevation) / BEAMS.elevation_bin), -1, ELEVATION_BINS - 1).astype(int)
 
 
 @dataclass
@@ -214,12 +207,12 @@ class Beams:
         median, lower = asphalt_of_histograms(np.add.reduceat(levels, starts, axis=0))
         weight = np.add.reduceat(levels.sum(axis=1), starts)
         known = np.flatnonzero(np.isfinite(median) & (median > 0))
-        if len(known) < 2 * NEIGHBOUR_BEAMS:
+        if len(known) < 2 * BEAMS.neighbour_beams:
             return
         reference = weighted_median(median[known], weight[known])
-        padded = np.pad(median[known], NEIGHBOUR_BEAMS, mode="edge")
-        neighbours = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * NEIGHBOUR_BEAMS + 1), axis=1)
-        if weighted_median(np.abs(median[known] - neighbours), weight[known]) < UNEQUAL_BEAMS * reference:
+        padded = np.pad(median[known], BEAMS.neighbour_beams, mode="edge")
+        neighbours = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * BEAMS.neighbour_beams + 1), axis=1)
+        if weighted_median(np.abs(median[known] - neighbours), weight[known]) < BEAMS.unequal_beams * reference:
             return
         # a beam with few points on the road is interpolated between its neighbours
         median = np.interp(np.arange(len(median)), known, median[known])
@@ -248,7 +241,7 @@ def _samples(road_points: RoadPoints, frame: RoadFrame, scanners: int) -> dict[i
     places = []
     for road in road_points.roads():
         start, end = frame.road(road).start, frame.road(road).end
-        places += [(road, s) for s in np.linspace(start, max(end - SAMPLE_WINDOW, start), SAMPLE_WINDOWS)]
+        places += [(road, s) for s in np.linspace(start, max(end - BEAMS.sample_window, start), BEAMS.sample_windows)]
     samples: dict[int, list[Points]] = {}
     for found in ordered_map(lambda place: _samples_of_window(road_points, *place, scanners), places):
         for scanner, points in found:
@@ -258,12 +251,12 @@ def _samples(road_points: RoadPoints, frame: RoadFrame, scanners: int) -> dict[i
 
 def _samples_of_window(road_points, road, s, scanners):
     """[(scanner, Points)] of the window that begins at station s."""
-    points, found = road_points.window(road, s, s + SAMPLE_WINDOW), []
+    points, found = road_points.window(road, s, s + BEAMS.sample_window), []
     of = points.scanner
     for scanner in range(scanners):
         rows = np.flatnonzero(of == scanner)
-        if len(rows) >= MIN_ASPHALT_POINTS:
-            some = points[rows[::-(-len(rows) // MAX_SAMPLE_POINTS)]].records
+        if len(rows) >= ASPHALT.min_asphalt_points:
+            some = points[rows[::-(-len(rows) // BEAMS.max_sample_points)]].records
             # copies of the columns, so that the memory of the sections is freed
             own = Columns({name: some[name] for name in SAMPLE_COLUMNS}, np.dtype([(name, some.dtype[name]) for name in SAMPLE_COLUMNS]))
             found.append((scanner, Points(own)))
@@ -273,7 +266,7 @@ def _samples_of_window(road_points, road, s, scanners):
 def _sharpest(samples: list[Points], passes: Sequence[Pass], turns: _ScannerTurns) -> _ElevationModel | None:
     """The _ElevationModel in which points form the clearest rings; None where they do in none."""
     all_signs = ANGLE_SIGNS if any(p.attitude is not None for p in passes) else ANGLE_SIGNS[:1]
-    best, sharpest = MIN_SHARPNESS, None
+    best, sharpest = BEAMS.min_sharpness, None
     for by_turn in (False, True) if turns.known else (False,):
         model = _ElevationModel(passes, turns, by_turn)
         geometries = [geometry for points in samples for _, geometry in model.geometries(points)]
@@ -297,4 +290,4 @@ def sharpness(counts: np.ndarray) -> float:
     if total < ELEVATION_BINS:
         return 0.0
     # a point does not count as its own neighbour
-    return float((counts * (counts - 1)).sum() / max((counts * gaussian_filter1d(counts, 0.5 / ELEVATION_BIN)).sum(), 1e-9))
+    return float((counts * (counts - 1)).sum() / max((counts * gaussian_filter1d(counts, 0.5 / BEAMS.elevation_bin)).sum(), 1e-9))

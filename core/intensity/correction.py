@@ -19,11 +19,8 @@ from ..survey.store.road_points import RoadPoints
 from ..survey.store.section_store import STRETCH_POINTS, Stretch
 from .asphalt_model import (
     ACROSS_TRACK,
-    DISTANCE_BIN,
     INTENSITY_LEVELS,
     LOWER_QUANTILE,
-    MAX_DISTANCE,
-    POINTS_AT_ONCE,
     UNKNOWN_DISTANCE,
     AsphaltTable,
     BinCounts,
@@ -34,13 +31,13 @@ from .asphalt_model import (
     to_level,
 )
 from .beams import Beams
+from .weights import ASPHALT
 
 # Saturated intensities: values that a scanner or an export cut off at an end of their range.
 
-MAX_SHARE_AT_HIGHEST = 0.05   # share of points at their scanner's highest intensity: more than paint covers of most roads
-MAX_SHARE_AT_LOWEST = LOWER_QUANTILE   # share at its lowest: the quantile from which asphalt's spread is taken
+MAX_SHARE_AT_LOWEST = LOWER_QUANTILE   # derived: share at its lowest: the quantile from which asphalt's spread is taken
 REMEDY = "Export the cloud with the scanner's full intensities (16 bits, not stretched)."
-SCANNER_NUMBERS = 256   # numbers that a scanner may have
+SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
 
 
 @dataclass(frozen=True)
@@ -72,7 +69,7 @@ class Saturation:
     def warning(self) -> str:
         """What the user should know of it, "" where nothing was cut off."""
         texts = []
-        if self.at_highest >= MAX_SHARE_AT_HIGHEST:
+        if self.at_highest >= ASPHALT.max_share_at_highest:
             texts.append(f"{100 * self.at_highest:.0f} % of the road's points have the highest intensity, {self.highest:.0f}: brighter values "
                          "were cut off, so that paint there may be no brighter than asphalt and be missed.")
         if self.at_lowest >= MAX_SHARE_AT_LOWEST:
@@ -93,8 +90,8 @@ def saturation_of(road_points: RoadPoints) -> Saturation:
     def count(key):
         points, found = road_points.section(*key), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64)
         intensity, scanner = points.intensity, points.scanner
-        for first in range(0, len(points), POINTS_AT_ONCE):
-            rows = slice(first, first + POINTS_AT_ONCE)
+        for first in range(0, len(points), ASPHALT.points_at_once):
+            rows = slice(first, first + ASPHALT.points_at_once)
             found += np.bincount(scanner[rows].astype(np.int32) * np.int32(INTENSITY_LEVELS) + to_level(intensity[rows]), minlength=len(found))
         return found
 
@@ -102,9 +99,6 @@ def saturation_of(road_points: RoadPoints) -> Saturation:
     return Saturation.from_levels(counts.reshape(SCANNER_NUMBERS, INTENSITY_LEVELS))
 
 
-ENOUGH_POINTS_PER_METRE = 6_000   # of road: more do not improve the estimate of asphalt
-SAMPLE_STRIPE_LENGTH = 100    # units of 0.1 mm along the road: of denser roads, stripes of this length are sampled
-MAX_SHARE_WITHOUT_VEHICLE = 0.2   # of the points, whose vehicle position is unknown: beyond it nothing is corrected
 
 
 @dataclass(frozen=True)
@@ -239,7 +233,7 @@ def _run(function, road_points, arguments, progress):
 
 def _reason_of_counts(table, lost, points):
     """Why nothing can be corrected with a table of asphalt, of which so many points had no position of the vehicle; "" where it can."""
-    if lost > MAX_SHARE_WITHOUT_VEHICLE * points:
+    if lost > ASPHALT.max_share_without_vehicle * points:
         return ("Intensity was not corrected: the trajectory does not say where the vehicle was when "
                 f"{lost:,} of {points:,} points were measured.")
     if table is None:
@@ -263,8 +257,6 @@ def levels_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequenc
                       step: int) -> tuple[list[BinCounts], list[BinCounts], int, np.ndarray]:
     """The phase that counts intensities.
 
-    Parameters
-    ----------
     beams : Beams whose brightness is made equal, None for none
     scanners : their numbers are below this
     step : points in every step-th centimetre of the road are counted
@@ -292,28 +284,24 @@ def corrected_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequ
                          lookup: np.ndarray, kinds: list[int], step: int) -> tuple[int, list[tuple[int, np.ndarray]], list[BinCounts]]:
     """The phase that corrects intensities.
 
-    Parameters
-    ----------
     passes, beams, step : as of `levels_of_stretch`
     table, lookup : AsphaltTable and its `lookup`
     kinds : kinds of distance that it needs
 
-    Returns
-    -------
-    the road, (number of a section, (N,) float32 corrected intensity) of each section, and counts of the corrected intensities
+    Returns the road, (number of a section, (N,) float32 corrected intensity) of each section, and counts of the corrected intensities.
     """
     histograms, found, counts = IntensityHistograms(len(table.distance_kind)), [], []
     for key in road_points.store.in_stretch(stretch):
         points = road_points.section(*key)
         records: Any = points.records
         corrected, distances_of = np.empty(len(points), np.float32), VehicleDistances(passes, points.time).of
-        for first in range(0, len(points), POINTS_AT_ONCE):
-            here = points[first:first + POINTS_AT_ONCE]
+        for first in range(0, len(points), ASPHALT.points_at_once):
+            here = points[first:first + ASPHALT.points_at_once]
             distances = distances_of(here, kinds)
             distance: Any = distances[0] if len(distances) == 1 else np.where(table.distance_kind[here.scanner] == ACROSS_TRACK, *distances)
             by, intensity = table.corrections(lookup, here.scanner, distance), beams.equalised(here) if beams else here.intensity
             np.add(intensity, by, out=by) if table.logarithmic else np.multiply(intensity, by, out=by)
-            corrected[first:first + POINTS_AT_ONCE] = by
+            corrected[first:first + ASPHALT.points_at_once] = by
         some = _stripes(Points(records.with_columns(corrected=corrected)), step)
         counts.append(histograms.count(some.scanner, distances_of(some, kinds), some.corrected, kinds))
         found.append((key[1], corrected))
@@ -323,7 +311,7 @@ def corrected_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequ
 def _sampling_step(road_points):
     """n, where one of n centimetres of road is sampled for the level of asphalt; its points stand for those of all n."""
     length = sum(end - start for start, end in map(road_points.store.span, road_points.roads()))
-    return max(int(len(road_points) / max(length, 1.0) / ENOUGH_POINTS_PER_METRE), 1)
+    return max(int(len(road_points) / max(length, 1.0) / ASPHALT.enough_points_per_metre), 1)
 
 
 def _stripes(points, step):
@@ -331,16 +319,17 @@ def _stripes(points, step):
     s = points.records["s"]
     if step == 1 or not len(s):
         return points
-    first = np.arange(s[0] // (SAMPLE_STRIPE_LENGTH * step), s[-1] // (SAMPLE_STRIPE_LENGTH * step) + 1) * (SAMPLE_STRIPE_LENGTH * step)
-    begins, ends = np.searchsorted(s, first), np.searchsorted(s, first + SAMPLE_STRIPE_LENGTH)
+    period = ASPHALT.sample_stripe_length * step
+    first = np.arange(s[0] // period, s[-1] // period + 1) * period
+    begins, ends = np.searchsorted(s, first), np.searchsorted(s, first + ASPHALT.sample_stripe_length)
     count = ends - begins
     return points[np.repeat(begins - (np.cumsum(count) - count), count) + np.arange(count.sum())]
 
 
 def _points_by_scanner(points):
     """(256,) how many points each scanner has."""
-    scanner = points.scanner
-    return sum((np.bincount(scanner[k:k + POINTS_AT_ONCE], minlength=SCANNER_NUMBERS) for k in range(0, len(scanner), POINTS_AT_ONCE)),
+    scanner, many = points.scanner, ASPHALT.points_at_once
+    return sum((np.bincount(scanner[k:k + many], minlength=SCANNER_NUMBERS) for k in range(0, len(scanner), many)),
                np.zeros(SCANNER_NUMBERS, np.int64))
 
 
@@ -361,7 +350,7 @@ def _report(before, after, table, points_by_scanner):
     weight = before[rows].sum(axis=-1)
     known = table.known & np.isfinite(medians[0]) & np.isfinite(medians[1])
     report = IntensityReport("logarithmic" if table.logarithmic else "linear", table.reference)
-    distances = np.abs(np.arange(weight.shape[1]) * DISTANCE_BIN + DISTANCE_BIN / 2 - MAX_DISTANCE)
+    distances = np.abs(np.arange(weight.shape[1]) * ASPHALT.distance_bin + ASPHALT.distance_bin / 2 - ASPHALT.max_distance)
     for scanner in np.flatnonzero(known.any(axis=1)):
         use = known[scanner]
         row = dict(scanner=int(scanner), points=int(points_by_scanner[scanner]),

@@ -24,14 +24,12 @@ from ..survey.consistency import sample_road_points
 from ..survey.store.records import COORDINATE_SCALE, Points
 from ..survey.store.road_points import RoadPoints
 from .tiled_image import TILE_MEMORY, TiledImage
+from .weights import IMAGE
 
 # Inverse distance weighting on the map's lattice of cells: every point weighs on all cells within the search radius.
 
-DISTANCE_OFFSET = 1e-3        # m added to a distance, so that a point on a cell's centre has a finite weight
-DISTANCES_AT_ONCE = 1 << 19   # distances computed at a time: what fits the processor's cache
 # multiplications of a matrix product; OpenBLAS starts threads of its own for more than 2**18, which wait for each other where all cores are busy
 PRODUCTS_AT_ONCE = 1 << 18
-RADIUS_ROUNDING = 2e-6        # of the weight at the radius: a point exactly on it counts, whatever the rounding
 
 
 _thread = threading.local()   # the kernels of each thread
@@ -98,8 +96,6 @@ def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nd
     and sums are in single precision, far finer than intensities are. A cell and a half away or farther, weights are so small that a share of the
     points gives the same result.
 
-    Parameters
-    ----------
     points : Points, at least one
     brightness : function of (N,) float32 intensities that returns (N,) float32 factors of the points' weights
     origin : (2,) or more, map coordinates that x and y of the points leave out, m
@@ -166,7 +162,7 @@ class _Kernel:
 
     def __init__(self, settings: ImageSettings, offsets: list[tuple[int, int]]):
         self.settings, self.offsets = settings, offsets
-        self.at_once = max(DISTANCES_AT_ONCE // max(len(offsets), 1), 1)
+        self.at_once = max(IMAGE.distances_at_once // max(len(offsets), 1), 1)
         self.rows_at_once = max(PRODUCTS_AT_ONCE // (4 * max(len(offsets), 1)), 1)
         self._kept = ScratchBuffers()   # reused: new memory costs page faults
         right, up = np.array(offsets, np.float32).reshape(-1, 2).T
@@ -197,15 +193,15 @@ class _Kernel:
         own[:, 0] = east * east + north * north
         own[:, 1], own[:, 2], own[:, 3] = east, north, 1.0
         found = self._kept.of(len(east) * len(self.offsets))("found", np.float32).reshape(len(east), -1)
-        farthest = self._weight(np.full(1, self.settings.radius_cells * self.settings.cell_size + DISTANCE_OFFSET, np.float32))
+        farthest = self._weight(np.full(1, self.settings.radius_cells * self.settings.cell_size + IMAGE.distance_offset, np.float32))
         for first in range(0, len(east), self.rows_at_once):
             some = found[first:first + self.rows_at_once]
             cv2.gemm(own[first:first + self.rows_at_once], self._squares, 1.0, None, 0.0, some)
             cv2.sqrt(some, some)
             some *= np.float32(self.settings.cell_size)
-            some += np.float32(DISTANCE_OFFSET)
+            some += np.float32(IMAGE.distance_offset)
             self._weight(some)
-            cv2.threshold(some, float(farthest[0]) * (1 - RADIUS_ROUNDING), 0.0, cv2.THRESH_TOZERO, some)
+            cv2.threshold(some, float(farthest[0]) * (1 - IMAGE.radius_rounding), 0.0, cv2.THRESH_TOZERO, some)
         return found
 
     def _weight(self, distance):
@@ -217,17 +213,9 @@ class _Kernel:
         return np.divide(np.float32(1.0), distance, out=distance)
 
 
-RANKING_WINDOW = 20.0   # m of station over which intensities are ranked for the brightness rule
-PIECES_PER_WINDOW = 4   # pieces of a window, each interpolated at once: 5 m of road
-LOOKED_WINDOWS = 8      # windows of 20 m that a worker process looks at together: a tenth of a second of its time
-PIECES_PER_TASK = 8     # pieces that a worker process is given together: at everyday density a tenth of a second of its time
 MAX_TILES = 2**24       # of an image, most of them empty: GDAL keeps 16 bytes of each
-FAR_POINTS_PER_CELL = 3     # with twice as many, an evenly spread share of the points weighs on cells farther than the next
-WIDTH_SAMPLE_STEP = 16      # the width of a piece is taken from every 16th point
-MAX_RANKED_POINTS = 50_000  # points of a piece whose intensities are ranked; of twice as many an evenly spread share
-TILES_AHEAD = 16        # the sums of a piece are kept while they are needed again within so many tiles
 
-PIECE_LENGTH = RANKING_WINDOW / PIECES_PER_WINDOW
+PIECE_LENGTH = IMAGE.ranking_window / IMAGE.pieces_per_window
 Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice
 Tile = tuple[int, int]   # column and row of tiles
 
@@ -253,8 +241,6 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
                          path: str | PathLike | None = None, memory_limit: int = TILE_MEMORY) -> TiledImage:
     """The image of `write_intensity_image` in memory, to be read at once like an IntensityImage, and in a GeoTIFF too where a path is given.
 
-    Parameters
-    ----------
     memory_limit : bytes of pixels kept in memory; the others go to a temporary file, and all where other processes work on the points
     """
     grid, tiles = _interpolate(road_points, settings, progress)
@@ -325,8 +311,8 @@ def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Pro
     if not len(road_points):
         raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
-    looked = _run(windows_of_image, road_points, windows, LOOKED_WINDOWS, settings, progress.part(0.0, 0.3),
-                  lambda window: (*window, RANKING_WINDOW))
+    looked = _run(windows_of_image, road_points, windows, IMAGE.looked_windows, settings, progress.part(0.0, 0.3),
+                  lambda window: (*window, IMAGE.ranking_window))
     pieces = [piece for window in looked for piece in window]
     # the grid is fixed in the map: pixel column = column of the map's lattice minus the first one
     extents = np.array([piece.extent for piece in pieces], np.int64)
@@ -340,7 +326,7 @@ def _tiles(grid: _Grid, pieces: Sequence[_Piece], road_points: RoadPoints, setti
            progress: Progress) -> Iterator[tuple[int, int, np.ndarray]]:
     work = _pieces_by_tile(grid, pieces)
     made, done = _lifetimes(work)
-    sums = _run(sums_of_pieces, road_points, [piece for new in made for piece in new], PIECES_PER_TASK, settings, progress,
+    sums = _run(sums_of_pieces, road_points, [piece for new in made for piece in new], IMAGE.pieces_per_task, settings, progress,
                 lambda piece: (piece.road, piece.number, PIECE_LENGTH))
     kept: dict[_Piece, _WeightedSums] = {}
     for ((column, row), parts), new, old in zip(work, made, done):
@@ -386,7 +372,7 @@ def _lifetimes(work: list[tuple[Tile, list[_Piece]]]) -> tuple[list[list[_Piece]
     made: list[list[_Piece]] = [[] for _ in work]
     done: list[list[_Piece]] = [[] for _ in work]
     for piece, tiles in uses.items():
-        cuts = np.flatnonzero(np.diff(tiles) > TILES_AHEAD)
+        cuts = np.flatnonzero(np.diff(tiles) > IMAGE.tiles_ahead)
         for first, last in zip(np.r_[0, cuts + 1], np.r_[cuts, len(tiles) - 1]):
             made[tiles[first]].append(piece)
             done[tiles[last]].append(piece)
@@ -395,7 +381,7 @@ def _lifetimes(work: list[tuple[Tile, list[_Piece]]]) -> tuple[list[list[_Piece]
 
 def _window_numbers(road_points, road):
     start, end = road_points.store.span(road)
-    return range(int(np.floor(start / RANKING_WINDOW)), int(np.ceil(end / RANKING_WINDOW)))
+    return range(int(np.floor(start / IMAGE.ranking_window)), int(np.ceil(end / IMAGE.ranking_window)))
 
 
 def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]], settings: ImageSettings) -> list[list[_Piece]]:
@@ -406,14 +392,14 @@ def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]]
 def _pieces_of_window(road_points, road, number, settings):
     reach, cell = _reach_of(settings), settings.cell_size
     pieces, values = [], []
-    for piece in range(number * PIECES_PER_WINDOW, (number + 1) * PIECES_PER_WINDOW):
+    for piece in range(number * IMAGE.pieces_per_window, (number + 1) * IMAGE.pieces_per_window):
         points = _points_of(road_points, road, piece)
         if len(points):
             step = _sampling_step(points, settings)
             (c0, c1), (r0, r1) = ([int(_lattice_cell(int(end), o, cell)) for end in (c.min(), c.max())]
                                   for c, o in ((points.records[name], o) for name, o in zip("xy", road_points.origin)))
             pieces.append((road, piece, (c0 - reach, c1 + reach, r0 - reach, r1 + reach), step))
-            values.append(points[::max(step, len(points) // MAX_RANKED_POINTS)].value)
+            values.append(points[::max(step, len(points) // IMAGE.max_ranked_points)].value)
     limits = tuple(quantiles(np.concatenate(values), [0.01, 0.99]).tolist()) if values else ()
     return [_Piece(*piece, limits) for piece in pieces]
 
@@ -426,11 +412,11 @@ def _points_of(road_points, road, number):
 def _sampling_step(points: Points, settings: ImageSettings) -> int:
     """n, where one of n points of a piece weighs on cells farther than the next, for all n.
 
-    Points in the order of station and offset are evenly spread: one of n leaves FAR_POINTS_PER_CELL in a cell.
+    Points in the order of station and offset are evenly spread: one of n leaves `far_points_per_cell` in a cell.
     """
-    d = points[::WIDTH_SAMPLE_STEP].records["d"]
+    d = points[::IMAGE.width_sample_step].records["d"]
     width = max((int(d.max()) - int(d.min())) * COORDINATE_SCALE, settings.cell_size)
-    return max(int(len(points) * settings.cell_size**2 / (PIECE_LENGTH * width) / FAR_POINTS_PER_CELL), 1)
+    return max(int(len(points) * settings.cell_size**2 / (PIECE_LENGTH * width) / IMAGE.far_points_per_cell), 1)
 
 
 def sums_of_pieces(road_points: RoadPoints, pieces: list[_Piece], settings: ImageSettings) -> list[_WeightedSums]:
@@ -486,16 +472,12 @@ class _Grid:
 
 # Whether an intensity image shows the road points it is used with.
 
-MIN_SHOWN_SHARE = 0.5  # of the sample_road_points points: must lie on a pixel with a value
 
 
 def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     """Refuse an image of another road, and the 8-bit picture for viewing.
 
-    Raises
-    ------
-    RoadExtractionError
-        If fewer than half of the sample_road_points road points lie on pixels with a value, or the image is of 8 bits.
+    Raises RoadExtractionError if fewer than half of the sample_road_points road points lie on pixels with a value, or the image is of 8 bits.
     """
     if image.eight_bit:
         raise RoadExtractionError(
@@ -506,7 +488,7 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     x, y = (np.concatenate(part) for part in zip(*places))
     left, size, _, top, _, _ = image.geotransform
     seen = np.isfinite(image.sample(x, y))
-    if seen.mean() < MIN_SHOWN_SHARE:
+    if seen.mean() < IMAGE.min_shown_share:
         raise RoadExtractionError(
             f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, "
             f"y {top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, "

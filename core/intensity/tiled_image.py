@@ -33,8 +33,6 @@ class TiledImage(IntensityImage):
     Its pixels, and what `sample` returns, are those of the GeoTIFF of the same tiles.
     Tiles are put by one thread; once all are there, several threads may read.
 
-    Parameters
-    ----------
     memory_limit : bytes of pixels kept in memory; the tiles that follow go to a temporary file
     folder : where all pixels go instead, so that other processes can read them; None for none
     """

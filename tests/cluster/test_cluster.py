@@ -232,8 +232,8 @@ def test_threads_and_allowed_failures_that_do_not_suit_are_said(new_cluster):
 
 
 def test_a_scheduler_without_workers_and_none_at_all_are_named(new_cluster, monkeypatch):
-    monkeypatch.setattr(executing, "WORKERS_TIME", 0.5)
-    monkeypatch.setattr(executing, "CONNECT_TIME", 1.0)
+    monkeypatch.setattr(executing, "EXECUTION", replace(executing.EXECUTION, workers_time=0.5))
+    monkeypatch.setattr(executing, "EXECUTION", replace(executing.EXECUTION, connect_time=1.0))
     with pytest.raises(RoadExtractionError, match="has no workers.*dask worker tcp"):
         cluster_of(new_cluster(workers=0).address, False, None)
     with pytest.raises(RoadExtractionError, match="No Dask scheduler answers at tcp://127.0.0.1:1"):
@@ -278,8 +278,9 @@ PROGRAM = """
 import sys
 sys.path.insert(0, {tests!r})
 import conftest
+from dataclasses import replace
 from lanewright.core.execution import cluster
-cluster.CALLER_LOST = 4.0
+cluster.EXECUTION = replace(cluster.EXECUTION, caller_lost=4.0)
 from lanewright.library.command_line import main
 sys.exit(main())
 """
@@ -322,7 +323,7 @@ def test_a_caller_that_is_killed_leaves_nothing_and_its_work_is_gone_on_with(clu
 
 
 def test_seconds_without_a_sign_of_life_are_many_in_real_runs():
-    assert executing.CALLER_LOST >= 60.0
+    assert executing.EXECUTION.caller_lost >= 60.0
 
 
 @pytest.fixture(scope="module")

@@ -20,13 +20,13 @@ ORDER = tuple(f"core/{name}" for name in ("lazy", "common", "execution", "countr
 # Module-level numbers of each room: every one is a decision that a reader must know
 NUMBERS = {
     "core/common": 17,
-    "core/execution": 25,
+    "core/execution": 3,
     "core/countries": 15,
     "core/io": 5,
-    "core/curves": 44,
+    "core/curves": 10,
     "core/survey": 85,
     "core/road": 19,
-    "core/intensity": 49,
+    "core/intensity": 13,
     "core/markings": 75,
     "core/driving": 5,
     "core/corrections": 2,

@@ -43,8 +43,8 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         for module in (extract, correction, point_density, evidence):
             patch.setattr(module, "STRETCH_POINTS", 40_000)
         patch.setattr(ground_grid, "SURFACE", replace(ground_grid.SURFACE, measured_windows=2))
-        patch.setattr(imaging, "LOOKED_WINDOWS", 1)
-        patch.setattr(imaging, "PIECES_PER_TASK", 3)
+        patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, looked_windows=1))
+        patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, pieces_per_task=3))
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
         patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
         patch.setattr(phases, "TASK_POINTS", 300)

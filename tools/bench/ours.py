@@ -2,6 +2,7 @@
 
 import resource
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ def threads_alone():
     """Have this process do without worker processes, however many points there are."""
     from lanewright.core.execution import choice
 
-    choice.WORKER_POINTS = float("inf")
+    choice.EXECUTION = replace(choice.EXECUTION, worker_points=float("inf"))
 
 
 def peak_mib():

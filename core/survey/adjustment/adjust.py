@@ -38,8 +38,6 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
     Points and tracks are moved in plan and height; the reference lines of the roads stay. Where a drive goes on alone, it is moved on as
     where it left the others, so that it has no step there.
 
-    Parameters
-    ----------
     survey : Survey with times; its store and frame are replaced where passes are moved
     folder : of the moved points that are not kept in memory; None for a temporary file
     """
@@ -66,9 +64,7 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
 def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray, np.ndarray]]:
     """Corrections of passes from the offsets between them on one road, by least squares with robust weights.
 
-    Returns
-    -------
-    {pass number: ((N,) stations, (3, N) metres along, left and up)}
+    Returns {pass number: ((N,) stations, (3, N) metres along, left and up)}.
     """
     numbers = sorted({number for pair in offsets for number in (pair.one, pair.other)})
     first, last = (end(np.concatenate([pair.stations for pair in offsets])) for end in (np.min, np.max))
@@ -267,9 +263,7 @@ def _led_on(moves, p, before, after):
 def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np.ndarray, np.ndarray]]) -> list[tuple[float, float, float]]:
     """Stretches of a road along which two of its passes still differ, by their PassOffsets and the result of `solve_corrections`.
 
-    Returns
-    -------
-    list of (start, end, metres that they differ by at most), by station; infinite where they lie farther apart than can be measured
+    Returns list of (start, end, metres that they differ by at most), by station; infinite where they lie farther apart than can be measured.
     """
     places: dict[float, float] = {}
     for pair in offsets:
@@ -288,9 +282,7 @@ def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np
 def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], corrections: PassCorrections) -> list[tuple[float, float, float]]:
     """Stretches along which a pass over a road was moved in plan and was compared with no other, there or as near as drift changes little.
 
-    Returns
-    -------
-    list of (start, end, metres that the pass was moved by at most), by station
+    Returns list of (start, end, metres that the pass was moved by at most), by station.
     """
     places: dict[float, float] = {}
     for p in passes:

@@ -133,8 +133,6 @@ class Strips:
     def of(cls, fine: np.ndarray, coarse: np.ndarray, h: np.ndarray, intensity: np.ndarray, shape: tuple[int, int]) -> Strips:
         """The strips of (N,) points, in so many rows and cells of a shape.
 
-        Parameters
-        ----------
         fine, coarse : (N,) m along a row, in whose direction offsets are measured, and across rows
         h : (N,) m above the road
         """

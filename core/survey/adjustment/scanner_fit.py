@@ -48,14 +48,10 @@ class _ScannerOffsets:
 def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | None = None) -> float:
     """Lay the scanners of a survey on each other where they measurably lie apart; each is moved by its share, as nothing shows which is right.
 
-    Parameters
-    ----------
     survey : Survey with times; its store is replaced where points are moved, and progress hears a warning
     folder : of the moved points that are not kept in memory; None for a temporary file
 
-    Returns
-    -------
-    m across, one sigma that stays open: how far the middle of the scanners may be off; 0 where they agree
+    Returns m across, one sigma that stays open: how far the middle of the scanners may be off; 0 where they agree.
     """
     if len(survey.scanners) < 2 or _agree_at_a_look(survey):
         return 0.0

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from ..trajectory.trajectory import Trajectory
 from ..weights import FRAME
 
-MAX_ROAD_LENGTH = 200_000.0  # m: stations have 32 bits of 0.1 mm; a longer road becomes several
+MAX_ROAD_LENGTH = 200_000.0  # derived: m: stations have 32 bits of 0.1 mm; a longer road becomes several
 
 
 @dataclass(frozen=True)

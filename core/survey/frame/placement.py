@@ -14,7 +14,7 @@ from ..weights import FRAME
 from .passes import decimate_by_distance
 from .road_frame import RoadFrame
 
-COORDINATE_DECIMALS = 4  # of coordinates in layers: 0.1 mm
+COORDINATE_DECIMALS = 4  # derived: of coordinates in layers: 0.1 mm
 
 
 def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -24,8 +24,6 @@ def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) ->
     and read again therefore gives the same stations and offsets, and the stages give
     the same results in one call and one by one.
 
-    Parameters
-    ----------
     road : (V,) int, number of the road of each place; numbers that the frame does not have are allowed
     x, y : (V,) local metres
     """
@@ -108,8 +106,6 @@ def lines_in_frame(lines: Sequence[Any] | np.ndarray, road: Sequence[int] | np.n
                    spacing: float | None = LINE_VERTEX_SPACING) -> FrameLines:
     """Shapely lines in map coordinates as FrameLines.
 
-    Parameters
-    ----------
     road : (L,) int, number of the road of each; where the frame has no such road, the one that most vertices are nearest to
     spacing : m between vertices at most; None for the vertices of the lines as they are
     """

@@ -20,9 +20,9 @@ from .road_frame import RoadFrame
 
 Buffers = Callable[..., np.ndarray]   # what `ScratchBuffers.of` returns
 
-NODE_UNITS = round(NODE_SPACING / COORDINATE_SCALE)  # units of 0.1 mm from node to node
-NODE_FRACTION_BITS = 4              # bits by which coordinates of nodes are finer than the unit
-NODE_TOLERANCE = 1e-3         # of a node spacing beyond the ends: the direction differs from that of the next node by less than 1e-6
+NODE_UNITS = round(NODE_SPACING / COORDINATE_SCALE)  # derived: units of 0.1 mm from node to node
+NODE_FRACTION_BITS = 4              # derived: bits by which coordinates of nodes are finer than the unit
+NODE_TOLERANCE = 1e-3         # derived: of a node spacing beyond the ends: the direction differs from that of the next node by less than 1e-6
 
 
 class _LineLookup:
@@ -48,17 +48,13 @@ class _LineLookup:
                 buffers: Buffers) -> np.ndarray | None:
         """Write stations and offsets of points into s and d, starting the search at node `start`.
 
-        Parameters
-        ----------
         x, y : (N,) int32 or int64 local units of 0.1 mm
         start : (N,) intp, node near the wanted point on the line
         corridor : metres either side
         s, d : (N,) int32 units of 0.1 mm, overwritten; undefined outside the frame
         buffers : of `ScratchBuffers.of` for N values
 
-        Returns
-        -------
-        (N,) bool: which points lie in the frame, as by `Road.locate`; None if all do
+        Returns (N,) bool: which points lie in the frame, as by `Road.locate`; None if all do.
         """
         fine_x, fine_y = (np.left_shift(values.astype(np.int32, copy=False), NODE_FRACTION_BITS, out=buffers(name, np.int32))
                           for values, name in ((x, "x"), (y, "y")))
@@ -222,8 +218,6 @@ class RoadProjection:
                       d: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
         """Write stations and offsets of local positions into s and d, all in units of 0.1 mm.
 
-        Parameters
-        ----------
         x, y : (N,) int32 or int64
         time : (N,) s
         s, d : (N,) int32, overwritten; undefined where `inside` is False

@@ -23,8 +23,6 @@ class Road:
 
     Stations increase in the direction of the longest pass, which begins at station 0; offsets are left positive.
 
-    Parameters
-    ----------
     number : of the road
     nodes_x, nodes_y : (N,) m, NODE_SPACING apart
     start : station of the first node, m
@@ -87,8 +85,6 @@ class Road:
 
         NaN beyond the ends of the frame, outside the corridor, or on the inner side of a bend beyond 0.9 of its radius, where normals cross.
 
-        Parameters
-        ----------
         start : (N,) initial stations near the wanted nearest point (from gps_time); None for the nearest node
         corridor : largest |offset|, metres
         """
@@ -140,7 +136,7 @@ class Road:
 
 # The reference line of a road: the smoothed track of its longest pass, continued by other passes.
 
-NODE_SPACING = 0.1     # m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
+NODE_SPACING = 0.1     # derived: m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
 
 
 def track_line(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:

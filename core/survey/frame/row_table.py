@@ -21,8 +21,6 @@ BLOCK = 64   # stations for which the rows that are there are listed together
 class RowSpans:
     """Which stations each row of tables is kept for.
 
-    Parameters
-    ----------
     first, count : (R,) int, the first station of each row and how many follow each other; those before station 0 or behind the last are left out
     stations : number of stations of the grid
     """
@@ -88,8 +86,6 @@ class RowSpans:
 class RowTable:
     """A table of R rows by K stations, indexed as an array of that shape: `table[rows, stations]`.
 
-    Parameters
-    ----------
     values : (V,) of the stations that the rows are kept for, row after row
     missing : what stands elsewhere, one value or (R,) of them
     """

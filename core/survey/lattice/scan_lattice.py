@@ -497,8 +497,6 @@ def strongest_rotation(spectra: Sequence[np.ndarray], given: float = 0.0, signed
 
     The peak is 0 where the opposite rotation fits nearly as well, as for scanners that spin about the vertical.
 
-    Parameters
-    ----------
     spectra : (SPECTRUM_SIZE,) of each window
     given : Hz, where the user knows it; 0 = not known
     signed : whether the direction of rotation shows; otherwise the frequency is positive

@@ -9,8 +9,8 @@ import numpy as np
 
 from .columns import Columns
 
-COORDINATE_SCALE = 1e-4  # m: coordinates are integers of 0.1 mm, exact for every LAS scale in use
-MAX_XY_32_BIT = 2e5      # m from the origin: up to here x and y have 32 bits
+COORDINATE_SCALE = 1e-4  # derived: m: coordinates are integers of 0.1 mm, exact for every LAS scale in use
+MAX_XY_32_BIT = 2e5      # derived: m from the origin: up to here x and y have 32 bits
 
 # Coordinates are local (map minus the frame's origin); s and d are the road's
 # station and offset. `source` is point_source_id, so that a written cloud

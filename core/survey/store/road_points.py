@@ -130,8 +130,6 @@ def packed_mask(rows: np.ndarray) -> np.ndarray:
 class PointSubset(DerivedStore):
     """Points of a store by their rows in its sections.
 
-    Parameters
-    ----------
     points : SectionStore; no points may be added to it any more, and it is closed with this one
     dtype : columns of the points that are returned
     own : names of the columns whose values are stored here, with the rows

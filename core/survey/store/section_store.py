@@ -543,8 +543,6 @@ class DerivedStore(SectionStore):
 class ColumnOverlay(DerivedStore):
     """All points of a store with one column replaced; it holds no points itself and joins two stores.
 
-    Parameters
-    ----------
     points : SectionStore
     name : of the column
     folder : where its values go that are not kept in memory, so that others can read them; None for a temporary file without a name

@@ -26,7 +26,7 @@ from ...common.parallel import column_buffers, freed_on_demand
 from ...execution.phase import checksum
 from ..weights import STORE
 
-PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value -> bytes of its parts, lowest first
+PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # derived: bytes of a value -> bytes of its parts, lowest first
 PART_DTYPES = {width: np.dtype(f"u{width}") for width in (1, 2, 4, 8)}
 SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a part
 
@@ -247,8 +247,6 @@ def parts_are_whole(folder: Path) -> bool:
 class SpillFile(ColumnFile):
     """Columns in a file that grows; `end` is its length in bytes.
 
-    Parameters
-    ----------
     path : of the file; by default it is a temporary one without a name, which a killed run does not leave behind (on Windows it
         is deleted when it is closed)
     unfinished : its path until then

@@ -89,7 +89,9 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     drafting = _Drafting(local, origin, settings)
     draft = OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
     draft.notes += drafting.notes
-    strips = drafting.strips()
+    strips, lost = drafting.strips()
+    if lost:
+        progress.info(f"Pieces of lanes that nobody drives, within junctions: {lost}. OpenDRIVE has no place for them there, and they were left out.")
     directions = directions_where_met([cell for strip, _ in strips for one in strip for cell in one.cells])
     for number, (strip, single) in enumerate(strips, start=1):
         made = drafting.road(strip, number, single, directions)
@@ -125,17 +127,15 @@ class _Drafting:
             self.notes.append("No road has lanes in both directions; traffic was taken to keep right. Set Side of traffic where it keeps left.")
         return votes < 0
 
-    def strips(self) -> list[tuple[list[Slice], bool]]:
-        """(slices of a road, whether it is a way through a junction), ordinary roads first."""
+    def strips(self) -> tuple[list[tuple[list[Slice], bool]], int]:
+        """((slices of a road, whether it is a way through a junction), ordinary roads first; how many cells within junctions are of none)."""
         mark_junctions(self.slices, self.lanes)
         ordinary, inside = self._parted()
         known = {id(cell) for one in inside for cell in one.cells} | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)}
         ordinary, between = _between_junctions(ordinary, known)
         inside += between
         lost = sum(len(one.cells) for one in inside if not one.driven)
-        if lost:
-            self.notes.append(f"{lost} pieces that nobody drives lie within junctions, where OpenDRIVE has no place for them.")
-        return _ordinary_roads(ordinary) + _ways_through([part for one in inside for part in one.ways()] + self.connectors)
+        return _ordinary_roads(ordinary) + _ways_through([part for one in inside for part in one.ways()] + self.connectors), lost
 
     def _parted(self) -> tuple[list[Slice], list[Slice]]:
         """(slices of ordinary roads, slices within junctions): ways through a junction are cut off from the slices in which they begin or end."""

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import solve_banded
 
-from ....core.curves.base import Arc
-from ....core.curves.clothoid import Clothoid
+from ....core.curves.clothoid import GAUSS_RULES, gauss_rule
 
 STRAIGHT_BEND = 1e-5    # 1/m: a curvature that moves 200 m of road by 5 cm
 LEAST_ELEMENT = 1e-4   # m: shorter pieces of a reference line are none
@@ -78,6 +78,16 @@ class Cubics:
         return float(value[piece, at]), float(start[piece] + ds[piece, at])
 
 
+def _on_spirals(u, x, y, heading, bend, change):
+    """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths (N,) of one spiral, or of one for each; lines and arcs are spirals too."""
+    nodes, weights = GAUSS_RULES[gauss_rule(float((np.abs(bend * u) + np.abs(change * u * u / 2)).max(initial=0.0)))]
+    first = np.asarray(heading)[..., None]
+    ways = first + nodes * (bend * u)[:, None] + nodes**2 * (change * u * u / 2)[:, None]
+    # what a direction differs by from the first is 0 on a straight line, which is exact so
+    along, across = (of(heading) + (of(ways) - of(first)) @ weights for of in (np.cos, np.sin))
+    return np.stack([x + u * along, y + u * across], axis=1), heading + u * (bend + change * u / 2), bend + change * u
+
+
 @dataclass(frozen=True)
 class PlanElement:
     """One piece of a reference line.
@@ -100,13 +110,8 @@ class PlanElement:
     def at(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths u from its start."""
         u = np.asarray(u, float)
-        if self.kind in ("line", "arc"):
-            arc = Arc(self.x, self.y, self.heading, self.values[0] if self.values else 0.0, self.length)
-            return arc.at(u), arc.heading(u), arc.curvature(u)
-        if self.kind == "spiral":
-            bend, end = self.values
-            spiral = Clothoid(self.x, self.y, self.heading, bend, (end - bend) / self.length if self.length else 0.0, self.length)
-            return spiral.at(u), spiral.heading(u), spiral.curvature(u)
+        if not self.is_polynomial:
+            return _on_spirals(u, self.x, self.y, self.heading, *self.bends())
         p, a, b = self._parameter(u), np.array(self._polynomials()[0]), np.array(self._polynomials()[1])
         powers = np.stack([np.ones_like(p), p, p**2, p**3])
         slopes = np.stack([np.zeros_like(p), np.ones_like(p), 2 * p, 3 * p**2])
@@ -115,6 +120,16 @@ class PlanElement:
         c, s = np.cos(self.heading), np.sin(self.heading)
         places = np.c_[self.x + along * c - across * s, self.y + along * s + across * c]
         return places, self.heading + np.arctan2(dv, du), (du * ddv - dv * ddu) / np.maximum(du**2 + dv**2, 1e-12) ** 1.5
+
+    @property
+    def is_polynomial(self) -> bool:
+        """Whether it is no line, arc or spiral."""
+        return self.kind in ("poly3", "paramPoly3")
+
+    def bends(self) -> tuple[float, float]:
+        """Curvature (1/m) at its start and its change along it (1/m^2); of a line, arc or spiral."""
+        first, last = (*self.values, *self.values, 0.0, 0.0)[:2]
+        return first, (last - first) / self.length if self.length else 0.0
 
     def _polynomials(self):
         """Coefficients of u(p) and v(p)."""
@@ -154,13 +169,22 @@ class PlanView:
     def at(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(N, 2) places, (N,) headings and (N,) curvatures at s; beyond an end the last element goes on."""
         s = np.asarray(s, float)
-        places, heading, bend = np.empty((len(s), 2)), np.empty(len(s)), np.empty(len(s))
-        starts = np.array([element.s for element in self.elements])
+        starts, table, polynomial = self._table
         owner = np.maximum(np.searchsorted(starts, s + 1e-9, side="right") - 1, 0)
-        for k in np.unique(owner):
+        places, heading, bend = _on_spirals(s - starts[owner], *table[:, owner])
+        for k in np.flatnonzero(polynomial):
             rows = owner == k
-            places[rows], heading[rows], bend[rows] = self.elements[k].at(s[rows] - starts[k])
+            if rows.any():
+                places[rows], heading[rows], bend[rows] = self.elements[k].at(s[rows] - starts[k])
         return places, heading, bend
+
+    @cached_property
+    def _table(self):
+        """(E,) s of the elements, (5, E) x, y, heading, curvature and its change, and (E,) bool: those without curvatures."""
+        polynomial = np.array([element.is_polynomial for element in self.elements])
+        bends = np.array([(0.0, 0.0) if element.is_polynomial else element.bends() for element in self.elements])
+        starts, *poses = np.array([(element.s, element.x, element.y, element.heading) for element in self.elements]).T
+        return starts, np.stack([*poses, *bends.T]), polynomial
 
     def feet(self, places: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """((N,) s, (N,) t) of (N, 2) places, found from s nearby; beyond the ends the first and last element go on."""

@@ -228,17 +228,22 @@ class _Fit:
 
     def _local(self, k, window):
         """(pose, standard deviation, largest distance) of a cubic through the places around a point."""
-        first, last = np.searchsorted(self.along, [self.along[k] - window, self.along[k] + window + 1e-9])
-        first, last = min(first, max(k - FEWEST_PLACES // 2, 0)), max(last, min(k + FEWEST_PLACES // 2 + 1, self.last + 1))
-        s, away = self.along[first:last] - self.along[k], self.points[first:last] - self.points[k]
-        degree = min(3, len(s) - 2) if len(s) > 2 else 1
-        scale = max(float(np.abs(s).max()), 1e-9)
-        matrix = (s / scale)[:, None] ** np.arange(degree + 1)
-        found = np.linalg.lstsq(matrix, away, rcond=None)[0]
+        here = self.along[k]
+        first = min(self.along.searchsorted(here - window), max(k - FEWEST_PLACES // 2, 0))
+        last = max(self.along.searchsorted(here + window + 1e-9), min(k + FEWEST_PLACES // 2 + 1, self.last + 1))
+        s, away, count = self.along[first:last] - here, self.points[first:last] - self.points[k], last - first
+        degree = min(3, count - 2) if count > 2 else 1
+        s /= max(-s[0], s[-1], 1e-9)
+        powers = np.ones((degree + 1, count))
+        for power in range(1, degree + 1):
+            powers[power] = powers[power - 1] * s
+        square = powers @ powers.T
+        square.flat[::degree + 2] += np.finfo(float).eps * count   # places may coincide
+        found = np.linalg.solve(square, powers @ away)
         dx, dy = found[1]
-        size = max(float(np.hypot(dx, dy)), 1e-12)
-        missed = ((away - matrix @ found) @ np.array([-dy, dx])) / size
-        spread = float(np.sqrt((missed**2).sum() / max(len(s) - degree - 1, 1)))
+        aside = np.array([-dy, dx]) / max(np.hypot(dx, dy), 1e-12)
+        missed = away @ aside - (found @ aside) @ powers
+        spread = float(np.sqrt(missed @ missed / max(count - degree - 1, 1)))
         return (*(self.points[k] + found[0]), float(np.arctan2(dy, dx))), spread, float(np.abs(missed).max())
 
     def _straight_lines(self):

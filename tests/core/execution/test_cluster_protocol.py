@@ -7,6 +7,7 @@ import builtins
 import socket
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 
 import pytest
 from curbed_streets import street, survey_of
@@ -124,7 +125,7 @@ lengths_of = build_frame   # any function of core: it is never called
 
 
 def test_workers_that_all_pause_for_ever_are_not_waited_for(monkeypatch):
-    monkeypatch.setattr(cluster, "PAUSED_TIME", 0.3)
+    monkeypatch.setattr(cluster, "EXECUTION", replace(cluster.EXECUTION, paused_time=0.3))
     client = StandIn()
     client.submit = lambda *_, key, **__: StandInFuture(key, Future())
     client.scheduler_info = lambda n_workers: dict(workers=dict(one=dict(status="paused"), other=dict(status="paused")))
@@ -146,7 +147,7 @@ def test_the_largest_sections_begin():
 @pytest.fixture
 def few_rounds(monkeypatch):
     """Tasks of several sections on a short street."""
-    monkeypatch.setattr(tasks, "WORK_ROUNDS", 1)
+    monkeypatch.setattr(tasks, "EXECUTION", replace(tasks.EXECUTION, work_rounds=1))
 
 
 def test_successive_sections_go_to_a_worker_together_and_every_worker_has_rounds_of_work(by_threads, few_rounds):
@@ -220,7 +221,7 @@ def test_cancel_leaves_no_folder():
 
 
 def test_a_task_stops_when_its_phase_is_no_longer_wanted(tmp_path, monkeypatch):
-    monkeypatch.setattr(tasks, "LOOK_TIME", 0.0)
+    monkeypatch.setattr(tasks, "EXECUTION", replace(tasks.EXECUTION, look_time=0.0))
     phase = tmp_path / "phase.plain"
     phase.touch()
     wanted = tasks._WhileWanted(phase)
@@ -244,7 +245,7 @@ def test_a_worker_with_other_code_computes_nothing(tmp_path):
 
 
 def test_the_folder_of_a_caller_that_is_gone_is_removed_and_that_of_another_stays(tmp_path, monkeypatch):
-    monkeypatch.setattr(tasks, "WATCH_TIME", 0.05)
+    monkeypatch.setattr(tasks, "EXECUTION", replace(tasks.EXECUTION, watch_time=0.05))
     for name, patience in (("gone", "0.2"), ("alive", "60")):
         (tmp_path / name).mkdir()
         (tmp_path / name / tasks.BEAT).write_text(patience)
@@ -284,7 +285,7 @@ def test_an_address_without_a_port_is_no_address(address):
 
 
 def test_a_server_that_is_no_scheduler_is_not_waited_for_without_end(monkeypatch):
-    monkeypatch.setattr(cluster, "CONNECT_TIME", 0.3)
+    monkeypatch.setattr(cluster, "EXECUTION", replace(cluster.EXECUTION, connect_time=0.3))
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
         with pytest.raises(TimeoutError, match="does not speak as a scheduler"):

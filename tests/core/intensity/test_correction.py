@@ -1,6 +1,7 @@
 """Intensity correction: asphalt of one brightness near and far, whichever scanner saw it."""
 
 import html
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -154,7 +155,7 @@ def test_far_asphalt_with_few_points_is_as_bright_as_near_asphalt():
 def test_where_points_are_dense_stripes_of_road_give_the_same_asphalt(monkeypatch):
     """Of 2000 points a metre each ninth centimetre is sampled, whatever the length of sections."""
     usual, _ = corrected(street()[0])
-    monkeypatch.setattr(intensity, "ENOUGH_POINTS_PER_METRE", 220)
+    monkeypatch.setattr(intensity, "ASPHALT", replace(intensity.ASPHALT, enough_points_per_metre=220))
     striped, report = corrected(street()[0])
     other, _ = corrected(street()[0], section_length=7.3)
     assert np.median(np.abs(striped.corrected / usual.corrected - 1)) < 0.01

@@ -1,6 +1,7 @@
 """The intensity image: what a pixel says of the points around it."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -166,7 +167,7 @@ def test_where_points_are_dense_almost_every_pixel_is_as_if_all_points_weighed_o
 
     dense = painted_street(length=12.0, density=6300)
     share = all_pixels(image_of(dense, tmp_path / "a.tif", ImageSettings(beta=0.0)))
-    monkeypatch.setattr(image, "FAR_POINTS_PER_CELL", 100)
+    monkeypatch.setattr(image, "IMAGE", replace(image.IMAGE, far_points_per_cell=100))
     every = all_pixels(image_of(dense, tmp_path / "b.tif", ImageSettings(beta=0.0)))
     assert share.shape == every.shape and (share != every).mean() > 0.5
     assert (np.abs(share - every) <= 0.02 * (PAINT - ASPHALT)).sum() > 0.97 * np.isfinite(every).sum()
@@ -194,7 +195,7 @@ def test_what_is_interpolated_again_for_a_later_tile_is_the_same(tmp_path, monke
     x, y = records["x"].copy(), records["y"].copy()
     records["x"], records["y"] = np.rint((x - y) * np.sqrt(0.5)), np.rint((x + y) * np.sqrt(0.5))
     usual = all_pixels(image_of(records, tmp_path / "a.tif"))
-    monkeypatch.setattr(image, "TILES_AHEAD", 0)
+    monkeypatch.setattr(image, "IMAGE", replace(image.IMAGE, tiles_ahead=0))
     np.testing.assert_array_equal(usual, all_pixels(image_of(records, tmp_path / "b.tif")))
 
 

@@ -3,6 +3,7 @@
 import threading
 import time
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -91,7 +92,7 @@ def test_workers_that_forget_what_they_read_go_on_with_the_next_phase(python):
 
 
 def test_where_workers_keep_ending_the_road_is_named(python, monkeypatch):
-    monkeypatch.setattr(processes, "TRIALS", 1)
+    monkeypatch.setattr(processes, "EXECUTION", replace(processes.EXECUTION, trials=1))
     executor = killed_while_it_works(WorkerProcesses(python, 1), 1)
     with pytest.raises(RoadExtractionError, match=r"road 0, -?\d+ to \d+ m.*fewer workers"):
         boundaries(executor)

@@ -115,7 +115,7 @@ def test_a_worker_that_is_killed_while_it_reads_is_replaced_and_nothing_is_lost(
 
 
 def test_where_workers_keep_ending_the_file_is_named(street, python, monkeypatch):
-    monkeypatch.setattr(processes, "TRIALS", 0)
+    monkeypatch.setattr(processes, "EXECUTION", replace(processes.EXECUTION, trials=0))
     executor = WorkerProcesses(python, 1)
     with pytest.raises(RoadExtractionError, match=r"drive\d.la[sz], points [\d,]+ to [\d,]+.*fewer workers"):
         opened(street, executor)

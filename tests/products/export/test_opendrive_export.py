@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, Features
+from lanewright.core.common.progress import Progress
 from lanewright.products.export.check.roads import check_opendrive
 from lanewright.products.export.map_layers import border_misses, crs_of_reference, driving_line_misses, reference_of_crs
 from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
@@ -101,6 +102,29 @@ def test_a_road_that_goes_straight_on_past_a_side_road_has_a_way_through_the_jun
     again = layers_of_opendrive(whole).lanes
     led = {(names[id], names[other]) for id, others in zip(again.lane_id, again.successors) for other in others if names[id] != names[other]}
     assert led == {(id, other) for id, others in zip(lanes.lane_id, lanes.successors) for other in others}
+
+
+def test_a_shoulder_within_a_junction_is_left_out_and_counted():
+    scene, line = LaneScene(), Axis(((100.0, 0.0, 0.0),))
+    for piece, (first, last) in enumerate(((0, 40), (40, 60), (60, 100)), start=1):
+        scene.add(line, 0.0, -3.5, first, last, lane=1, piece=piece, **kinds())
+        scene.add(line, 3.5, 0.0, first, last, lane=2, piece=piece, direction=-1, **kinds())
+        if piece != 2:
+            scene.add(line, -3.5, -5.0, first, last, lane=3, piece=piece, type="shoulder", direction=0, **kinds())
+    unmarked = dict(left_kind="none", right_kind="none", left_pattern="", right_pattern="")
+    from made_lanes import hermite
+    apart = [hermite(line.at([40], [t])[0], line.at([60], [t])[0], -0.1, 0.1) for t in (-3.5, -5.0)]
+    scene.piece(*apart, road=1, lane=3, piece=2, type="shoulder", direction=0, **unmarked)
+    turns = (40, -3.5, 0.0, -12.0, -np.pi / 2), (60, 3.5, np.pi, 12.0, np.pi / 2)
+    for number, (at, outer, heading, place, way) in enumerate(turns):
+        side = Axis(((40.0, 0.0, 0.0),), 50.0, place, way)
+        scene.add(side, 0.0, -3.5, road=2 + number, **kinds())
+        turn = [hermite(line.at([at], [t])[0], side.at([0], [u])[0], heading, way) for t, u in ((0.0, 0.0), (outer, -3.5))]
+        scene.piece(*turn, road=1, lane=8 + number, type="connector", **unmarked)
+    said, progress = [], Progress()
+    progress.info = said.append
+    draft_opendrive(checked(RoadMapSource(scene.lanes())), progress=progress)
+    assert any("within junctions: 1." in text for text in said)
 
 
 def test_in_left_hand_traffic_lanes_along_the_road_are_left_of_its_line(tmp_path):
