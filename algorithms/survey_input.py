@@ -12,10 +12,10 @@ SURVEY_SETTINGS = (
     SettingSpec("CORRIDOR", SURVEY, "corridor", tr("Corridor either side of the trajectory (m)"),
                 tr("Points farther out are left unread. Wider reaches the far side of a broad avenue, but takes longer and brings in the "
                    "neighbouring street."), advanced=True),
-    SettingSpec("SCANNER_FIELD", SURVEY, "scanner_field", tr("Field that tells the scanners apart"),
+    SettingSpec("SCANNER_FIELD", SURVEY, "scanner_field", tr("Field that distinguishes the scanners"),
                 tr("Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time, or along the road where the "
-                   "points have no times; where no field tells them apart, they are told apart by their scan lines. Name one when the report counts "
-                   "the wrong number of scanners."), choices=("automatic", "scanner_channel", "point_source_id"), advanced=True),
+                   "points have no times; where no field distinguishes them, they are distinguished by their scan lines. Name one when the report "
+                   "counts the wrong number of scanners."), choices=("automatic", "scanner_channel", "point_source_id"), advanced=True),
     SettingSpec("TIME", SURVEY, "time", tr("Time of the trajectory"),
                 tr("How its clock counts: gps (since 1980), adjusted (the same less a billion), week or day. Automatic compares with the point "
                    "clouds and says what it chose."), choices=("automatic", "gps", "adjusted", "week", "day"), advanced=True),

@@ -54,7 +54,7 @@ class Inspection:
     density : ((H, W) float32 points per m², row 0 in the north, NaN where empty;
         (min x, max y) of its corner)
     intensity : (65536,) counts of each value
-    scanners : LAS field that tells them apart or None, and its values
+    scanners : LAS field that distinguishes them or None, and its values
     drive : _InspectedDrive: roads, passes, sensor height, height profile; None without a usable trajectory
     near_share, in_time_share : share of points measured near and during the trajectory, None without one
     """

@@ -16,7 +16,7 @@ from contextlib import closing
 from pathlib import Path
 
 QGIS_PROCESS = Path(__file__).resolve().parent / "qgis_process"
-TRAJECTORIES = {"short": 2000, "long": 3000}  # positions: how the layers of the two are told apart
+TRAJECTORIES = {"short": 2000, "long": 3000}  # positions: how the layers of the two are distinguished
 STEP = 0.0005                                 # s between looks at the folder
 OTHERS = "another"                            # a table of the user's in the GeoPackage that a table is added to
 

@@ -38,7 +38,7 @@ class CrossSections(Algorithm):
     ID, TITLE, GROUP = "crosssections", "Cross-sections", "Inventory"
     SUMMARY = "Measures width, crossfall, grade, rut depth, curb heights and clearance of every lane at fixed stations against limits."
     HELP = ("Steps between scanners and passes are estimated where they overlap and taken off first. An error in roll looks like crossfall: passes "
-            "in opposite directions tell the two apart, and where there are none the report says so and the sigma of the crossfall holds it.\n\n"
+            "in opposite directions distinguish the two, and where there are none the report says so and the sigma of the crossfall holds it.\n\n"
             "Lanes are those of the layer Lanes, else of the driving lines between the marking lines, else of the marking lines alone; the "
             "carriageway ends at the road edges, else at the outermost line. Rut depths are measured under a straight edge of 2 m laid over profiles "
             "averaged over 1 m of road (over more where points are few), less what noise adds. Something that stands on the road does not "

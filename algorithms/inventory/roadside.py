@@ -24,7 +24,7 @@ ROADSIDE_SETTINGS = (
     SettingSpec("MIN_HEIGHT", ROADSIDE_OF, "min_height", tr("Lowest line (m)"),
                 tr("Lower finds low walls, but also high grass and steps."), advanced=True),
     SettingSpec("MAX_GAP", ROADSIDE_OF, "max_gap", tr("Longest gap bridged (m)"),
-                tr("Longer joins what follows in line; shorter tells more lines apart. What vehicles hide is bridged up to 12 m whatever this is, "
+                tr("Longer joins what follows in line; shorter distinguishes more lines. What vehicles hide is bridged up to 12 m whatever this is, "
                    "and an opening of 1.5 m or more through which the scanner saw is left open."), advanced=True),
     SettingSpec("MIN_POLE_HEIGHT", ROADSIDE_OF, "min_pole_height", tr("Lowest pole, sign or trunk (m)"),
                 tr("Lower finds bollards and delineator posts, but also people."), advanced=True),

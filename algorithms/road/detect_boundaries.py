@@ -24,7 +24,7 @@ class DetectBoundaries(Algorithm):
     ID, TITLE, GROUP = "detectboundaries", "Detect road boundaries", "Road"
     SUMMARY = "Road edges straight from the point clouds, by profiles, by scanlines or by both."
     HELP = ("Where there is no curb the edge of the pavement is drawn: where asphalt ends at gravel, grass or a ditch, which are rougher, brighter, "
-            "higher or lower than the road before them. The field edge tells the two apart (curb, pavement). Where nothing separates the "
+            "higher or lower than the road before them. The field edge distinguishes the two (curb, pavement). Where nothing separates the "
             "road from what lies beside it, no edge is made up.")
     TAGS = ("curb", "kerb", "road edge", "boundary", "scanline")
     RETIRED = ("PROFILE_WIDTH", "POINT_SPACING", "LAYER_JUMP", "INTERVAL", "ROTATION_FREQUENCY", "SCANLINE_MIN_HEIGHT", "SEARCH_WIDTH",

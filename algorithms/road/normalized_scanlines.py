@@ -32,7 +32,7 @@ POINT_SETTINGS = (
 class NormalizedScanlines(Algorithm):
     ID, TITLE, GROUP = "normalizedscanlines", "Normalized scanlines", "Road"
     SUMMARY = "Cuts the measured surface by planes across the road, one scanline for every plane, pass and scanner."
-    HELP = ("The lines of a rotating scanner are told apart by the times and places of the points alone; neighbouring lines make the "
+    HELP = ("The lines of a rotating scanner are distinguished by the times and places of the points alone; neighbouring lines make the "
             "surface that is cut. Where it is interrupted, behind a car say, a new scanline begins. Points without times, or of a "
             "head with many beams, have no such lines: there the points near each plane make the scanline, and the log says so.")
     TAGS = ("scanline", "profile", "cross section", "resample")

@@ -36,7 +36,7 @@ class ImportTrajectory(Algorithm):
         self.add_input("crs", "TARGET_CRS", tr("CRS to bring it to"),
                        tr("That of the point clouds. Empty takes it from the point clouds below, or leaves the trajectory as it is."), optional=True)
         self.add_input("clouds", "POINT_CLOUDS", tr("Point clouds"),
-                       tr("With them the time system is told apart, and the trajectory is written on the clouds' clock."), optional=True)
+                       tr("With them the time system is distinguished, and the trajectory is written on the clouds' clock."), optional=True)
         self.add_settings(TIME_SETTING)
         self.add_sink("OUTPUT", tr("Imported trajectory"), fields=TRAJECTORY, geometry="PointZ")
 

@@ -145,10 +145,10 @@ def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """(N,) m, a border at `offset` along `s`, m, without jumps, as where it goes on as another line, `rows`, beside the first; -1 where it is none.
 
     Each jump is spread over `jump_lead` times its size, `longest_lead` at most, half of it on either side; less where the lane ends before, and
-    places aside at its very end are led on with the others.
+    places aside at its very end are continued with the others.
     """
     found, jumps, steps = offset.copy(), np.diff(offset), np.diff(s)
-    sudden = (np.diff(rows) != 0) & (np.abs(jumps) > TRACKS.least_jump) | (np.abs(jumps) > TRACKS.most_askew_border * steps)
+    sudden = (np.diff(rows) != 0) & (np.abs(jumps) > TRACKS.least_jump) | (np.abs(jumps) > TRACKS.most_oblique_border * steps)
     for k in np.flatnonzero(sudden):
         at = (s[k] + s[k + 1]) / 2
         room = 2 * min(at - s[0], s[-1] - at)

@@ -248,9 +248,9 @@ def laid_out(tracks: list[LaneTrack]) -> list[LaneTrack]:
 
 
 def _opening(lane, other, head):
-    """The station at which a lane that begins (or ends) first lies right beside another one that leads on there; None where it does not.
+    """The station at which a lane that begins (or ends) first lies right beside another one that continues there; None where it does not.
 
-    The other one may reach over its very beginning: lanes are told apart by intervals, which are coarser than stations.
+    The other one may reach over its very beginning: lanes are distinguished by intervals, which are coarser than stations.
     """
     end, step = (lane.first, 1) if head else (lane.last, -1)
     if lane.direction != other.direction or not other.first <= end - step <= other.last:

@@ -100,7 +100,7 @@ class _TrackWeights:
     least_jump: float = 0.02   # m across from which a border that goes on as another line is led over
     jump_lead: float = 30.0   # m along for each m across: at 1 in 20 at its steepest, a lane can be followed without braking
     longest_lead: float = 20.0   # m along, at most
-    most_askew_border: float = 0.3   # m across for each m along: no border is painted or built more askew, not even at a bus bay
+    most_oblique_border: float = 0.3   # m across for each m along: no border is painted or built more oblique, not even at a bus bay
     # Lanes followed from interval to interval.
     full_room: float = 0.05   # m: less of a strip than that is not left over
     step_length: float = 10.0   # m along which a step between two stretches of a lane is evened out

@@ -69,7 +69,7 @@ class Phase:
         there, and gives the Recipe
     arguments : plain values that all items share
     place : names the stretch of road that an item is, for messages
-    size : tells items apart by how long they take; any unit
+    size : distinguishes items by how long they take; any unit
     together : so many items, one after the other along the road, are best given to one worker, which keeps what they share
     join : the result of an item from those of the two halves of its range of numbers; None where an item cannot be halved
     """

@@ -77,17 +77,17 @@ class _CompoundWeights:
 
     strip_windows: tuple[tuple[float, float], tuple[float, float]] = (8.0, 8.0), (4.0, 5.0)   # m that a line is looked for in, and its least length
     line_share: float = 0.85   # of the window that is painted, gaps between scan lines closed
-    max_border_slope: float = 0.20   # to the road: the borders of hatched areas lie askew by one in five at most
+    max_border_slope: float = 0.20   # to the road: the borders of hatched areas lie oblique by one in five at most
     max_border_drift: float = 0.16   # m that a line may leave the nearest slope that is tried, over the window
     compound_length: float = 9.0   # m: no arrow or letter is so long; a line that is broader somewhere,
     compound_breadth: float = 0.5   # m, has something beside it
     min_run_across: float = 2.0   # m across the road that a bar does not break off; no arrow or letter is as broad
-    min_leftover_area: float = 0.05   # m2: smaller left-overs are the frayed rim of the strip
+    min_leftover_area: float = 0.05   # m2: smaller left-overs are the ragged rim of the strip
     width_step: int = 12   # cells along a line whose width is taken together
     width_tolerance: int = 2   # cells across by which it may be uneven
     max_width_alone: float = 0.34   # m of an even strip with nothing beside it; a double line is broader
     min_length_beside_bar: float = 1.0   # m along the road: what is shorter is nothing but a bar
-    frayed_rim: float = 0.12   # m that a bar may reach farther along the road at a place; the tip of an arrow is longer
+    ragged_rim: float = 0.12   # m that a bar may reach farther along the road at a place; the tip of an arrow is longer
     max_paint_gap: float = 0.24   # m across the road, closed; the stripes of a zebra crossing leave more
     max_scan_gap: float = 0.40   # m between scan lines, closed
     min_stop_line_piece: float = 0.8   # m across: a row of shorter blocks is a give-way line
@@ -97,7 +97,7 @@ class _CompoundWeights:
     max_fragment_offset: float = 0.08   # m across it
     tracks_per_gap: float = 10.0   # times the distance between the tracks of the scan, along,
     max_gap_between_tracks: float = 2.0   # and m at most: gaps of dashes are longer
-    min_askew: float = 0.05   # m across per m along: a track that crosses a line so leaves it sideways
+    min_oblique: float = 0.05   # m across per m along: a track that crosses a line so leaves it sideways
     max_unseen_gap: float = 3.5   # m along: gaps of dashes that are seen so far off are longer
     max_unseen_offset: float = 0.08   # m between the middles of two pieces with such a gap between them
     max_stop_line_gap: float = 0.30   # m across: the gaps of give-way lines are painted
@@ -196,7 +196,7 @@ class _StripeWeights:
     max_row_skew_along: float = np.radians(45.0)   # of those along the road
     max_aside: float = 0.2   # of its width that the spots of a stripe lie on one side of its middle
     end_percent: float = 2.0   # % of a stripe's spots beyond either end
-    frayed: float = 0.12   # m beside a stripe, whose width and place are estimates, that spots are of it
+    ragged: float = 0.12   # m beside a stripe, whose width and place are estimates, that spots are of it
     max_stray_end: float = 0.6   # m that spots may lie beyond the line of ends to be of a stripe, and that one which ends earlier is shorter
     ends_seen: float = 80.0   # % of the stripes that end on that line or before it: many end where a track of the scan last met their paint
     steps_of_crossing: tuple[float, float, float, float] = 1.0, 1.0, 0.5, 0.1   # of direction and pitch, one after the other, of all stripes
@@ -293,14 +293,14 @@ class _TrendWeights:
 
     trend_step: float = 0.5   # m, nodes of the drift
     slope_window: float = 5.0   # m that slopes are averaged over
-    gentle_taper: float = 0.05   # m across for each m along: a line as askew as that to the others counts half (tapers are 1 in 20 and steeper)
+    gentle_taper: float = 0.05   # m across for each m along: a line as oblique as that to the others counts half (tapers are 1 in 20 and steeper)
     max_line_slope: float = np.tan(np.radians(10.0))   # across per along by which two strands may differ
     # Paint between two tracks of the scan.
     step: float = 0.25   # m along a line, over which it is asked what lies on its course and beside it
     step_reach: float = 0.12   # m before and after a step whose points count for it: those of a track lie so near
     beside_gap: float = 10.0   # m before and after a gap, whose paint tells how bright the line is, and on what tracks it was seen
     on_line: float = 0.15   # m across between a marking and the course of the line that it is of
-    min_seen_length: float = 4.0   # m of a marking: over so much a track that crosses the line askew shows most of its width
+    min_seen_length: float = 4.0   # m of a marking: over so much a track that crosses the line obliquely shows most of its width
     min_free_share: float = 0.6   # of the width of a line: it has no room where tracks on asphalt lie nearer to each other
     core_share: float = 0.25   # of the width of a line, from its middle: where asphalt lies so near, the course is not just off by a little
     max_bare_share: float = 0.35   # of a gap in which the course is asphalt: wear leaves so much, and with more the line is not there
@@ -315,8 +315,8 @@ class _SelectionWeights:
     """Which linked paint is a line."""
 
     min_shared_paint: float = 0.6   # of a line's paint that must have its twin beside it in a double line
-    min_twin_paint: float = 4.0   # m of paint: a shorter line beside another is its frayed edge, however short the other is there
-    max_frayed_share: float = 0.35   # of a line's length: less paint beside a line than this is no second line but its frayed edge
+    min_twin_paint: float = 4.0   # m of paint: a shorter line beside another is its ragged edge, however short the other is there
+    max_ragged_share: float = 0.35   # of a line's length: less paint beside a line than this is no second line but its ragged edge
     min_bounding_paint: float = 15.0   # m of paint: enough to bound a road by
     max_neighbour_offset: float = 8.0   # m across: a line this near starts and ends where this one does
     max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it
@@ -429,7 +429,7 @@ class _NoisyWeights:
     # Bright pieces in these averages that are paint.
     min_rim_distance: float = 0.20   # m from the rim of the road: nearer pieces are curbs or plants
     faint_dash: float = 0.75   # of the threshold: a dash may be so faint where as many of its row reach the threshold
-    worn_dash: float = 0.5   # of the threshold: a dash may be so faint where it leads on a row that is sure
+    worn_dash: float = 0.5   # of the threshold: a dash may be so faint where it continues a row that is sure
     piece_brightness: float = 0.6   # of the threshold: brightness of all cells of a piece that reaches the threshold in places
     top_percentile: int = 90   # %: of a piece's cells; its brightness must reach the threshold
     usual_percentile: int = 75   # %: of a piece's cells; its contrast is that of the piece
@@ -564,7 +564,7 @@ class _RowWeights:
     least_gap: int = 2   # cells between the blocks of a strip
     painted_share: float = 0.25   # of a strip's usual breadth: with less paint across it there is a gap
     row_of_blocks: tuple[float, float] = 0.8, 20.0   # m along the road, where the inside of a bend is shorter than the line itself
-    max_row_slope: float = 0.5   # to the road: of a row more askew the blocks do not touch
+    max_row_slope: float = 0.5   # to the road: of a row more oblique the blocks do not touch
 
 
 ROWS = _RowWeights()
@@ -576,8 +576,8 @@ class _LaneWeights:
 
     max_interval: int = 4   # cells: longer intervals are divided
     double_spacing: tuple[float, float] = 0.22, 0.6   # m between the two lines of a double line; nearer ones are one line
-    weak_twin: float = 0.25   # of the paint of the line beside it: less is a frayed edge, no second line
-    frayed_length: float = 6.0   # m of paint at most of such an edge
+    weak_twin: float = 0.25   # of the paint of the line beside it: less is a ragged edge, no second line
+    ragged_length: float = 6.0   # m of paint at most of such an edge
     usual_lines: float = 0.3   # of the painted length of a road: its lines of usual breadth
     wide_line: float = 1.6   # times the usual breadth: a wide line has twice of it (RMS, MUTCD 3A.04), measured to some 2 cm
     wide_softness: float = 0.1   # times it, by which that is uncertain

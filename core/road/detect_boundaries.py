@@ -371,7 +371,7 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
 
 # Pieces of curb of either method in line with what both methods chose.
 #
-# Between parked cars a curb is seen in pieces of a metre. Which method sees a piece well enough hangs on where its profiles lie, so each may choose
+# Between parked cars a curb is seen in pieces of a metre. Which method sees a piece well enough depends on where its profiles lie, so each may choose
 # the curb before a gap, behind it, or neither. Together they know more ends of curbs than each alone, and between these a piece of either of them
 # may lie.
 

@@ -310,7 +310,7 @@ class _ReturnWeights:
     # faint curbs
     led_length: float = 4.5   # m along a curb that are averaged: the least length of a faint curb
     led_step: float = 0.5   # m from one average to the next
-    max_led_length: float = 20.0   # m that a curb leads on at most
+    max_led_length: float = 20.0   # m that a curb continues at most
     across_cell: float = 0.025   # m, cells across the curb
     level_road: tuple[float, float] = (-1.5, -0.5)   # m across from the curb of the road beside it, where averages show what is no step
     max_layer_height: float = 0.3   # m above or below the curb's end within which its ground lies
@@ -328,8 +328,8 @@ class _ReturnWeights:
     alike_along: float = 0.5   # m along, and
     alike_across: float = 0.1   # m across, within which the errors of a many-beam scanner are alike
     largest_bend: float = 0.25   # 1/m
-    meeting_curb_distance: float = 0.25   # m within which a curb that leads on has reached another
-    leaving_length: float = 1.0   # m from its beginning in which it is near the curb that it leads on
+    meeting_curb_distance: float = 0.25   # m within which a curb that continues has reached another
+    leaving_length: float = 1.0   # m from its beginning in which it is near the curb that it continues
     # curbs followed
     following_step: float = 0.4   # m along a curb from one measurement to the next
     followed_length: float = 16.0   # m that a line is followed at most within a section
@@ -386,7 +386,7 @@ class _ReturnWeights:
     max_run_jump: float = 0.5   # m across between points of one run of main curb
     # beyond the corridor
     max_corridor_distance: float = 15.0   # m straight on from its end within which such a curb leaves the corridor
-    max_beyond_length: float = 40.0   # m that it is led on: the ground of the survey reaches no farther
+    max_beyond_length: float = 40.0   # m that it is continued: the ground of the survey reaches no farther
     max_dropped_length: float = 6.0   # m from its end that it may be dropped: a pedestrian crossing
     trail_length: float = 6.0   # m of known curb whose direction it keeps
     min_height_share: float = 0.5   # of the height that the curb is known to have, from

@@ -30,7 +30,7 @@ DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "cla
 class BlockSummary:
     """What points contribute to the knowledge of the whole cloud.
 
-    census : of the fields that may tell scanners apart; darkest, brightest : lowest and highest intensity
+    census : of the fields that may distinguish scanners; darkest, brightest : lowest and highest intensity
     without_time, excluded : numbers of points at a time of no pass, and of those that are withheld or classified as noise
     """
 

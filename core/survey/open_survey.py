@@ -360,7 +360,7 @@ def _sampled(survey, reader, progress):
 
 
 def _tell_scanners_apart(survey, reader, progress):
-    """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey tell them apart."""
+    """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey distinguish them."""
     from .estimation.estimate import splitter_of
     from .estimation.interleaved import told_apart
     from .estimation.samples import samples_of
@@ -396,7 +396,7 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
 
 
 def _without_time(files, trajectory):
-    """What lacks the time that would tell the passes apart."""
+    """What lacks the time that would distinguish the passes."""
     if not trajectory.has_time:
         return "the trajectory has no time"
     if not all(file.has_time for file in files):

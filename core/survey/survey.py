@@ -82,7 +82,7 @@ class Survey:
     above_road : metres above the road up to which points are returned
     executor : Executor of the phases that read from this survey
     folder : where the points lie for other processes, None where they are this one's alone
-    splitter : tells scanners apart that no field distinguishes; None where there is no need
+    splitter : distinguishes scanners that no field distinguishes; None where there is no need
     """
 
     files: list[CloudHeader]

@@ -37,7 +37,7 @@ class SurveyReader:
 
     summary : BlockSummary of all points
     heights, uneven : {pass number: metres from the trajectory down to the road}, and as of `HeightHistogram.uneven`
-    slots, sampled : TimeSlots of the points by which scanners are told apart that no field distinguishes; their (N,) times and (N, 3) units
+    slots, sampled : TimeSlots of the points by which scanners are distinguished that no field distinguishes; their (N,) times and (N, 3) units
         of 0.1 mm, in no order; without times none
     """
 
@@ -301,7 +301,7 @@ class Finishing:
 
     sensor_height : {pass number: metres from the trajectory down to the road}
     scanner_field, scanners : LAS field that identifies the scanners, None if there is one, and its values, see `ScannerCensus.choose`
-    splitter : tells scanners apart that no field distinguishes; None where there is no need
+    splitter : distinguishes scanners that no field distinguishes; None where there is no need
     above_road : metres above the road up to which points are kept
     """
 

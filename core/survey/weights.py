@@ -30,7 +30,7 @@ class _FrameWeights:
     lane_blend_length: float = 40.0   # m over which a continuing pass in another lane is blended into the line
     max_lane_distance: float = 15.0   # m between two passes over one carriageway at most
     min_shared_length: float = 20.0   # m of road that two passes over it must share
-    sigma_stretch: float = 10.0   # m of road of which the mean is kept, and the least that is told apart on a line
+    sigma_stretch: float = 10.0   # m of road of which the mean is kept, and the least that is distinguished on a line
     sigma_cut_factor: float = 2.0   # times the uncertainty of the stretch beside it, and
     least_sigma_change: float = 0.010   # m more or less, that a stretch of a line is cut off for
     max_node_steps: int = 3   # from node to node, for the few points whose node is not found in one step from the node of the vehicle
@@ -195,7 +195,7 @@ class _LasWeights:
     share_of_other_gaps: float = 0.01   # of the gaps between different values may be less than the step, as where other points were added
     slot: float = 0.001   # s: some hundred pulses, a part of a mirror's turn
     places_per_metre: float = 1000.0   # places are compared in millimetres: a copy may store them with other scales and offsets
-    max_scanners: int = 8   # scanners of a vehicle; a field with four times as many values does not tell them apart
+    max_scanners: int = 8   # scanners of a vehicle; a field with four times as many values does not distinguish them
     min_interleaved_share: float = 0.8   # of the points: values of a field tell scanners where so many points have values that overlap in time
     empty_middle: float = 0.001   # share of values in the middle half of 16 bits, at most, where a sign was lost
     least_upper_share: float = 0.01   # share of values in the uppermost quarter, at least, where a sign was lost
@@ -234,7 +234,7 @@ class _ReadingWeights:
     height_samples: int = 5_000   # points on the own track from which the rough height is estimated
     max_threads: int = 4   # threads that read; each decodes blocks with all cores (lazrs keeps the others waiting) and projects their points
     blocks_per_thread: int = 3   # blocks begun or queued per thread: keeps threads busy while sections are written to the temporary file
-    max_split_samples: int = 1_500_000   # points sampled, by which two scanners are told apart
+    max_split_samples: int = 1_500_000   # points sampled, by which two scanners are distinguished
     part_points: int = 1_200_000   # points of a part, about: a second or two of a worker's time, some 20 MB of its file
     road_height_step: float = 0.25   # m between the stations at which points are compared with the height of the road
     read_progress: float = 0.7   # share of the work, where the passes are adjusted afterwards
@@ -348,7 +348,7 @@ TRACK = _TrackWeights()
 
 @dataclass(frozen=True)
 class _MirrorWeights:
-    """Scanners with a mirror: places in short windows, first poses, and scanners told apart by their scan lines."""
+    """Scanners with a mirror: places in short windows, first poses, and scanners distinguished by their scan lines."""
 
     knot_spacing: float = 0.1   # s between the knots of the splines: suspensions swing at 1 to 3 Hz
     rotation_samples_per_drive: int = 8   # windows in which the rate is sought
@@ -442,7 +442,7 @@ class _EstimateWeights:
     density_height_sigma: float = 0.3   # m of its height: rms of twelve simulated surveys 0.28
     read_progress: float = 0.4   # share of the work after which the points are read
     tracked_progress: float = 0.55   # share of the work after which the first tracks are known
-    min_taking_part: float = 0.95   # share of the points that are of scanners that turn, where a field tells them apart
+    min_taking_part: float = 0.95   # share of the points that are of scanners that turn, where a field distinguishes them
     share_of_unexplained: float = 0.4   # share of what returns lie off the rays that the place is uncertain by
     farthest_median: float = 15.0   # m: half of what a vehicle on a road sees at a time is nearer; an aircraft's swath is wider
     min_share_elsewhere: float = 0.1   # of the points of a moment that lie in another place, where two drives have the same times

@@ -59,7 +59,7 @@ def classes_of(layer: QgsMapLayer) -> set[str]:
     renderer.startRender(context, layer.fields())
     found: set[str] = set()
     for feature in layer.getFeatures():
-        context.expressionContext().setFeature(feature)  # classes may be told apart by an expression
+        context.expressionContext().setFeature(feature)  # classes may be distinguished by an expression
         found |= set(renderer.legendKeysForFeature(feature, context))
     renderer.stopRender(context)
     return found

@@ -153,7 +153,7 @@ NEAR_MIDDLE = 1.0     # m from the middle of a lane within which a driving line 
 LEFT_OUT_NEAR = 0.5   # m between a driving line and a place that is left out: lanes have vertices twice as near
 SAME_BORDER = 0.05    # m across within which heights are compared
 LEAST_CHORD = 1.0     # m of a border's end, along which it goes straight on
-BEYOND_END = 10.0     # m: a road of four lanes whose end is cut askew by 30 degrees
+BEYOND_END = 10.0     # m: a road of four lanes whose end is cut oblique by 30 degrees
 
 
 class Misses(NamedTuple):

@@ -165,7 +165,7 @@ def cuts_beside(lanes: Lanes, left: np.ndarray, right: np.ndarray, among: np.nda
 
 
 def _levels(lanes, nodes, rows):
-    """(V,) number of each of (V, 3) vertices' place and height: of a curb the bottom and the top are two; where a lane leads on there is one."""
+    """(V,) number of each of (V, 3) vertices' place and height: of a curb the bottom and the top are two; where a lane continues there is one."""
     order = np.lexsort((rows[:, 2], nodes))
     apart = (np.diff(nodes[order]) > 0) | (np.diff(rows[order, 2]) > LEAST_CURB)
     level = np.empty(len(rows), int)

@@ -46,7 +46,7 @@ QUIET_PROFILE = 0.0015       # m of noise under the straight edge at which no mo
 MAX_RUT_CORRECTION = 0.005   # m of noise under the straight edge beyond which a rut depth says nothing
 UNCHECKED_ROLL = np.tan(np.radians(0.05))  # m/m: what boresight and navigation of a mapping system leave, where opposite passes do not tell
 CHECKED_ROLL = 0.0003        # m/m: the same where they do, see surface_grid.TILT_SIGMA
-STEEPEST_MIDDLE = 0.15       # m/m that the carriageway may run askew to the driven line
+STEEPEST_MIDDLE = 0.15       # m/m that the carriageway may run oblique to the driven line
 LEAST_STRETCHED = 0.3        # m along a strip for each m of station, where a bend is tightest
 
 
@@ -337,8 +337,8 @@ def _heading(survey, borders, road, s, carriageway):
     (first, before), (last, after) = known[0], known[-1]
     across = (after[np.abs(after[:, None] - before).argmin(axis=0)] - before) / max(last - first, 1e-9)
     # where a border begins or ends another one is nearest, and nothing turns
-    askew = across[np.abs(across) < STEEPEST_MIDDLE]
-    return float(np.median(askew)) / _stretched(survey, road, s, carriageway) if len(askew) else 0.0
+    oblique = across[np.abs(across) < STEEPEST_MIDDLE]
+    return float(np.median(oblique)) / _stretched(survey, road, s, carriageway) if len(oblique) else 0.0
 
 
 def _stretched(survey, road, s, strip):
@@ -349,7 +349,7 @@ def _stretched(survey, road, s, strip):
 
 
 def _falls(survey, road, s, grid, plane, strip, heading):
-    """(fall to the right, climb) of a strip, m/m, across and along the carriageway, which may run askew to the driven line."""
+    """(fall to the right, climb) of a strip, m/m, across and along the carriageway, which may run oblique to the driven line."""
     along = (plane.along + grid.slope) / _stretched(survey, road, s, strip)
     length = float(np.hypot(1.0, heading))
     return (plane.across - heading * along) / length, (along + heading * plane.across) / length

@@ -298,7 +298,7 @@ EDGE_LENGTH = 2.0           # m of the straight edge (EN 13036-7)
 EDGE_STEP = 0.10            # m between the places where it is laid
 SMOOTHING_CELLS = 3         # cells of the profile that are averaged: less than the width of a tyre
 # slopes against the profile's own of the lines that make its upper hull, m/m: fine where most lie, 0.5 mm of depth at most; coarse up to those of
-# the steepest ridges, where a road falls to both sides by as much as it may anywhere (8 %), since there an edge laid askew would show a rut
+# the steepest ridges, where a road falls to both sides by as much as it may anywhere (8 %), since there an edge laid oblique would show a rut
 FINE_SLOPE, FINE_STEP = 0.03, 0.001
 STEEPEST, COARSE_STEP = 0.18, 0.005
 MAX_STEP_PER_CELL = 0.02    # m from one cell to the next: more is a curb or an island, on which no edge is laid

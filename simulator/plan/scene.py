@@ -17,7 +17,7 @@ from .marks import Areas, PlanPaint
 from .path import Path
 from .trace import trace
 
-_ASKEW = 1.45   # m over the ground to the scanner, per m from the track: planes turned by 45 degrees
+_OBLIQUE = 1.45   # m over the ground to the scanner, per m from the track: planes turned by 45 degrees
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class PlanScene:
 
     def meet(self, origin: np.ndarray, direction: np.ndarray, station: float, reach: float) -> Hits:
         """Intersect pulses with the ground: (3, N) local origins, m, and unit directions; `station` is not needed."""
-        distance = trace(self.ground, origin, direction, _ASKEW * reach)
+        distance = trace(self.ground, origin, direction, _OBLIQUE * reach)
         count = len(distance)
         hits = Hits(distance, np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count, dtype=np.int16),
                     np.zeros(count, dtype=np.uint8), np.zeros(count))

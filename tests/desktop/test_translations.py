@@ -133,7 +133,7 @@ def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german, 
      "Mehr Punkte messen. Auf dieser Straße wurde keine Farbe gefunden; es gibt daher keine Markierungslinien und keine Fahrlinien."),
     ("kink at a link", "Knick an einer Verknüpfung"),
     ("0.12 rad between it and lane -2 of road 7 at its start.", "0.12 rad zwischen ihm und Streifen -2 der Straße 7 an seinem Anfang."),
-    ("The column 'Time' of a.csv holds times of a clock such as '1/2/2021 23:46'. GPS seconds are needed, and day and month cannot be told apart. "
+    ("The column 'Time' of a.csv holds times of a clock such as '1/2/2021 23:46'. GPS seconds are needed, and day and month cannot be distinguished. "
      "Export the trajectory with GPS time in seconds; or write dates as year-month-day.",
      "Die Spalte 'Time' von a.csv enthält Uhrzeiten wie '1/2/2021 23:46'. Nötig sind GPS-Sekunden, und Tag und Monat sind nicht zu "
      "unterscheiden. Die Trajektorie mit GPS-Zeit in Sekunden exportieren; oder Daten als Jahr-Monat-Tag schreiben."),

@@ -41,7 +41,7 @@ class MirrorDrive:
     poses: object
 
     def write(self, path, which=slice(None), with_time=True, merged=False, **fields):
-        """The cloud as a file; `merged` without a field that tells the scanners apart."""
+        """The cloud as a file; `merged` without a field that distinguishes the scanners."""
         x, y, z = self.place[which].T + np.array([[EAST], [NORTH], [100.0]])
         time = self.time[which] if with_time else None
         return write_cloud(path, x, y, z, time, source=1 if merged else 1 + self.scanner[which], crs="EPSG:32632", **fields)

@@ -246,7 +246,7 @@ ROWS = (
         ("bars cut from lines", "objects.split_merge:bar_with_lines", lambda cells: (np.zeros(len(cells), np.int64), 1),
          "bends with a junction, worn stop line"),
         ("fragments joined", "objects.split_merge:join_fragments", lambda shapes, _: np.arange(len(shapes)), "worn lines"),
-        ("gaps between askew tracks joined", "objects.split_merge:_unseen_gaps", gives(NO_ROWS), "edge lines far from the vehicle"),
+        ("gaps between oblique tracks joined", "objects.split_merge:_unseen_gaps", gives(NO_ROWS), "edge lines far from the vehicle"),
         ("pieces of bars joined", "objects.split_merge:_bars", gives(NO_ROWS), "worn stop lines"),
         ("rows of blocks divided", "objects.cluster:_with_rows_divided", nth(1), "roundabout, give-way blocks"),
         ("zebra crossings", "objects.repeating:zebra_stripes", gives([]), "", "objects.repeating:zebra_stripes objects.repeating:find_comb "
@@ -285,7 +285,7 @@ ROWS = (
         ("frames of hatching", "selection:_frames_hatching", gives(False), "hatched areas"),
         ("pairs at crossings", "selection:_without_pairs_at_crossings", nth(0), "street with a traffic island and a zebra crossing"),
         ("lines beyond the edge", "selection:_beyond_the_edge", none_of(), "verge, gutter"),
-        ("frayed edges and double lines", "selection:_beside", lambda lines, *_: np.zeros((2, len(lines)), bool)),
+        ("ragged edges and double lines", "selection:_beside", lambda lines, *_: np.zeros((2, len(lines)), bool)),
         ("dashed lines end with a gap", "selection:_extended", lambda drawn, *_: merged_pieces(drawn)),
         ("guides in long gaps", "fit:_guides", gives((np.empty(0), np.empty(0))), "bends, gap of 27 m"),
         ("paint between tracks", "linking:with_unseen_paint", lambda lines, *_: replace(lines, unseen=[np.empty((0, 3))] * len(lines)),

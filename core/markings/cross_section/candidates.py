@@ -251,13 +251,13 @@ def _twins(entries):
 
 
 def _superfluous(entries, boundaries):
-    """(N,) bool: a sliver beside a line is that line's frayed edge; the surface ends at its line or curb, and so does a hatched area at its line."""
+    """(N,) bool: a sliver beside a line is that line's ragged edge; the surface ends at its line or curb, and so does a hatched area at its line."""
     interval, d, made = entries["interval"], entries["d"], entries["made"]
     paint, twins = boundaries.paint[entries["row"]], _twins(entries)
     found = np.zeros(len(d), bool)
     for step in (-1, 1):
         beside, twin = np.roll(made, -step), np.roll(twins, -1) if step > 0 else twins
-        found |= twin & (np.roll(paint, -step) * LANES.weak_twin > paint) & (paint < LANES.frayed_length)
+        found |= twin & (np.roll(paint, -step) * LANES.weak_twin > paint) & (paint < LANES.ragged_length)
         near = (np.roll(interval, -step) == interval) & (np.abs(np.roll(d, -step) - d) < LANES.surface_merge)
         found |= near & ((made == HATCHING) & (beside <= DOUBLE) | np.isin(made, ENDS) & ~np.isin(beside, ENDS))
     return found

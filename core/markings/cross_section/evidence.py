@@ -380,7 +380,7 @@ def _follow(borders, middle):
         border[near] = middle[near]
 
 
-# Rows of parking bays: the lines between bays are as narrow as other lines and run across or askew, from the lane to the edge of the road (RMS
+# Rows of parking bays: the lines between bays are as narrow as other lines and run across or obliquely, from the lane to the edge of the road (RMS
 # part 1, bays of 2.3 to 2.7 m, parallel ones of 5 to 7 m; MUTCD 3B.19). Joints of a concrete road and rumble bars lie across driven lanes, too.
 
 WIDEST_BAY_LINE = 0.20   # source: m, of lines of usual breadth in all countries of the catalogue

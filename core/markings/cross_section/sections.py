@@ -314,7 +314,7 @@ def _chained(rows):
 def lead_over(lines: _GridLines, gaps: list[tuple[int, int, int, bool, bool]]) -> set[tuple[int, int]]:
     """Where a double line goes on as a single one, both of its lines lead over to it: lanes on either side end at that one.
 
-    Returns the ends of lines that were led on, as (row, 1 where it ended or -1 where it began).
+    Returns the ends of lines that were continued, as (row, 1 where it ended or -1 where it began).
     """
     led: set[tuple[int, int]] = set()
     for j, last, first, before, after in gaps:
@@ -323,7 +323,7 @@ def lead_over(lines: _GridLines, gaps: list[tuple[int, int, int, bool, bool]]) -
         single = lines.rows[j]
         # from the double line's own end to where the single one begins, in whichever direction
         own, other, step = (last, first, 1) if before else (first, last, -1)
-        # a line that was led on before reaches farther than it did
+        # a line that was continued before reaches farther than it did
         near = sorted({*lines.near(own, GAP_REACH), *(k for k, _ in led)})
         for k in near:
             row = lines.rows[k]

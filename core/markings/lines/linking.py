@@ -294,8 +294,8 @@ class CommonTrend:
         first = bins.min()
         nodes = np.arange(first, bins.max() + 1)
         mean = np.bincount(bins - first, weight * slope) / np.bincount(bins - first, weight).clip(1e-9)
-        askew = np.bincount(strand, weight * np.abs(slope - mean[bins - first])) / np.bincount(strand, weight).clip(1e-9)
-        weight = weight / (1.0 + (askew[strand] / TREND.gentle_taper) ** 2)
+        oblique = np.bincount(strand, weight * np.abs(slope - mean[bins - first])) / np.bincount(strand, weight).clip(1e-9)
+        weight = weight / (1.0 + (oblique[strand] / TREND.gentle_taper) ** 2)
         middle = np.full(len(nodes), np.nan)
         middle[bins[order[starts]] - first] = weighted_medians(slope[order], weight[order], starts)
         known = np.isfinite(middle)
@@ -381,8 +381,8 @@ def lines_beside(lines: Sequence[LinkedLine]) -> StretchLookup:
     return StretchLookup(np.array([line.first for line in lines]), np.array([line.last for line in lines]))
 
 
-# Paint between two tracks of the scan. Far from the vehicle the tracks lie farther apart than a line is broad and cross it askew, so that it shows
-# on one track, on none, on the next. Where it shows on none, no gap was seen; where a track on its course is asphalt, the line is worn or ends.
+# Paint between two tracks of the scan. Far from the vehicle the tracks lie farther apart than a line is broad and cross it obliquely: it shows on
+# one track, on none, on the next. Where it shows on none, no gap was seen; where a track on its course is asphalt, the line is worn or ends.
 
 UNKNOWN, BARE, FREE = 0, 1, 2
 

@@ -73,13 +73,13 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     level = np.array([_level(line, trend) for line in lines])
     painted_to = max(line.last for line in lines)
     painted_from = min(line.first for line in lines)
-    frayed, double = _beside(lines, beside, trend, longest_dash)
+    ragged, double = _beside(lines, beside, trend, longest_dash)
     outside = _beyond_the_edge(lines, beside, level)
     found = []
     for k, line in enumerate(lines):
         check_cancelled()
         dashed = any(stretch.dashes for stretch in parts[k])
-        if frayed[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or dashed):
+        if ragged[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or dashed):
             continue
         drawn = _extended(_line_pieces(parts[k]), parts[k], (painted_from, painted_to),
                           partial(_crossed_there, crossed, crossings_there, line.middle), partial(strands.near, level, k), line)
@@ -127,8 +127,8 @@ def _level(line, trend):
 
 
 def _beside(lines, beside, trend, longest_dash):
-    """(N,) frayed: a sliver beside a longer line; (N,) double: one of two equal lines side by side."""
-    frayed, double = np.zeros(len(lines), bool), np.zeros(len(lines), bool)
+    """(N,) ragged: a sliver beside a longer line; (N,) double: one of two equal lines side by side."""
+    ragged, double = np.zeros(len(lines), bool), np.zeros(len(lines), bool)
     tracks = []
     for line in lines:
         s, d, *_ = line.places()
@@ -149,12 +149,12 @@ def _beside(lines, beside, trend, longest_dash):
                 # between two junctions both lines of a double are short, and one of them may go on farther beyond
                 least = max(SELECTION.min_twin_paint, SELECTION.min_shared_paint * _painted_there(lines[j], lines[k]))
                 twin = away >= LINKS.double_line_spacing[0] and lines[k].painted >= least
-                if not twin and lines[k].painted < SELECTION.max_frayed_share * lines[j].painted and lines[k].painted < longest_dash:
-                    frayed[k] = True
+                if not twin and lines[k].painted < SELECTION.max_ragged_share * lines[j].painted and lines[k].painted < longest_dash:
+                    ragged[k] = True
                 elif away >= LINKS.double_line_spacing[0]:
                     double[k] = True
-                    double[j] |= len(a) / len(tracks[j][0]) > SELECTION.max_frayed_share
-    return frayed, double
+                    double[j] |= len(a) / len(tracks[j][0]) > SELECTION.max_ragged_share
+    return ragged, double
 
 
 def _shared(one, other):
@@ -185,7 +185,7 @@ def _beyond_the_edge(lines, beside, level):
             # the vehicle drove between the edge lines
             farther = np.sign(lines[j].middle) * (level[k] - level[j])
             shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
-            least = SELECTION.max_frayed_share * lines[j].painted if farther < CLASSES.lane_clearance else 0.0
+            least = SELECTION.max_ragged_share * lines[j].painted if farther < CLASSES.lane_clearance else 0.0
             if j != k and farther > LINKS.double_line_spacing[0] and shared > 0.5 * (line.last - line.first) \
                     and line.painted < max(least, SELECTION.min_bounding_paint):
                 result[k] = True

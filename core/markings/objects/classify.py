@@ -206,7 +206,7 @@ def _speck(shape):
 def _round_cover(shape):
     along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
     longer, shorter = max(along, across), min(along, across)
-    # a dash askew fills a square, too
+    # an oblique dash fills a square, too
     return CLASSES.cover_diameter[0] <= longer <= CLASSES.cover_diameter[1] and shorter > 0.7 * longer \
         and shape.closed_area > CLASSES.min_cover_fill * along * across and shape.elongation < CLASSES.max_cover_elongation
 

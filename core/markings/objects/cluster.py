@@ -135,7 +135,7 @@ def _pieces(paint, work, settings, progress):
 
 
 def _blocks_of_all(found):
-    """Of each road (N,) bool, which clusters are blocks of give-way lines: a row of them may lie on several roads, and askew to them."""
+    """Of each road (N,) bool, which clusters are blocks of give-way lines: a row of them may lie on several roads, and oblique to them."""
     shapes = [shape for pieces in found for shape in pieces.shapes]
     rectangles = [_rectangle(records, bounds) if max(shape.sides) <= SHAPES.small_marking_size else (0.0, 0.0, 0.0, 0.0)
                   for pieces in found for records in [pieces.records.unread()] for bounds, shape in zip(pieces.bounds, pieces.shapes)]

@@ -1,7 +1,7 @@
 """What repeats at an even pace: the stripes of zebra crossings and rows of dashes.
 
 All stripes of a crossing have one direction and one pitch: across them the spots repeat, whichever track of the scan they lie on and however
-much is worn off. That is measured by the length of their mean phase. Bars of hatching are parallel, too, but lie askew to their row.
+much is worn off. That is measured by the length of their mean phase. Bars of hatching are parallel, too, but lie oblique to their row.
 """
 
 from __future__ import annotations
@@ -250,7 +250,7 @@ def stripes_of_crossing(places: np.ndarray, way: np.ndarray, comb: Comb) -> list
         side = best.phase + k * best.pitch + np.array([-width / 2, width / 2])
         corners = np.array([(first, side[0]), (last, side[0]), (last, side[1]), (first, side[1])]) @ np.array([[c, n], [-n, c]]) + middle
         near = (along >= first - STRIPES.max_stray_end) & (along <= last + STRIPES.max_stray_end)
-        inside = (np.abs(off) <= width / 2 + STRIPES.frayed) & (number == k) & near
+        inside = (np.abs(off) <= width / 2 + STRIPES.ragged) & (number == k) & near
         found.append(Stripe(rows[inside], corners))
     return found
 
@@ -290,7 +290,7 @@ def _row_of_stripes(number, off, along, comb):
 
 def _fitted(number, off, along, comb, row):
     """The comb turned, shifted and stretched onto the spots of a row of its stripes, by least squares."""
-    on = np.isin(number, row.numbers) & (np.abs(off) <= row.width / 2 + STRIPES.frayed)
+    on = np.isin(number, row.numbers) & (np.abs(off) <= row.width / 2 + STRIPES.ragged)
     # a spot lies across at phase + number * pitch + turn * along, and anywhere over the width of its stripe
     design = np.column_stack([np.ones(on.sum()), number[on], along[on]])
     shift, stretch, turn = np.linalg.lstsq(design, off[on], rcond=None)[0].tolist()
@@ -300,12 +300,12 @@ def _fitted(number, off, along, comb, row):
 
 
 def _striped(number, phase, along):
-    """(N,) bool, the spots of the stretch along the stripes over which they are stripes: side by side, not one with a line that leads on."""
+    """(N,) bool, the spots of the stretch along the stripes over which they are stripes: side by side, not one with a line that continues."""
     step = np.floor((along - along.min()) / STRIPES.comb_step_along).astype(np.int64)
     count = np.bincount(step)
     mean = np.bincount(step, np.cos(2 * np.pi * phase)) / np.maximum(count, 1)
     stripes = np.bincount(np.unique(np.column_stack([step, number]), axis=0)[:, 0])
-    # a line that leads on from the outermost stripe has their phase, too; one worn step parts no stripes
+    # a line that continues from the outermost stripe has their phase, too; one worn step parts no stripes
     full = (mean >= STRIPES.least_phase) & (stripes > 1) & (count >= STRIPES.min_of_usual * np.median(count[step]))
     full = full | (np.r_[False, full[:-1]] & np.r_[full[1:], False] & (mean >= 0))
     runs = np.cumsum(np.diff(np.r_[False, full].astype(int)) == 1) * full
@@ -325,7 +325,7 @@ def _span(along):
 
 
 def _width(along, across):
-    """Width of a strip, straight and maybe askew, from spots spread evenly over it, and how far its middle lies aside."""
+    """Width of a strip, straight and maybe oblique, from spots spread evenly over it, and how far its middle lies aside."""
     run = along - along.mean()
     slope = (run * across).sum() / max((run * run).sum(), 1e-9)
     middle = np.median(across)
@@ -396,8 +396,8 @@ def dashes_beyond(row: Sequence[Shape], others: Sequence[Shape]) -> list[int]:
             last = np.array(known[-ROWS.min_dashes_in_row:])
             way = _way(last)
             ahead, off = (place - last[-1]) @ way, np.abs((place - last.mean(axis=0)) @ (-way[1], way[0]))
-            askew = turn - np.arctan2(way[1], way[0])
-            narrow = length * np.abs(np.sin(askew)) + width * np.abs(np.cos(askew)) <= ROWS.max_dash_breadth
+            oblique = turn - np.arctan2(way[1], way[0])
+            narrow = length * np.abs(np.sin(oblique)) + width * np.abs(np.cos(oblique)) <= ROWS.max_dash_breadth
             follows = np.flatnonzero(alike & narrow & (off <= ROWS.max_dash_offset) & (ahead >= max(ROWS.min_next_step * pace, ROWS.min_dash_spacing))
                                      & (ahead <= ROWS.max_step_ratio * pace))
             if not len(follows):

@@ -38,7 +38,7 @@ class Shape:
     closed_area: float   # with the gaps between scan lines, of what runs across the road or is small (`area` of the rest)
     stems: tuple   # shares of its length, from s0 on and from s1 back, over which it is a single stroke
     spacing: float = 0.0   # distance between the tracks of the scan that it was seen on, where these are farther apart than cells, else 0
-    askew: tuple[float, float] = (0.0, 0.0)   # how fast these cross it at s0 and at s1, metres across per metre along, 0 where it is not known
+    oblique: tuple[float, float] = (0.0, 0.0)   # how fast these cross it at s0 and at s1, metres across per metre along, 0 where it is not known
     legs: int = 0   # of a zigzag line, 0 of anything else
     sides: tuple[float, float] = (0.0, 0.0)   # of the smallest rectangle about what is small, however it lies, else length and width
 
@@ -98,7 +98,7 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
     area, closed_area = (count * (CELL_UNITS * COORDINATE_SCALE) ** 2 for count in (len(cells), closed))
     return Shape(s0 * COORDINATE_SCALE, s1 * COORDINATE_SCALE, d0 * COORDINATE_SCALE, d1 * COORDINATE_SCALE, median(d) * COORDINATE_SCALE,
                  float(length), width, direction, area, len(s), float(begin), float(finish), closed_area,
-                 _stems(cells), apart, _askew(s, d) if apart else (0.0, 0.0), 0 if apart else zigzag_legs(cells), sides)
+                 _stems(cells), apart, _oblique(s, d) if apart else (0.0, 0.0), 0 if apart else zigzag_legs(cells), sides)
 
 
 def smallest_rectangle(cells: np.ndarray) -> tuple[float, float]:
@@ -128,7 +128,7 @@ def _stems(cells):
     return (float(broad[0]) / count, 1.0 - float(broad[-1] + 1) / count) if len(broad) else (1.0, 1.0)
 
 
-def _askew(s, d):
+def _oblique(s, d):
     """How fast the tracks cross a cluster at its begin and at its end, from the points there."""
     found = []
     for end in (s - s.min() <= SHAPES.end_units, s.max() - s <= SHAPES.end_units):

@@ -128,7 +128,7 @@ def _parts_of_filled(cells):
 def _in_lines(cells, longest_gap, window):
     """(K,) whether a cell lies on a straight line roughly along the road that is painted over most of `window` metres; cells are sorted along it.
 
-    Bars, letters and the stripes of a crossing are shorter than the window; the line itself may be worn and askew.
+    Bars, letters and the stripes of a crossing are shorter than the window; the line itself may be worn and oblique.
     """
     result = np.zeros(len(cells), bool)
     if not len(cells):
@@ -235,7 +235,7 @@ def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
     """(N,) int, the same number for pieces that continue each other over a worn spot; `max_width` : m, a line's.
 
     Narrow pieces along the road are joined where one begins up to 0.9 m after the end of another on the same line, farther where tracks of the scan
-    cross it askew; pieces of a bar across the road over 0.3 m where their front and rear are the same.
+    cross it obliquely; pieces of a bar across the road over 0.3 m where their front and rear are the same.
     """
     if len(shapes) < 2:
         return np.arange(len(shapes))
@@ -251,7 +251,7 @@ def _along(shapes, max_width):
         return np.empty((0, 2), np.int64)
     begins = np.array([(shapes[k].s0, shapes[k].begin) for k in narrow])
     ends = np.array([(shapes[k].s1, shapes[k].finish) for k in narrow])
-    # a line that the tracks of the scan cross askew shows on each of them for a while
+    # a line that the tracks of the scan cross obliquely shows on each of them for a while
     spacing = np.array([shapes[k].spacing for k in narrow])
     longest = np.clip(COMPOUNDS.tracks_per_gap * spacing, COMPOUNDS.max_worn_gap, COMPOUNDS.max_gap_between_tracks)
     # a box of -0.2 to 2 m along and 8 cm either way across about each end
@@ -265,11 +265,11 @@ def _along(shapes, max_width):
 
 def _unseen_gaps(shapes, narrow):
     """(P, 2) pieces of one line with a gap that was not seen: a track of the scan leaves the line sideways before it, or comes in so after it."""
-    sparse = np.array([k for k in narrow.tolist() if shapes[k].spacing > 0 and max(shapes[k].askew) >= COMPOUNDS.min_askew], np.int64)
+    sparse = np.array([k for k in narrow.tolist() if shapes[k].spacing > 0 and max(shapes[k].oblique) >= COMPOUNDS.min_oblique], np.int64)
     if len(sparse) < 2:
         return np.empty((0, 2), np.int64)
     first, last, offset = (np.array([getattr(shapes[k], name) for k in sparse]) for name in ("s0", "s1", "offset"))
-    sideways = np.array([shapes[k].askew for k in sparse]) >= COMPOUNDS.min_askew
+    sideways = np.array([shapes[k].oblique for k in sparse]) >= COMPOUNDS.min_oblique
     a, b = (np.concatenate(found) for found in zip(*overlapping_pairs(first, last, first, last, COMPOUNDS.max_unseen_gap)))
     gap = first[b] - last[a]
     unseen = (a != b) & (gap >= 0) & (gap <= COMPOUNDS.max_unseen_gap) & (sideways[a, 1] | sideways[b, 0])
@@ -351,8 +351,8 @@ def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
         return whole
     row, parts, count = cells[:, 0] - first[0], np.zeros(len(cells), np.int64), 1
     for side, length in ((row < front, front * CELL_SIZE), (row >= rear, (len(mask) - rear) * CELL_SIZE)):
-        if COMPOUNDS.frayed_rim < length < COMPOUNDS.min_length_beside_bar:
+        if COMPOUNDS.ragged_rim < length < COMPOUNDS.min_length_beside_bar:
             return whole
-        if length > COMPOUNDS.frayed_rim:
+        if length > COMPOUNDS.ragged_rim:
             parts[side], count = count, count + 1
     return parts, count

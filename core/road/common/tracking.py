@@ -371,7 +371,7 @@ def _merged(path):
 #
 # A short piece of curb may be anything where it stands alone. Between two stretches of curb that were chosen already, a piece of their height that
 # lies on the smooth line through both is the same curb, seen between what hides the rest of it, such as a row of parked cars. Its steps are taken
-# one by one, upright or sloped, linked with each other or not: which of them were linked to a chain hangs on a millimetre. It may scatter more than
+# one by one, upright or sloped, linked with each other or not: which of them were linked to a chain depends on a millimetre. It may scatter more than
 # a curb that nothing else speaks for.
 
 

@@ -2,7 +2,7 @@
 
 At crossings and drives a curb is dropped to one or two centimetres, less than the noise of a many-beam scanner in any single view.
 Averaged over metres along the curb it stands out all the same; but so does every seam between two layers of asphalt. Therefore it
-counts only where it leads on from the end of a sure curb, in direction and in height.
+counts only where it continues from the end of a sure curb, in direction and in height.
 
 From a little before such an end, arcs of the next RETURN.led_length metres are compared: the curb's own course, and some that turn and bend
 a little more or less. Across each of them the ground is averaged, and that one is taken whose averages two levels and the step between
@@ -113,13 +113,13 @@ class _Average:
 
 
 def led_on(ground: GroundRaster, ends: FollowedEnds) -> list[PlanSteps]:
-    """The faint curb that leads on from each end.
+    """The faint curb that continues from each end.
 
     ground : GroundRaster, averaged
     ends : K FollowedEnds, RETURN.line_direction_length of sure curb behind each
 
     Returns a list of K PlanSteps, RETURN.led_step apart, in order out of the line, about half RETURN.led_length less far than the averages;
-    empty ones where nothing leads on
+    empty ones where nothing continues
     """
     return [_led_on(ground, ends[k:k + 1]) for k in range(len(ends))]
 
@@ -239,7 +239,7 @@ LED_KINDS = "main", "corner", "side_street"   # the other curbs have no ends
 
 def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: PointDecimation, road: int, sections: Sequence[tuple[int, int]],
                 known: KnownPlaces, limits: Mapping[str, SearchLimit], settings: CurbSettings, progress: Progress) -> list[CurbReturn]:
-    """The curbs away from main curbs, and what leads on faintly from them and from main curbs.
+    """The curbs away from main curbs, and what continues faintly from them and from main curbs.
 
     runs : main curbs in plan, uphill on the right: list of (side, (x, y, h)), local m
     sections : (first, last + 1) profile numbers of those where the scanner is noisy
@@ -266,7 +266,7 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
         k, at_head = owner[number], ends.uphill[number] < 0
         if len(own) < RETURN.min_return_steps:
             continue
-        # from the other end of a gap only the rest is led on
+        # from the other end of a gap only the rest is continued
         met = met.and_places(own.x, own.y)
         own = own[::-1] if at_head else own
         s, d = line.locate(own.x, own.y)
@@ -286,7 +286,7 @@ def _until_met(own, met):
 
 
 def _joined(curb, more, before):
-    """A curb with what leads on from its beginning, or from its end."""
+    """A curb with what continues from its beginning, or from its end."""
     parts = (more, curb) if before else (curb, more)
     return CurbReturn(PlanSteps.join([part.steps for part in parts]), *(np.concatenate([getattr(part, name) for part in parts]) for name in "sd"),
                       curb.side, curb.kind)
@@ -299,7 +299,7 @@ def _join_led(parts: Sequence[list[tuple[int, PlanSteps]] | None]) -> list[tuple
 
 def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, ends: FollowedEnds,
                          settings: CurbSettings) -> list[tuple[int, PlanSteps]]:
-    """The phase of faint curbs: what leads on from the ends in one section of a road.
+    """The phase of faint curbs: what continues from the ends in one section of a road.
 
     section : (first, last + 1) profile numbers
     ends : FollowedEnds of the curbs
@@ -324,7 +324,7 @@ def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
 
 
 def _near_ends(survey, road, points, ends):
-    """Local x, y and height above the expected road of the points that may belong to what leads on."""
+    """Local x, y and height above the expected road of the points that may belong to what continues."""
     near = np.zeros(len(points.x), bool)
     for x, y in zip(ends.x, ends.y):
         near |= (points.x - x)**2 + (points.y - y)**2 < (RETURN.max_led_length + RETURN.led_length)**2

@@ -1,4 +1,4 @@
-"""Curbs of side streets led on beyond the corridor of the road.
+"""Curbs of side streets continued beyond the corridor of the road.
 
 Some tens of metres from the vehicle a metre of curb holds a few points, too few for any step to be seen by itself. But the two levels
 beside it still differ by its whole height. Therefore the straight course of a curb that leaves the corridor, or one that bends evenly, is
@@ -46,7 +46,7 @@ class _CurbCourse:
 
 
 def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, road: int, known: KnownPlaces) -> list[CurbReturn]:
-    """The curbs away from main curbs, those that leave the corridor led on beyond it.
+    """The curbs away from main curbs, those that leave the corridor continued beyond it.
 
     known : places of the main curbs
 
@@ -62,7 +62,7 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
 
 
 def _led_from(curb, at_tail, decimation, road, met):
-    """The curb that leads on beyond the corridor from one end of a curb; None where there is none, or it is known."""
+    """The curb that continues beyond the corridor from one end of a curb; None where there is none, or it is known."""
     survey = decimation.survey
     end = _end_of(curb, at_tail, survey, road)
     if end is None or not _leaves(end, survey.frame.roads):
@@ -145,7 +145,7 @@ def _cell_means(t, u, z):
 
 
 def led_beyond(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd) -> _CurbCourse | None:
-    """How a curb leads on from its end.
+    """How a curb continues from its end.
 
     t, u, z : (N,) m, along and uphill from the end, and heights, of points about it
     end : its end
@@ -259,7 +259,7 @@ def _led(course, end, curb, at_tail, survey, road, line):
 
 
 def _distinct(found, met):
-    """Of curbs that were led on, those beside no known one and no other."""
+    """Of curbs that were continued, those beside no known one and no other."""
     chosen: list[CurbReturn] = []
     for curb in sorted(found, key=lambda c: -len(c.steps)):
         x, y = curb.steps.x, curb.steps.y

@@ -243,7 +243,7 @@ def _moves_of(seen):
 def _jackknife(left_out):
     """(3,) sigma of an estimate from (N, 3) estimates without one window each (Tukey 1958).
 
-    Infinite where half of these show nothing: the estimate then hangs on single windows.
+    Infinite where half of these show nothing: the estimate then depends on single windows.
     """
     values = np.array(left_out)
     count = np.isfinite(values).sum(axis=0)

@@ -115,7 +115,7 @@ def _estimated(files, scanner_field, wkt, progress):
 
 
 def _of_mirrors(samples, tracks, scanners, wkt, progress):
-    """The trajectory by the rays of the scanners that a field tells apart or, where those explain too little, that the scan lines do."""
+    """The trajectory by the rays of the scanners that a field distinguishes or, where those explain too little, that the scan lines do."""
     found = None
     if by_field := samples.scanners > 1 and _all_take_part(samples, scanners):
         found = _adjusted(samples, tracks, scanners, progress)
@@ -166,7 +166,7 @@ def _adjusted(samples, tracks, scanners, progress):
 
 
 def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = Progress()) -> tuple[Samples, list[Spinning], Adjusted] | None:
-    """The samples with scanners that no field tells apart, these, and the poses; None for one scanner, or where they cannot be told apart."""
+    """The samples with scanners that no field distinguishes, these, and the poses; None for one scanner, or where they cannot be distinguished."""
     steps = [steps_of(samples.place[drive], track, samples.time[drive]) for drive, track in zip(samples.drives, tracks)]
     ways = scan_line_directions(np.concatenate([direction for _, direction in steps]))
     if len(ways) < 2:
@@ -182,7 +182,7 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
     found = _adjusted(apart, tracks, scanners, progress.part(0.0, 0.6))
     if not _explains(found):
         return None
-    # the rays tell the other points apart, too, and the few that were wrong
+    # the rays distinguish the other points, too, and the few that were wrong
     splitter = ScannerSplitter(found.poses, 0.0, np.zeros(3))
     apart = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
     scanners = [replace(one, number=number) for number, one in enumerate(scanners)]
@@ -191,7 +191,7 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
 
 
 def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSplitter | None:
-    """What tells scanners apart whose points no field distinguishes; None where there is one, or they cannot be told apart."""
+    """What distinguishes scanners whose points no field distinguishes; None where there is one, or they cannot be distinguished."""
     if not samples.drives:
         return None
     tracks = [first_track(samples.time[drive], samples.place[drive]) for drive in samples.drives]

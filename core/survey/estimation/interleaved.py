@@ -1,4 +1,4 @@
-"""Scanners that no field tells apart, told apart by where their scan lines lead.
+"""Scanners that no field distinguishes, distinguished by where their scan lines lead.
 
 Seen from the vehicle, the lines of one scanner run in one direction over the road. Points that follow each other in time and lie
 side by side show it; scanners whose planes are turned differently give as many directions.
@@ -17,8 +17,8 @@ from .samples import FirstTrack
 
 
 def told_apart(scanners: int) -> str:
-    """What the user is told about so many scanners that no field tells apart."""
-    return f"The points are of {scanners} scanners that no field tells apart; they were told apart by where their scan lines lead."
+    """What the user is told about so many scanners that no field distinguishes."""
+    return f"The points are of {scanners} scanners that no field distinguishes; they were distinguished by where their scan lines lead."
 
 
 def steps_of(place: np.ndarray, track: FirstTrack, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -21,7 +21,7 @@ EVER = (-np.inf, np.inf)      # s
 
 @dataclass
 class ScannerCensus:
-    """Times at which each value of the fields that may tell scanners apart was measured: {LAS field: {value: (first, last, count)}}.
+    """Times at which each value of the fields that may distinguish scanners was measured: {LAS field: {value: (first, last, count)}}.
 
     Without times stations along the road stand in their place: scanners measure the same stretches of it, files and tiles do not.
     """

@@ -284,7 +284,7 @@ def _named(column):
 def _unknown_clock(times, shows):
     """Why the GPS seconds of ClockTimes are not known, and what to do about it."""
     if shows and not times.order_known:
-        return "day and month cannot be told apart", "write dates as year-month-day"
+        return "day and month cannot be distinguished", "write dates as year-month-day"
     if shows:
         return f"without a date it is not known by how many seconds {shows} differs from them", "add the date"
     known = times.seconds[np.isfinite(times.seconds)]

@@ -47,7 +47,7 @@ class ClockTimes:
     """Clock times that were written as text, or as days.
 
     seconds : (N,) since 6 January 1980 as the clock counts, or since its midnight where no date is written; NaN where a text is no time
-    dated, order_known : whether dates are written, and whether day and month can be told apart
+    dated, order_known : whether dates are written, and whether day and month can be distinguished
     zone : "UTC" or "GPS" where the texts say so, "" otherwise; times with an offset from UTC are brought to UTC
     kind, first : what was written, and the first of them
     """

@@ -17,7 +17,7 @@ NEAREST_POINTS = 0.005   # m within which two places of a guide line are one
 GUIDE_STEP = 0.1         # m between points of a guide line at the least: what lies between tells no direction
 LEAST_GUIDE = 0.05       # m of a guide line: where lane 0 is shorter, as about a corner, another border leads
 LEAST_END = 0.5          # m of width from which the end of a road has a direction
-MOST_ASKEW = 0.5         # rad between the end of a road and a square cut to which it can turn within a few metres
+MOST_OBLIQUE = 0.5         # rad between the end of a road and a square cut to which it can turn within a few metres
 SQUARE_END = 0.002           # m along the road by which the corners of an end may miss a square cut: validators allow 1 cm between two roads
 END_CHORD = 5.0          # m of a road whose direction is that of its end
 LOOSER = (1.0, 5.0, 25.0)   # times the tolerance that the reference line may lie beside a border with corners
@@ -135,7 +135,7 @@ def _frame(plan, strip, near):
 
 
 def _beyond_ends(strip, s, length):
-    """Metres by which borders reach beyond the start and the end of the road, where it meets no other: an end that is cut askew is made square."""
+    """Metres by which borders reach beyond the start and the end of the road, where it meets no other: an oblique end is made square."""
     return (0.0 if _meets(strip[0], False) else max(-float(s[0][:, 0].min()), 0.0),
             0.0 if _meets(strip[-1], True) else max(float(s[-1][:, -1].max()) - length, 0.0))
 
@@ -246,7 +246,7 @@ def _smoothed(points, width):
 
 
 def _end_headings(strip, guide, square):
-    """((start, end) headings square to the ends at which the road meets another, or to all if `square`, None where they are cut askew;
+    """((start, end) headings square to the ends at which the road meets another, or to all if `square`, None where they are cut obliquely;
     metres, its width)."""
     found, widest = [], 0.0
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
@@ -256,8 +256,8 @@ def _end_headings(strip, guide, square):
         across = (one.cells[0].left[row] - one.cells[-1].right[row])[:2]
         widest = max(widest, float(np.hypot(*across)))
         heading, along = float(np.arctan2(-across[0], across[1])), float(np.arctan2(way[1], way[0]))
-        askew = abs((heading - along + np.pi) % (2 * np.pi) - np.pi)
-        found.append(heading if (meets or square) and np.hypot(*across) > LEAST_END and askew < MOST_ASKEW else None)
+        oblique = abs((heading - along + np.pi) % (2 * np.pi) - np.pi)
+        found.append(heading if (meets or square) and np.hypot(*across) > LEAST_END and oblique < MOST_OBLIQUE else None)
     return tuple(found), widest
 
 

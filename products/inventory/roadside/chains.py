@@ -412,7 +412,7 @@ def things_of(chain: Chain, min_length: float) -> list[tuple[str, Chain]]:
 
 
 def _sections(chain):
-    """(N, 3) what tells things apart, in units of what their sections differ by at least."""
+    """(N, 3) what distinguishes things, in units of what their sections differ by at least."""
     members = chain.members
     through = members.behind / np.maximum(members.behind + members.points, 1.0)
     return np.c_[np.minimum(members.top, HIGHEST) / TOP_CHANGE, np.minimum(members.thickness, THICKEST) / THICKNESS_CHANGE, through / THROUGH_CHANGE]

@@ -1,4 +1,4 @@
-"""Lanes that are cut askew keep their corners and heights; edges of the pavement stay what they are."""
+"""Lanes that are cut obliquely keep their corners and heights; edges of the pavement stay what they are."""
 
 import numpy as np
 import pytest
@@ -14,8 +14,8 @@ from map_files import written
 TOLERANCE = 0.02   # m
 
 
-def askew(scene, line, left, right, first, last, shift, step=1.0, **values):
-    """A piece whose cross-sections run askew: a border lies `shift` metres behind for every metre to the right."""
+def oblique(scene, line, left, right, first, last, shift, step=1.0, **values):
+    """A piece whose cross-sections run obliquely: a border lies `shift` metres behind for every metre to the right."""
     s = np.arange(first, last + step / 2, step)
     scene.piece(*(line.at(s + shift * side, side) for side in (left, right)), **values)
 
@@ -29,10 +29,10 @@ def missed(folder, lanes):
 
 @pytest.mark.parametrize("shift", [-0.6, -0.2, 0.2, 0.6])
 @pytest.mark.parametrize("pieces", [((60.0, 0.0, 0.0),), ((60.0, 1 / 80, 1 / 80),)], ids=["straight", "curve"])
-def test_a_road_that_is_cut_askew_keeps_its_corners(tmp_path, shift, pieces):
+def test_a_road_that_is_cut_oblique_keeps_its_corners(tmp_path, shift, pieces):
     scene, line = LaneScene(), Axis(((5.0, 0.0, 0.0), *pieces, (5.0, 0.0, 0.0)), slope=0.08, crown=0.02)
-    askew(scene, line, 0.0, -3.5, 5.0, 60.0, shift, lane=1, **kinds())
-    askew(scene, line, -3.5, -7.0, 5.0, 60.0, shift, lane=2)
+    oblique(scene, line, 0.0, -3.5, 5.0, 60.0, shift, lane=1, **kinds())
+    oblique(scene, line, -3.5, -7.0, 5.0, 60.0, shift, lane=2)
     whole, across, rise = missed(tmp_path, scene.lanes())
     assert across <= TOLERANCE and rise <= TOLERANCE
     assert len(whole.roads) == 1 and whole.roads[0].length == pytest.approx(55.0 + 7.0 * abs(shift), abs=0.5) and not check_opendrive(whole).found
@@ -51,12 +51,12 @@ def test_a_lane_that_begins_and_ends_obliquely_is_whole(tmp_path, shift):
     assert across <= TOLERANCE and rise <= TOLERANCE
 
 
-def test_a_road_and_its_ways_through_a_junction_meet_without_a_gap_where_the_lanes_are_cut_askew(tmp_path):
+def test_a_road_and_its_ways_through_a_junction_meet_without_a_gap_where_the_lanes_are_cut_oblique(tmp_path):
     scene, line = LaneScene(), Axis(((80.0, 0.0, 0.0),))
-    askew(scene, line, 0.0, -3.5, 5.0, 40.0, 0.25, lane=1, **kinds())
-    askew(scene, line, 0.0, -3.5, 40.0, 55.0, 0.25, lane=1, piece=2, type="connector", left_kind="none", right_kind="none", left_pattern="",
+    oblique(scene, line, 0.0, -3.5, 5.0, 40.0, 0.25, lane=1, **kinds())
+    oblique(scene, line, 0.0, -3.5, 40.0, 55.0, 0.25, lane=1, piece=2, type="connector", left_kind="none", right_kind="none", left_pattern="",
           right_pattern="")
-    askew(scene, line, 0.0, -3.5, 55.0, 75.0, 0.25, lane=1, piece=3, **kinds())
+    oblique(scene, line, 0.0, -3.5, 55.0, 75.0, 0.25, lane=1, piece=3, **kinds())
     whole, across, _ = missed(tmp_path, scene.lanes())
     assert across <= TOLERANCE and len(whole.junctions) == 1
     assert not check_opendrive(whole).found
@@ -87,9 +87,9 @@ def test_lane_0_goes_straight_on_beside_lanes_that_lie_away_from_it(tmp_path, fi
     assert [(id, section.lanes[id].type) for id in section.order] == [(0, "none"), (-1, "none"), (-2, "driving")]
 
 
-def test_a_straight_road_that_is_cut_askew_is_one_line(tmp_path):
+def test_a_straight_road_that_is_cut_oblique_is_one_line(tmp_path):
     scene, line = LaneScene(), Axis(((60.0, 0.0, 0.0),))
-    askew(scene, line, 0.0, -3.5, 5.0, 55.0, 0.4)
+    oblique(scene, line, 0.0, -3.5, 5.0, 55.0, 0.4)
     whole, _, _ = missed(tmp_path, scene.lanes())
     element, = whole.roads[0].plan.elements
     assert element.kind == "line" and element.length == pytest.approx(50.0 + 3.5 * 0.4, abs=1e-3)

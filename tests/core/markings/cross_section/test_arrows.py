@@ -34,7 +34,7 @@ def test_an_arrow_points_from_its_shaft_to_its_head(made, way):
 
 
 @pytest.mark.parametrize("way", [1, -1])
-def test_an_arrow_points_the_same_way_askew_in_a_bend_and_where_the_street_was_driven_backwards(way):
+def test_an_arrow_points_the_same_way_oblique_in_a_bend_and_where_the_street_was_driven_backwards(way):
     for street in (Street(radius=60.0), Street(vehicle=1.75, backwards=True)):
         found = ways(street, *(turned(straight_arrow(60.0, 1.5, way), angle) for angle in (-15.0, 0.0, 15.0)))
         assert (np.sign(found[:, 2]) == way * (-1 if street.radius is None else 1)).all()

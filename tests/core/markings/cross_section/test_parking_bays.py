@@ -27,7 +27,7 @@ def bays(*rows, width=0.1, driven=-1.5, skew=0.0):
 
 
 @pytest.mark.parametrize("stations, skew", [(PERPENDICULAR, 0.0), (np.arange(30.0, 80.0, 3.4), 1.0), (np.arange(20.0, 100.0, 6.0), 0.0)],
-                         ids=["perpendicular", "askew", "parallel"])
+                         ids=["perpendicular", "oblique", "parallel"])
 def test_a_row_of_lines_across_the_road_is_parking_bays(stations, skew):
     places, ends = bays((stations, -7.5, -3.0), skew=skew)
     inside = (S > stations[1] + 3.0) & (S < stations[-2])

@@ -84,8 +84,8 @@ def test_between_two_junctions_a_short_double_line_keeps_both_its_lines_though_o
     street = ClusteredStreet().paint(0, 120, 4.0, kind="edge").paint(10, 19, 0.0, kind="centre").paint(45, 110, 0.0, kind="centre")
     lines = street.paint(10, worn_from, 0.31, kind="centre").paint(64, 110, 0.31, kind="centre").lines()
     assert len({row["line"] for row in lines.rows if row["station_m"] < 15 and row["kind"] == "centre"}) == 2
-    frayed = ClusteredStreet().paint(10, 110, 0.0, kind="centre").paint(30, 39, 0.31, kind="centre").lines()
-    assert len({row["line"] for row in frayed.rows}) == 1
+    ragged = ClusteredStreet().paint(10, 110, 0.0, kind="centre").paint(30, 39, 0.31, kind="centre").lines()
+    assert len({row["line"] for row in ragged.rows}) == 1
 
 
 def test_a_double_line_clustered_as_one_stays_two():

@@ -15,9 +15,9 @@ def test_a_zebra_crossing_keeps_its_stripes():
         assert area == pytest.approx(4 * 0.45, rel=0.08)
 
 
-@pytest.mark.parametrize("askew", [-30, -20, 12, 20, 30])
-def test_a_zebra_crossing_askew_to_the_road_keeps_its_stripes(askew):
-    c, n = np.cos(np.radians(askew)), np.sin(np.radians(askew))
+@pytest.mark.parametrize("oblique", [-30, -20, 12, 20, 30])
+def test_a_zebra_crossing_oblique_to_the_road_keeps_its_stripes(oblique):
+    c, n = np.cos(np.radians(oblique)), np.sin(np.radians(oblique))
 
     def stripe(k):
         return lambda s, d: (np.abs((s - 30) * c + d * n) < 1.5) & (np.abs(d * c - (s - 30) * n - k) < 0.25)
@@ -40,7 +40,7 @@ def test_the_zebra_crossing_of_a_side_street_points_along_that_street(way):
 
 
 def test_bars_of_hatching_along_the_road_are_no_zebra_crossing():
-    markings = markings_of([askew(s, -1.0, 2.2, 0.4, turn=np.radians(60)) for s in np.arange(20, 32, 1.3)], density=2500)
+    markings = markings_of([oblique(s, -1.0, 2.2, 0.4, turn=np.radians(60)) for s in np.arange(20, 32, 1.3)], density=2500)
     assert len(markings) > 5 and "zebra" not in classes(markings)
 
 
@@ -122,7 +122,7 @@ def test_bars_side_by_side_are_hatching_one_alone_is_not_and_at_the_edge_it_is_t
     assert len(markings_of([slanting(20, 5.5, 0.7)], density=3000)) == 0
 
 
-def askew(s0, d0, length, width, turn=0.75):
+def oblique(s0, d0, length, width, turn=0.75):
     """A stroke from s0, d0 on, turned to the left of the road."""
     def painted(s, d):
         along, across = (s - s0) * np.cos(turn) + (d - d0) * np.sin(turn), (d - d0) * np.cos(turn) - (s - s0) * np.sin(turn)
@@ -130,14 +130,14 @@ def askew(s0, d0, length, width, turn=0.75):
     return painted
 
 
-def test_a_short_dash_askew_to_the_road_is_no_manhole_cover():
-    assert len(markings_of([askew(20, 1, 0.7, 0.15)])) == 1
+def test_a_short_dash_oblique_to_the_road_is_no_manhole_cover():
+    assert len(markings_of([oblique(20, 1, 0.7, 0.15)])) == 1
     assert len(markings_of([disc(20, 1, 0.7)])) == 0
 
 
 def test_the_outline_of_hatching_across_the_road_is_hatching_and_no_stop_line():
     outline = [strip(20, 20.15, -3, 0), strip(20.15, 20.6, -3, -2.8)]
-    bar = askew(20.3, 0.2, 1.6, 0.3)
+    bar = oblique(20.3, 0.2, 1.6, 0.3)
     assert classes(markings_of(outline + [bar])) == ["hatch", "hatch"]
     assert "stop" not in classes(markings_of(outline))
     assert classes(markings_of([strip(20, 20.4, -3, 0)])) == ["stop"]
@@ -153,9 +153,9 @@ def test_a_row_of_equal_squares_across_the_road_is_a_give_way_line(count):
     assert classes(markings_of(blocks(count), density=2500)) == ["give_way"] * count
 
 
-@pytest.mark.parametrize("askew", [20, 35, -60], ids=lambda way: f"{way} degrees")
-def test_a_give_way_line_may_lie_askew_to_the_road(askew):
-    c, n = np.cos(np.radians(askew)), np.sin(np.radians(askew))
+@pytest.mark.parametrize("oblique", [20, 35, -60], ids=lambda way: f"{way} degrees")
+def test_a_give_way_line_may_lie_oblique_to_the_road(oblique):
+    c, n = np.cos(np.radians(oblique)), np.sin(np.radians(oblique))
 
     def block(k):
         return lambda s, d: (np.abs((s - 30) * c + d * n) < 0.25) & (np.abs(d * c - (s - 30) * n - k) < 0.25)

@@ -12,9 +12,9 @@ from painted_streets import paint, road_points, strip
 
 
 def test_a_layer_of_markings_that_is_read_again_gives_the_same_objects_and_with_other_names_the_same_polygons():
-    askew_crossing = [lambda s, d, k=k: (np.abs((s - 30) * 0.87 + d * 0.5) < 1.5) & (np.abs(d * 0.87 - (s - 30) * 0.5 - k) < 0.25)
+    oblique_crossing = [lambda s, d, k=k: (np.abs((s - 30) * 0.87 + d * 0.5) < 1.5) & (np.abs(d * 0.87 - (s - 30) * 0.5 - k) < 0.25)
                       for k in (-1, 0, 1)]
-    points = road_points(paint(FRAME, [strip(5, 20, 3.0, 3.15), *askew_crossing], density=2500), FRAME)
+    points = road_points(paint(FRAME, [strip(5, 20, 3.0, 3.15), *oblique_crossing], density=2500), FRAME)
     objects, _ = cluster_markings(points, FRAME)
     layer = objects.to_features(FRAME)
     again = MarkingObjects.from_features(layer, FRAME)

@@ -15,7 +15,7 @@ def sparse(records, across=0.20, along=0.13):
 
 
 def bars(count, turn=1.0):
-    """Bars of hatching, 1 m by 3 m and 2.5 m apart, askew to the road."""
+    """Bars of hatching, 1 m by 3 m and 2.5 m apart, oblique to the road."""
     def on(s, d):
         phase = s + turn * (d - 2.0) - 20.0
         return (d >= 2.0) & (d < 5.0) & (phase % 2.5 < 1.0) & (phase >= 0) & (phase < 2.5 * count)
@@ -76,7 +76,7 @@ def test_the_bright_face_of_a_curb_far_off_is_no_edge_line():
 
 
 @pytest.mark.parametrize(("spacing", "gap", "pieces"), [(200, 1.5, 1), (0, 1.5, 8), (200, 3.0, 8)], ids=["tracks apart", "dense scan", "dashes"])
-def test_a_line_that_tracks_cross_askew_shows_on_each_for_a_while(spacing, gap, pieces):
+def test_a_line_that_tracks_cross_oblique_shows_on_each_for_a_while(spacing, gap, pieces):
     """Between two tracks it was not seen; where tracks lie close together, or gaps are long, there is none."""
     marks = [strip(10 + k * (1.5 + gap), 11.5 + k * (1.5 + gap), 2.0, 2.12) for k in range(8)]
     records = paint(FRAME, marks)

@@ -52,7 +52,7 @@ def test_a_stop_line_that_touches_a_dash_is_two_markings(gap, side):
 
 def test_a_stop_line_of_scan_lines_far_apart_is_cut_from_its_dash():
     records, owner = paint((0, 0.4, 0.15, 3.2), (0.4, 4.4, -0.075, 0.15))
-    # scan lines askew, as a scanner mounted at 45 degrees draws them, 0.23 m apart
+    # scan lines oblique, as a scanner mounted at 45 degrees draws them, 0.23 m apart
     kept = np.abs((records["s"] + records["d"]) * 1e-4 / 0.23 % 1.0 - 0.5) < 0.08
     records, owner = records[kept], owner[kept]
     labels = split(records)

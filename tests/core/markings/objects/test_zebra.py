@@ -76,7 +76,7 @@ def test_lines_that_end_at_a_crossing_do_not_turn_its_stripes():
 
 
 def bars(turn):
-    """Bars of hatching half a metre broad in a strip along the first axis, askew to it."""
+    """Bars of hatching half a metre broad in a strip along the first axis, oblique to it."""
     c, n = np.cos(np.radians(turn)), np.sin(np.radians(turn))
     return [lambda s, d, k=k: (np.abs(d) < 1.5) & (np.abs((s - 1.4 * k) * n - d * c) < 0.25) for k in range(-4, 5)]
 
@@ -108,12 +108,12 @@ def test_the_crossing_of_a_side_street_seen_on_few_tracks_is_a_crossing():
 
 def test_all_stripes_end_on_one_line_however_few_tracks_met_their_ends():
     """Each ends where a track last met it, up to 0.35 m before its end: the line that most of them reach is drawn."""
-    askew = [lambda s, d, k=k: (np.abs(d - k) < 0.25) & (np.abs(s - 0.1 * k) < 2.0) for k in range(-4, 5)]
-    places, _ = spots(askew, tracks=0.35, kept=0.5)
+    oblique = [lambda s, d, k=k: (np.abs(d - k) < 0.25) & (np.abs(s - 0.1 * k) < 2.0) for k in range(-4, 5)]
+    places, _ = spots(oblique, tracks=0.35, kept=0.5)
     rng = np.random.default_rng(1)
     places[:, 0] += rng.normal(0, 0.02, len(places))
     stripes = crossings_in(places)
-    assert len(stripes) == len(askew)
+    assert len(stripes) == len(oblique)
     for stripe in stripes:
         middle = stripe.corners[:, 1].mean()
         assert stripe.corners[:, 0].max() - 0.1 * middle == pytest.approx(2.0, abs=0.2)

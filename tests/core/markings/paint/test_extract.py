@@ -119,7 +119,7 @@ def test_a_concrete_gutter_is_left_out_and_the_edge_line_beside_it_kept(tmp_path
 def test_what_parked_cars_leave_to_be_seen_of_a_gutter_is_no_paint(tmp_path, side):
     line = strip(5, 75, *sorted((2.9 * side, 3.05 * side)))
     records = street(FRAME, [line], level=lambda s, d: np.where(d * side > 3.65, 2.6, 1.0))
-    # shadows askew, as a scanner mounted at 45 degrees casts them over the parking strip and the lane beside it
+    # shadows oblique, as a scanner mounted at 45 degrees casts them over the parking strip and the lane beside it
     s, d = records["s"] * 1e-4, records["d"] * side * 1e-4
     paint = found_on(records[~((d > -1.0) & ((s - d) % 6.0 < 4.0))], tmp_path)
     on_line = line(paint.s, paint.d)

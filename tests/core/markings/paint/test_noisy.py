@@ -20,22 +20,22 @@ def strip(x0, x1, y0, y1):
     return lambda x, y: (x >= x0) & (x < x1) & (y >= y0) & (y < y1)
 
 
-def dashes(count, first=12.0, length=0.5, gap=0.5, y=2.6, width=0.15, askew=0.0):
-    """A row of dashes along the road, or `askew` radians to it."""
+def dashes(count, first=12.0, length=0.5, gap=0.5, y=2.6, width=0.15, oblique=0.0):
+    """A row of dashes along the road, or `oblique` radians to it."""
     def painted(px, py):
-        along = (px - first) * np.cos(askew) + (py - y) * np.sin(askew)
-        across = (py - y) * np.cos(askew) - (px - first) * np.sin(askew)
+        along = (px - first) * np.cos(oblique) + (py - y) * np.sin(oblique)
+        across = (py - y) * np.cos(oblique) - (px - first) * np.sin(oblique)
         number = np.floor(along / (length + gap))
         return (np.abs(across) < width / 2) & (number >= 0) & (number < count) & (along - number * (length + gap) < length)
     return painted
 
 
-ALONG, ASKEW, ACROSS = dashes(6, first=8.0, y=2.0), dashes(6, first=16.0, y=1.0, askew=0.7), dashes(6, first=24.0, y=-5.0, askew=np.pi / 2)
+ALONG, OBLIQUE, ACROSS = dashes(6, first=8.0, y=2.0), dashes(6, first=16.0, y=1.0, oblique=0.7), dashes(6, first=24.0, y=-5.0, oblique=np.pi / 2)
 SPOT = dashes(1, first=32.0, y=2.0)
 LINE, STOP_LINE = strip(8.0, 20.0, -2.5, -2.35), strip(28.0, 28.3, -3.0, 0.0)
 CURB_FACE, BENEATH_A_CAR = strip(30.0, 42.0, 5.0, 5.15), strip(33.0, 39.0, -5.0, -4.7)
 STREAK, PATCH = strip(10.0, 16.0, -6.0, -5.7), strip(35.0, 41.0, 0.5, 2.5)
-PAINTED = (ALONG, ASKEW, ACROSS, LINE, STOP_LINE)
+PAINTED = (ALONG, OBLIQUE, ACROSS, LINE, STOP_LINE)
 WORN = 2.4   # of 256 levels that a worn dash is brighter than asphalt: a tenth of fresh paint
 BRIGHT = PAINTED + (SPOT, CURB_FACE, BENEATH_A_CAR)
 
@@ -66,7 +66,7 @@ def found_of(mark, street):
     return mark(found.x, found.y).sum() / mark(everything.x, everything.y).sum()
 
 
-@pytest.mark.parametrize("row", [ALONG, ASKEW, ACROSS])
+@pytest.mark.parametrize("row", [ALONG, OBLIQUE, ACROSS])
 def test_short_dashes_in_a_row_are_found_whichever_way_the_row_runs(street, row):
     assert found_of(row, street) > 0.6
 

@@ -47,7 +47,7 @@ def test_the_level_strip_keeps_its_distance_from_both_curbs(height):
     assert (high > LEFT - ACROSS - 0.2).all() and (low < -RIGHT + ACROSS + 0.2).all()
 
 
-def test_a_low_curb_that_runs_askew_ends_the_strip():
+def test_a_low_curb_that_runs_oblique_ends_the_strip():
     _, low, high = strip(crowded(0.03, skew=1.0), profiles=(44, 54))
     stations = (np.arange(44, 54) + 0.5) * WIDTH
     there = high > low

@@ -14,7 +14,7 @@ TIP = 10.0      # x at which the sure curb ends, 1 m before its corner begins
 
 
 def led(height, beside=0.0, turned=0.0, **options):
-    """What leads on from a left-hand curb that ends at TIP, along a corner of 5 m radius into a side street; heights of the rest in m."""
+    """What continues from a left-hand curb that ends at TIP, along a corner of 5 m radius into a side street; heights of the rest in m."""
     area = side_street(radius=5.0)
     x, y, z, _ = scan(area, height=height, noise=NOISE, spacing=0.03, **options)
     z[shapely.contains_xy(shapely.box(-9, 3.5, TIP, 30), x, y)] += 0.10 - height

@@ -161,10 +161,10 @@ def test_a_long_gap_in_which_a_bend_begins_is_bridged_where_the_curb_goes_on_bes
 
 
 def test_a_short_piece_of_curb_does_not_bend_the_line_across_a_long_gap():
-    # its three points lie askew by centimetres, which would be decimetres within the gap
+    # its three points lie oblique by centimetres, which would be decimetres within the gap
     stations = np.r_[np.arange(0, 20, 1.0), 23.0, 23.3, 23.6, np.arange(40, 60, 1.0)]
-    askew = {23.0: -0.015, 23.6: 0.03}
-    points = curb_points(stations, lambda s: 3.5 + askew.get(round(float(s), 1), 0.0), hidden=np.arange(24.0, 39.6, 0.5), noise=0.003)
+    oblique = {23.0: -0.015, 23.6: 0.03}
+    points = curb_points(stations, lambda s: 3.5 + oblique.get(round(float(s), 1), 0.0), hidden=np.arange(24.0, 39.6, 0.5), noise=0.003)
     edges = fit_road_edges(points, straight_frame())
     assert "bridged" in {row["status"] for row in edges.rows}
     np.testing.assert_allclose(places(edges)[:, 1], 3.5, atol=0.05)

@@ -209,7 +209,7 @@ def test_behind_a_vehicle_it_is_bridged_too_where_a_curb_begins_soon_after():
     curb.geometries = [shapely.LineString([place for place in line.coords if place[0] - EAST >= curb_from]) for line in curb.geometries]
     edges = with_pavement_edges(survey, RoadEdges.from_features(curb, survey.frame))
     drawn = [places for (_, places), what in zip(on_map(edges, survey), edges.what) if what == "pavement" and places[0, 1] > 0]
-    assert max(places[:, 0].max() for places in drawn) == pytest.approx(curb_from - 5.0, abs=0.5), "as far as the curb is led on"
+    assert max(places[:, 0].max() for places in drawn) == pytest.approx(curb_from - 5.0, abs=0.5), "as far as the curb is continued"
 
 
 def test_a_single_row_seen_between_two_vehicles_joins_their_bridges(plain, monkeypatch):

@@ -1,4 +1,4 @@
-"""Two scanners in one stream of points, without a field that tells them apart."""
+"""Two scanners in one stream of points, without a field that distinguishes them."""
 
 from dataclasses import replace
 
