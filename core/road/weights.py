@@ -295,8 +295,15 @@ class _ReturnWeights:
     side_street_widths: tuple[float, float] = (2.5, 16.0)   # m between the two curbs of a side street
     max_opposite_shift: float = 4.0   # m along the side street by which its two curbs may miss each other
     # what lies behind a curb
+    road_width: float = 16.0   # m down from a step within which the first curb is looked for: two carriageways and a side street are no wider
     places: int = 5   # of a line from which it is looked for
+    own_curb: float = 0.3   # m within which the line itself, or a double of it, is met
     # free corners
+    max_crossing_gap: float = 8.0   # m of dropped curb between a corner and the curb that goes on
+    corner_radii: tuple[float, float] = (1.0, 25.0)   # m
+    min_corner_angle: float = np.radians(15.0)   # that the seen part of a corner must turn
+    max_bend_deviation: float = 0.04   # m from its circle
+    pointing_tolerance: float = np.radians(12.0)   # by which a corner and a curb end may miss each other, besides the turn of the gap between them
     # search in plan
     inner_margin: float = 0.5   # m from a main curb from which the ground inside is certainly road, if it lies within
     max_inner_height: float = 0.3   # m above or below the expected road
@@ -495,6 +502,19 @@ class _EdgeWeights:
     smoothing_half_length: float = 0.5   # m along a curb within which its points give its course
     same_place_distance: float = 0.02   # m within which two places are one
     # dropped corners
+    max_dropped_gap: float = 8.0   # m of dropped curb around a corner
+    min_dropped_gap: float = 0.3   # m
+    min_arc_turn: float = np.radians(12.0)   # radians from end to end, least, and
+    max_arc_turn: float = np.radians(100.0)   # most
+    bend_length: float = 3.0   # m at the end of an edge that tell how it bends
+    min_bend_turn: float = np.radians(8.0)   # within this length: the end belongs to a corner
+    max_radius_ratio: float = 2.5   # of the arc in the gap over the bend at its end, and the other way
+    direction_length: float = 1.0   # m at the end of an edge that give its direction
+    max_end_step: float = 0.03   # m, and
+    max_end_grade: float = 0.08   # m per m that both ends may differ in height
+    meeting_distance: float = 0.05   # m within which two ends meet
+    arc_vertex_spacing: float = 0.25   # m
+    arc_sigma: float = 0.005   # m per m of an arc: seven of a simulated crossing, 3 to 7 m long, lay 0.1 to 4.9 cm beside the curb
     # main edges
     median_window: float = 5.0   # m of running median
     outlier_mads: float = 3.0   # median absolute deviations, as sigmas, and

@@ -25,7 +25,7 @@ NUMBERS = {
     "core/io": 5,
     "core/curves": 10,
     "core/survey": 85,
-    "core/road": 19,
+    "core/road": 20,
     "core/intensity": 13,
     "core/markings": 75,
     "core/driving": 5,

@@ -121,13 +121,15 @@ class Survey:
         first = self._stages(switches)
         names, work = list(STAGES), self.work.copy()
         settings = next((switch.settings for switch in switches if switch.settings is not DEFAULT), DEFAULT)
-        began = min(map(names.index, first))
+        began, differs = min(map(names.index, first)), False
         try:
             with replaced([swap for switch in switches for swap in switch.swaps]):
                 for stage in names[began:]:
                     STAGES[stage](work, settings)
-                    later = names[names.index(stage) + 1:]
-                    if self.states[stage] and not first & set(later) and _state(work, stage) == self.states[stage]:
+                    later, same = names[names.index(stage) + 1:], self.states[stage] and _state(work, stage) == self.states[stage]
+                    # edges are drawn themselves, and judged, though all that follows may be the same
+                    differs |= stage == "edges" and not same
+                    if same and not differs and not first & set(later):
                         return dict(outcome="same map")
         except RoadExtractionError as problem:
             return dict(outcome="refused", why=str(problem))

@@ -99,16 +99,15 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in alone.values())]
     chains = [chain for k, chain in enumerate(chains) if k not in alone]
     main_ends, lines = CurbLines([(x, y) for _, (x, y, _) in runs]), _LinesOfSteps([steps[chain.steps] for chain in chains])
-    found, islands = list(alone.values()), list[CurbReturn]()
+    found, apart = list(alone.values()), list[CurbReturn]()
     for side, chain in zip(_sides_continued(runs, chains, steps), chains):
         own = steps[chain.steps]
         if side:
             found += classify_continuation(own, *line.locate(own.x, own.y), side, line, limits[side], main_ends)
         else:
             curb = _curb_apart(own, falls[chain.steps], chain.closed, line, limits, passes, lines)
-            if curb is not None:
-                (islands if curb.kind == "island" else found).append(curb)
-    return found + _long_islands(islands)
+            (found if curb.kind == "side_street" else apart).append(curb)
+    return found + _free_and_islands(apart, found, runs, elsewhere)
 
 
 def _sides_continued(runs, chains, steps):
@@ -121,7 +120,7 @@ def _sides_continued(runs, chains, steps):
 
 
 def _curb_apart(own, falls, closed, line, limits, passes, lines):
-    """A line that continues no main curb, as an island, or as a side street whose corner is hidden; else None."""
+    """A line that continues no main curb, as an island, as a side street whose corner is hidden, or else as a corner or of no kind."""
     s, d = line.locate(own.x, own.y)
     behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
     side = _side(s, d, passes)
@@ -130,7 +129,15 @@ def _curb_apart(own, falls, closed, line, limits, passes, lines):
     if _may_be_side_street(own, s, line, behind, lines):
         straight = _straight_part(own)
         return CurbReturn(own[straight], s[straight], d[straight], side, "side_street")
-    return None
+    return CurbReturn(own, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "")
+
+
+def _free_and_islands(apart, found, runs, elsewhere):
+    """Of lines apart the corners that other curbs confirm, and the outlines of islands."""
+    own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in found]
+    before, beside = CurbLines(own_curbs), CurbLines([*own_curbs, *elsewhere])
+    islands = [curb for curb in apart if curb.kind == "island" and not lies_behind(curb.steps, before)]
+    return [curb for curb in apart if curb.kind == "corner" and is_free_corner(curb.steps, beside)] + _long_islands(islands)
 
 
 def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
@@ -253,3 +260,80 @@ def _long_islands(lines):
         if length[near].sum() >= RETURN.min_island_length:
             long.append(line)
     return long
+
+
+# What lies behind a curb is no island: a sidewalk between two ramps is raised on both sides as an island is.
+
+
+def lies_behind(line: PlanSteps, curbs: CurbLines) -> bool:
+    """Does one who goes straight down from a line step off another curb before stepping up one?
+
+    line : N PlanSteps in order
+
+    Returns whether that holds at most places that meet a curb at all
+    """
+    ax, ay, sx, sy = curbs.segments_about(line.x, line.y, 2 * RETURN.road_width).T
+    if not len(ax):
+        return False
+    off = []
+    for k in np.unique(np.linspace(0, len(line) - 1, RETURN.places).round().astype(int)):
+        rx, ry = -line.nx[k], -line.ny[k]
+        dx, dy = ax - line.x[k], ay - line.y[k]
+        # on the right of a segment is uphill, so where the cross product is negative the way across it leads down
+        cross = rx * sy - ry * sx
+        with np.errstate(divide="ignore", invalid="ignore"):
+            away, share = (dx * sy - dy * sx) / cross, (dx * ry - dy * rx) / cross
+        met = np.flatnonzero((away > RETURN.own_curb) & (away < RETURN.road_width) & (share >= 0.0) & (share <= 1.0))
+        if len(met):
+            off.append(cross[met[np.argmin(away[met])]] < 0.0)
+    return bool(off) and float(np.mean(off)) > 0.5
+
+
+# Corners between two dropped crossings: nothing joins them to a curb, but they bend evenly from one curb end to another.
+
+END_MARGIN = 0.01   # derived: m, more than distances are rounded by
+
+
+def is_free_corner(own: PlanSteps, curbs: CurbLines) -> bool:
+    """Does a line bend evenly about its uphill side, and point at the end of a curb both ways?
+
+    own : N PlanSteps in order
+    curbs : CurbLines, the other curbs
+    """
+    if len(own) < 4 or not curbs.lines:
+        return False
+    # the circle of least squares (Kåsa)
+    mx, my = own.x.mean(), own.y.mean()
+    x, y = own.x - mx, own.y - my
+    (cx, cy, c), *_ = np.linalg.lstsq(np.c_[2 * x, 2 * y, np.ones(len(x))], x * x + y * y, rcond=None)
+    radius = float(np.sqrt(max(c + cx * cx + cy * cy, 0.0)))
+    if not RETURN.corner_radii[0] <= radius <= RETURN.corner_radii[1]:
+        return False
+    off = np.abs(np.hypot(x - cx, y - cy) - radius)
+    about = np.unwrap(np.arctan2(y - cy, x - cx))
+    uphill = np.median((cx - x) * own.nx + (cy - y) * own.ny) > 0
+    if off.max() > RETURN.max_bend_deviation or abs(about[-1] - about[0]) < RETURN.min_corner_angle or not uphill:
+        return False
+    way = np.sign(about[-1] - about[0])
+    for k, out in ((0, -way), (-1, way)):
+        tip = np.array([own.x[k], own.y[k]])
+        # along the circle, out of the line
+        direction = out * np.array([-np.sin(about[k]), np.cos(about[k])])
+        if not any(_points_at(tip, direction, end, radius, out) for end in curbs.ends_about(tip, RETURN.max_crossing_gap + END_MARGIN)):
+            return False
+    return True
+
+
+def _points_at(tip, direction, end, radius, way):
+    """Does a circle that leaves `tip` along `direction` lead to a curb's end, between straight on and bending on as before?"""
+    gap = end[:2] - tip
+    length = np.hypot(*gap)
+    if not 1e-3 < length <= RETURN.max_crossing_gap:
+        return False
+    chord = np.arctan2(direction[0] * gap[1] - direction[1] * gap[0], direction @ gap)
+    half = 0.5 * length / radius
+    if not -RETURN.pointing_tolerance <= way * chord <= half + RETURN.pointing_tolerance:
+        return False
+    # seen from the curb's end, the corner lies ahead or to the side to which the corner bends
+    back = np.arctan2(end[2] * -gap[1] - end[3] * -gap[0], end[2:] @ -gap)
+    return bool(-RETURN.pointing_tolerance <= -way * back <= half + RETURN.pointing_tolerance)

@@ -164,6 +164,22 @@ class CurbLines:
         self.lines = lines
 
     @cached_property
+    def segments(self) -> np.ndarray:
+        """(S, 4) x, y of the beginning of each segment, and how far it leads in x and y."""
+        parts = [np.c_[x[:-1], y[:-1], np.diff(x), np.diff(y)] for x, y in self.lines if len(x) > 1]
+        return np.concatenate([np.empty((0, 4)), *parts])
+
+    @cached_property
+    def _boxes(self):
+        x, y, dx, dy = self.segments.T
+        return shapely.STRtree(shapely.box(np.minimum(x, x + dx), np.minimum(y, y + dy), np.maximum(x, x + dx), np.maximum(y, y + dy)))
+
+    def segments_about(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
+        """(K, 4) those segments that may come within a distance of (N,) places, in their order."""
+        around = shapely.box(x.min() - distance, y.min() - distance, x.max() + distance, y.max() + distance)
+        return self.segments[np.sort(self._boxes.query(around))]
+
+    @cached_property
     def ends(self) -> np.ndarray:
         """(2 L, 4) x, y and the direction out of the line of both ends of every line; its last metre gives the direction."""
         return np.array([_end(x, y, at) for x, y in self.lines for at in (0, -1)]).reshape(-1, 4)
@@ -171,6 +187,10 @@ class CurbLines:
     @cached_property
     def _tips(self):
         return cKDTree(self.ends[:, :2])
+
+    def ends_about(self, place: np.ndarray, distance: float) -> np.ndarray:
+        """(K, 4) those of the ends that lie within a distance of a place, (2,) m."""
+        return self.ends[self._tips.query_ball_point(place, distance)]
 
     def end_distances(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """(N,) m from (N,) places to the nearest end of any line, infinite where there is none."""

@@ -17,7 +17,7 @@ from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
 from ..common.tracking import GapLine
 from ..weights import CURBS, EDGE
-from .corner_edges import curb_return_lines, draw_curb_returns
+from .corner_edges import curb_return_lines, draw_curb_returns, dropped_corners
 from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 
 IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by more across shorter gaps
@@ -64,6 +64,7 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
                 lines = _draw_fallback(of_road, frame, road, side, drawn, settings.fallback_width, lines)
         lines = draw_curb_returns(of_road, road.number, returns.get(road.number, []), lines, frame)
         found += of_road
+    found += dropped_corners(found, frame, lines)
     edges = joined_pieces(found, frame, curb_points.crs)
     length = {status: edges.length[edges.status == status].sum() for status in ("measured", "bridged")}
     if len(edges):

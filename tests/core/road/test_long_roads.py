@@ -77,6 +77,18 @@ def test_the_offsets_of_edges_are_asked_for_where_the_edges_are(interpolated):
     assert long <= MOST * short
 
 
+def test_ends_of_edges_are_compared_with_those_near_them_alone(monkeypatch):
+    count, plain = [0], corner_edges._is_corner
+
+    def counted(tail, head):
+        count[0] += 1
+        return plain(tail, head)
+
+    monkeypatch.setattr(corner_edges, "_is_corner", counted)
+    short, long = work_of(count, lambda pieces: corner_edges.dropped_corners(edge_pieces(pieces), straight_road(pieces), 0))
+    assert long <= MOST * short
+
+
 def test_a_corner_finds_the_end_of_the_edge_that_it_begins_at():
     pieces = edge_pieces(SHORT)
     ends = corner_edges._main_ends(pieces, 0)
