@@ -75,8 +75,8 @@ class CurbPoints(LayerRows):
         """The part of the uncertainty that all lines of a road share."""
         sigma = np.full(len(self), np.nan)
         for road in frame.pass_sigma:
-            here = self.road == road
-            sigma[here] = frame.passes_sigma(road, self.station[here], np.nan)
+            of_road = self.road == road
+            sigma[of_road] = frame.passes_sigma(road, self.station[of_road], np.nan)
         return {PASS_SIGMA.name: sigma}
 
     @staticmethod

@@ -188,8 +188,8 @@ class LineEnds:
         size = np.maximum(np.hypot(tx, ty), 1e-9)
         turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
         # uphill is on the right, so the line bends about it where the way out of the head lies to the left of the tail's
-        about = tail[:, 3] * head[:, 4] - tail[:, 4] * head[:, 3] > 0
-        most = RETURN.max_join_turn + np.where(about & (gap <= nose), gap / RETURN.nose_radius, 0.0)
+        bends_uphill = tail[:, 3] * head[:, 4] - tail[:, 4] * head[:, 3] > 0
+        most = RETURN.max_join_turn + np.where(bends_uphill & (gap <= nose), gap / RETURN.nose_radius, 0.0)
         along, across = (dx * tx + dy * ty) / size, np.abs(dx * ty - dy * tx) / size
         up = np.abs(head[:, 2] - tail[:, 2])
         good = (a != b) & (along > -overlap) & (across <= RETURN.join_tolerance + RETURN.join_drift * np.abs(along)) & (turn <= most) \
