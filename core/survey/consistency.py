@@ -172,8 +172,8 @@ def _refuse_moved(beside, above, label):
             "trajectory, or with one that was moved to the scanners, as a warning said then. Run Road map, which makes all layers with the moved "
             "trajectory, or give every stage the trajectory that belongs to the cloud.")
     if np.count_nonzero((above < -LOWEST_SENSOR) | (above > MIRROR.heights[1])) > 0.5 * len(above):
-        apart = float(np.median(above))
+        depth = float(np.median(above))
         raise RoadExtractionError(
-            f"{label} lie {abs(apart):.2f} m {'below' if apart > 0 else 'above'} the trajectory, where its vehicle cannot have driven. They were "
+            f"{label} lie {abs(depth):.2f} m {'below' if depth > 0 else 'above'} the trajectory, where its vehicle cannot have driven. They were "
             "made with another trajectory, or with one that was moved to the height of the scanners, as a warning said then. Run Road map, which "
             "makes all layers with the moved trajectory, or give every stage a trajectory with the heights of the cloud.")

@@ -185,8 +185,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
                          settings.memory_limit, folder=None if shared is None else shared.points)
     reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
-    again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
-    read_at = READING.read_progress if again else 1.0
+    several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
+    read_at = READING.read_progress if several_passes else 1.0
     _read_points(reader, files, settings.block, shared, progress.part(0.0, read_at))
     _say_left_out(files, frame, reader, settings, progress)
     height = float(np.mean(list(reader.heights.values())))
@@ -199,7 +199,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     parts_at = read_at if shared is None else READING.parts_progress * read_at
     _tell_scanners_apart(survey, reader, progress.part(parts_at, parts_at))
     _put_in_order(survey, shared, progress.part(parts_at, read_at))
-    mounted = _lay_scanners_and_passes(survey, again, bool(feet), shared, progress)
+    mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), shared, progress)
     _see_passes(survey, settings.fit_passes, store, shared, progress)
     # what the user says overrules what lies beside the trajectory
     _widen_sigma(survey.frame, max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted))

@@ -47,8 +47,8 @@ def scan_line_directions(direction: np.ndarray) -> list[int]:
     """The directions in which (M,) steps lead, the most frequent first; one where the points are of one scanner, none where they lead anywhere."""
     if len(direction) < MIRROR.min_steps:
         return []
-    alone = np.bincount(direction, minlength=MIRROR.directions).astype(float)
-    count = np.sum([np.roll(alone, shift) for shift in range(-MIRROR.blurred, MIRROR.blurred + 1)], axis=0)
+    unblurred = np.bincount(direction, minlength=MIRROR.directions).astype(float)
+    count = np.sum([np.roll(unblurred, shift) for shift in range(-MIRROR.blurred, MIRROR.blurred + 1)], axis=0)
     most, usual = float(count.max()), float(np.median(count))
     needed = min(max(share * most, clearness * usual) for share, clearness in MIRROR.clear_directions)
     directions: list[int] = []

@@ -258,9 +258,9 @@ def _with_true_rate(one):
 
 def _phase_steps(fixes, rate):
     """(M,) radians by which the phase gains on an even rate between neighbouring windows."""
-    apart = np.diff(fixes.time)
-    step = np.diff(fixes.phase) - 2 * np.pi * rate * apart
-    return ((step + np.pi) % (2 * np.pi) - np.pi)[apart < 1.5 * TRACK.window]
+    seconds = np.diff(fixes.time)
+    step = np.diff(fixes.phase) - 2 * np.pi * rate * seconds
+    return ((step + np.pi) % (2 * np.pi) - np.pi)[seconds < 1.5 * TRACK.window]
 
 
 def first_poses(samples: Samples, tracks: list[FirstTrack], scanners: list[Spinning]) -> Poses:
@@ -287,15 +287,15 @@ def _levers(tracks, scanners):
     """(S, 3) m ahead, left and up of every scanner from their middle."""
     lever = np.zeros((len(scanners), 3))
     for k, scanner in enumerate(scanners[1:], 1):
-        apart = [np.empty((0, 3))]
+        parts = [np.empty((0, 3))]
         for track, base, fixes in zip(tracks, scanners[0].fixes, scanner.fixes):
             if len(base.time) and len(fixes.time):
                 heading = np.interp(fixes.time, track.time, track.heading)
                 offset = fixes.place - np.stack([np.interp(fixes.time, base.time, column) for column in base.place.T], axis=1)
                 cos, sin = np.cos(heading), np.sin(heading)
-                apart.append(np.stack([offset[:, 0] * cos + offset[:, 1] * sin, offset[:, 1] * cos - offset[:, 0] * sin, offset[:, 2]], axis=1))
-        together = np.concatenate(apart)
-        lever[k] = np.median(together, axis=0) if len(together) else 0.0
+                parts.append(np.stack([offset[:, 0] * cos + offset[:, 1] * sin, offset[:, 1] * cos - offset[:, 0] * sin, offset[:, 2]], axis=1))
+        offsets = np.concatenate(parts)
+        lever[k] = np.median(offsets, axis=0) if len(offsets) else 0.0
     return lever - lever.mean(axis=0)
 
 

@@ -114,9 +114,9 @@ def _turns(time, flat, period):
     raw = np.cumsum(np.r_[0, (np.diff(group) > 0) | (np.diff(np.floor((time - begun) / period + 1e-6)) != 0)])
     size = np.bincount(raw)
     first = np.r_[0, np.cumsum(size)[:-1]]
-    whole = (time[first + size - 1] - time[first] >= HEAD.min_seen_share_of_turn * period) & (size >= HEAD.min_turn_samples)
-    kept = whole[raw] & thinned(raw, HEAD.max_turn_samples)
-    return time[kept], flat[kept], (np.cumsum(whole) - 1)[raw[kept]]
+    complete = (time[first + size - 1] - time[first] >= HEAD.min_seen_share_of_turn * period) & (size >= HEAD.min_turn_samples)
+    kept = complete[raw] & thinned(raw, HEAD.max_turn_samples)
+    return time[kept], flat[kept], (np.cumsum(complete) - 1)[raw[kept]]
 
 
 def _headings(time, place):
@@ -178,7 +178,7 @@ def _ground_planes(turn: np.ndarray, away: np.ndarray, z: np.ndarray, first: np.
     design = np.column_stack([np.ones(len(turn)), away[near]])
     count = len(first)
     planes = np.column_stack([first, np.zeros((count, 2))])
-    enough = np.bincount(turn, minlength=count) >= HEAD.least_ground_points
+    solvable = np.bincount(turn, minlength=count) >= HEAD.least_ground_points
     for number in range(HEAD.ground_rounds):
         off = z - (planes[turn] * design).sum(axis=1)
         # what stands on the road lies above it, so points above lose their weight sooner than those below
@@ -188,7 +188,7 @@ def _ground_planes(turn: np.ndarray, away: np.ndarray, z: np.ndarray, first: np.
         right = np.array([np.bincount(turn, weight * a * off, count) for a in design.T]).T
         # slopes of roads are small
         normal += np.diag([1e-6, 1.0, 1.0])
-        planes += np.where(enough[:, None], np.linalg.solve(normal, right[..., None])[..., 0], 0.0)
+        planes += np.where(solvable[:, None], np.linalg.solve(normal, right[..., None])[..., 0], 0.0)
     return planes
 
 

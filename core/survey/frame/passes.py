@@ -162,15 +162,15 @@ def _return_cuts(px, py, along, heading):
     if not len(pairs):
         return []
     i, j = pairs.min(axis=1), pairs.max(axis=1)
-    apart = along[j] - along[i]
+    path_between = along[j] - along[i]
     turned = np.abs((heading[j] - heading[i] + np.pi) % (2 * np.pi) - np.pi)
-    back = (turned > np.pi - FRAME.parallel_angle) & (apart > 4 * FRAME.track_step)
-    again = (turned < FRAME.parallel_angle) & (apart > FRAME.min_loop_length)
-    crossed = (apart > FRAME.min_loop_length) & (np.hypot(px[i] - px[j], py[i] - py[j]) < FRAME.track_step)
-    use = back | again | crossed
+    back = (turned > np.pi - FRAME.parallel_angle) & (path_between > 4 * FRAME.track_step)
+    met_again = (turned < FRAME.parallel_angle) & (path_between > FRAME.min_loop_length)
+    crossed = (path_between > FRAME.min_loop_length) & (np.hypot(px[i] - px[j], py[i] - py[j]) < FRAME.track_step)
+    use = back | met_again | crossed
     order = np.flatnonzero(use)[np.lexsort((-i[use], j[use]))]
     cuts, start = [], 0
-    for a, b, is_back, joins, path in zip(i[order].tolist(), j[order].tolist(), back[order], (back | again)[order], apart[order]):
+    for a, b, is_back, joins, path in zip(i[order].tolist(), j[order].tolist(), back[order], (back | met_again)[order], path_between[order]):
         if a < start:
             continue
         # Split a turn on the spot at its apex, a return where the track is met again, and a loop that crosses itself half way

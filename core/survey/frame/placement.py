@@ -186,9 +186,9 @@ class PlaceIndex:
         columns = self._columns
         corner = np.unique(np.concatenate([self._keys + step for step in (0, 1, columns, columns + 1)]))   # the last square of each window
         (a, b), (c, d) = (self._rows(corner - step - 1, corner - step) for step in (columns, 0))
-        enough = b - a + d - c >= fewest
+        filled = b - a + d - c >= fewest
         return [np.concatenate([self._order[first:second], self._order[third:fourth]])
-                for first, second, third, fourth in zip(*(ends[enough].tolist() for ends in (a, b, c, d)))]
+                for first, second, third, fourth in zip(*(ends[filled].tolist() for ends in (a, b, c, d)))]
 
     def within(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Ascending rows of the places in a box with the corners `low` and `high`, (2,) m each."""

@@ -150,14 +150,14 @@ class _LineLookup:
         for _ in range(FRAME.max_node_steps):
             if not len(rows):
                 break
-            few = self._scratch.of(len(rows))
-            moved = self._moved(k.take(rows), ahead, bend, few)
+            buffers = self._scratch.of(len(rows))
+            moved = self._moved(k.take(rows), ahead, bend, buffers)
             k[rows] = moved
-            again = self._nearest_point(moved, x, y, few)
-            for whole, part in zip(found[:4], again):
-                whole[rows] = part
-            on = np.flatnonzero(~_beside(again[0]))
-            rows, x, y, bend, ahead = (values.take(on) for values in (rows, x, y, again[3], again[4]))
+            nearest = self._nearest_point(moved, x, y, buffers)
+            for values, moved_values in zip(found[:4], nearest):
+                values[rows] = moved_values
+            on = np.flatnonzero(~_beside(nearest[0]))
+            rows, x, y, bend, ahead = (column.take(on) for column in (rows, x, y, nearest[3], nearest[4]))
 
     def _follow(self, x, y, start, rows, corridor, s, d, inside):
         """Use `Road.locate` for rows outside the validity of the closed form."""

@@ -91,8 +91,8 @@ class RoadFrame:
             # beyond the driven part and between two passes: the pass that ends nearest
             nearest = np.argmin([np.maximum(np.maximum(p.span[0] - s, s - p.span[1]), 0.0) for p in passes], axis=0)
             for k, p in enumerate(passes):
-                alone = (count == 0) & (nearest == k)
-                total[alone], count[alone] = p.height_at_station(s[alone]) - below.get(p.number, 0.0), 1
+                undriven = (count == 0) & (nearest == k)
+                total[undriven], count[undriven] = p.height_at_station(s[undriven]) - below.get(p.number, 0.0), 1
         return total / count
 
     def nearest_pass(self, road: int, s: np.ndarray, d: np.ndarray) -> np.ndarray:

@@ -211,10 +211,10 @@ def cuts_where_it_changes(along: np.ndarray, sigma: np.ndarray) -> np.ndarray:
     mean = np.add.reduceat(sigma, begin) / size
     while len(begin) > 1:
         change = np.abs(np.diff(mean))
-        apart = (change >= FRAME.least_sigma_change) & (np.maximum(mean[1:], mean[:-1]) >= FRAME.sigma_cut_factor * np.minimum(mean[1:], mean[:-1]))
-        if apart.all():
+        differ = (change >= FRAME.least_sigma_change) & (np.maximum(mean[1:], mean[:-1]) >= FRAME.sigma_cut_factor * np.minimum(mean[1:], mean[:-1]))
+        if differ.all():
             break
-        k = int(np.argmin(np.where(apart, np.inf, size[1:] * size[:-1] / (size[1:] + size[:-1]) * change**2)))
+        k = int(np.argmin(np.where(differ, np.inf, size[1:] * size[:-1] / (size[1:] + size[:-1]) * change**2)))
         mean[k] = np.average(mean[k:k + 2], weights=size[k:k + 2])
         size[k] += size[k + 1]
         mean, size, begin = (np.delete(values, k + 1) for values in (mean, size, begin))

@@ -227,8 +227,8 @@ def _readable_extra_bytes(record: _Record, point_format: int, room: int) -> _Rec
         left -= size
         name = _name(entry[4:36], taken, number)
         taken.add(name)
-        same = name.encode() == entry[4:36].split(b"\0")[0]
-        kept.append(entry[:4] + (entry[4:36] if same else name.encode()[:32].ljust(32, b"\0")) + entry[36:160] + _decodable(entry[160:]))
+        unchanged = name.encode() == entry[4:36].split(b"\0")[0]
+        kept.append(entry[:4] + (entry[4:36] if unchanged else name.encode()[:32].ljust(32, b"\0")) + entry[36:160] + _decodable(entry[160:]))
     data = b"".join(kept)
     return record if data == record.data and record.length == len(data) else replace(record, data=data, length=len(data))
 
@@ -249,9 +249,9 @@ def _size(entry):
 def _name(text, taken, number):
     """A name in UTF-8 that no other field has."""
     name = _decodable(text.split(b"\0")[0]).decode() or "extra"
-    unique, again = name, number
+    unique, suffix = name, number
     while unique in taken:
-        unique, again = f"{name.encode()[:MAX_NAME].decode(errors='ignore')}_{again}", again + 1
+        unique, suffix = f"{name.encode()[:MAX_NAME].decode(errors='ignore')}_{suffix}", suffix + 1
     return unique
 
 
@@ -415,16 +415,16 @@ def _points_in_las(file, fields, size):
 
 def _are_points(file, fields, first, end, rest):
     """Whether the records from `first` to before `end`, behind those that the header states, are points of the same survey."""
-    behind = _sampled_places(file, fields, first, end)
-    if not len(behind) or not behind.any(axis=1).mean() > 0.5:   # zeros that fill up a block
+    stored = _sampled_places(file, fields, first, end)
+    if not len(stored) or not stored.any(axis=1).mean() > 0.5:   # zeros that fill up a block
         return False
     if first:
-        inside = np.abs(behind - np.median(_sampled_places(file, fields, 0, first), axis=0)) <= NEAR_STATED
+        inside = np.abs(stored - np.median(_sampled_places(file, fields, 0, first), axis=0)) <= NEAR_STATED
     else:
         low, high = fields.minimum, fields.maximum
         if not (np.isfinite([low, high]).all() and (low < high).any()):
             return not rest
-        places = behind * fields.scales + fields.offsets
+        places = stored * fields.scales + fields.offsets
         inside = (places >= low) & (places <= high)
     return bool(inside.all(axis=1).mean() > 0.5)
 
@@ -630,10 +630,10 @@ def _chunk_damage(file, first, end, compression):
         if isinstance(problem, (KeyboardInterrupt, SystemExit, GeneratorExit)):
             raise
         return f"its table of chunks cannot be read ({problem})"
-    taken = sum(length for _, length in table)
-    if taken > end - first:
-        return f"its chunks should take {taken:,} bytes, and there are {end - first:,}"
-    if end > first and not taken:
+    total = sum(length for _, length in table)
+    if total > end - first:
+        return f"its chunks should take {total:,} bytes, and there are {end - first:,}"
+    if end > first and not total:
         return f"its table of chunks is empty, and there are {end - first:,} bytes of points"
     return _layer_damage(file, first, compression, table) if compression.compressor == LAYERED_COMPRESSOR else ""
 

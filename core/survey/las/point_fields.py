@@ -85,8 +85,8 @@ def times_by_value(values: np.ndarray, time: np.ndarray, span: tuple[float, floa
     if not len(values):
         return {}
     # a broadcast column has one value
-    few = values if values.strides[0] else values[:1]
-    low, high = int(few.min()), int(few.max())
+    distinct = values if values.strides[0] else values[:1]
+    low, high = int(distinct.min()), int(distinct.max())
     present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * LAS.max_scanners + 1].tolist()
     times_of = {}
     for value in present:

@@ -55,8 +55,8 @@ def _sample(points):
 def _step(values):
     """Between neighbouring ones of (N,) integers."""
     gaps = np.diff(np.unique(values))
-    enough = len(values) >= LAS.values_for_step and len(gaps) >= LAS.gaps_for_step
-    return float(np.quantile(gaps, LAS.share_of_other_gaps, method="lower")) if enough else 0.0
+    sufficient = len(values) >= LAS.values_for_step and len(gaps) >= LAS.gaps_for_step
+    return float(np.quantile(gaps, LAS.share_of_other_gaps, method="lower")) if sufficient else 0.0
 
 
 def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
@@ -184,15 +184,15 @@ def may_overlap(files: Sequence[CloudHeader]) -> bool:
     """Whether the bounds of any two files have an area in common."""
     boxes = shapely.box(*np.array([(*file.minimum[:2], *file.maximum[:2]) for file in files if file.count], float).reshape(-1, 4).T)
     first, second = shapely.STRtree(boxes).query(boxes, predicate="intersects")
-    apart = first < second
-    return bool((shapely.area(shapely.intersection(boxes[first[apart]], boxes[second[apart]])) > 0.0).any())
+    once = first < second
+    return bool((shapely.area(shapely.intersection(boxes[first[once]], boxes[second[once]])) > 0.0).any())
 
 
 def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
     """(M,) ascending indices of the points that are no copies of earlier ones, by (N,) times and (N, 3) places."""
     order = np.lexsort((*place.T, time))
-    same = (time[order[1:]] == time[order[:-1]]) & (place[order[1:]] == place[order[:-1]]).all(axis=1)
-    return np.sort(order[np.r_[True, ~same][:len(order)]])
+    repeated = (time[order[1:]] == time[order[:-1]]) & (place[order[1:]] == place[order[:-1]]).all(axis=1)
+    return np.sort(order[np.r_[True, ~repeated][:len(order)]])
 
 
 def _whole(places):

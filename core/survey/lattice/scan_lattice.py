@@ -87,8 +87,8 @@ def _report_lattice(lattice, progress):
                              f"{LATTICE.rotation_window:g} s of each scanner); scanlines are made of the points near each section plane.")
         progress.warn(lattice.notes[-1])
     if missing:
-        why = ", ".join(sorted(set(missing.values())))
-        note = (f"There are no regular scan lines in {len(missing)} of {len(phases) + len(missing)} run(s) of a scanner ({why}); "
+        reasons = ", ".join(sorted(set(missing.values())))
+        note = (f"There are no regular scan lines in {len(missing)} of {len(phases) + len(missing)} run(s) of a scanner ({reasons}); "
                 "there scanlines are made of the points near each section plane.")
         lattice.notes.append(note)
         progress.warn(note)
@@ -351,16 +351,16 @@ def _turns_between_lines(line, phase):
 
 def _line_properties(windows, mirror):
     """`pulse`, `spacing` and `leftward` of a MirrorPhase, from the points of the windows."""
-    gaps, apart_parts, onward = [], [], 0
+    gaps, turn_parts, onward = [], [], 0
     for w in windows:
         step = np.diff(w.time)
         usual = np.median(step[step > 0])
         # the mean, since a coarse clock counts in steps as long as the pulse interval
         gaps.append(np.mean(step[(step > 0) & (step < 1.5 * usual)]))
-        apart_parts.append(_turns_between_lines(*mirror.lines_and_phase(w.time)))
+        turn_parts.append(_turns_between_lines(*mirror.lines_and_phase(w.time)))
         onward += np.sign(np.diff(w.offset)).sum()
-    apart = np.concatenate(apart_parts)
-    return dict(pulse=float(np.median(gaps) * abs(mirror.frequency)), spacing=int(np.median(apart)) if len(apart) else 1,
+    turns = np.concatenate(turn_parts)
+    return dict(pulse=float(np.median(gaps) * abs(mirror.frequency)), spacing=int(np.median(turns)) if len(turns) else 1,
                 leftward=bool(mirror.frequency < 0 if mirror.origin == "angle" else onward > 0))
 
 
@@ -463,13 +463,13 @@ def _smooth_nodes(time, turns, bin_length):
 
 def _unwrap(time, phase, bin_length):
     """(K,) phases, each within half a turn of the one that the rate before it predicts."""
-    apart = np.diff(time)
+    gaps = np.diff(time)
     step = (np.diff(phase) + np.pi) % (2 * np.pi) - np.pi
-    near = apart < LATTICE.max_phase_bin_gap * bin_length
+    near = gaps < LATTICE.max_phase_bin_gap * bin_length
     if near.any() and not near.all():
         before = np.maximum.accumulate(np.where(near, np.arange(len(near)), -1))
-        rate = np.where(before >= 0, (step / apart)[before], 0.0)
-        predicted = rate * apart
+        rate = np.where(before >= 0, (step / gaps)[before], 0.0)
+        predicted = rate * gaps
         step = np.where(near, step, predicted + (np.diff(phase) - predicted + np.pi) % (2 * np.pi) - np.pi)
     return phase[0] + np.r_[0.0, np.cumsum(step)]
 

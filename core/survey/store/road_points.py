@@ -207,10 +207,10 @@ def columns_of_roads(store: SectionStore, roads: Sequence[int], names: Sequence[
     ends = np.cumsum([0, *(len(store.section(*key)) for key in sections)])
 
     def load(name):
-        whole = np.empty(ends[-1], store.dtype[name])
+        column = np.empty(ends[-1], store.dtype[name])
         for key, first, end in zip(sections, ends[:-1].tolist(), ends[1:].tolist()):
-            whole[first:end] = store.section(*key)[name]
-        return whole
+            column[first:end] = store.section(*key)[name]
+        return column
 
     def load_rows(name, rows):
         values = np.empty(len(rows), store.dtype[name])

@@ -143,8 +143,8 @@ def _angle(columns, k, most):
     signs = next((signs for signs in sides if signs is not None), None)
     if signs is None:
         return values
-    together = most < np.nanmax(np.abs(values), initial=0.0) < 100 * most
-    return np.where(signs < 0, -1.0, 1.0) * np.abs(whole_minutes(values) if together else values)
+    packed = most < np.nanmax(np.abs(values), initial=0.0) < 100 * most
+    return np.where(signs < 0, -1.0, 1.0) * np.abs(whole_minutes(values) if packed else values)
 
 
 def _degrees(column):
@@ -271,10 +271,10 @@ def _gps_seconds(times, column, titles, clock, label, notes):
         return times.seconds
     if times.order_known and shows == "UTC" and times.dated:
         return _added_leap_seconds(times.seconds, label, notes)
-    why, advice = _unknown_clock(times, shows)
+    reason, advice = _unknown_clock(times, shows)
     raise RoadExtractionError(
         f"The column {_named(column)} of {label} holds {times.kind} such as {times.first[:TRAJECTORY.longest_name]!r}. "
-        f"GPS seconds are needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
+        f"GPS seconds are needed, and {reason}. Export the trajectory with GPS time in seconds; or {advice}.")
 
 
 def _named(column):
@@ -288,8 +288,8 @@ def _unknown_clock(times, shows):
     if shows:
         return f"without a date it is not known by how many seconds {shows} differs from them", "add the date"
     seconds = times.seconds[np.isfinite(times.seconds)]
-    apart = f"by {leap_seconds(seconds[:1])[0]:.0f} s on this day" if times.dated and len(seconds) else "by leap seconds"
-    return (f"it is not said whether the clock shows GPS time, UTC, which differs {apart}, or local time",
+    difference = f"by {leap_seconds(seconds[:1])[0]:.0f} s on this day" if times.dated and len(seconds) else "by leap seconds"
+    return (f"it is not said whether the clock shows GPS time, UTC, which differs {difference}, or local time",
             "call the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows")
 
 

@@ -373,8 +373,8 @@ def _accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray)
 def _beside(sbet):
     """The accuracy file beside an SBET, by its name; None where there is none."""
     named = re.fullmatch(r"sbet(.*)", sbet.name, re.IGNORECASE)
-    wanted = f"smrmsg{named[1]}".lower() if named else ""
-    return next((path for path in sorted(sbet.parent.iterdir()) if path.name.lower() == wanted and path.is_file()), None) if wanted else None
+    target = f"smrmsg{named[1]}".lower() if named else ""
+    return next((path for path in sorted(sbet.parent.iterdir()) if path.name.lower() == target and path.is_file()), None) if target else None
 
 
 def _records(path):

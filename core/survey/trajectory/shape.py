@@ -103,11 +103,11 @@ def _curved_track(trajectory: Trajectory) -> _TrackShape:
     names = ("time", "x", "y", "z", "roll", "pitch", "heading")
     joined = replace(trajectory, **{name: np.concatenate([getattr(rows, name) for rows in pieces]) for name in names})
     position = f"x {trajectory.x[worst[2]]:.0f}, y {trajectory.y[worst[2]]:.0f}"
-    done = "Curves were laid through them" + (f", which is a guess in {unsafe} sharp turns" if unsafe else "")
+    note = "Curves were laid through them" + (f", which is a guess in {unsafe} sharp turns" if unsafe else "")
     return _TrackShape(
         joined, sigma,
         (f"The vertices of the trajectory lie up to {worst[1]:.0f} m apart in bends, which straight lines between them miss by up to "
-         f"{worst[0]:.2f} m (near {position}). {done}; the way driven is known to about {max(100 * sigma, 1):.0f} cm. Export the trajectory with ten "
+         f"{worst[0]:.2f} m (near {position}). {note}; the way driven is known to about {max(100 * sigma, 1):.0f} cm. Export the trajectory with ten "
          "or more positions a second.",))
 
 

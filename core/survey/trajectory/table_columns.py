@@ -90,9 +90,9 @@ def columns_of_rows(titles: Sequence[str], rows: Sequence[Sequence[object]]) -> 
     """The columns of a layer: a list of values for each row, None where one is missing."""
     columns = []
     for k, title in enumerate(titles):
-        given = [row[k] for row in rows]
-        texts = ["" if value is None else str(value) for value in given]
-        numbers = finite_or_nan(np.array([as_number(value) for value in given], float))
+        cells = [row[k] for row in rows]
+        texts = ["" if value is None else str(value) for value in cells]
+        numbers = finite_or_nan(np.array([as_number(value) for value in cells], float))
         columns.append(TableColumn(title, numbers, unit_of_name(title), texts.copy, next((text for text in texts if text), "")))
     return columns
 
@@ -140,11 +140,11 @@ def _possible_spans(role, fields):
     """(number of fields, "time", "week", "angle" or "") that a column may take, the largest first."""
     if not fields:
         return
-    together = _fields_of_a_time(fields)
+    time_fields = _fields_of_a_time(fields)
     if role == "date":
         yield 1, ""   # the clock behind it has a name of its own, unless the names are too few
-    if together > 1:
-        yield together, "time"
+    if time_fields > 1:
+        yield time_fields, "time"
     elif role == "time" and len(fields) > 1 and _week(fields[0].values) and _within(fields[1].values, 0.0, SECONDS_PER_WEEK + 1.0):
         yield 2, "week"
     elif role in ("lon", "lat"):
@@ -333,7 +333,7 @@ def _read_track(path: Path) -> list[TableColumn]:
                                   "positions.")
     rows = reader.rows[kind]
     if kind == "coord":
-        rows = [[*row[:3], when] for row, when in zip(rows, reader.whens if len(reader.whens) == len(rows) else [""] * len(rows))]
+        rows = [[*row[:3], time] for row, time in zip(rows, reader.whens if len(reader.whens) == len(rows) else [""] * len(rows))]
     columns = [_column_of_track(rows, k, title, unit)
                for k, (title, unit) in enumerate((("longitude", "degrees"), ("latitude", "degrees"), ("height", "metres"), ("UTC", "")))]
     return columns if columns[3].first else columns[:3]

@@ -320,8 +320,8 @@ def _period_offsets(first, last, cloud, system):
     options = []
     for name, period in (("week", SECONDS_PER_WEEK), ("day", SECONDS_PER_DAY)):
         if last <= 2 * period or system == name:
-            whole = _since_1980(cloud) if cloud > 1.5 * SECONDS_PER_WEEK else cloud
-            start = np.floor(whole / period) * period - whole + cloud
+            counted = _since_1980(cloud) if cloud > 1.5 * SECONDS_PER_WEEK else cloud
+            start = np.floor(counted / period) * period - counted + cloud
             options += [(name, start + turn * period) for turn in (0, -1, 1)]
     if cloud < 1.5 * SECONDS_PER_DAY <= first and last <= 2 * SECONDS_PER_WEEK:
         options.append(("week", -np.floor(first / SECONDS_PER_DAY) * SECONDS_PER_DAY))

@@ -125,15 +125,15 @@ def refuse_standstill(trajectory: Trajectory) -> None:
 
 def _refuse_two_drives(trajectory, rows):
     """Refuse positions, sorted by time, of which many are at once at two places."""
-    apart = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))
-    at_once = np.r_[False, (np.diff(trajectory.time) <= 0) & (apart > TRAJECTORY.min_position_jump)] | _outlier_rows(trajectory)
+    steps = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))
+    at_once = np.r_[False, (np.diff(trajectory.time) <= 0) & (steps > TRAJECTORY.min_position_jump)] | _outlier_rows(trajectory)
     if not trajectory.has_time or at_once.sum() <= max(TRAJECTORY.most_outliers[0], TRAJECTORY.most_outliers[1] * len(rows)):
         return
     second = int(np.argmax(at_once))
     first = second - 1
     raise RoadExtractionError(
         f"The trajectory is at two places at once: row {rows[first] + 1} of its positions at {trajectory.time[first]:.3f} s and row "
-        f"{rows[second] + 1} at {trajectory.time[second]:.3f} s lie {apart[first]:.0f} m apart, and so do {at_once.sum():,} of {len(rows):,} rows. "
+        f"{rows[second] + 1} at {trajectory.time[second]:.3f} s lie {steps[first]:.0f} m apart, and so do {at_once.sum():,} of {len(rows):,} rows. "
         "Two receivers or two days seem to have been put together: give each drive its own trajectory, or times that continue.")
 
 

@@ -113,12 +113,12 @@ def _agreeing_headings(sample, time, others, pairs):
         for h in others:
             if h in (a, b):
                 continue
-            wrong = _heading_disagreement(x, y, sample[:, h])
+            disagreement = _heading_disagreement(x, y, sample[:, h])
             # every trajectory has heights and not every one headings: of a single column that may be either it is the height
-            if wrong is not None and _height_column(sample, time, others, (a, b), h) is not None:
+            if disagreement is not None and _height_column(sample, time, others, (a, b), h) is not None:
                 # roll and pitch agree with the course of a drive due north, so a wide range of values counts more than a close fit,
                 # and so does a height of 24 m with a course of 24 degrees: roll and pitch stand before the heading
-                agreeing.append((np.nanmax(np.abs(sample[:, h])) < 15.0, a > b, not _after_roll_and_pitch(sample, h), wrong, (a, b, unit), h))
+                agreeing.append((np.nanmax(np.abs(sample[:, h])) < 15.0, a > b, not _after_roll_and_pitch(sample, h), disagreement, (a, b, unit), h))
     return agreeing
 
 
@@ -159,11 +159,11 @@ def _height_column(sample, time, others, plane, heading):
     """The slowly changing column that follows x and y, otherwise the only one left."""
     slow = [k for k in others if k not in (*plane, heading) and np.nanmax(np.abs(sample[:, k])) < TRAJECTORY.min_map_coordinate
             and _rate(sample, time, k, 90) < 20.0]
-    behind = max(plane) + 1
-    if heading == behind + 2 and _after_roll_and_pitch(sample, heading):
+    next_column = max(plane) + 1
+    if heading == next_column + 2 and _after_roll_and_pitch(sample, heading):
         slow = [k for k in slow if k not in (heading - 1, heading - 2)] or slow  # x, y, roll, pitch, heading, height
-    if behind in slow:
-        return behind
+    if next_column in slow:
+        return next_column
     # roll and pitch stay near zero, heights seldom do
     high = [k for k in slow if abs(np.nanmedian(sample[:, k])) > 8.0]
     return next((columns[0] for columns in (slow, high) if len(columns) == 1), None)
