@@ -182,17 +182,17 @@ class _Counter:
             time, xyz = (np.concatenate(column) for column in zip(*self.copy_samples))
             if share := 1 - len(distinct_rows(time, xyz)) / max(len(time), 1):
                 inspection.notes.append(f"About {100 * share:.2g} % of the points are copies of points in another file, as where tiles overlap. "
-                                   "They are counted here as often as they are there; a road map uses each point once.")
+                                        "They are counted here as often as they are there; a road map uses each point once.")
         _judge_crs(inspection)
         if trajectory is not None:
             _judge_trajectory(inspection, wkt, has_time, progress)
         if np.count_nonzero(self.intensity) < 2:
             inspection.notes.append(f"All intensities are {self.intensity.argmax()}: road edges can be found, markings and driving lines cannot. "
-                               f"{without_intensity(files, INTENSITY_SOURCES[0])}".strip())
+                                    f"{without_intensity(files, INTENSITY_SOURCES[0])}".strip())
         if not has_time:
             inspection.notes.append("There is no usable gps_time: each point is assigned to the nearest position on the trajectory, "
-                               "which mixes the passes where a street was driven twice. Export the point clouds with gps_time, or process "
-                               "each drive with its own files.")
+                                    "which mixes the passes where a street was driven twice. Export the point clouds with gps_time, or process "
+                                    "each drive with its own files.")
         return inspection
 
     def _raster(self):

@@ -200,9 +200,9 @@ def _with_connector(lanes, entry, exit, left, right):
     number = int(lanes.lane[lanes.road == road].max()) + 1
     name = f"{road}.{number}.1"
     values = {"road": road, "lane": number, "lane_id": name, "type": "connector", "direction": int(lanes.direction[entry]), "left_line": "none",
-           "right_line": "none", "left_kind": "none", "right_kind": "none", "left_pattern": "", "right_pattern": "", "status": "inferred",
-           "confidence": UNDRIVEN_CONFIDENCE * float(min(lanes.confidence[entry], lanes.confidence[exit])), "station": float(lanes.end[entry]),
-           "end": float(lanes.end[entry]), "other": ""}
+              "right_line": "none", "left_kind": "none", "right_kind": "none", "left_pattern": "", "right_pattern": "", "status": "inferred",
+              "confidence": UNDRIVEN_CONFIDENCE * float(min(lanes.confidence[entry], lanes.confidence[exit])), "station": float(lanes.end[entry]),
+              "end": float(lanes.end[entry]), "other": ""}
     columns = {}
     for field, value in values.items():
         column = getattr(lanes, field)

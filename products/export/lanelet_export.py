@@ -105,7 +105,7 @@ class _Drafting:
         for k in used:
             first = lanes.start[k]
             bounds = [first, *(row for row in range(first + 1, lanes.start[k + 1] - 1) if self.left[row] in cuts or self.right[row] in cuts),
-                  lanes.start[k + 1] - 1]
+                      lanes.start[k + 1] - 1]
             for a, b in zip(bounds[:-1], bounds[1:]):
                 self._lanelet(k, slice(a, b + 1))
         self._objects()

@@ -333,7 +333,7 @@ def _heading(survey, borders, road, s, carriageway):
     """Tangent of the angle between the carriageway and the reference line: what most of its borders and those of its lanes move across."""
     places = s + STRETCH * np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
     crossed = [(station, np.unique([d for strip in [strips[0], *strips[1]] for d in (strip.right, strip.left)]))
-             for station, strips in ((station, borders.at(road, float(station))) for station in places) if strips is not None]
+               for station, strips in ((station, borders.at(road, float(station))) for station in places) if strips is not None]
     (first, before), (last, after) = crossed[0], crossed[-1]
     across = (after[np.abs(after[:, None] - before).argmin(axis=0)] - before) / max(last - first, 1e-9)
     # where a border begins or ends another one is nearest, and nothing turns

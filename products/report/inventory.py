@@ -74,7 +74,7 @@ def _exceeded(rows):
             else:
                 runs[key].append([row])
     result = [(road, str(lane or word("carriageway")), word(name), run[0]["station_m"], run[-1]["station_m"], _worst(run, name))
-             for (road, lane, name), group in runs.items() for run in group]
+              for (road, lane, name), group in runs.items() for run in group]
     return sorted(result, key=lambda one: (one[0], one[3]))
 
 

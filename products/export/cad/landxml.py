@@ -172,7 +172,7 @@ def alignments_of(source: RoadMapSource, tolerance: float) -> list[Alignment]:
         places = np.c_[road.plan.at(s)[0] + origin, road.elevation.at(s)]
         fitted = all(element.kind != "paramPoly3" for element in road.plan.elements)
         alignments.append(Alignment(f"Road {road.id}", f"Axis of {road.name.lower()}", _moved(road.plan, origin) if fitted else None, places,
-                               _tangents(s, places[:, 2], tolerance)))
+                                    _tangents(s, places[:, 2], tolerance)))
     for name, places in _driven(source):
         alignments.append(_fitted(name, places, tolerance))
     return alignments

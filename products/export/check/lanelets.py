@@ -219,7 +219,7 @@ class _LaneletCheck:
         for id, opposite in self.network.head_on():
             if self.network.driven(id) and self.network.driven(opposite):
                 self.findings.add("head on", f"lanelets {id} and {opposite}", "Both begin or end where they meet: one of them has left and right "
-                                                                           "swapped.", self.places[self.network.ends(id)[1][0]])
+                                                                              "swapped.", self.places[self.network.ends(id)[1][0]])
         ids = [id for id in self.network.left if self.network.driven(id)]
         if ids:
             self._not_joined(ids)

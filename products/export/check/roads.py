@@ -288,7 +288,7 @@ class _Links:
         """Whether a connecting road of a junction leads to a road."""
         for connecting in self.whole.roads:
             if connecting.junction == junction and any(link is not None and link.element == "road" and link.id == road
-                                                  for link in (connecting.predecessor, connecting.successor)):
+                                                       for link in (connecting.predecessor, connecting.successor)):
                 return True
         return False
 
@@ -513,7 +513,7 @@ def _road(road, seen, minor):
     id, length = road.get("id"), _number(road, "length", 0.0)
     lanes = list(_lanes(road, length))
     for records in (_records(road, length), _plan(road), _of_lanes(lanes), _of_objects(road, length, lanes, seen),
-                  (("value", "", text, 0.0) for element in _within(road) for text in _values(element, minor))):
+                    (("value", "", text, 0.0) for element in _within(road) for text in _values(element, minor))):
         for fault, part, text, s in records:
             yield _Statement(fault, f"road {id}, {part}" if part else f"road {id}", text, id, s)
 

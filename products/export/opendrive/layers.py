@@ -69,12 +69,12 @@ class _Faults:
         if self.folds:
             road, lane, place = self.folds[0]
             sentences.append(f"{len(self.folds)} borders of lanes fold back over themselves, as a curve is tighter there than the border is far from "
-                         f"the reference line. The folds were cut off. The first is of road {road}, lane {lane}, near x {place[0]:.1f}, "
-                         f"y {place[1]:.1f}.")
+                             f"the reference line. The folds were cut off. The first is of road {road}, lane {lane}, near x {place[0]:.1f}, "
+                             f"y {place[1]:.1f}.")
         if self.negative:
             road, lane, width, s = self.negative[0]
             sentences.append(f"{len(self.negative)} lanes have a width below 0, which was taken as 0. The first is lane {lane} of road {road} with "
-                         f"{width:.2f} m at s {s:.1f} m. Correct them where the map was made.")
+                             f"{width:.2f} m at s {s:.1f} m. Correct them where the map was made.")
         return sentences
 
     def _said_jumps(self) -> str:

@@ -343,7 +343,7 @@ class RoadSurface:
         result += [(s, size, 0) for s, size in zip(*road.elevation.steps())]
         result += [(s, size, 0) for s, size in zip(*road.lane_offset.steps()) if s not in starts]   # where lanes begin lane 0 may lie elsewhere
         return result + [(section.s + s, size, lane.id) for section in road.sections for lane in section.lanes.values()
-                        for s, size in zip(*lane.width.steps())]
+                         for s, size in zip(*lane.width.steps())]
 
     def inside(self, number: int, id: int) -> int:
         """The lane next to one on the side of lane 0, which is never missing."""

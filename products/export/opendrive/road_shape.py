@@ -252,7 +252,7 @@ def _end_headings(strip, guide, square):
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     near, far = (int(np.clip(np.searchsorted(along, distance), 1, len(guide) - 1)) for distance in (END_CHORD, along[-1] - END_CHORD))
     for part, row, way, meets in ((strip[0], 0, guide[near] - guide[0], _meets(strip[0], False)),
-                                 (strip[-1], -1, guide[-1] - guide[far - 1], _meets(strip[-1], True))):
+                                  (strip[-1], -1, guide[-1] - guide[far - 1], _meets(strip[-1], True))):
         across = (part.cells[0].left[row] - part.cells[-1].right[row])[:2]
         widest = max(widest, float(np.hypot(*across)))
         heading, along = float(np.arctan2(-across[0], across[1])), float(np.arctan2(way[1], way[0]))

@@ -213,7 +213,7 @@ def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tu
         return []
 
     connectors = [Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)])
-             for cell in cells if is_connector(cell, lanes)]
+                  for cell in cells if is_connector(cell, lanes)]
     return connectors, [part for part in slices if id(part) not in used]
 
 

@@ -71,7 +71,7 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
                 roadside.lines.append(SideLine(kind, part, float(np.median(part.members.foot))))
     if unknown:
         roadside.notes.append(f"{unknown:.0f} m of what stands beside the road are as high as the scanner, which sees hardly higher, as heads of "
-                           "many beams do. They are left out, for house fronts look the same to it.")
+                              "many beams do. They are left out, for house fronts look the same to it.")
     roadside.lines, roadside.poles = told_once(roadside)
     roadside.lines.sort(key=lambda line: (line.chain.road, -line.chain.side, float(line.chain.s[0])))
     _report(roadside, progress)
