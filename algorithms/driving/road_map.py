@@ -110,7 +110,7 @@ class RoadMap(Algorithm):
             execution=execution_of(call),
             markings=marking_settings(call),
             **{field: call.settings(specs) for field, specs in STAGES.items()})
-        if not any(call.wants(one.name) for one in self.outputs()):
+        if not any(call.wants(output.name) for output in self.outputs()):
             raise RoadExtractionError(tr(
                 "No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT."))
         corrections = corrections_of(call)

@@ -235,13 +235,13 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 
 def versions(names: Sequence[str] = NEEDED) -> dict[str, str]:
     """The versions of Python (its first two numbers) and of packages in this process; "" for what was not installed as a package."""
-    found = {"python": ".".join(map(str, sys.version_info[:2]))}
+    result = {"python": ".".join(map(str, sys.version_info[:2]))}
     for name in names:
         try:
-            found[name] = version(name)
+            result[name] = version(name)
         except PackageNotFoundError:
-            found[name] = ""
-    return found
+            result[name] = ""
+    return result
 
 
 def command_of(interpreter: str, *arguments: str) -> list[str]:

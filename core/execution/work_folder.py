@@ -69,9 +69,9 @@ class WorkFolder:
         try:
             if note.stat().st_size > EXECUTION.longest_note:
                 return None
-            found = json.loads(note.read_bytes())
-            folder, messages = found["folder"], [(str(kind), str(text)) for kind, text in found["messages"]]
-            whole = Path(folder).name == folder and _checksums(self.path / folder) == found["files"]
+            content = json.loads(note.read_bytes())
+            folder, messages = content["folder"], [(str(kind), str(text)) for kind, text in content["messages"]]
+            whole = Path(folder).name == folder and _checksums(self.path / folder) == content["files"]
         except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
             return None   # a damaged note may hold any JSON or none
         return (self.path / folder, messages) if whole else None
@@ -79,11 +79,11 @@ class WorkFolder:
 
 def _checksums(folder):
     """{name of each file in a folder: [bytes, CRC-32]}."""
-    found = {}
+    sums = {}
     for path in sorted(folder.iterdir()):
         with open(path, "rb", buffering=0) as file:
-            found[path.name] = [os.fstat(file.fileno()).st_size, checksum(file)]
-    return found
+            sums[path.name] = [os.fstat(file.fileno()).st_size, checksum(file)]
+    return sums
 
 
 class KeptResults(Executor):
@@ -130,7 +130,7 @@ class KeptResults(Executor):
 def code_digest() -> str:
     """A digest of the code that phases run: other code may give other results."""
     package = Path(__file__).resolve().parents[2]
-    found = hashlib.sha256()
+    sha = hashlib.sha256()
     for path in sorted(path for folder in ("core", "products") for path in (package / folder).rglob("*.py")):
-        found.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
-    return found.hexdigest()
+        sha.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
+    return sha.hexdigest()

@@ -49,8 +49,8 @@ def columns_by_role(names: Sequence[str]) -> dict[str, str]:
 def candidates_by_role(names: Sequence[str]) -> dict[str, list[int]]:
     """{role: places of the columns that may be it by their names, the likeliest first}."""
     ranks = [_roles_of_name(str(name)) for name in names]
-    candidates = {role: sorted((roles[role], place) for place, roles in enumerate(ranks) if role in roles) for role in _names_by_role()}
-    return {role: [place for _, place in places] for role, places in candidates.items() if places}
+    candidates = {role: sorted((roles[role], column) for column, roles in enumerate(ranks) if role in roles) for role in _names_by_role()}
+    return {role: [column for _, column in places] for role, places in candidates.items() if places}
 
 
 @cache
@@ -93,7 +93,7 @@ def _is_of(role, words):
     """Whether all words of a name belong to a role, and one of them says so."""
     core, further, letters = _grammar(role)
     says = [word in letters or bool(core.fullmatch(word)) for word in words]
-    return any(says) and all(said or further.fullmatch(word) for said, word in zip(says, words))
+    return any(says) and all(names_it or further.fullmatch(word) for names_it, word in zip(says, words))
 
 
 def unit_of_name(name: str) -> Unit:
