@@ -312,15 +312,15 @@ def _slopes(d):
 def _level(measured, other, chains, grid, sign):
     """(N,) bool: did one method, whose SideChains are given, measure an edge where the other, whose OcclusionGrid is given, saw level ground?"""
     level, doubtful = np.zeros((2, len(measured.s)), bool)
-    alone = np.flatnonzero(measured.measured & ~other.measured)
-    if grid is None or not len(alone):
+    unmatched = np.flatnonzero(measured.measured & ~other.measured)
+    if grid is None or not len(unmatched):
         return level
-    line = measured.s[alone], sign * measured.d[alone], sign * _slopes(measured.d)[alone]
+    line = measured.s[unmatched], sign * measured.d[unmatched], sign * _slopes(measured.d)[unmatched]
     rise, support = grid.rise(*line), 0.0 if chains is None else chains.support_along(*line)
     doubt = np.clip(1.0 - support / BOUNDARY.sure_support, 0.0, 1.0)
     with np.errstate(invalid="ignore"):
-        level[alone] = np.abs(rise) < doubt * MIN_RISE   # a fall is something else: the roof of a car, say
-        doubtful[alone] = (doubt > 0) & ~(level[alone] | (rise >= CURBS.least_height))
+        level[unmatched] = np.abs(rise) < doubt * MIN_RISE   # a fall is something else: the roof of a car, say
+        doubtful[unmatched] = (doubt > 0) & ~(level[unmatched] | (rise >= CURBS.least_height))
     # what is left beside such places is too short to be a curb on such evidence
     for a, b in mask_runs(doubtful):
         if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_single_method_length and (level[max(a - 1, 0)] or level[min(b, len(level) - 1)]):
@@ -352,21 +352,21 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
     for road in frame.roads:
         for side in SIDE_SIGNS:
             first, second, drawn = (sample_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
-            apart = np.abs(first.d - second.d)
+            difference = np.abs(first.d - second.d)
             for k in np.flatnonzero((edges.road == road.number) & (edges.side == side)):
-                distances = apart[stretch_of(first.s, edges.station[k], edges.end[k])]
+                distances = difference[stretch_of(first.s, edges.station[k], edges.end[k])]
                 distances = distances[np.isfinite(distances)]
                 if len(distances):
                     agree[k] = round(100 * float(np.quantile(distances, BOUNDARY.agreement_quantile)), 1)
             with np.errstate(invalid="ignore"):
-                differing = (apart > BOUNDARY.min_reported_difference) & np.isfinite(drawn.d)
+                differing = (difference > BOUNDARY.min_reported_difference) & np.isfinite(drawn.d)
             for a, b in mask_runs(differing):
                 if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_reported_length:
                     continue
                 x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])
                 differences.append(EdgePiece(
                     np.c_[x, y, z], road.number, side, "measured", len(differences), float(first.s[a]), float(first.s[b - 1]),
-                    agree=100 * float(apart[a:b].max())))
+                    agree=100 * float(difference[a:b].max())))
     return replace(edges, agree=agree), joined_pieces(differences, frame, edges.crs)
 
 

@@ -79,18 +79,18 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
     ahead = lines.along.take(lines.point.take(index)) > 0
     ahead_of, count = np.bincount(owner, ahead, len(rows)), np.bincount(owner, minlength=len(rows))
     mixed = np.minimum(ahead_of, count - ahead_of) >= CURBS.min_view_points
-    again = np.flatnonzero(best["likely"] & ~best["good"] & mixed)
-    if len(again):
+    remeasured = np.flatnonzero(best["likely"] & ~best["good"] & mixed)
+    if len(remeasured):
         number = np.full(len(rows), -1)
-        number[again] = np.arange(len(again))
+        number[remeasured] = np.arange(len(remeasured))
         members = np.flatnonzero(number.take(owner) >= 0)
         owner, index, ahead = number.take(owner.take(members)), index.take(members), ahead.take(members)
-        views = [_measure(lines, rows[again], cells[again], owner[view], index[view], min_height, max_height) for view in (~ahead, ahead)]
+        views = [_measure(lines, rows[remeasured], cells[remeasured], owner[view], index[view], min_height, max_height) for view in (~ahead, ahead)]
         support = [np.where(view["good"], view["support"], 0) for view in views]
         for view, better in zip(views, (support[0] >= support[1], support[0] < support[1])):
             better &= view["good"]
             for name, values in view.items():
-                best[name][again[better]] = values[better]
+                best[name][remeasured[better]] = values[better]
     good = best["good"]
     return CurbSteps(profile=lines.first + rows[good], scanner_noise=lines.noise[rows[good]],
                      **{name: values[good] for name, values in best.items() if name not in ("good", "likely")})
@@ -105,9 +105,9 @@ def _measure(lines, rows, cells, owner, index, min_height, max_height):
     corners = patches.corners()
     skewed = np.flatnonzero(np.abs(corners["skew"]) > CURBS.remeasure_skew)
     if len(skewed):
-        again = patches.straightened(skewed, corners["skew"][skewed]).corners()
-        again["skew"] = again["skew"] + corners["skew"][skewed]
-        for name, values in again.items():
+        remeasured = patches.straightened(skewed, corners["skew"][skewed]).corners()
+        remeasured["skew"] = remeasured["skew"] + corners["skew"][skewed]
+        for name, values in remeasured.items():
             corners[name][skewed] = values
     corners["u"] = corners["u"] + edge
     corners["s"] = corners["s"] + middle
@@ -165,17 +165,17 @@ class StepPatches:
         likely = (n_road >= 4) & (height >= np.maximum(CURBS.candidate_height_share * self.min_height,
                                                        CURBS.candidate_sigma_share * CURBS.min_step_sigmas * noise)) \
             & (np.abs(slope) <= CURBS.max_road_slope / CURBS.candidate_height_share)
-        which = np.flatnonzero(likely)
+        candidates = np.flatnonzero(likely)
         number = np.full(count, -1)
-        number[which] = np.arange(len(which))
+        number[candidates] = np.arange(len(candidates))
         members = np.flatnonzero((np.abs(u) < CURBS.face_search_half_width) & (number.take(owner) >= 0))
-        skew = self.skew if isinstance(self.skew, float) else self.skew[which]
-        near = StepPatches(number.take(owner.take(members)), u.take(members), s.take(members), h.take(members), self.scanner_noise[which],
+        skew = self.skew if isinstance(self.skew, float) else self.skew[candidates]
+        near = StepPatches(number.take(owner.take(members)), u.take(members), s.take(members), h.take(members), self.scanner_noise[candidates],
                            self.min_height, self.max_height, skew, self.graded)
         result = dict(likely=likely)
-        for name, values in near._faces(rise.take(members), **{name: values[which] for name, values in ground.items()}).items():
+        for name, values in near._faces(rise.take(members), **{name: values[candidates] for name, values in ground.items()}).items():
             result[name] = np.zeros(count, values.dtype)
-            result[name][which] = values
+            result[name][candidates] = values
         return result
 
     def _grade(self, road):
@@ -231,9 +231,9 @@ class StepPatches:
         """Height of the ground behind the face, how many points lie there, and whether it stays up and is level or a bed of plants."""
         count = self.count
         beyond = np.flatnonzero((self.u > 0.03) & (self.u < CURBS.behind_length))
-        owner, u, rise_there = self.owner.take(beyond), self.u.take(beyond), rise.take(beyond)
-        raised = np.flatnonzero((rise_there > 0.4 * self.min_height) & (rise_there < self.max_height + 0.1))
-        up, out, to = owner.take(raised), u.take(raised), rise_there.take(raised)
+        owner, u, rise_beyond = self.owner.take(beyond), self.u.take(beyond), rise.take(beyond)
+        raised = np.flatnonzero((rise_beyond > 0.4 * self.min_height) & (rise_beyond < self.max_height + 0.1))
+        up, out, to = owner.take(raised), u.take(raised), rise_beyond.take(raised)
         first = _mean(np.bincount(up, to, count), np.bincount(up, minlength=count))
         foot, bank, _, n_raised = _line_per_owner(up, out, to, count)
         alike = np.flatnonzero(np.abs(to - first.take(up)) < 0.05)
@@ -251,7 +251,7 @@ class StepPatches:
         bed = ~level & (n_raised >= CURBS.min_bed_points) & (bank > MIN_BED_SLOPE) & (bank <= CURBS.max_bed_slope) & (foot > 0.0)
         height, level = np.where(bed, foot, height), level | bed
         far = np.flatnonzero(u > 0.10)
-        low = np.flatnonzero(rise_there < 0.5 * height.take(owner))
+        low = np.flatnonzero(rise_beyond < 0.5 * height.take(owner))
         low = low[u.take(low) > 0.10]
         low, far = (np.bincount(owner.take(v), minlength=count) for v in (low, far))
         return height, n_behind, level & (low <= np.maximum(CURBS.max_low_share * far, 1))

@@ -408,9 +408,9 @@ def _find_level_strip(track: np.ndarray, count: np.ndarray, total: np.ndarray, s
     measured = count > 0
     mean = np.where(measured, total / np.maximum(count, 1), np.nan)
     uneven = measured & ((count < CURBS.min_level_points) | (squares > count * (CURBS.max_strip_std / COORDINATE_SCALE) ** 2))
-    apart = max(int(round(CURBS.max_step_width * 0.5 / COORDINATE_SCALE / size)), 1)
+    half_step = max(int(round(CURBS.max_step_width * 0.5 / COORDINATE_SCALE / size)), 1)
     with np.errstate(invalid="ignore"):
-        uneven[:, apart:-apart] |= np.abs(mean[:, 2 * apart:] - mean[:, :-2 * apart]) > CURBS.level_step_share * min_height
+        uneven[:, half_step:-half_step] |= np.abs(mean[:, 2 * half_step:] - mean[:, :-2 * half_step]) > CURBS.level_step_share * min_height
     uneven &= _count_about(uneven) >= CURBS.min_uneven_neighbours
     track_cell = np.clip(track // size + half, 0, 2 * half - 1).astype(np.int64)
     left, right = (_level_cells_from(track_cell, sign, uneven, measured, size) for sign in (1, -1))

@@ -204,10 +204,10 @@ def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: 
     middle = 0.5 * (h[first_of + (count - 1) // 2] + h[first_of + count // 2])
     top = h[first_of + np.rint(CURBS.top_quantile * (count - 1)).astype(np.int64)]
     low.flat[owner], high.flat[owner] = middle, top
-    many = np.flatnonzero(count >= CURBS.profile_noise_points)
-    noise = _profile_noise(owner.take(many) // cells, (top.take(many) - middle.take(many)) / TOP_QUANTILE_SIGMAS, rows)
-    held = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
-    return _ProfileRun(profiles, order, u, s, along, h, ground, held, low, high, noise, _smooth(h, held, low))
+    dense = np.flatnonzero(count >= CURBS.profile_noise_points)
+    noise = _profile_noise(owner.take(dense) // cells, (top.take(dense) - middle.take(dense)) / TOP_QUANTILE_SIGMAS, rows)
+    points_per_cell = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
+    return _ProfileRun(profiles, order, u, s, along, h, ground, points_per_cell, low, high, noise, _smooth(h, points_per_cell, low))
 
 
 def join_profile_runs(runs: Sequence[_ProfileRun], profiles: tuple[int, int], width: float, spacing: float,
@@ -215,15 +215,15 @@ def join_profile_runs(runs: Sequence[_ProfileRun], profiles: tuple[int, int], wi
     """PseudoScanLines of profiles (first, last + 1) from runs that follow one another; profiles of no run are empty."""
     rows, cells = profiles[1] - profiles[0], runs[0].low.shape[1]
     low, high = np.full((rows, cells), np.nan), np.full((rows, cells), np.nan)
-    held = np.zeros((rows, cells), np.int64)
+    points_per_cell = np.zeros((rows, cells), np.int64)
     noise, smooth = np.full(rows, CURBS.default_scanner_noise), np.full(rows, np.nan)
     for run in runs:
         of_run = slice(run.profiles[0] - profiles[0], run.profiles[1] - profiles[0])
-        low[of_run], high[of_run], held[of_run], noise[of_run], smooth[of_run] = run.low, run.high, run.count, run.noise, run.smooth
+        low[of_run], high[of_run], points_per_cell[of_run], noise[of_run], smooth[of_run] = run.low, run.high, run.count, run.noise, run.smooth
     u, s, along, h, ground = (np.concatenate([getattr(run, name) for run in runs]) for name in ("u", "s", "along", "h", "ground"))
     before = np.cumsum([0] + [len(run.point) for run in runs[:-1]])
     point = np.concatenate([run.point + first for run, first in zip(runs, before)])
-    return PseudoScanLines(profiles[0], width, spacing, origin, point, u, s, along, h, ground, np.r_[0, np.cumsum(held)], low, high, noise,
+    return PseudoScanLines(profiles[0], width, spacing, origin, point, u, s, along, h, ground, np.r_[0, np.cumsum(points_per_cell)], low, high, noise,
                            _spread(smooth))
 
 

@@ -65,8 +65,8 @@ def merged_passes(found: Sequence[AnySteps]) -> AnySteps:
     if len(found) < 2 or not len(steps):
         return steps
     steps = steps[np.lexsort((steps.u, steps.profile))]
-    apart = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > CURBS.pass_merge_across) | (np.abs(np.diff(steps.h)) > CURBS.pass_merge_height)
-    first, group = np.r_[True, apart], np.r_[0, np.cumsum(apart)]
+    separate = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > CURBS.pass_merge_across) | (np.abs(np.diff(steps.h)) > CURBS.pass_merge_height)
+    first, group = np.r_[True, separate], np.r_[0, np.cumsum(separate)]
     weight = np.sqrt(np.maximum(steps.support, 1))
     total = np.bincount(group, weight)
 
@@ -172,14 +172,14 @@ def block_bounds(road: Road, start: float, end: float, block_length: float) -> n
     """
     if block_length:
         return np.arange(np.floor(start / block_length), np.ceil(end / block_length) + 1) * block_length
-    whole = CURBS.block_section_length
-    first, last = int(np.floor(start / whole)), int(np.ceil(end / whole))
+    section_length = CURBS.block_section_length
+    first, last = int(np.floor(start / section_length)), int(np.ceil(end / section_length))
     bounds = []
     for k in range(first, last):
-        bend = np.abs(road.curvature(np.arange(k * whole, (k + 1) * whole, 0.5))).max()
+        bend = np.abs(road.curvature(np.arange(k * section_length, (k + 1) * section_length, 0.5))).max()
         length = np.clip(CURBS.max_block_turn / max(bend, 1e-9), CURBS.min_block_length, CURBS.max_block_length)
-        bounds.append(np.linspace(k * whole, (k + 1) * whole, int(np.ceil(whole / length)) + 1)[:-1])
-    return np.r_[np.concatenate(bounds), last * whole] if bounds else np.array([start, end])
+        bounds.append(np.linspace(k * section_length, (k + 1) * section_length, int(np.ceil(section_length / length)) + 1)[:-1])
+    return np.r_[np.concatenate(bounds), last * section_length] if bounds else np.array([start, end])
 
 
 def _block_numbers(steps: CurbSteps, bounds: np.ndarray) -> np.ndarray:

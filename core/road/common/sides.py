@@ -101,8 +101,8 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
                 key = side, number
                 inside, cell = cells_of_points(u, s, h, rows, profiles, cells, width, spacing, origins[side])
                 if points_per_cell is None:
-                    few = limit_points_per_cell(cell)
-                    inside, cell = inside[few], cell[few]
+                    selected = limit_points_per_cell(cell)
+                    inside, cell = inside[selected], cell[selected]
                 runs.setdefault(key, []).append(ground_of_profiles((u, s, h, along), inside, cell, profiles, cells, settings.layer_jump))
                 high = rows[h.take(rows) > CURBS.min_occluder_height]
                 tall.setdefault(key, []).append([v.take(high) for v in (u, s, h)])

@@ -95,19 +95,19 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     if not chains:
         return []
     other_lines = CurbLines(elsewhere)
-    alone = {k: curb for k, chain in enumerate(chains) if (curb := _own_curb(chain, steps, falls, line, limits, passes, other_lines)) is not None}
-    runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in alone.values())]
-    chains = [chain for k, chain in enumerate(chains) if k not in alone]
+    mains = {k: curb for k, chain in enumerate(chains) if (curb := _own_curb(chain, steps, falls, line, limits, passes, other_lines)) is not None}
+    runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in mains.values())]
+    chains = [chain for k, chain in enumerate(chains) if k not in mains]
     main_ends, lines = CurbLines([(x, y) for _, (x, y, _) in runs]), _LinesOfSteps([steps[chain.steps] for chain in chains])
-    result, apart = list(alone.values()), list[CurbReturn]()
+    result, separate = list(mains.values()), list[CurbReturn]()
     for side, chain in zip(_sides_continued(runs, chains, steps), chains):
         line_steps = steps[chain.steps]
         if side:
             result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, limits[side], main_ends)
         else:
             curb = _curb_apart(line_steps, falls[chain.steps], chain.closed, line, limits, passes, lines)
-            (result if curb.kind == "side_street" else apart).append(curb)
-    return result + _free_and_islands(apart, result, runs, elsewhere)
+            (result if curb.kind == "side_street" else separate).append(curb)
+    return result + _free_and_islands(separate, result, runs, elsewhere)
 
 
 def _sides_continued(runs, chains, steps):
@@ -213,9 +213,9 @@ def _has_opposite_curb(own, lines):
     k = len(own) // 2
     for line in lines.about(own.x[k], own.y[k], RETURN.side_street_widths[1] + RETURN.max_opposite_shift):
         dx, dy = line.x - own.x[k], line.y - own.y[k]
-        out, aside = -(dx * own.nx[k] + dy * own.ny[k]), np.abs(dx * own.ny[k] - dy * own.nx[k])
+        out, shift = -(dx * own.nx[k] + dy * own.ny[k]), np.abs(dx * own.ny[k] - dy * own.nx[k])
         opposite = line.nx * own.nx[k] + line.ny * own.ny[k] < -0.7
-        if np.any((out > RETURN.side_street_widths[0]) & (out < RETURN.side_street_widths[1]) & (aside < RETURN.max_opposite_shift) & opposite):
+        if np.any((out > RETURN.side_street_widths[0]) & (out < RETURN.side_street_widths[1]) & (shift < RETURN.max_opposite_shift) & opposite):
             return True
     return False
 
@@ -237,10 +237,10 @@ def _where_straight(own, order, along):
     """Position in `order` from which a line runs straight to its end, away from the road; its length where it does not."""
     x, y = own.x[order], own.y[order]
     for k in range(len(x) - 2):
-        rest = np.hypot(x[-1] - x[k], y[-1] - y[k])
-        if rest < RETURN.min_straight_length:
+        chord = np.hypot(x[-1] - x[k], y[-1] - y[k])
+        if chord < RETURN.min_straight_length:
             break
-        off = np.abs((x[-1] - x[k]) * (y[k:] - y[k]) - (y[-1] - y[k]) * (x[k:] - x[k])) / rest
+        off = np.abs((x[-1] - x[k]) * (y[k:] - y[k]) - (y[-1] - y[k]) * (x[k:] - x[k])) / chord
         if off.max() <= RETURN.max_straight_deviation and np.median(along[order[k:]]) < RETURN.min_road_cosine:
             return k
     return len(x)
@@ -314,8 +314,8 @@ def is_free_corner(own: PlanSteps, curbs: CurbLines) -> bool:
     uphill = np.median((cx - x) * own.nx + (cy - y) * own.ny) > 0
     if off.max() > RETURN.max_bend_deviation or abs(angle[-1] - angle[0]) < RETURN.min_corner_angle or not uphill:
         return False
-    way = np.sign(angle[-1] - angle[0])
-    for k, out in ((0, -way), (-1, way)):
+    turn = np.sign(angle[-1] - angle[0])
+    for k, out in ((0, -turn), (-1, turn)):
         tip = np.array([own.x[k], own.y[k]])
         # along the circle, out of the line
         direction = out * np.array([-np.sin(angle[k]), np.cos(angle[k])])

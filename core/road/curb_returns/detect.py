@@ -51,25 +51,25 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     """
     survey, lines, parts = decimation.survey, [], []
     roads = survey.store.roads()
-    aside, behind = on_main_islands(curb_points, survey, beside)
-    mains = {road: main_curbs_of(curb_points[~aside], survey, road) for road in roads}
+    on_islands, behind = on_main_islands(curb_points, survey, beside)
+    mains = {road: main_curbs_of(curb_points[~on_islands], survey, road) for road in roads}
     runs = {road: [coordinates[:2] for _, coordinates in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         main, chain = mains[road]
         elsewhere = [run for other_road in roads if other_road != road for run in runs[other_road]]
         of_road = curb_points.road == road
-        islands = curb_points[of_road & aside]
+        islands = curb_points[of_road & on_islands]
         curbs = find_curb_returns(decimation, road, main, settings, part.part(0.0, 0.5) if len(islands) else part, elsewhere, behind[road])
         if not are_replaced(islands, curbs):
-            aside &= ~of_road
+            on_islands &= ~of_road
             main, chain = main_curbs_of(curb_points, survey, road)
             curbs = find_curb_returns(decimation, road, main, settings, part.part(0.5, 1.0), elsewhere)
         points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
         lines += points
         parts += points + hidden
     progress.info(f"Curbs away from the road's direction: {_lengths(lines) or 'none'}.")
-    return CurbPoints.join([curb_points[~aside], *parts], curb_points.crs)
+    return CurbPoints.join([curb_points[~on_islands], *parts], curb_points.crs)
 
 
 def _points_of_road(survey, road, curbs, chain, main, beside, crs):
@@ -184,8 +184,8 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     steps = measure_plan_steps(views, x, y, nx, ny, 0.5 * clear, settings.max_height)
     tips = tips[line.within(tips.x, tips.y, section[0] * width, section[1] * width)]
     ends = FollowedEnds.join([tips, FollowedEnds.of_chains(link_plan_steps(steps), steps)])
-    further = followed_steps(views[0], ends, 0.5 * clear, settings.max_height, settings.limits.clear_slope, partial(wanted, before_curbs=True))
-    steps = PlanSteps.join([steps, further])
+    followed = followed_steps(views[0], ends, 0.5 * clear, settings.max_height, settings.limits.clear_slope, partial(wanted, before_curbs=True))
+    steps = PlanSteps.join([steps, followed])
     if not len(steps):
         return None
     # inside a tight bend a step may be measured outside the range of stations
@@ -209,12 +209,12 @@ def _is_noisy(raster, clear):
 def _is_wanted(x, y, line, limits, known, start, end, before_curbs=False):
     """(N,) bool: do local places lie between two stations and beside no main curb, or also before these?"""
     s, d = line.locate(x, y)
-    fresh = (s >= start) & (s < end)
+    wanted = (s >= start) & (s < end)
     if before_curbs:
-        fresh &= np.all([limit.outward(s, d) <= 0.0 for limit in limits.values()], axis=0)
-    which = np.flatnonzero(fresh)
-    fresh[which] = ~known.within(x.take(which), y.take(which), RETURN.main_curb_distance)
-    return fresh
+        wanted &= np.all([limit.outward(s, d) <= 0.0 for limit in limits.values()], axis=0)
+    indices = np.flatnonzero(wanted)
+    wanted[indices] = ~known.within(x.take(indices), y.take(indices), RETURN.main_curb_distance)
+    return wanted
 
 
 def _behind(raster, slopes, steps):

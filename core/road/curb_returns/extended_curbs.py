@@ -132,14 +132,14 @@ def _led_on(ground, end):
     # uphill is on the left of the arc where it is not on the right of the end
     arc = _Arc(x - RETURN.line_direction_length * tx, y - RETURN.line_direction_length * ty, h, float(np.arctan2(ty, tx)), 0.0, -float(end.uphill[0]))
     steps: list[PlanSteps] = []
-    tried = RETURN.first_turns, RETURN.first_bends, RETURN.first_sigmas
+    trials = RETURN.first_turns, RETURN.first_bends, RETURN.first_sigmas
     while len(steps) * RETURN.led_step < RETURN.line_direction_length + RETURN.max_led_length:
-        average = _best_average(*arc.beside(points), arc.uphill * arc.bend, *tried)
+        average = _best_average(*arc.beside(points), arc.uphill * arc.bend, *trials)
         if average is None or not average.good or abs(average.bottom - arc.h) > CURBS.height_tolerance + RETURN.max_height_grade * RETURN.led_step:
             break
         arc = arc.moved(average)
         steps.append(arc.step(average))
-        arc, tried = arc.onward(RETURN.led_step), (RETURN.next_turns, RETURN.next_bends, RETURN.next_sigmas)
+        arc, trials = arc.onward(RETURN.led_step), (RETURN.next_turns, RETURN.next_bends, RETURN.next_sigmas)
     # one average at least begins beyond the end
     if len(steps) <= LEAD_IN_STEPS:
         return PlanSteps.none()
@@ -157,8 +157,8 @@ def _best_average(t, u, z, bend, turns, bends, sigmas):
     if len(road) < INDEPENDENT:
         return None
     turns, bends = (v.ravel() for v in np.meshgrid(turns, bends, indexing="ij"))
-    few = np.abs(bend + bends) <= RETURN.largest_bend
-    turns, bends = turns[few], bends[few]
+    allowed = np.abs(bend + bends) <= RETURN.largest_bend
+    turns, bends = turns[allowed], bends[allowed]
     # the grade along the curb
     plane, *_ = np.linalg.lstsq(np.c_[np.ones(len(road)), u[road], t[road]], z[road], rcond=None)
     z = z - plane[2] * t
@@ -258,7 +258,7 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
                                            0.5 * RETURN.leaving_length))
     ends, owner = ends[open_ends], owner[open_ends]
     phase = phase_along(_led_steps_of_section, decimation, (road, ends, settings), settings.profile_width, _join_led)
-    more: list[CurbReturn] = []
+    continuations: list[CurbReturn] = []
     main_ends = CurbLines([(x, y) for _, (x, y, _) in runs])
     extended = {id(curb): curb for curb in curbs}
     for number, line_steps in _join_led(list(decimation.executor.run(phase, sections, progress))):
@@ -272,11 +272,11 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
         line_steps = line_steps[::-1] if at_head else line_steps
         s, d = line.locate(line_steps.x, line_steps.y)
         if k < len(runs):
-            more += classify_continuation(line_steps, s, d, runs[k][0], line, limits[runs[k][0]], main_ends)
+            continuations += classify_continuation(line_steps, s, d, runs[k][0], line, limits[runs[k][0]], main_ends)
         else:
             curb = free[k - len(runs)]
             extended[id(curb)] = _joined(extended[id(curb)], CurbReturn(line_steps, s, d, curb.side, curb.kind), at_head)
-    return list(extended.values()) + more
+    return list(extended.values()) + continuations
 
 
 def _until_met(own, met):
@@ -438,8 +438,8 @@ def _measured_across(raster, x, y, nx, ny, min_height, max_height):
         left = np.flatnonzero(~good)
         points = points_about(raster, raster.by_cell, *(v.take(left) for v in (x, y, nx, ny)), half)
         # points on all sides, and few, are what most places lack
-        few, points = _few_all_around(points, len(left), half)
-        left = left[few]
+        suitable, points = _few_all_around(points, len(left), half)
+        left = left[suitable]
         if not len(left):
             continue
         place = tuple(v.take(left) for v in (x, y, nx, ny))

@@ -106,8 +106,8 @@ def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float
         ground = np.flatnonzero(~above)
         x, y, h, cell = (v.take(ground) for v in (x, y, h, cell))
         # in the other cells all points are ground
-        again = np.flatnonzero(parted.take(cell))
-        for old, new in zip((n, total, squares), _sums(cell.take(again), h.take(again), rows * columns)):
+        in_parted = np.flatnonzero(parted.take(cell))
+        for old, new in zip((n, total, squares), _sums(cell.take(in_parted), h.take(in_parted), rows * columns)):
             np.copyto(old, new, where=parted)
     with np.errstate(invalid="ignore", divide="ignore"):
         low = total / n
@@ -149,9 +149,9 @@ def averaged(raster: GroundRaster | None, layer_jump: float) -> GroundRaster | N
     column, row = np.floor(raster.x / RETURN.averaging_cell).astype(np.int64), np.floor(raster.y / RETURN.averaging_cell).astype(np.int64)
     cell = (row - row.min()) * (column.max() - column.min() + 1) + column - column.min()
     count = np.bincount(cell)
-    held = np.flatnonzero(count)
-    count = count[held]
-    x, y, h = (np.bincount(cell, v)[held] / count for v in (raster.x, raster.y, raster.h))
+    occupied = np.flatnonzero(count)
+    count = count[occupied]
+    x, y, h = (np.bincount(cell, v)[occupied] / count for v in (raster.x, raster.y, raster.h))
     mean = ground_raster(x, y, h, layer_jump)
     if mean is None:
         raise ValueError("a raster with points has an average")

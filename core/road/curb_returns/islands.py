@@ -40,13 +40,13 @@ def on_main_islands(points: CurbPoints, survey: Survey,
     across = np.arange(0.0, RETURN.min_road_behind, RETURN.plan_cell)
     for road, sides in (beside or {}).items():
         for side, sign in SIDE_SIGNS.items():
-            whole = np.flatnonzero((points.road == road) & (points.side == side))
-            whole = whole[np.argsort(points.station[whole], kind="stable")]
-            bottoms = whole[(points.part[whole] == "bottom") & (points.status[whole] == "measured")]
-            s, of_whole = points.station[bottoms], points.station[whole]
+            of_side = np.flatnonzero((points.road == road) & (points.side == side))
+            of_side = of_side[np.argsort(points.station[of_side], kind="stable")]
+            bottoms = of_side[(points.part[of_side] == "bottom") & (points.status[of_side] == "measured")]
+            s, side_stations = points.station[bottoms], points.station[of_side]
             heights = points.z[bottoms] - expected_height(survey, road, s), points.height[bottoms]
             for part, distance in island_stretches(s, sign * points.offset[bottoms], *heights, sides[side]):
-                on_islands[whole[stretch_of(of_whole, s[part][0], s[part][-1])]] = True
+                on_islands[of_side[stretch_of(side_stations, s[part][0], s[part][-1])]] = True
                 down = np.flatnonzero(np.isfinite(distance))
                 d = points.offset[bottoms][part][down] + sign * (distance[down] + across[:, None])
                 behind[road].append(np.array(survey.frame.road(road).to_map(np.broadcast_to(s[part][down], d.shape).ravel(), d.ravel())))

@@ -96,8 +96,8 @@ def places_along(line: Road, main: Mapping[str, np.ndarray], gap: float) -> np.n
 def _split(points, gap=CURBS.max_joined_gap):
     if not len(points):
         return []
-    apart = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > RETURN.max_run_jump + np.diff(points[:, 0]))
-    return np.split(points, np.flatnonzero(apart) + 1)
+    breaks = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > RETURN.max_run_jump + np.diff(points[:, 0]))
+    return np.split(points, np.flatnonzero(breaks) + 1)
 
 
 def main_runs(main: Mapping[str, np.ndarray], line: Road) -> list[tuple]:

@@ -56,9 +56,9 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
     if not any(number < 0 for number in survey.store.numbers()):
         return list(curbs)
     met = known.and_steps([curb.steps for curb in curbs])
-    more = [_led_from(curb, at_tail, decimation, road, met) for curb in curbs if not curb.closed and curb.kind in BEYOND_KINDS
-            for at_tail in (True, False)]
-    return [*curbs, *_distinct([curb for curb in more if curb is not None], met)]
+    candidates = [_led_from(curb, at_tail, decimation, road, met) for curb in curbs if not curb.closed and curb.kind in BEYOND_KINDS
+                  for at_tail in (True, False)]
+    return [*curbs, *_distinct([curb for curb in candidates if curb is not None], met)]
 
 
 def _led_from(curb, at_tail, decimation, road, met):
@@ -180,12 +180,12 @@ def _surest(t, u, z, end, course, stop):
     to_arc = np.linalg.inv(np.stack([np.ones(3), stations, 0.5 * stations * stations], axis=1))
     mean, axes = _aside_of_arcs(np.array([course.arc]), stations)[0], RETURN.spread_step * np.eye(3)
     for _ in range(RETURN.spread_rounds):
-        aside = mean + SPREAD_GRID @ axes.T
-        cost = ground.explained(aside @ to_arc.T)[0]
+        offsets = mean + SPREAD_GRID @ axes.T
+        cost = ground.explained(offsets @ to_arc.T)[0]
         weight = np.exp(-0.5 * (cost - cost.min()))
         weight /= weight.sum()
-        mean = weight @ aside
-        spread = (aside - mean).T @ ((aside - mean) * weight[:, None])
+        mean = weight @ offsets
+        spread = (offsets - mean).T @ ((offsets - mean) * weight[:, None])
         size, direction = np.linalg.eigh(spread)
         axes = direction * np.maximum(RETURN.spread_step_sigmas * np.sqrt(np.maximum(size, 0.0)), RETURN.least_spread_step)
     shift, turn, bend = (to_arc @ (mean + ground.foot(to_arc @ mean))).tolist()
@@ -201,11 +201,11 @@ def _best_levels(t, u, z, end, start, stop, about, arcs):
     ground = GroundAboutArc.about(t, u, z, end, start, stop, about)
     if ground is None:
         return None
-    tried = np.stack([v.ravel() + middle for v, middle in zip(np.meshgrid(*arcs, indexing="ij"), about)], axis=1)
-    cost, levels, design, v = ground.explained(tried)
+    trials = np.stack([v.ravel() + middle for v, middle in zip(np.meshgrid(*arcs, indexing="ij"), about)], axis=1)
+    cost, levels, design, v = ground.explained(trials)
     k = int(np.argmin(cost))
     near = np.abs(v[k]) > RETURN.curb_half_width
-    return (float(tried[k, 0]), float(tried[k, 1]), float(tried[k, 2])), levels[k], ground.prior, ground.t, ground.z, design[k], v[k], near
+    return (float(trials[k, 0]), float(trials[k, 1]), float(trials[k, 2])), levels[k], ground.prior, ground.t, ground.z, design[k], v[k], near
 
 
 def _fitted(t, u, z, end, start, stop, about, arcs):
@@ -222,13 +222,13 @@ def _fitted(t, u, z, end, start, stop, about, arcs):
     plain = z - design[:, [0, 1, 3]] @ levels[[0, 1, 3]]
     rise = np.median(plain[high]) - np.median(plain[low])
     middle = np.median(plain[low]) + 0.5 * rise
-    apart = min(np.mean(plain[low] < middle), np.mean(plain[high] > middle))
-    if not RETURN.min_height_share * end.height <= rise <= RETURN.max_height_share * end.height or apart < RETURN.min_level_share:
+    level_share = min(np.mean(plain[low] < middle), np.mean(plain[high] > middle))
+    if not RETURN.min_height_share * end.height <= rise <= RETURN.max_height_share * end.height or level_share < RETURN.min_level_share:
         return None
     # a slope, however steep, must explain the last points worse
-    every = np.ones((1, last.sum()), bool)
-    slope = _cost_of_arcs(_levels_of_arcs(design[None, last][:, :, [0, 1, 3]], z[last], every, np.full(3, 1e-6), np.zeros(3))[1])[0]
-    step = _cost_of_arcs(_levels_of_arcs(design[None, last], z[last], every, prior, levels)[1])[0]
+    all_points = np.ones((1, last.sum()), bool)
+    slope = _cost_of_arcs(_levels_of_arcs(design[None, last][:, :, [0, 1, 3]], z[last], all_points, np.full(3, 1e-6), np.zeros(3))[1])[0]
+    step = _cost_of_arcs(_levels_of_arcs(design[None, last], z[last], all_points, prior, levels)[1])[0]
     if slope - step < CURBS.significant_sigmas**2:
         return None
     residual = z[last] - design[last] @ levels
@@ -247,8 +247,8 @@ def _led(course, end, curb, at_tail, survey, road, line):
     z = end.z + course.levels[0] + course.levels[1] * t
     s, d = line.locate(x, y)
     k = -1 if at_tail else 0
-    lost = ~np.isfinite(s)
-    s, d = np.where(lost, curb.s[k], s), np.where(lost, curb.d[k], d)
+    unlocated = ~np.isfinite(s)
+    s, d = np.where(unlocated, curb.s[k], s), np.where(unlocated, curb.d[k], d)
     ones = np.ones(count)
     low, high = course.support
     steps = PlanSteps(x, y, nx, ny, z - expected_height(survey, road, s), course.levels[2] * ones, 0.0 * ones, course.scatter * ones,
@@ -334,8 +334,8 @@ class GroundAboutArc:
         low, height = residual + design[:, :, 2] * levels[:, 2:3] / RETURN.point_height_sigma, levels[:, 2:3] / RETURN.point_height_sigma
         # the curb itself is as high as either level, or anywhere between them
         residual = np.where(on_level, residual, low - np.clip(low, 0.0, np.maximum(height, 0.0)))
-        trail_t, aside, _ = end.trail
-        off = (aside - _aside_of_arcs(arcs, trail_t)) / RETURN.place_sigma
+        trail_t, trail_u, _ = end.trail
+        off = (trail_u - _aside_of_arcs(arcs, trail_t)) / RETURN.place_sigma
         cost = _cost_of_arcs(residual) + (off**2).mean(axis=1) * min(len(trail_t), RETURN.least_steps) + (arcs[:, 2] / RETURN.arc_bend_sigma)**2
         return cost, levels, design, v
 

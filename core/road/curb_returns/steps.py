@@ -89,10 +89,10 @@ def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
                                      | (turn == RETURN.measuring_rounds - 1))
         proved[candidate[settled]] = True
         parts.append(steps[settled])
-        again = corners["good"] & ~settled
-        if not again.any():
+        unsettled = corners["good"] & ~settled
+        if not unsettled.any():
             break
-        candidate, x, y, nx, ny = candidate[again], steps.x[again], steps.y[again], steps.nx[again], steps.ny[again]
+        candidate, x, y, nx, ny = candidate[unsettled], steps.x[unsettled], steps.y[unsettled], steps.nx[unsettled], steps.ny[unsettled]
     return PlanSteps.join(parts), proved
 
 
@@ -180,9 +180,9 @@ def points_about(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.nda
 def _between(nx, ny, low, high, half):
     """Metres along x between which |u| <= PATCH_HALF_WIDTH and |v| <= half somewhere between `low` and `high` along y."""
     left, right = -np.inf, np.inf
-    for along_x, along_y, most in ((nx, ny, PATCH_HALF_WIDTH), (-ny, nx, half)):
+    for along_x, along_y, reach in ((nx, ny, PATCH_HALF_WIDTH), (-ny, nx, half)):
         along_x = np.where(np.abs(along_x) < 1e-9, 1e-9, along_x)
-        middles, width = (-along_y * low / along_x, -along_y * high / along_x), most / np.abs(along_x)
+        middles, width = (-along_y * low / along_x, -along_y * high / along_x), reach / np.abs(along_x)
         left, right = np.maximum(left, np.minimum(*middles) - width), np.minimum(right, np.maximum(*middles) + width)
     return left, right
 
@@ -206,20 +206,20 @@ def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.n
     """
     near_road = grown(driven, diamond(RETURN.max_cells_from_road))
     row, column = np.nonzero(stepped & near_road)
-    asked = np.ones(len(row), bool)
+    in_reach = np.ones(len(row), bool)
     if wanted is not None:
         x, y = raster.middle(row, column)
-        asked = wanted(x, y)
+        in_reach = wanted(x, y)
         _, square = np.unique(_squares(x, y), return_inverse=True)
-        kept = np.flatnonzero(np.bincount(square, asked)[square])
-        row, column, asked = row[kept], column[kept], asked[kept]
+        kept = np.flatnonzero(np.bincount(square, in_reach)[square])
+        row, column, in_reach = row[kept], column[kept], in_reach[kept]
     ground = np.pad(raster.low, RETURN.patch_cells, constant_values=np.nan)
     parts = [_rises_at(raster, ground, slopes, row[a:a + RETURN.steps_per_batch], column[a:a + RETURN.steps_per_batch], min_height, max_height)
              for a in range(0, len(row), RETURN.steps_per_batch)]
     good, rises = (np.concatenate(column, axis=-1) for column in zip(*parts)) if parts else (np.empty(0, bool), np.empty((5, 0)))
     x, y, nx, ny, cost = rises
     best = _one_of_each_square(x, y, cost)
-    best = best[asked[good][best]]
+    best = best[in_reach[good][best]]
     return x[best], y[best], nx[best], ny[best]
 
 

@@ -301,10 +301,10 @@ def _arc(tail, head, frame, number):
     along = np.linspace(0.0, length, int(np.ceil(length / EDGE.arc_vertex_spacing)) + 1)
     angle = np.clip(along - straight, 0.0, bend) / radius
     ahead = np.minimum(along, straight) + radius * np.sin(angle)
-    aside = radius * (1.0 - np.cos(angle))
-    rest = np.maximum(along - straight - bend, 0.0)
-    ahead, aside = ahead + rest * np.cos(turn), aside + rest * np.sin(turn)
-    plan = tail.place[:2] + ahead[:, None] * tail.out + aside[:, None] * np.array([tail.out[1], -tail.out[0]])
+    sideways = radius * (1.0 - np.cos(angle))
+    after_arc = np.maximum(along - straight - bend, 0.0)
+    ahead, sideways = ahead + after_arc * np.cos(turn), sideways + after_arc * np.sin(turn)
+    plan = tail.place[:2] + ahead[:, None] * tail.out + sideways[:, None] * np.array([tail.out[1], -tail.out[0]])
     vertices = np.round(np.c_[plan, tail.place[2] + along / length * chord[2]], COORDINATE_DECIMALS)
     vertices[0], vertices[-1] = tail.place, head.place
     piece = tail.piece

@@ -128,10 +128,10 @@ class RoadEdges(LayerRows):
         """These edges and further pieces, whose chains are numbered on."""
         if not pieces:
             return self
-        more = joined_pieces(pieces, frame, self.crs)
-        more = replace(more, chain=more.chain + max(self.chain.max(initial=-1), -1) + 1)
-        whole = replace(self, **{name: _joined(getattr(self, name), getattr(more, name)) for name in self.names()})
-        return replace(whole, edge=np.arange(len(whole)))
+        added = joined_pieces(pieces, frame, self.crs)
+        added = replace(added, chain=added.chain + max(self.chain.max(initial=-1), -1) + 1)
+        joined = replace(self, **{name: _joined(getattr(self, name), getattr(added, name)) for name in self.names()})
+        return replace(joined, edge=np.arange(len(joined)))
 
     def on_map(self, frame: RoadFrame) -> np.ndarray:
         """(E,) shapely lines with Z in map coordinates, as the layer holds them."""
@@ -228,9 +228,9 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     first, last = np.searchsorted(places, at - EDGE.scatter_reach), np.searchsorted(places, at + EDGE.scatter_reach, side="right")
     # of a line as long as the road, only the points about the piece
     near = slice(int(first.min()), int(last.max()))
-    few = np.zeros(near.stop - near.start) if support is None else np.where(support[near] > 0, 1.0 / np.maximum(support[near], 1), 0.0)
+    inverse_support = np.zeros(near.stop - near.start) if support is None else np.where(support[near] > 0, 1.0 / np.maximum(support[near], 1), 0.0)
     scatter, spacing = (np.diff(np.append(0.0, np.cumsum(values))[[first - near.start, last - near.start]], axis=0)[0] / np.maximum(last - first, 1)
-                        for values in (np.square(residual[near]), few))
+                        for values in (np.square(residual[near]), inverse_support))
     k = np.clip(np.searchsorted(places, at), 1, len(places) - 1)
     gap = np.clip(np.minimum(at - places[k - 1], places[k] - at), 0.0, None)
     length, into = places[k] - places[k - 1], at - places[k - 1]

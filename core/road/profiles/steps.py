@@ -75,10 +75,10 @@ def _road_before(low, heights, offsets, spacing, rows, columns):
     """
     reach, skip = int(round(CURBS.road_side_length / spacing)), int(round(CURBS.face_margin / spacing))
     # of the occupied cells, those before a cell are a range
-    held = np.zeros(low.size + 1, np.int32)
-    np.cumsum(np.isfinite(low), out=held[1:])
+    filled_before = np.zeros(low.size + 1, np.int32)
+    np.cumsum(np.isfinite(low), out=filled_before[1:])
     start = rows * low.shape[1]
-    first, end = (held.take(start + np.maximum(columns + 1 - back, 0)).astype(np.intp) for back in (reach + skip, skip))
+    first, end = (filled_before.take(start + np.maximum(columns + 1 - back, 0)).astype(np.intp) for back in (reach + skip, skip))
     n = end - first
     bounds = np.c_[first, end].ravel()
     u, z = np.append(offsets, 0.0), np.append(heights, 0.0)
@@ -247,12 +247,12 @@ def _median(rows, count, min_count):
         rows = np.sort(rows, axis=0)
     else:
         # odd-even transposition sort of the layers
-        spare = np.empty_like(rows[0])
+        buffer = np.empty_like(rows[0])
         for turn in range(len(rows)):
             for k in range(turn % 2, len(rows) - 1, 2):
-                np.minimum(rows[k], rows[k + 1], out=spare)
+                np.minimum(rows[k], rows[k + 1], out=buffer)
                 np.maximum(rows[k], rows[k + 1], out=rows[k + 1])
-                rows[k], spare = spare, rows[k]
+                rows[k], buffer = buffer, rows[k]
     middle = np.full(count.shape, np.nan)
     for n in range(int(np.ceil(min_count)), len(rows) + 1):
         np.copyto(middle, 0.5 * (rows[(n - 1) // 2] + rows[n // 2]), where=count == n)
@@ -274,8 +274,8 @@ def _moved(values, k, empty=np.nan):
 def _shifted(values, rows, cells):
     """values[p + rows, c + cells] at every profile and cell, infinite where there is none."""
     out = np.full(values.shape, np.inf)
-    to, of = zip(*(_overlap(size, by) for size, by in zip(values.shape, (rows, cells))))
-    out[to] = values[of]
+    target, source = zip(*(_overlap(size, by) for size, by in zip(values.shape, (rows, cells))))
+    out[target] = values[source]
     return out
 
 

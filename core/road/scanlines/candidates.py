@@ -262,13 +262,13 @@ def _segments_near(lines, row, count, place_row, place_d, across, along):
     """First vertices of the line segments that cross marked cells, and their lines."""
     low, high = lines.d.min(), lines.d.max()
     cells = int((high - low) / SCANLINE.place_cell) + 1
-    marked = np.zeros((count, cells), np.uint8)
-    marked[place_row, np.clip(((place_d - low) / SCANLINE.place_cell).astype(np.int64), 0, cells - 1)] = 1
+    mask = np.zeros((count, cells), np.uint8)
+    mask[place_row, np.clip(((place_d - low) / SCANLINE.place_cell).astype(np.int64), 0, cells - 1)] = 1
     # one cell more, so that every sample has both neighbours, from which its slope is computed
-    aside = int(np.ceil(across / SCANLINE.place_cell)) + 2
-    marked = cv2.dilate(marked, np.ones((2 * along + 1, 2 * aside + 1), np.uint8))
+    cells_across = int(np.ceil(across / SCANLINE.place_cell)) + 2
+    mask = cv2.dilate(mask, np.ones((2 * along + 1, 2 * cells_across + 1), np.uint8))
     before = np.zeros((count, cells + 1), np.int32)
-    np.cumsum(marked, axis=1, out=before[:, 1:])
+    np.cumsum(mask, axis=1, out=before[:, 1:])
     cell = ((lines.d - low) * (1.0 / SCANLINE.place_cell)).astype(np.int32)
     inside = (row >= 0) & (row < count)
     line = np.repeat(np.arange(len(lines)), np.diff(lines.first))
@@ -294,13 +294,13 @@ def _at_equal_steps(lines, heights, segment, line):
     # the end of a line is a sample where a step falls on it
     closing = (segment + 2 == lines.first[1:][line]) & (last * SCANLINE.scanline_resolution <= end)
     number = last + closing - first
-    which = np.repeat(np.arange(len(segment)), number)
-    count = np.arange(len(which)) + (first - (np.cumsum(number) - number)).take(which)
-    share = np.clip((count * SCANLINE.scanline_resolution - begin.take(which)) / np.maximum(end - begin, 1e-9).take(which), 0.0, 1.0)
+    owner = np.repeat(np.arange(len(segment)), number)
+    count = np.arange(len(owner)) + (first - (np.cumsum(number) - number)).take(owner)
+    share = np.clip((count * SCANLINE.scanline_resolution - begin.take(owner)) / np.maximum(end - begin, 1e-9).take(owner), 0.0, 1.0)
     d0, h0 = lines.d.take(segment), heights.take(segment)
-    d = d0.take(which) + share * (lines.d.take(segment + 1) - d0).take(which)
-    h = h0.take(which) + share * (heights.take(segment + 1) - h0).take(which)
-    line = line.take(which)
+    d = d0.take(owner) + share * (lines.d.take(segment + 1) - d0).take(owner)
+    h = h0.take(owner) + share * (heights.take(segment + 1) - h0).take(owner)
+    line = line.take(owner)
     return line, d, h, _steepness(line, count, d, h)
 
 

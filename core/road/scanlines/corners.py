@@ -168,8 +168,8 @@ def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: Scan
         return usual
     # a sloped face is looked for where no upright one is
     wanted = (side.first + candidates.row) * LINE_SEPARATION + candidates.u
-    again = nearest_distance(wanted, usual.profile * LINE_SEPARATION + usual.u) >= SCANLINE.face_half_width
-    sloped = _corners_with_face(near, again, limits.least_slope)
+    without_corner = nearest_distance(wanted, usual.profile * LINE_SEPARATION + usual.u) >= SCANLINE.face_half_width
+    sloped = _corners_with_face(near, without_corner, limits.least_slope)
     sloped.sloped[:] = True
     corners = CurbCorners.join([usual, sloped])
     return corners[np.lexsort((corners.u, corners.profile))]
@@ -182,15 +182,15 @@ class _Surroundings:
         self.side, self.candidates, self.settings, count = side, candidates, settings, len(candidates)
         self.owner, self.s, self.u, self.h, self.steep = owner, _, u, h, _ = _neighbourhood(side, candidates, settings)
         # heights above the line of the road, so that its slope is no part of the rise
-        over = h - candidates.slope.astype(np.float32).take(owner) * u
-        share = over / candidates.step.astype(np.float32).take(owner)
-        road = (u < -SCANLINE.face_clearance) & (share < SCANLINE.max_road_share) & (over > -SCANLINE.gutter_depth)
+        above = h - candidates.slope.astype(np.float32).take(owner) * u
+        share = above / candidates.step.astype(np.float32).take(owner)
+        road = (u < -SCANLINE.face_clearance) & (share < SCANLINE.max_road_share) & (above > -SCANLINE.gutter_depth)
         self.face = np.flatnonzero((np.abs(u) < SCANLINE.face_half_width) & (share > SCANLINE.face_share[0]) & (share < SCANLINE.face_share[1]))
         raised = (u > SCANLINE.face_clearance) & (share > SCANLINE.min_raised_share) \
-            & (over < (candidates.step + SCANLINE.raised_margin).astype(np.float32).take(owner))
+            & (above < (candidates.step + SCANLINE.raised_margin).astype(np.float32).take(owner))
         self.road, self.raised = (_VertexSet(np.flatnonzero(part), owner, count) for part in (road, raised))
         # grass behind a curb scatters more than the road before it
-        self.scatter = np.maximum(candidates.rough, _scatter(owner, over, self.raised.vertices, count))
+        self.scatter = np.maximum(candidates.rough, _scatter(owner, above, self.raised.vertices, count))
 
     def faces(self, least_slope: float) -> _VertexSet:
         """The samples of faces with at least this slope, radians."""

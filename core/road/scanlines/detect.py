@@ -335,7 +335,7 @@ def _drops(lines, track_d, track_z):
     """m from the track down to every line that it crosses."""
     if not len(lines):
         return np.empty(0)
-    under = (lines.d[lines.first[:-1]] <= track_d) & (lines.d[lines.first[1:] - 1] >= track_d)
+    crosses_track = (lines.d[lines.first[:-1]] <= track_d) & (lines.d[lines.first[1:] - 1] >= track_d)
     number = np.arange(len(lines)) * LINE_SEPARATION
     z = np.interp(number + track_d, np.repeat(number, np.diff(lines.first)) + lines.d, lines.z)
-    return (track_z - z)[under]
+    return (track_z - z)[crosses_track]

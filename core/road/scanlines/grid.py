@@ -125,14 +125,14 @@ def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], in
 
 def _heights_of_segments(end, before, ahead, slope, base):
     """Indices in the grid, and heights, of the cells that some segments cross; those of a segment end before cell `end`, of `before` at first."""
-    which = np.zeros(end[-1] - before, np.int32)
-    which[end[:-1] - before] = 1
-    np.cumsum(which, out=which)
-    index = ahead.take(which)
+    owner = np.zeros(end[-1] - before, np.int32)
+    owner[end[:-1] - before] = 1
+    np.cumsum(owner, out=owner)
+    index = ahead.take(owner)
     index += np.arange(before, end[-1])
-    height = slope.take(which)
+    height = slope.take(owner)
     height *= index
-    height += base.take(which)
+    height += base.take(owner)
     return index, height.astype(np.float32)
 
 

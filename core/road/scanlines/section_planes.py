@@ -83,18 +83,18 @@ def scanline_runs(survey: Survey, road: int, start: float, end: float, settings:
         return []
     if lattice is None:
         lattice = find_lattice(survey, settings.rotation_frequency)
-    parts, apart = [], not lattice.mirror_phases
+    parts, unmeshed = [], not lattice.mirror_phases
     if lattice.mirror_phases:
         margin = max(_margin(survey, road, lattice), SCANLINE.min_slice_length, interval)
         window = first * interval - margin, (last - 1) * interval + margin
         records = survey.window(road, *window).records
         for key, run in scanner_runs(records):
             mirror = lattice.mirror_phases.get(key)
-            apart |= mirror is None
+            unmeshed |= mirror is None
             if mirror is not None:
                 parts.append(_cut(run, survey.frame.passes[key[0]], key, mirror, (first, last), settings, intensity,
                                   None if level is None else level(key[0], *window)))
-    if apart:
+    if unmeshed:
         lines = point_scanlines(survey, road, start, end, interval, settings.corridor)
         meshed = [key in lattice.mirror_phases for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())]
         parts += lines[~np.array(meshed, bool)].runs()
@@ -180,10 +180,10 @@ def _planes_through(ribs, planes):
     ribs_cut, planes_cut = [], []
     for ahead in range(int(count.max(initial=0))):
         # most ribs have one intersection
-        again = np.flatnonzero(count > ahead) if ahead else np.arange(len(low))
-        plane = low[again] + ahead if ahead else low
-        inside = np.flatnonzero((plane >= planes[0]) & (plane < planes[1]) & (count[again] > ahead))
-        ribs_cut.append(again[inside])
+        members = np.flatnonzero(count > ahead) if ahead else np.arange(len(low))
+        plane = low[members] + ahead if ahead else low
+        inside = np.flatnonzero((plane >= planes[0]) & (plane < planes[1]) & (count[members] > ahead))
+        ribs_cut.append(members[inside])
         planes_cut.append(plane[inside])
     return (np.concatenate(ribs_cut), np.concatenate(planes_cut)) if ribs_cut else (np.empty(0, np.int64),) * 2
 

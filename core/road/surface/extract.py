@@ -279,9 +279,9 @@ def _level_share(street, first, height, limit, offsets):
         usable = (flanks >= 0) & (flanks < len(height))
         usable[usable] = (offsets[column] > limit[flanks[usable]]) & (offsets[column] > limit[rows[usable]] + SURFACE.flank_depth)
         level.append(height[rows[usable], column] - height[flanks[usable], column])
-    apart = np.abs(np.concatenate(level)) if level else np.empty(0)
-    apart = apart[np.isfinite(apart)]
-    return float((apart < SURFACE.min_flank_step).mean()) if len(apart) else 0.0
+    differences = np.abs(np.concatenate(level)) if level else np.empty(0)
+    differences = differences[np.isfinite(differences)]
+    return float((differences < SURFACE.min_flank_step).mean()) if len(differences) else 0.0
 
 
 def _outermost(cells, offsets):

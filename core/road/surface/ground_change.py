@@ -86,14 +86,14 @@ class HalfProfiles:
         measured = np.flatnonzero(np.isfinite(off[k:k + SURFACE.max_blind_cells + 1]))
         if not len(measured):
             return 0
-        again = k + int(measured[0])
-        behind, inner = slice(again, again + 2 * SURFACE.min_change_cells), slice(max(k - SURFACE.cells_before_blind, 0), k)
+        resumed = k + int(measured[0])
+        behind, inner = slice(resumed, resumed + 2 * SURFACE.min_change_cells), slice(max(k - SURFACE.cells_before_blind, 0), k)
         if np.isfinite(off[behind]).mean() < SURFACE.min_measured_behind \
                 or (np.abs(off[behind]) > SURFACE.max_height_deviation + SURFACE.unevenness_factor * uneven).any():
             return 0
         with np.errstate(invalid="ignore"):
             smooth = known_median(rough[behind], 0) <= SURFACE.roughness_factor * known_median(rough[inner], 0) + SURFACE.roughness_floor
-        return again if smooth else 0
+        return resumed if smooth else 0
 
 
 def _ahead(values, count, fill=np.nan):
@@ -141,15 +141,15 @@ def _turns(u, off, slack):
     at_after, at_inner = np.arange(SURFACE.cells_of_tilt[1]) * size, np.arange(-SURFACE.cells_of_tilt[0], 0) * size
     a, b = np.isfinite(after), np.isfinite(inner)
     level, slope = _lines(at_inner, inner, b)
-    over = np.where(a, after - level[..., None] - slope[..., None] * at_after, np.nan)
-    _, tilt = _lines(at_after, over, a)
+    rise = np.where(a, after - level[..., None] - slope[..., None] * at_after, np.nan)
+    _, tilt = _lines(at_after, rise, a)
     # most cells, not a single one beside an obstacle
-    most = known_median(over / (at_after + 0.5 * size), 2)
+    typical = known_median(rise / (at_after + 0.5 * size), 2)
     with np.errstate(invalid="ignore"):
         # the bank may begin farther out
-        begins = np.abs(over[..., 0]) >= 0.5 * SURFACE.min_tilt_change * size + slack
+        begins = np.abs(rise[..., 0]) >= 0.5 * SURFACE.min_tilt_change * size + slack
         return (b.sum(axis=2) >= SURFACE.min_cells_of_tilt[0]) & (a.sum(axis=2) >= SURFACE.min_cells_of_tilt[1]) & a[..., 0] & begins \
-            & (np.minimum(np.abs(most), np.abs(tilt)) > SURFACE.min_tilt_change)
+            & (np.minimum(np.abs(typical), np.abs(tilt)) > SURFACE.min_tilt_change)
 
 
 def _lines(at, values, known):
@@ -175,9 +175,9 @@ def other_ground_begins(brightness: np.ndarray, stations: np.ndarray, track: np.
 
     Returns (P,) cells; NaN where there is no such ground
     """
-    begins, step, still = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness)).T
+    begins, step, step_at_limit = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness)).T
     brighter = begins >= 0
-    holds = np.flatnonzero(brighter & (still >= SURFACE.lasting_share * step))
+    holds = np.flatnonzero(brighter & (step_at_limit >= SURFACE.lasting_share * step))
     if not len(holds):
         return np.full(len(begins), np.nan)
     # a single profile tells little of how far a strip goes on, which has dark patches and fades with range, but where it begins
@@ -186,7 +186,7 @@ def other_ground_begins(brightness: np.ndarray, stations: np.ndarray, track: np.
     lasting = np.zeros(len(begins), bool)
     for first, end in zip(*_stretches(stations)):
         window = first + _profiles_about(end - first)
-        some = np.where(alike, still - SURFACE.lasting_share * step, np.nan)[window]
+        some = np.where(alike, step_at_limit - SURFACE.lasting_share * step, np.nan)[window]
         lasting[first:end] = alike[first:end] & (alike[window].sum(1) > 0.5 * SURFACE.lasting_profiles) & (known_median(some, 1) >= 0.0)
     return np.where(lasting, course, np.nan)
 
@@ -199,9 +199,9 @@ def _stretches(stations):
 
 def _profiles_about(count):
     """(P, SURFACE.lasting_profiles) int, the profiles nearest to each one; at an end of the road as many on the other side."""
-    several = min(SURFACE.lasting_profiles, count)
-    first = np.clip(np.arange(count) - several // 2, 0, count - several)
-    return first[:, None] + np.arange(several)
+    window = min(SURFACE.lasting_profiles, count)
+    first = np.clip(np.arange(count) - window // 2, 0, count - window)
+    return first[:, None] + np.arange(window)
 
 
 def _brighter_from(brightness, track, limit):
@@ -222,8 +222,8 @@ def _brighter_from(brightness, track, limit):
     rows, begins = np.arange(len(step)), step.argmax(axis=1)
     last = medians[rows, np.clip(np.rint(limit).astype(np.int64), 0, count)]
     brighter = step[rows, begins] >= SURFACE.brighter
-    still = np.where(brighter, last - inner[rows, begins], np.nan)
-    return np.c_[np.where(brighter, begins, -1), np.where(brighter, step[rows, begins], np.nan), still]
+    step_at_limit = np.where(brighter, last - inner[rows, begins], np.nan)
+    return np.c_[np.where(brighter, begins, -1), np.where(brighter, step[rows, begins], np.nan), step_at_limit]
 
 
 # The height of the road, followed outward from the track of the vehicle, cell by cell.
@@ -345,8 +345,8 @@ def smooth_road(road: _RoadHeight, cells: GroundCells) -> np.ndarray:
         ground = road.ground[:, some]
         weight = np.where(ground, np.minimum(cells.count[:, some], 20.0), 0.0)
         off = np.where(ground, np.nan_to_num(cells.height[:, some] - road.height[:, some]), 0.0)
-        for values, whole in ((weight, total), (off * weight, rise)):
-            uniform_filter1d(values, 5, axis=0, mode="nearest", output=whole[:, some])
+        for values, output in ((weight, total), (off * weight, rise)):
+            uniform_filter1d(values, 5, axis=0, mode="nearest", output=output[:, some])
 
     def smoothed(some):
         weights, rises = (uniform_filter1d(values[some], 3, axis=1, mode="nearest") for values in (total, rise))

@@ -237,9 +237,9 @@ def _planes(at, count, u, v, z):
     uu, vv = uu + 1e-4, vv + 1e-4
     determinant = uu * vv - uv * uv
     across, along = (uz * vv - vz * uv) / determinant, (vz * uu - uz * uv) / determinant
-    rest = np.maximum(zz - across * uz - along * vz, 0.0)
+    squares = np.maximum(zz - across * uz - along * vz, 0.0)
     enough, any_ground = count >= SURFACE.min_plane_points, count >= SURFACE.min_layer_points
-    rough = np.sqrt(rest * n / np.maximum(n - 3, 1))
+    rough = np.sqrt(squares * n / np.maximum(n - 3, 1))
     height = np.where(enough, mz - across * mu - along * mv, mz)
     return np.where(any_ground, height, np.nan), np.where(enough, rough, np.nan)
 

@@ -50,9 +50,9 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimit
 
     Returns _PavementLimits
     """
-    whole = np.rint(change).astype(np.int64)
+    change_cell = np.rint(change).astype(np.int64)
     # cells along the edge, so that rows can be averaged where it bends away from the reference line
-    cells = whole[:, None] + np.arange(-SURFACE.road_cells - SURFACE.inner_cells, SURFACE.outer_cells + SURFACE.cells_outside)
+    cells = change_cell[:, None] + np.arange(-SURFACE.road_cells - SURFACE.inner_cells, SURFACE.outer_cells + SURFACE.cells_outside)
     inside_profile = (cells >= 0) & (cells < rows.height.shape[1])
     height, rough, brightness, scatter, count = (np.where(inside_profile,
                                                           np.take_along_axis(values, np.clip(cells, 0, values.shape[1] - 1), 1), np.nan)
@@ -67,7 +67,7 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimit
     costs = weight * np.nan_to_num(np.clip(off, 0.0, SURFACE.max_sigmas) ** 2 - SURFACE.other_sigmas ** 2) / 2
     # cell by cell outward, the cost of counting all cells before it as road
     total = np.concatenate([np.zeros((len(costs), 1)), np.cumsum(costs[:, SURFACE.road_cells:-SURFACE.cells_outside], axis=1)], axis=1)
-    limit = _along(total, whole)
+    limit = _along(total, change_cell)
     window = SURFACE.road_cells + np.arange(-SURFACE.cells_inside, SURFACE.cells_outside)
     window = np.clip(limit, 0, SURFACE.inner_cells + SURFACE.outer_cells)[:, None] + window
     with np.errstate(invalid="ignore"):

@@ -103,11 +103,11 @@ def _clear_of_curbs(lines_of, drawn, rows, stations, curb_lines):
                 pieces = drawn(runs)
                 drawn_lines[runs] = pieces, np.concatenate([_crossings(piece, curb_lines) for piece in pieces])
         # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
-        more = np.concatenate([np.empty(0), *(drawn_lines[runs][1] for runs in lines)])
-        taken = rows & (_distance(stations, more) <= SURFACE.agreeing_length)
-        if not taken.any():
+        crossings = np.concatenate([np.empty(0), *(drawn_lines[runs][1] for runs in lines)])
+        crossing = rows & (_distance(stations, crossings) <= SURFACE.agreeing_length)
+        if not crossing.any():
             return [drawn_lines[runs][0] for runs in lines]
-        rows = rows & ~taken
+        rows = rows & ~crossing
 
 
 def _distance(places, others):

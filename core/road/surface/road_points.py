@@ -186,15 +186,15 @@ class _SurfaceTables:
         cell, v = _steps(d, self.d0, SURFACE.column_width)
         row *= np.int32(self.columns)
         cell += row
-        rest, across, along, twist = (table.take(cell, mode="clip") for table in self.tables)
+        surface, across, along, twist = (table.take(cell, mode="clip") for table in self.tables)
         twist *= v
         along += twist
         along *= u
         across *= v
-        rest += across
-        rest += along
+        surface += across
+        surface += along
         rise = z - self.corner.take(cell, mode="clip")
-        rise = rise - rest
+        rise = rise - surface
         d = d.astype(np.float32)
         inside = d < left
         inside &= d > right
@@ -232,7 +232,7 @@ def _line(start, slope, half, u):
 def _half_rows(limit):
     """(start, slope) of a limit in each half row, (2 (R - 1),) float32 each: start + slope * u with u from 0 to 1 between rows."""
     before, after = limit[:-1], limit[1:]
-    whole = np.isfinite(before) & np.isfinite(after)
-    slope = np.where(whole, after - before, 0.0)
-    start = np.stack([before, np.where(whole, before, after)], axis=1)
+    complete = np.isfinite(before) & np.isfinite(after)
+    slope = np.where(complete, after - before, 0.0)
+    start = np.stack([before, np.where(complete, before, after)], axis=1)
     return start.ravel().astype(np.float32), np.repeat(slope, 2).astype(np.float32)

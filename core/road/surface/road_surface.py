@@ -104,11 +104,11 @@ def _as_far_as_measured(there, points):
     measured = there.copy()
     cuts = np.r_[0, np.flatnonzero(np.diff(there.astype(int))) + 1, len(there)]
     for a, b in zip(cuts[:-1], cuts[1:]):
-        held = np.flatnonzero(points[a:b])
+        filled = np.flatnonzero(points[a:b])
         if there[a]:
             measured[a:b] = False
-            if len(held):
-                measured[a + held[0]:a + held[-1] + 1] = True
+            if len(filled):
+                measured[a + filled[0]:a + filled[-1] + 1] = True
     return measured
 
 
