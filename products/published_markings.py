@@ -274,8 +274,8 @@ def dense_enough(records: Columns, own: np.ndarray, settings: PointSegments) -> 
     places = np.c_[records["s"], records["d"]] * COORDINATE_SCALE
     rows = np.flatnonzero(own)
     # points at one place have the same neighbours: where a cloud holds points several times, each place is searched once
-    asked, member = occupied(records["s"].take(rows), records["d"].take(rows))
-    count = cKDTree(places).query_ball_point(asked * COORDINATE_SCALE, settings.radius, return_length=True).take(member) - 1
+    distinct, member = occupied(records["s"].take(rows), records["d"].take(rows))
+    count = cKDTree(places).query_ball_point(distinct * COORDINATE_SCALE, settings.radius, return_length=True).take(member) - 1
     segment = _segments(records, settings)[rows]
     for number in np.unique(segment):
         members = np.flatnonzero(segment == number)

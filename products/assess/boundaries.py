@@ -206,7 +206,7 @@ def _judge(keys, groups, nearest, signed, settings, reasons):
     covered = np.bincount(_bins(result_group)[0], minlength=count) * COVERAGE_BIN
     valid = reference_group.interval >= 0
     reference = np.bincount(reference_group.interval[valid], reference_group.points.length[valid], count)
-    has, partial = reference >= settings.coverage * step, (reference > 0) & (reference < settings.coverage * step)
+    enough, partial = reference >= settings.coverage * step, (reference > 0) & (reference < settings.coverage * step)
     why = np.full(count, "", object)
     why[partial] = "the reference covers less than half of the interval"
     left_out, cause = _excluded(reference_group, excluded_group, count, step)
@@ -218,16 +218,16 @@ def _judge(keys, groups, nearest, signed, settings, reasons):
     for k, tolerance in enumerate(settings.tolerances):
         within = np.bincount(rows, distance <= tolerance, count)
         good = (covered >= settings.coverage * step - 1e-9) & (within >= settings.agreement * np.maximum(number, 1))
-        hit[:, k] = judged & has & good
+        hit[:, k] = judged & enough & good
         long = np.bincount(rows, result_group.points.length[inside], count) > MIN_FALSE_SHARE * step
-        false[:, k] = judged & np.where(has, ~good & (number > 0), long)
+        false[:, k] = judged & np.where(enough, ~good & (number > 0), long)
     size = np.abs(signed[inside])
     largest = np.full(count, -np.inf)
     np.maximum.at(largest, rows, np.where(np.isfinite(size), size, -np.inf))
     largest[~np.isfinite(largest)] = NAN
     rise = (result_group.points.z - nearest.z)[inside]
     return _BoundaryIntervals(keys[:, 0], keys[:, 1], keys[:, 2] * step, reference, np.minimum(covered, step), why,
-                             judged & has, hit, false, _mean(rows, signed[inside], count), largest, _mean(rows, rise, count))
+                             judged & enough, hit, false, _mean(rows, signed[inside], count), largest, _mean(rows, rise, count))
 
 
 def _mean(rows, values, count):

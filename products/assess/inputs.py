@@ -198,14 +198,14 @@ def edges_that_compare(result: AssessedLayer, reference: AssessedLayer, edges: s
     named = [_what_edges_are(layer) for layer in (result, reference)]
     pavement = [names == PAVEMENT for names in named]
     curbs_alone = bool(np.isin(named[1], CURBS).any() and not pavement[1].any())
-    every = list(range(len(reference.geometries)))
+    all_rows = list(range(len(reference.geometries)))
     if edges == "all" or not (pavement[0].any() or pavement[1].any()):
-        return result, reference, every
+        return result, reference, all_rows
     if edges == "automatic" and not curbs_alone:
         if not np.isin(named[1], (*CURBS, PAVEMENT)).any():
             warn(f"{result.label} holds {_length(result, pavement[0]):.0f} m of edges of the pavement without a curb, and {reference.label} does "
                  "not say what its lines are. If it holds curbs alone, choose curbs as the edges to judge.")
-        return result, reference, every
+        return result, reference, all_rows
     if pavement[0].any():
         warn(f"{result.label} holds {_length(result, pavement[0]):.0f} m of edges of the pavement without a curb; they are not judged, as the curbs "
              f"of {reference.label} cannot tell whether they are right.")

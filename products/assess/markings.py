@@ -315,8 +315,8 @@ def _covering_tiles(polygons: Sequence[Any], cell_size: float, margin: int) -> l
 
 def _tile_bounds(tile: tuple[int, int], cell_size: float, margin: int = 0) -> tuple[float, float, float, float]:
     """(min x, min y, max x, max y) of a tile with `margin` cells around it."""
-    side, more = BURN_TILE * cell_size, margin * cell_size
-    return tile[0] * side - more, tile[1] * side - more, (tile[0] + 1) * side + more, (tile[1] + 1) * side + more
+    side, border = BURN_TILE * cell_size, margin * cell_size
+    return tile[0] * side - border, tile[1] * side - border, (tile[0] + 1) * side + border, (tile[1] + 1) * side + border
 
 
 class OutcomeRaster:

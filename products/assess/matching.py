@@ -49,13 +49,13 @@ def sample_lines(lines: Sequence[shapely.LineString], step: float = LINE_SAMPLE_
         return LinePoints(np.empty((0, 2)), none, np.empty(0, int), none, none, none)
     total = shapely.length(np.asarray(lines, object))
     count = np.maximum(np.ceil(total / step - 1e-9).astype(int), 1)
-    which = np.repeat(np.arange(len(lines)), count)
-    piece = (total / count)[which]
-    number = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+    line = np.repeat(np.arange(len(lines)), count)
+    piece = (total / count)[line]
+    number = np.arange(len(line)) - np.repeat(np.cumsum(count) - count, count)
     segments = SegmentIndex(lines)
     station = (number + 0.5) * piece
-    xy, z = segments.at(which, station)
-    return LinePoints(xy, z, which, station, piece, segments.heading_at(which, station))
+    xy, z = segments.at(line, station)
+    return LinePoints(xy, z, line, station, piece, segments.heading_at(line, station))
 
 
 def constant_runs(points: LinePoints, key: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -94,7 +94,7 @@ def _missing_way(lanes, group, entry, exit):
     entries, exits = _arm(lanes, entry, -1), _arm(lanes, exit, 0)
     if abs(turn) > MOST_TURNED or _is_led_to(lanes, entries, exits):
         return None
-    first, last = (next(way.row for way in group if way[which] == row) for which, row in ((1, entry), (2, exit)))
+    first, last = (next(way.row for way in group if way[field] == row) for field, row in ((1, entry), (2, exit)))
     borders = _joined(lanes.borders(first), lanes.borders(last))
     if borders is None:
         if abs(turn) > LEAST_TURNED:   # arms are sorted from right to left

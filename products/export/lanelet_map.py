@@ -238,9 +238,9 @@ def _tag_number(tags, name, element):
     """A tag's number, NaN where there is none."""
     if name not in tags:
         return np.nan
-    made = XmlElement("tag", None, "", element.line)
-    made.attributes[name] = tags[name]
-    return made.number(name)
+    tag = XmlElement("tag", None, "", element.line)
+    tag.attributes[name] = tags[name]
+    return tag.number(name)
 
 
 def _check_degrees(places, ids):
@@ -348,10 +348,10 @@ def matched(left: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray
     for border in (left, right):
         along = np.append(0.0, np.cumsum(np.hypot(*np.diff(border[:, :2], axis=0).T)))
         shares.append(along / along[-1] if along[-1] > 0 else np.linspace(0, 1, len(border)))
-    every = np.unique(np.concatenate(shares))
-    every = every[np.append(True, np.diff(every) > 1e-9)]
-    every[-1] = 1.0
-    return tuple(np.stack([np.interp(every, share, values) for values in border.T], axis=1)     # type: ignore[return-value]
+    merged = np.unique(np.concatenate(shares))
+    merged = merged[np.append(True, np.diff(merged) > 1e-9)]
+    merged[-1] = 1.0
+    return tuple(np.stack([np.interp(merged, share, values) for values in border.T], axis=1)     # type: ignore[return-value]
                  for border, share in zip((left, right), shares))
 
 

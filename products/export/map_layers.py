@@ -170,11 +170,11 @@ def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
 
     What lies beyond the end of a border of the source is left out: an export ends lanes square to the road.
     """
-    ours, theirs = ([border for k in range(len(lanes)) for border in lanes.borders(k)] for lanes in (source, exported))
-    ends = [end for border in ours for end in (_gone_on(border), _gone_on(border[::-1]))]
-    missed_ours, missed_theirs = (_distances(_joined(ours), _segments(theirs)),
-                                  _distances(_joined(theirs), _segments(ours, True), apart_from=_segments(ends)))
-    across, rise = (_summary(np.concatenate(misses)) for misses in zip(missed_ours, missed_theirs))
+    source_borders, exported_borders = ([border for k in range(len(lanes)) for border in lanes.borders(k)] for lanes in (source, exported))
+    ends = [end for border in source_borders for end in (_gone_on(border), _gone_on(border[::-1]))]
+    misses_of_source, misses_of_exported = (_distances(_joined(source_borders), _segments(exported_borders)),
+                                  _distances(_joined(exported_borders), _segments(source_borders, True), apart_from=_segments(ends)))
+    across, rise = (_summary(np.concatenate(misses)) for misses in zip(misses_of_source, misses_of_exported))
     return across, rise
 
 
@@ -223,16 +223,16 @@ def _distances(places, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
 
     apart_from : (K, 7) segments; places to which one of them is nearer are left out
     """
-    every = np.concatenate([segments, apart_from])
-    points, tree = shapely.points(places[:, :2]), shapely.STRtree(shapely.linestrings(every[:, :6].reshape(-1, 2, 3)[:, :, :2]))
-    which, near = tree.query(points, predicate="dwithin", distance=SAME_BORDER)
-    first, last = every[near, :3], every[near, 3:6]
+    all_segments = np.concatenate([segments, apart_from])
+    points, tree = shapely.points(places[:, :2]), shapely.STRtree(shapely.linestrings(all_segments[:, :6].reshape(-1, 2, 3)[:, :, :2]))
+    indices, near = tree.query(points, predicate="dwithin", distance=SAME_BORDER)
+    first, last = all_segments[near, :3], all_segments[near, 3:6]
     run = (last - first)[:, :2]
-    share = np.clip(((places[which, :2] - first[:, :2]) * run).sum(1) / np.maximum((run**2).sum(1), 1e-12), 0.0, 1.0)
-    distance, mine = np.hypot(*(places[which] - first - share[:, None] * (last - first)).T[:2]), near < len(segments)
+    share = np.clip(((places[indices, :2] - first[:, :2]) * run).sum(1) / np.maximum((run**2).sum(1), 1e-12), 0.0, 1.0)
+    distance, counted = np.hypot(*(places[indices] - first - share[:, None] * (last - first)).T[:2]), near < len(segments)
     across, left_out = np.full((2, len(places)), np.inf)
-    np.minimum.at(across, which[mine], distance[mine] - segments[near[mine], 6])
-    np.minimum.at(left_out, which[~mine], distance[~mine])
+    np.minimum.at(across, indices[counted], distance[counted] - segments[near[counted], 6])
+    np.minimum.at(left_out, indices[~counted], distance[~counted])
     far = np.flatnonzero(np.isinf(across) & np.isinf(left_out))   # the nearest of all segments is looked for only where none lies near
     across[left_out < across] = np.inf
     pairs, distance = tree.query_nearest(points[far], max_distance=None if np.isinf(farthest) else farthest, return_distance=True, all_matches=False)
@@ -240,7 +240,7 @@ def _distances(places, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
     across[far[pairs[0, nearest]]] = distance[nearest] - segments[pairs[1, nearest], 6]
     # where borders of several roads lie on each other, the one at the place's own height is its own
     rise = np.full(len(places), np.inf)
-    np.minimum.at(rise, which[mine], np.abs(places[which, 2] - first[:, 2] - share * (last - first)[:, 2])[mine])
+    np.minimum.at(rise, indices[counted], np.abs(places[indices, 2] - first[:, 2] - share * (last - first)[:, 2])[counted])
     rise[np.isinf(across)] = np.inf
     return np.maximum(across[np.isfinite(across)], 0.0), rise[np.isfinite(rise)]
 

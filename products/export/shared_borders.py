@@ -37,8 +37,8 @@ class SharedBorders:
 
 def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
     """A road map whose lanes share their borders, with a note for the user where one was moved by more than a line is wide."""
-    met = meet_lanes(source.lanes)
-    shared = share_borders(met)
+    joined = meet_lanes(source.lanes)
+    shared = share_borders(joined)
     notes = list(source.notes)
     if shared.moved > TOLD_MOVE:
         notes.append(f"Maps have one border between two lanes: facing borders, as of a double line, were led along their middle, moved by up to "
@@ -50,7 +50,7 @@ def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
         x, y, _ = source.lanes.left[row]
         notes.append(f"Lanes of the map do not lead on at one height; their borders were led to the middle, moved by up to {rise.max():.2f} m at "
                      f"lane {name} near x {x:.1f}, y {y:.1f}. Correct the heights where the map was made.")
-    return replace(source, lanes=shared.lanes, gaps=shared.gaps, middles=(met.left + met.right) / 2, notes=notes)
+    return replace(source, lanes=shared.lanes, gaps=shared.gaps, middles=(joined.left + joined.right) / 2, notes=notes)
 
 
 def meet_lanes(lanes: Lanes) -> Lanes:
@@ -158,10 +158,10 @@ def cuts_beside(lanes: Lanes, left: np.ndarray, right: np.ndarray, among: np.nda
     while True:
         numbers = np.array(sorted(cuts))
         one_sided = np.flatnonzero((np.isin(left, numbers) ^ np.isin(right, numbers)) & among)
-        more = (set(left[one_sided].tolist()) | set(right[one_sided].tolist())) - cuts
-        if not more:
+        new_cuts = (set(left[one_sided].tolist()) | set(right[one_sided].tolist())) - cuts
+        if not new_cuts:
             return cuts
-        cuts |= more
+        cuts |= new_cuts
 
 
 def _levels(lanes, nodes, rows):
@@ -212,9 +212,9 @@ def _facing(lanes, nodes, places):
         good = (np.einsum("ij,ij->i", inward[a], inward[b]) < -0.8) & (beyond > -MOST_LANE_OVERLAP) & (along < SAME_SECTION_ALONG)
         good &= (np.abs(gap[:, 2]) < SAME_ROAD_RISE) & (distance[rows] < least[a])
         best[a[good]], least[a[good]], gaps[a[good]] = b[good], distance[rows][good], beyond[good]
-    mine = np.flatnonzero(best >= 0)
-    mine = mine[(best[best[mine]] == mine) & (mine < best[mine])]
-    return np.stack([mine, best[mine]], axis=1), gaps[mine]
+    mutual = np.flatnonzero(best >= 0)
+    mutual = mutual[(best[best[mutual]] == mutual) & (mutual < best[mutual])]
+    return np.stack([mutual, best[mutual]], axis=1), gaps[mutual]
 
 
 def _faded(lanes, nodes, places, pairs, move):
@@ -260,8 +260,8 @@ def with_driven_middles(source: RoadMapSource, most: float) -> RoadMapSource:
     across = (lanes.left - lanes.right)[:, :2]
     across = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]
     middles = source.middles if source.middles is not None else (lanes.left + lanes.right) / 2
-    wanted = _beside(source, middles[:, :2], across)
-    rows = np.flatnonzero(np.isfinite(wanted))
+    offsets = _beside(source, middles[:, :2], across)
+    rows = np.flatnonzero(np.isfinite(offsets))
     if not len(rows):
         return source
     nodes, first = numbered(np.concatenate([lanes.left, lanes.right]))
@@ -270,13 +270,13 @@ def with_driven_middles(source: RoadMapSource, most: float) -> RoadMapSource:
     way = np.zeros((len(first), 2))
     way[sides] = lateral
     turned = np.sign((lateral * way[sides]).sum(1))   # neighbours may be driven against each other
-    asked, move = np.maximum(np.bincount(sides, minlength=len(first)), 1), np.zeros(len(first))
+    counts, move = np.maximum(np.bincount(sides, minlength=len(first)), 1), np.zeros(len(first))
     for _ in range(ROUNDS):
         shift = (turned * move[sides]).reshape(2, -1).mean(0)
-        change = np.bincount(sides, turned * np.tile(wanted[rows] - shift, 2), minlength=len(first))
-        move = np.clip(move + change / asked, -most, most)
+        change = np.bincount(sides, turned * np.tile(offsets[rows] - shift, 2), minlength=len(first))
+        move = np.clip(move + change / counts, -most, most)
     way = way * move[:, None]
-    moved = [np.c_[side[:, :2] + way[of], side[:, 2]] for side, of in ((lanes.left, left), (lanes.right, right))]
+    moved = [np.c_[side[:, :2] + way[numbers], side[:, 2]] for side, numbers in ((lanes.left, left), (lanes.right, right))]
     return replace(source, lanes=replace(lanes, left=moved[0], right=moved[1]))
 
 
@@ -288,9 +288,9 @@ def _beside(source, middles, across):
     if not lines or not len(driven):
         return offsets
     lines, points = shapely.force_2d(np.array(lines, object)), shapely.points(middles[driven])
-    which, line = shapely.STRtree(lines).query_nearest(points, max_distance=NEAR_LINE, all_matches=False)
-    foot = shapely.get_coordinates(shapely.line_interpolate_point(lines[line], shapely.line_locate_point(lines[line], points[which])))
-    rows = driven[which]
+    indices, line = shapely.STRtree(lines).query_nearest(points, max_distance=NEAR_LINE, all_matches=False)
+    foot = shapely.get_coordinates(shapely.line_interpolate_point(lines[line], shapely.line_locate_point(lines[line], points[indices])))
+    rows = driven[indices]
     vectors = foot - middles[rows]
     abreast = np.abs(vectors[:, 0] * across[rows, 1] - vectors[:, 1] * across[rows, 0]) < np.abs((vectors * across[rows]).sum(1)) + 1e-3
     offsets[rows[abreast]] = (vectors * across[rows]).sum(1)[abreast]

@@ -194,8 +194,8 @@ class NearestValues:
         """(N,) numbers nearest to (N, 2) points, NaN where none lies within `farthest` metres."""
         values = np.full(len(points), np.nan)
         if len(self._values) and len(points):
-            which, part = self._tree.query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
-            values[which] = self._values[part]
+            indices, part = self._tree.query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
+            values[indices] = self._values[part]
         return values
 
 
@@ -267,9 +267,9 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
         heights.append(np.asarray(points.z, float)[near])
     owner, height = np.concatenate([np.empty(0, int), *owners]), np.concatenate([np.empty(0), *heights]) + origin[2]
     # vertices of neighbours lie at one place, of which the tree gives the points to one
-    same, which = np.unique(np.round(vertices[:, :2], 3), axis=0, return_inverse=True)
-    which = which.ravel()
-    group = which[owner]
+    same, location = np.unique(np.round(vertices[:, :2], 3), axis=0, return_inverse=True)
+    location = location.ravel()
+    group = location[owner]
     order = np.lexsort((height, group))
     group, height = group[order], height[order]
     counts = np.bincount(group, minlength=len(same))
@@ -280,10 +280,10 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
                                   "survey, or leave them out.")
     median = np.full(len(same), np.nan)
     median[enough] = height[(first + counts // 2)[enough]]
-    change = median[which] - vertices[:, 2]
+    change = median[location] - vertices[:, 2]
     change[~(np.abs(change) < MOST_CHANGE)] = np.nan
     borders = np.c_[vertices[:, :2], vertices[:, 2] + _along_borders(change, vertices, lanes.start)]
-    return replace(lanes, left=borders[:len(lanes.left)], right=borders[len(lanes.left):]), float(enough[which].mean())
+    return replace(lanes, left=borders[:len(lanes.left)], right=borders[len(lanes.left):]), float(enough[location].mean())
 
 
 def _along_borders(change, vertices, start):

@@ -126,28 +126,28 @@ def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers()
     """
     borders = RoadBorders(layers, survey.frame, country(settings.country))
     stretch = min(settings.interval, STRETCH)
-    wanted = [(road, float(s)) for road in survey.store.roads() for s in _stations(survey, road, settings.interval)]
-    if not wanted:
+    stations = [(road, float(s)) for road in survey.store.roads() for s in _stations(survey, road, settings.interval)]
+    if not stations:
         raise RoadExtractionError(
             f"No section lies on the road: it is shorter than the interval of {settings.interval:g} m. Choose a smaller interval.")
     errors = {}
     roads = survey.store.roads()
     for k, road in enumerate(roads):
         part = progress.part(0.4 * k / len(roads), 0.4 * (k + 1) / len(roads))
-        errors[road] = _height_errors(survey, road, [s for number, s in wanted if number == road], borders, stretch, part)
+        errors[road] = _height_errors(survey, road, [s for number, s in stations if number == road], borders, stretch, part)
     result = RoadSections([], errors, survey.frame, survey.crs, settings)
 
     def measure(place):
         return _section(survey, *place, borders, errors[place[0]], settings.interval, stretch)
 
-    for section, noisy in ordered_map(measure, wanted, progress.part(0.4, 1.0)):
+    for section, noisy in ordered_map(measure, stations, progress.part(0.4, 1.0)):
         result.without_ruts += noisy
         if section is not None:
             result.sections.append(section)
     if not result.sections:
         raise RoadExtractionError("No section saw a carriageway: the layers given lie on none of the driven roads. Choose those of this survey.")
-    elsewhere = " At the others the layers do not tell where the carriageway ends, or too little of it was seen."
-    progress.info(f"Cross-sections measured at {len(result.sections)} of {len(wanted)} stations.{elsewhere * (len(result.sections) < len(wanted))}")
+    note = " At the others the layers do not tell where the carriageway ends, or too little of it was seen."
+    progress.info(f"Cross-sections measured at {len(result.sections)} of {len(stations)} stations.{note * (len(result.sections) < len(stations))}")
     _say(result, progress)
     return result
 
@@ -260,11 +260,11 @@ def _plane(grid, heights, strip):
     weight, x = np.ones(len(d)), np.zeros(design.shape[1])
     for _ in range(8):
         x = np.linalg.lstsq(design * np.sqrt(weight)[:, None], h * np.sqrt(weight), rcond=None)[0]
-        off = h - design @ x
-        scale = max(2.0 * MAD_TO_SIGMA * float(np.median(np.abs(off))), 0.003)
-        weight = 1.0 / (1.0 + (off / scale) ** 2)
+        residual = h - design @ x
+        scale = max(2.0 * MAD_TO_SIGMA * float(np.median(np.abs(residual))), 0.003)
+        weight = 1.0 / (1.0 + (residual / scale) ** 2)
     # profiles repeat along the road: what the surface leaves of a line across counts once, not once for every slice
-    sigma = MAD_TO_SIGMA * float(np.median(np.abs(off))) * np.sqrt(12.0) / (strip.width * np.sqrt(max(len(np.unique(columns)), 1)))
+    sigma = MAD_TO_SIGMA * float(np.median(np.abs(residual))) * np.sqrt(12.0) / (strip.width * np.sqrt(max(len(np.unique(columns)), 1)))
     along = float(x[2]) if len(x) > 2 else 0.0
     fitted = x[0] + x[1] * (grid.d - middle) + along * (grid.s - s.mean())[:, None]
     return _Plane(float(x[1]), along, sigma, heights - fitted)
@@ -317,11 +317,11 @@ def _clear_of(points, above, strips):
 def _curbs(d, profile, strip):
     """(right, left) heights of the curbs: the ground just outside the edge above the road's own, continued to the edge."""
     heights = []
-    for edge, outward, may_be in ((strip.right, -1.0, strip.curbs[0]), (strip.left, 1.0, strip.curbs[1])):
+    for edge, outward, is_curb in ((strip.right, -1.0, strip.curbs[0]), (strip.left, 1.0, strip.curbs[1])):
         u = outward * (d - edge)
         road = np.isfinite(profile) & (u < -CURB_INSIDE[0]) & (u > -CURB_INSIDE[1])
         top = np.isfinite(profile) & (u > CURB_OUTSIDE[0]) & (u < CURB_OUTSIDE[1])
-        if not may_be or min(road.sum(), top.sum()) < MIN_CURB_CELLS:
+        if not is_curb or min(road.sum(), top.sum()) < MIN_CURB_CELLS:
             heights.append(np.nan)
             continue
         slope, level = np.polyfit(u[road], profile[road], 1)

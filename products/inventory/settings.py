@@ -37,15 +37,15 @@ class CrossSectionSettings:
         check_limits(self)
         limits = self.limits()
         if limits.min_crossfall is not None and limits.max_crossfall is not None and limits.min_crossfall > limits.max_crossfall:
-            least, most = ("" if given else f" in the rules of {self.country}" for given in (self.min_crossfall, self.max_crossfall))
+            least, most = ("" if user_limit else f" in the rules of {self.country}" for user_limit in (self.min_crossfall, self.max_crossfall))
             raise RoadExtractionError(
                 f"The least crossfall is {limits.min_crossfall:g} %{least}, the greatest {limits.max_crossfall:g} %{most}: no lane can keep both. "
                 "Set both limits so that the least is below the greatest.")
 
     def limits(self) -> SectionLimits:
         """The limits that hold: the user's own, else the country's; None where neither has one."""
-        theirs = country(self.country).section_limits
-        return SectionLimits(**{name: getattr(self, name) or getattr(theirs, name) for name in SectionLimits.NAMES}, sources=theirs.sources)
+        national = country(self.country).section_limits
+        return SectionLimits(**{name: getattr(self, name) or getattr(national, name) for name in SectionLimits.NAMES}, sources=national.sources)
 
 
 # Settings of the roadside.

@@ -111,11 +111,11 @@ def _grid_of_points(points: Points, road: int, start: float, slices: int, offset
     owner = group_cell[first]
     count.flat[owner] = n
     height.flat[owner] = middle
-    off = np.abs(h - np.repeat(middle, n))
-    of = group_cell // (slices * columns)
+    deviation = np.abs(h - np.repeat(middle, n))
+    group_number = group_cell // (slices * columns)
     rich = np.repeat(n, n) >= SCATTER_POINTS
     for g in range(len(groups)):
-        deviations = off[(of == g) & rich]
+        deviations = deviation[(group_number == g) & rich]
         # mean absolute deviation of a normal distribution: sigma * sqrt(2 / pi), a median's own n costs one degree of freedom
         sigma[g] = np.sqrt(np.pi / 2) * float(np.minimum(deviations, ROAD_LAYER_JUMP).mean()) if len(deviations) else 0.0
     return SurfaceGrid(road, start, offsets[0], base, slope, groups, height, count, sigma)
@@ -125,9 +125,9 @@ def _slope_within(cell, ahead, h):
     """Slope along the road that the points of the cells have in common, beyond that of the line."""
     if len(cell) < SPREAD_SAMPLE:
         return 0.0
-    _, of, n = np.unique(cell, return_inverse=True, return_counts=True)
-    of = of.ravel()
-    x, y = (v - (np.bincount(of, v) / n)[of] for v in (ahead, h))
+    _, owner, n = np.unique(cell, return_inverse=True, return_counts=True)
+    owner = owner.ravel()
+    x, y = (v - (np.bincount(owner, v) / n)[owner] for v in (ahead, h))
     near = np.abs(y) < ROAD_LAYER_JUMP
     return float((x[near] * y[near]).sum() / max((x[near] ** 2).sum(), 1e-9))
 
@@ -227,8 +227,8 @@ def _line(x, y):
         mean = np.average(x, weights=weight), np.average(y, weights=weight)
         slope = (weight * (x - mean[0]) * (y - mean[1])).sum() / max((weight * (x - mean[0]) ** 2).sum(), 1e-9)
         level = mean[1] - slope * mean[0]
-        off = y - level - slope * x
-        weight = 1.0 / (1.0 + (off / max(2.0 * float(np.median(np.abs(off))), STEP_SIGMA)) ** 2)
+        residual = y - level - slope * x
+        weight = 1.0 / (1.0 + (residual / max(2.0 * float(np.median(np.abs(residual))), STEP_SIGMA)) ** 2)
     return float(level), float(slope)
 
 
@@ -267,8 +267,8 @@ def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> Heig
         if np.isfinite(overlap.tilt):
             rows.append((*tilt, overlap.tilt, TILT_SIGMA * max(MIN_OVERLAP_WIDTH / overlap.width, 0.2)))
     size = 2 * G * W + len(scanners)
-    of = np.repeat(np.arange(len(rows)), [len(row[0]) for row in rows])
-    design = sparse.csr_matrix((np.concatenate([row[1] for row in rows]), (of, np.concatenate([row[0] for row in rows]))), (len(rows), size))
+    equation = np.repeat(np.arange(len(rows)), [len(row[0]) for row in rows])
+    design = sparse.csr_matrix((np.concatenate([row[1] for row in rows]), (equation, np.concatenate([row[0] for row in rows]))), (len(rows), size))
     value, sigma = (np.array([row[k] for row in rows]) for k in (2, 3))
     prior = _prior(G, W, len(scanners))
     weight, x = np.ones(len(rows)), np.zeros(size)
@@ -403,8 +403,8 @@ def _hull_height(x: np.ndarray, heights: np.ndarray) -> np.ndarray:
     level = np.where(finite, heights, 0.0)
     n = np.maximum(finite.sum(axis=1), 1)
     mean_x, mean_z = (finite * centred).sum(axis=1) / n, level.sum(axis=1) / n
-    off = np.where(finite, centred - mean_x[:, None], 0.0)
-    slope = (off * level).sum(axis=1) / np.maximum((off**2).sum(axis=1), 1e-9)
+    offset = np.where(finite, centred - mean_x[:, None], 0.0)
+    slope = (offset * level).sum(axis=1) / np.maximum((offset**2).sum(axis=1), 1e-9)
     flat = np.where(finite, heights - mean_z[:, None] - slope[:, None] * (centred - mean_x[:, None]), -np.inf)
     steep = np.arange(FINE_SLOPE + COARSE_STEP, STEEPEST + COARSE_STEP / 2, COARSE_STEP)
     slopes = np.r_[-steep, np.arange(-FINE_SLOPE, FINE_SLOPE + FINE_STEP / 2, FINE_STEP), steep]

@@ -187,8 +187,8 @@ def _guess_columns(rows: Sequence[Sequence[Any]], image: SourceImage, what: str)
         if len(columns) < len(order) or not np.isfinite(values[:, [columns[key] for key in REQUIRED_COLUMNS]]).all():
             continue
         inside = image.holds(values[:, columns["pixel"]], np.abs(values[:, columns["line"]]), 1.0).all()
-        elsewhere = not image.holds(values[:, columns["easting"]], np.abs(values[:, columns["northing"]]), 1.0).all()
-        if inside and elsewhere:
+        outside = not image.holds(values[:, columns["easting"]], np.abs(values[:, columns["northing"]]), 1.0).all()
+        if inside and outside:
             last = max(columns.values())
             further = {**({"name": labels[0]} if labels else {"name": numeric[0]} if start else {}),
                        **(_enable(values, last + 1) if last + 1 in numeric else {})}

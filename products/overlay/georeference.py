@@ -187,10 +187,10 @@ def _rough_position(image, points, settings):
     from ...core.io.crs import horizontal_part, parse_crs, same_crs
 
     if image.geotransform is not None:
-        image_crs, wanted = parse_crs(image.crs), parse_crs(points.crs)
-        if image_crs is not None and wanted is not None and not same_crs(image_crs, wanted):
+        image_crs, points_crs = parse_crs(image.crs), parse_crs(points.crs)
+        if image_crs is not None and points_crs is not None and not same_crs(image_crs, points_crs):
             raise RoadExtractionError(
-                f"The image lies in {horizontal_part(image_crs).name}, the control points in {horizontal_part(wanted).name}. A shift (order 0) "
+                f"The image lies in {horizontal_part(image_crs).name}, the control points in {horizontal_part(points_crs).name}. A shift (order 0) "
                 "needs both in one CRS: reproject the image or the points, or choose order 1.")
         return image.geotransform
     if settings.pixel_size <= 0:
@@ -339,5 +339,5 @@ def _misfits(found):
     burden = _burden(fit)
     rest = np.maximum(np.sum(fit.residuals**2) - burden, 0.0) / freedom
     floor = (_MIN_POINT_ERROR * found.pixel_size) ** 2
-    strange = burden / 2 > _MISFIT_RESIDUAL**2 * np.maximum(rest, floor)
-    return used[strange][np.argsort(-burden[strange])][:_MAX_MISFITS]
+    extreme = burden / 2 > _MISFIT_RESIDUAL**2 * np.maximum(rest, floor)
+    return used[extreme][np.argsort(-burden[extreme])][:_MAX_MISFITS]

@@ -103,7 +103,7 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
     gdal.SetCacheMax(min(cache, GDAL_CACHE))
     try:
         source = _with_point_grid(gdal, found, _tiled(gdal, found.image, tiled, _callback(progress, 0.0, 0.1, cancelled)))
-        off = _departure(gdal, source, found) + _APPROXIMATION
+        departure = _departure(gdal, source, found) + _APPROXIMATION
         # Blocks are resampled while they are written: every tile is compressed once, and Cancel takes effect in between
         view = gdal.Warp("", source, **_warp_options(found, bounds))
         result = gdal.GetDriverByName("GTiff").CreateCopy(str(unfinished), view, options=_file_options(found.image),
@@ -131,7 +131,7 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
         raise RoadExtractionError(
             f"The image could not be drawn to {path} ({failure}). Is {found.image.path} whole, and is there room on the disk?")
     progress.report(1.0)
-    return off
+    return departure
 
 
 def _callback(progress, start, end, cancelled):
@@ -180,8 +180,8 @@ def _with_point_grid(gdal, found, path):
     wkt, units = as_in_file(found.points.crs)
     easting, northing = units.in_file(np.column_stack(polynomial.to_map(pixel, line))).T
     points = [gdal.GCP(*map(float, point)) for point in zip(easting, northing, np.zeros(len(pixel)), pixel, line)]
-    more = {"rgbExpand": "rgb"} if found.image.palette else {}
-    return gdal.Translate("", path, format="VRT", GCPs=points, outputSRS=wkt or None, **more)
+    options = {"rgbExpand": "rgb"} if found.image.palette else {}
+    return gdal.Translate("", path, format="VRT", GCPs=points, outputSRS=wkt or None, **options)
 
 
 def _method(found):

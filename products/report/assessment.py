@@ -161,10 +161,10 @@ def _error_histogram(error, weights, signed):
 
 def _outcomes_along_road(stations: Mapping[str, np.ndarray], lengths: Mapping[str, np.ndarray], along: str, unit: str) -> tuple[str, str]:
     """SVG and caption of stacked bars of what is correct, missed and false, from stations and amounts (N,) of each outcome."""
-    everything = np.concatenate([stations[name] for name in stations]) if stations else np.empty(0)
-    if not np.isfinite(everything).any():
+    all_stations = np.concatenate([stations[name] for name in stations]) if stations else np.empty(0)
+    if not np.isfinite(all_stations).any():
         return "", ""
-    edges, _ = bins_of(everything[np.isfinite(everything)])
+    edges, _ = bins_of(all_stations[np.isfinite(all_stations)])
     count, total, amounts = len(edges) - 1, np.zeros(len(edges) - 1), {}
     for name in stations:
         finite = np.isfinite(stations[name])

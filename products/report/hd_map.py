@@ -34,8 +34,8 @@ def map_export_report(title: str, subtitle: str, facts: Iterable[tuple[str, Any]
 def _lanes_and_lines(shown: MapLayers) -> str:
     """An SVG of lanes and lines."""
     lanes = shown.lanes
-    every = np.concatenate([lanes.left, lanes.right])[:, :2]
-    low, high = every.min(0), every.max(0)
+    vertices = np.concatenate([lanes.left, lanes.right])[:, :2]
+    low, high = vertices.min(0), vertices.max(0)
     scale = min(PICTURE_WIDTH / max(high[0] - low[0], 1.0), PICTURE_HEIGHT / max(high[1] - low[1], 1.0))
     size = (high - low) * scale + 20
 

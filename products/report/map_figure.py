@@ -73,7 +73,7 @@ def _averaged(dataset, columns, rows, nodata):
         size = min(GEOTIFF_TILE, width - left), min(GEOTIFF_TILE, height - top)
         values = np.frombuffer(band.ReadRaster(left, top, *size, buf_type=gdal.GDT_Float32), np.float32).reshape(size[::-1])
         filled = np.isfinite(values) if nodata is None else np.isfinite(values) & (values != np.float32(nodata))
-        column, row = (np.arange(first, first + n) * few // many for first, n, few, many in
+        column, row = (np.arange(first, first + n) * target // source for first, n, target, source in
                        ((left, size[0], columns, width), (top, size[1], rows, height)))
         window = slice(row[0], row[-1] + 1), slice(column[0], column[-1] + 1)
         cells = total[window].shape

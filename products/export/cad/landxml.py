@@ -222,8 +222,8 @@ def _fitted(name, places, tolerance):
     missed = 0.0
     if plan is not None:
         along = along * plan.length / along[-1]
-        on, heading, _ = plan.at(along)
-        offsets = places[:, :2] - origin - on
+        foot, heading, _ = plan.at(along)
+        offsets = places[:, :2] - origin - foot
         missed = float(np.abs(offsets[:, 1] * np.cos(heading) - offsets[:, 0] * np.sin(heading)).max())
         plan = _moved(plan, origin)
     return Alignment(name, "Driving line", plan, places, _tangents(along, places[:, 2], tolerance), missed)

@@ -163,8 +163,8 @@ class _LaneletCheck:
         for role in ("left", "right"):
             members = lanelet.members.get(role, ())
             if len(members) != 1 or members[0][0] != "way":
-                has = " and ".join(kind for kind, _ in members) or "nothing"
-                self.findings.add("border missing", name, f"It has {has} as {role}; one way is needed.", place)
+                kinds = " and ".join(kind for kind, _ in members) or "nothing"
+                self.findings.add("border missing", name, f"It has {kinds} as {role}; one way is needed.", place)
         if len(lanelet.members.get("centerline", ())) > 1:
             self.findings.add("centre line", name, f"It has {len(lanelet.members['centerline'])} centre lines.", place)
         for text in _lanelet_tags(tags):

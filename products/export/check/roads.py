@@ -345,13 +345,13 @@ class _Links:
                 self.findings.add("dead end" if leaves else "no way in", name, f"At its {end} it is linked to no driven lane.", corners[0])
 
     def _joined(self, name, key, end, own, other, there, target, driven):
-        theirs = self._end(other, there)
+        neighbour = self._end(other, there)
         # seen along the road, an end that touches another end has left and right swapped
         turned = end == there
-        pairs = ((own[0], theirs[1] if turned else theirs[0]), (own[1], theirs[0] if turned else theirs[1]))
+        pairs = ((own[0], neighbour[1] if turned else neighbour[0]), (own[1], neighbour[0] if turned else neighbour[1]))
         apart = [pair[0] - pair[1] for pair in pairs]
         gap, rise = max(float(np.hypot(*d[:2])) for d in apart), max(abs(float(d[2])) for d in apart)
-        kink = abs(float(np.arctan2(*(_cross_dot(own[2], theirs[2] if end != there else -theirs[2])))))
+        kink = abs(float(np.arctan2(*(_cross_dot(own[2], neighbour[2] if end != there else -neighbour[2])))))
         for fault, size, most, text in (("gap at a link", gap, MAX_GAP_AT_LINK, metres(gap)),
                                         ("height step at a link", rise, MAX_HEIGHT_AT_LINK, metres(rise)),
                                         ("kink at a link", kink * driven, MAX_KINK_AT_LINK, f"{kink:.3f} rad")):

@@ -94,9 +94,9 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
         progress.info(f"Pieces of lanes that nobody drives, within junctions: {lost}. OpenDRIVE has no place for them there, and they were left out.")
     directions = directions_where_met([cell for strip, _ in strips for part in strip for cell in part.cells])
     for number, (strip, single) in enumerate(strips, start=1):
-        made = drafting.road(strip, number, single, directions)
-        draft.roads.append(made)
-        draft.map.roads.append(made.road)
+        draft_road = drafting.road(strip, number, single, directions)
+        draft.roads.append(draft_road)
+        draft.map.roads.append(draft_road.road)
         progress.report(number / len(strips))
     draft.notes += _link_roads(draft.map, draft.roads)
     draft.notes += _said_open_ends(draft.map)
@@ -263,12 +263,12 @@ def _between_junctions(slices, inside):
     """(slices, those of them that are too short for a road and lie between ways through junctions)."""
     between = []
     while True:
-        more = [part for part in slices if part.length < SHORTEST_WAY and _lies_within(part, inside)]
-        if not more:
+        short = [part for part in slices if part.length < SHORTEST_WAY and _lies_within(part, inside)]
+        if not short:
             return slices, between
-        between += more
-        inside = inside | {id(cell) for part in more for cell in part.cells}
-        slices = [part for part in slices if not any(part is added for added in more)]
+        between += short
+        inside = inside | {id(cell) for part in short for cell in part.cells}
+        slices = [part for part in slices if not any(part is added for added in short)]
 
 
 def _lies_within(one, inside):
@@ -404,9 +404,9 @@ def _clusters(drafts, touches):
         return k
 
     for (k, _), touched in touches.items():
-        together = [touch.other for touch in touched if touch.other in parent] + ([k] if k in parent else [])
-        for way in together[1:]:
-            parent[root(way)] = root(together[0])
+        cluster = [touch.other for touch in touched if touch.other in parent] + ([k] if k in parent else [])
+        for way in cluster[1:]:
+            parent[root(way)] = root(cluster[0])
     roots = sorted({root(k) for k in parent})
     return {k: roots.index(root(k)) for k in parent}
 

@@ -60,8 +60,8 @@ class Cubics:
         """((K,) s, (K,) sizes) of the jumps between the pieces, which are 0 where there is none."""
         start, a, b, c, d = self.rows.T
         ds = np.diff(start)
-        met = a[:-1] + ds * (b[:-1] + ds * (c[:-1] + ds * d[:-1]))
-        return start[1:][ds >= 0], np.abs(met - a[1:])[ds >= 0]
+        ends = a[:-1] + ds * (b[:-1] + ds * (c[:-1] + ds * d[:-1]))
+        return start[1:][ds >= 0], np.abs(ends - a[1:])[ds >= 0]
 
     def least(self, length: float) -> tuple[float, float]:
         """(least value, where) over [0, length], from the ends and the turning points of every piece."""
@@ -84,7 +84,7 @@ def _on_spirals(u, x, y, heading, bend, change):
     first = np.asarray(heading)[..., None]
     ways = first + nodes * (bend * u)[:, None] + nodes**2 * (change * u * u / 2)[:, None]
     # what a direction differs by from the first is 0 on a straight line, which is exact so
-    along, across = (of(heading) + (of(ways) - of(first)) @ weights for of in (np.cos, np.sin))
+    along, across = (function(heading) + (function(ways) - function(first)) @ weights for function in (np.cos, np.sin))
     return np.stack([x + u * along, y + u * across], axis=1), heading + u * (bend + change * u / 2), bend + change * u
 
 
@@ -190,15 +190,15 @@ class PlanView:
         """((N,) s, (N,) t) of (N, 2) places, found from s nearby; beyond the ends the first and last element go on."""
         s = np.array(near, float)
         for _ in range(FOOT_ROUNDS):
-            on, heading, bend = self.at(s)
-            dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
+            foot, heading, bend = self.at(s)
+            dx, dy = places[:, 0] - foot[:, 0], places[:, 1] - foot[:, 1]
             across = dy * np.cos(heading) - dx * np.sin(heading)
             step = (dx * np.cos(heading) + dy * np.sin(heading)) / np.clip(1 - bend * across, 0.2, 5.0)
             s = s + step
             if np.abs(step).max(initial=0.0) < FOUND_FOOT:
                 break
-        on, heading, _ = self.at(s)
-        dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
+        foot, heading, _ = self.at(s)
+        dx, dy = places[:, 0] - foot[:, 0], places[:, 1] - foot[:, 1]
         return s, dy * np.cos(heading) - dx * np.sin(heading)
 
     def jumps(self, gap: float, kink: float) -> list[tuple[float, float, float]]:
@@ -229,9 +229,9 @@ class PlanView:
         if after > LEAST_ELEMENT:
             last = elements[-1]
             _, _, (bend,) = last.at(np.array([last.length]))
-            more = (replace(last, length=last.length + after),) if last.kind in ("line", "arc") else (
+            tail = (replace(last, length=last.length + after),) if last.kind in ("line", "arc") else (
                 last, _bent(last.s + last.length, *last.end(), after, bend))
-            elements = (*elements[:-1], *more)
+            elements = (*elements[:-1], *tail)
         return PlanView(elements)
 
 

@@ -158,8 +158,8 @@ class _Fit:
         places = self.points[here:there + 1]
         u = (self.along[here:there + 1] - self.along[here]) * (element.length / (self.along[there] - self.along[here]))
         for _ in range(2):
-            on, heading, bend = element.at(u)
-            offsets = places - on
+            foot, heading, bend = element.at(u)
+            offsets = places - foot
             c, s = np.cos(heading), np.sin(heading)
             offset = offsets[:, 1] * c - offsets[:, 0] * s
             u = u + (offsets[:, 0] * c + offsets[:, 1] * s) / np.clip(1 - bend * offset, 0.2, 5.0)

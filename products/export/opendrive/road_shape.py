@@ -319,12 +319,12 @@ def _lines_of_lane_0(sections, centres, lengths, first):
         before_end, line_start = (-1, 0) if way > 0 else (0, -1)
         for k in range(first + way, len(sections) if way > 0 else -1, way):
             line, before = sections[k][centres[k]], lines[k - way]
-            value, met = float(before.at(lengths[k - way] * -before_end)), float(line.at(lengths[k] * -line_start))
+            value, start_value = float(before.at(lengths[k - way] * -before_end)), float(line.at(lengths[k] * -line_start))
             aside = before is not sections[k - way][centres[k - way]]
-            if abs(met - value) <= (MOST_LEAD if aside else SAME_LINE):
+            if abs(start_value - value) <= (MOST_LEAD if aside else SAME_LINE):
                 lines[k] = line
                 if aside:   # lead there
-                    ends = (float(before.at(0.0)), met) if way > 0 else (met, float(before.at(lengths[k - way])))
+                    ends = (float(before.at(0.0)), start_value) if way > 0 else (start_value, float(before.at(lengths[k - way])))
                     lines[k - way] = _straight(before, *ends, lengths[k - way])
             else:
                 straight = _straight(line, value, value, lengths[k])
@@ -461,10 +461,10 @@ def _profiles(shape, more):
         t, z = (np.stack([np.interp(places, course[0], course[row]) for course in shape.courses[number]]) for row in (1, 2))
         order = np.argsort(t, axis=0, kind="stable")
         t, z = np.take_along_axis(t, order, 0), np.take_along_axis(z, order, 0)
-        made = [_Profile(float(s), t[:, k], z[:, k]) for k, s in enumerate(places)]
+        slice_profiles = [_Profile(float(s), t[:, k], z[:, k]) for k, s in enumerate(places)]
         if profiles:
-            made[0] = _joined(profiles.pop(), made[0])
-        profiles += made
+            slice_profiles[0] = _joined(profiles.pop(), slice_profiles[0])
+        profiles += slice_profiles
     return [_apart(profile) for profile in profiles]
 
 
@@ -495,7 +495,7 @@ def _superelevation(road, profiles, middle, tolerance):
 
 def _targets(road, shape):
     """(N, 3) s, t and height above the elevation of all vertices along the road."""
-    s, t, z = (np.concatenate([values.ravel() for values in of]) for of in (shape.s, shape.t, shape.z))
+    s, t, z = (np.concatenate([values.ravel() for values in parts]) for parts in (shape.s, shape.t, shape.z))
     inside = (s >= 0.0) & (s <= road.length)
     return np.c_[s, t, z - road.elevation.at(s)][inside]
 

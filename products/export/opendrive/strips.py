@@ -130,18 +130,18 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
     for k in range(len(lanes)):
         a, b = lanes.start[k], lanes.start[k + 1] - 1
         bounds = [*_rows_to_cut(a, b, left, right, cuts), b] if ordinary[a] else [a, b]
-        made = []
+        lane_cells = []
         for first, last in zip(bounds[:-1], bounds[1:]):
             rows = slice(first, last + 1)
             sides = [(lanes.left[rows], tuple(left[rows])), (lanes.right[rows], tuple(right[rows]))]
             direction = int(lanes.direction[k]) if ordinary[a] else 1
             if direction < 0:
                 sides = [(line[::-1], nodes[::-1]) for line, nodes in sides[::-1]]
-            made.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], direction))
-        for cell, following in zip(made[:-1], made[1:]):
+            lane_cells.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], direction))
+        for cell, following in zip(lane_cells[:-1], lane_cells[1:]):
             _link(cell, following)
-        first_of[lanes.lane_id[k]], last_of[lanes.lane_id[k]] = made[0], made[-1]
-        cells += made
+        first_of[lanes.lane_id[k]], last_of[lanes.lane_id[k]] = lane_cells[0], lane_cells[-1]
+        cells += lane_cells
     for k, names in enumerate(lanes.successors):
         for name in names:
             _link(last_of[lanes.lane_id[k]], first_of[name])

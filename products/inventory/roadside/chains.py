@@ -281,8 +281,8 @@ def pulses_at(gaps: Gaps, side: int, s: np.ndarray, d: np.ndarray, h: np.ndarray
         low, high = (ends[k, 0] + share * (ends[k, 1] - ends[k, 0]) for ends in (gaps.low, gaps.high))
         inside = (row >= gaps.first[k]) & (row <= gaps.last[k]) & (height > low) & (height < high)
         beyond = -side * cross / np.hypot(ds, dd)
-        for kind, of in enumerate(((beyond > BEHIND[0]) & (part < 1.0), np.abs(beyond) <= BEHIND[0], (beyond < -BEHIND[0]) & (part < 0.0))):
-            slices = row[inside & of].astype(np.int64) - gaps.first[k]
+        for kind, mask in enumerate(((beyond > BEHIND[0]) & (part < 1.0), np.abs(beyond) <= BEHIND[0], (beyond < -BEHIND[0]) & (part < 0.0))):
+            slices = row[inside & mask].astype(np.int64) - gaps.first[k]
             counts[kind, start[k]:start[k] + length[k]] += np.bincount(slices, minlength=length[k])
     return counts
 
@@ -402,14 +402,14 @@ def things_of(chain: Chain, min_length: float) -> list[tuple[str, Chain]]:
     cuts = [0, *_cuts(_sections(chain), chain.members.slice, 0, len(chain.members), min_length), len(chain.members)]
     kinds = [kind_of(chain.part(np.arange(a, b))) for a, b in zip(cuts[:-1], cuts[1:])]
     first = np.flatnonzero([k == 0 or kind != kinds[k - 1] for k, kind in enumerate(kinds)])
-    things = []
+    result = []
     for k, after in zip(first, [*first[1:], len(kinds)]):
         whole = chain.part(np.arange(cuts[k], cuts[after]))
         # joined again, a row of cars shows that it is one
         kind = kind_of(whole) if after - k > 1 else kinds[k]
         if kind is not None:
-            things.append((kind, whole))
-    return things
+            result.append((kind, whole))
+    return result
 
 
 def _sections(chain):

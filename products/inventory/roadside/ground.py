@@ -251,8 +251,8 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
         return Uprights.none()
     profile = smoothed(_mean(grid))
     u = side * (grid.d - edges[:, None])
-    looked = (u > -GUTTER_INSIDE) & (u < GUTTER_OUTSIDE) & np.isfinite(profile)
-    lowest = np.where(looked, profile, np.inf)
+    searched = (u > -GUTTER_INSIDE) & (u < GUTTER_OUTSIDE) & np.isfinite(profile)
+    lowest = np.where(searched, profile, np.inf)
     j = np.argmin(lowest, axis=1)
     rows = np.arange(slices)
     low, offset = lowest[rows, j], u[rows, j]

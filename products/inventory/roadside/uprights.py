@@ -131,9 +131,9 @@ def _described(at, own, u, above, everything, first, side):
     part = above <= tops[own] + 1e-6
     own, u, above = own[part], u[part], above[part]
     count = np.bincount(own, minlength=n)
-    has = count > 0
-    at, tops, count = at[has], tops[has], count[has]
-    own, n = (np.cumsum(has) - 1)[own], len(at)
+    filled = count > 0
+    at, tops, count = at[filled], tops[filled], count[filled]
+    own, n = (np.cumsum(filled) - 1)[own], len(at)
     start = np.cumsum(count) - count
     down = np.maximum((tops[own] - above) / TOP_BIN, 0.0).astype(np.int64)
     high = down < TOP_BINS

@@ -189,11 +189,11 @@ class _Round:
         column, row = round(place.x / self.cell - side / 2), round(-place.y / self.cell - side / 2)
         height, width = self.paint.shape
         rows, columns = slice(max(row, 0), min(row + side, height)), slice(max(column, 0), min(column + side, width))
-        ours = self.paint[rows, columns]
-        theirs = canvas[rows.start - row:rows.stop - row, columns.start - column:columns.stop - column]
-        theirs = np.where(ours == 0, 0.0, theirs)
-        norm = float(np.sqrt((ours * ours).sum() * (theirs * theirs).sum()))
-        return place._replace(score=place.sign * float((ours * theirs).sum()) / norm if norm else 0.0)
+        paint = self.paint[rows, columns]
+        photo = canvas[rows.start - row:rows.stop - row, columns.start - column:columns.stop - column]
+        photo = np.where(paint == 0, 0.0, photo)
+        norm = float(np.sqrt((paint * paint).sum() * (photo * photo).sum()))
+        return place._replace(score=place.sign * float((paint * photo).sum()) / norm if norm else 0.0)
 
 
 def _shifts(length, most):

@@ -108,6 +108,6 @@ def _peak(match, other):
     if flattest <= 0 or a[1, 1] <= 0:
         return None
     move = np.clip(-np.linalg.solve(bend, slope), -1.0, 1.0)
-    elsewhere = match.copy()
-    elsewhere[max(0, row - other):row + other + 1, max(0, column - other):column + other + 1] = 0.0
-    return column + move[0], row + move[1], a[1, 1], max(float(elsewhere.max()), 0.0) / a[1, 1], flattest
+    remaining = match.copy()
+    remaining[max(0, row - other):row + other + 1, max(0, column - other):column + other + 1] = 0.0
+    return column + move[0], row + move[1], a[1, 1], max(float(remaining.max()), 0.0) / a[1, 1], flattest

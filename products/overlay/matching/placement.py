@@ -88,8 +88,8 @@ class Placement:
         factor = photo.factor * reduction
         nodes = [(position / factor - 0.5).astype(np.float32) for position in (pixel, line)]
         # of the middles of the cells: linear between the nodes
-        wanted = np.meshgrid((np.arange(width) + 0.5) * (len(across) - 1) / width, (np.arange(height) + 0.5) * (len(down) - 1) / height)
-        maps = [cv2.remap(node, *(axis.astype(np.float32) for axis in wanted), cv2.INTER_LINEAR) for node in nodes]
+        grid = np.meshgrid((np.arange(width) + 0.5) * (len(across) - 1) / width, (np.arange(height) + 0.5) * (len(down) - 1) / height)
+        maps = [cv2.remap(node, *(axis.astype(np.float32) for axis in grid), cv2.INTER_LINEAR) for node in nodes]
         return cv2.remap(reduced(values, reduction), *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0.0)
 
     def reduction(self, photo: Photo, cell: float) -> int:
@@ -173,8 +173,8 @@ def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: 
     for _ in range(_ROUNDS):
         if used.sum() < MIN_CONTROL_POINTS[1]:
             return None
-        now = highest_order(x[used], y[used], order)
-        fitted = (Placement.fitted(x[used], y[used], pixel[used], line[used], now, placement.sign) if now else
+        degree = highest_order(x[used], y[used], order)
+        fitted = (Placement.fitted(x[used], y[used], pixel[used], line[used], degree, placement.sign) if degree else
                   _turned(placement, x[used], y[used], moved[used]))
         before, used = used, np.hypot(*fitted.metres(x, y, pixel, line).T) <= tolerance
         if (used == before).all():

@@ -171,9 +171,9 @@ def rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, flo
     best, other : (N,) `corner_scores` of the two placements, NaN outside the photo
     shift : m, from the one to the other
     """
-    ours, theirs = best[np.isfinite(best)], other[np.isfinite(other)]
-    scale = len(theirs) / max(len(ours), 1)
-    return _Rival(*shift, float((theirs < _UNLIKE).sum()), scale * float((ours < _UNLIKE).sum()))
+    best_scores, other_scores = best[np.isfinite(best)], other[np.isfinite(other)]
+    scale = len(other_scores) / max(len(best_scores), 1)
+    return _Rival(*shift, float((other_scores < _UNLIKE).sum()), scale * float((best_scores < _UNLIKE).sum()))
 
 
 def _maps(placement, paint, photo, x, y, search):

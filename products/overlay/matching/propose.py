@@ -192,11 +192,11 @@ def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: P
         progress.check_cancelled()
         factor = max(1, round(cell / paint.cell))
         small = reduced(paint.contrast, factor)
-        now = paint.cell * factor
-        drawn = placement.sign * placement.drawn(photo.contrast, photo, now, small.shape, reduction=placement.reduction(photo, now))
-        height, width = (n * now for n in small.shape)
+        cell_size = paint.cell * factor
+        drawn = placement.sign * placement.drawn(photo.contrast, photo, cell_size, small.shape, reduction=placement.reduction(photo, cell_size))
+        height, width = (n * cell_size for n in small.shape)
         x, y = (axis.ravel() for axis in np.meshgrid(np.arange(half / 2, width, half), -np.arange(half / 2, height, half)))
-        patches = find_patches(small, drawn, now, x, y, half, search)
+        patches = find_patches(small, drawn, cell_size, x, y, half, search)
         patches = patches.where((patches.score > _LEAST_SCORE) & (patches.second < _MOST_SECOND_OF_PATCHES))
         fitted = robust_placement(placement, patches.x, patches.y, np.column_stack([patches.dx, patches.dy]), tolerance, patches.score, 2)
         if fitted is None:
