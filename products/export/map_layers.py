@@ -173,7 +173,7 @@ def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
     source_borders, exported_borders = ([border for k in range(len(lanes)) for border in lanes.borders(k)] for lanes in (source, exported))
     ends = [end for border in source_borders for end in (_gone_on(border), _gone_on(border[::-1]))]
     misses_of_source, misses_of_exported = (_distances(_joined(source_borders), _segments(exported_borders)),
-                                  _distances(_joined(exported_borders), _segments(source_borders, True), apart_from=_segments(ends)))
+                                            _distances(_joined(exported_borders), _segments(source_borders, True), apart_from=_segments(ends)))
     across, rise = (_summary(np.concatenate(misses)) for misses in zip(misses_of_source, misses_of_exported))
     return across, rise
 
