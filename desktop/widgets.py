@@ -55,8 +55,8 @@ def answers(dialog: QDialog, *others: QPushButton) -> QDialogButtonBox:
     box = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
     box.accepted.connect(dialog.accept)
     box.rejected.connect(dialog.reject)
-    for other in others:
-        box.addButton(other, QDialogButtonBox.ButtonRole.ResetRole)
+    for button in others:
+        box.addButton(button, QDialogButtonBox.ButtonRole.ResetRole)
     return box
 
 

@@ -159,8 +159,8 @@ class DoubtDock(QDockWidget):
 
     def _list_places(self):
         kind = self.kinds.currentData()
-        found = doubts_of(self.road_map, [kind] if kind else [])
-        self.places, self.at = sorted(found, key=lambda place: -place.doubt) if self.order.currentData() else found, -1
+        doubts = doubts_of(self.road_map, [kind] if kind else [])
+        self.places, self.at = sorted(doubts, key=lambda place: -place.doubt) if self.order.currentData() else doubts, -1
 
     def _begin_again(self):
         """The first place of another choice or order."""
@@ -191,8 +191,8 @@ class DoubtDock(QDockWidget):
         """What was decided about a piece and not yet run; "" for nothing."""
         if not piece.target:
             return WORDS["action"]["accept"] if piece.key in self._seen() else ""
-        found = self._former(piece)
-        return "" if found is None else str(WORDS["action"].get(found["action"], found["action"]))
+        correction = self._former(piece)
+        return "" if correction is None else str(WORDS["action"].get(correction["action"], correction["action"]))
 
     def _former(self, piece):
         """The correction that was made of a piece, None where there is none."""
@@ -283,9 +283,9 @@ class DoubtDock(QDockWidget):
             add_correction(layer, piece.line, place.crs, self._former(piece), **{
                 "action": action, "target": piece.target, "road": piece.road, "station_m": piece.station, "offset_m": piece.offset,
                 "note": self.note.text() or None, **reading})
-        seen = [piece.key for piece in pieces if not piece.target]
-        if seen:
-            self.road_map.layers[0].setCustomProperty(SEEN, "\n".join([*filter(None, self._seen()), *seen]))
+        keys = [piece.key for piece in pieces if not piece.target]
+        if keys:
+            self.road_map.layers[0].setCustomProperty(SEEN, "\n".join([*filter(None, self._seen()), *keys]))
         self.note.clear()
         self._go_on(max(place.pieces.index(piece) for piece in pieces))
 
