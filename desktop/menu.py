@@ -152,17 +152,17 @@ class Menu(QObject):
 
     def run_again(self, road_map, corrections):
         """Road map with all that a road map was made from, and the corrections made in it."""
-        clouds, gone = clouds_of(road_map, QgsProject.instance())
-        self.open_road_map(**{**road_map.values, **({} if gone else {"POINT_CLOUDS": clouds}), "CORRECTIONS": corrections.id()})
+        clouds, missing = clouds_of(road_map, QgsProject.instance())
+        self.open_road_map(**{**road_map.values, **({} if missing else {"POINT_CLOUDS": clouds}), "CORRECTIONS": corrections.id()})
 
     def _fill_layer_menu(self, menu):
         """"Run this stage again" for a layer of ours."""
         from .dialogs.stage_inputs import stage_again
 
         layer = self.iface.layerTreeView().currentLayer()
-        again = None if layer is None else stage_again(layer, QgsProject.instance())
-        if again is not None:
-            menu.addAction(QIcon(str(ICON)), tr("Run this stage again…"), lambda: self.open_algorithm(*again))
+        stage = None if layer is None else stage_again(layer, QgsProject.instance())
+        if stage is not None:
+            menu.addAction(QIcon(str(ICON)), tr("Run this stage again…"), lambda: self.open_algorithm(*stage))
 
     def open_report(self):
         """The report written last, in the user's web browser."""

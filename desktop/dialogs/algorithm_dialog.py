@@ -85,15 +85,15 @@ class LanewrightDialog(AlgorithmDialog):
             survey = survey_name(cloud_files(clouds or [], tr("Point clouds")))
         except RoadExtractionError:  # not yet whole
             return
-        of = {layer.customProperty(SURVEY): layer.id() for layer in reversed(corrections_layers(QgsProject.instance()))}
+        layer_by_survey = {layer.customProperty(SURVEY): layer.id() for layer in reversed(corrections_layers(QgsProject.instance()))}
         chosen = self.mainWidget().wrappers["CORRECTIONS"].parameterValue()
-        if survey in of or chosen in of.values():
-            self.setParameters({"CORRECTIONS": of.get(survey)})
+        if survey in layer_by_survey or chosen in layer_by_survey.values():
+            self.setParameters({"CORRECTIONS": layer_by_survey.get(survey)})
 
     def _button(self, text, tip):
-        made = button(text, tip=tip)
-        self.buttonBox().addButton(made, QDialogButtonBox.ButtonRole.ResetRole)
-        return made
+        push_button = button(text, tip=tip)
+        self.buttonBox().addButton(push_button, QDialogButtonBox.ButtonRole.ResetRole)
+        return push_button
 
     # -- everything to one place ----------------------------------------------------------------
 

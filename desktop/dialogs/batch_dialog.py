@@ -126,9 +126,9 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
     def runAlgorithm(self) -> None:
         """Run all rows; one that names no destination makes temporary layers, as in the dialog of a single run."""
         outputs = [definition.name() for definition in self.algorithm().destinationParameterDefinitions()]
-        made = [definition.name() for definition in outputs_by_default(self.algorithm())]
+        names = [definition.name() for definition in outputs_by_default(self.algorithm())]
         for row in range(self.mainWidget().batchRowCount()):
             if not any(self._place(row, output).getValue() for output in outputs):
-                for output in made:
+                for output in names:
                     self._place(row, output).setValue(QgsProcessing.TEMPORARY_OUTPUT)
         super().runAlgorithm()

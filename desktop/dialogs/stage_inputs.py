@@ -54,8 +54,8 @@ def stage_again(layer: QgsMapLayer, project: QgsProject) -> tuple[str, dict[str,
         return None
     names = {definition.name() for definition in algorithm.parameterDefinitions()}
     values = {**road_map.values, **origin.provenance.values, **layers_for(algorithm, road_map)}
-    clouds, gone = clouds_of(road_map, project)
-    if clouds and not gone:
+    clouds, missing = clouds_of(road_map, project)
+    if clouds and not missing:
         values[CLOUDS] = clouds
     return algorithm.id(), {name: value for name, value in values.items() if name in names}
 

@@ -114,9 +114,9 @@ class PairsDialog(QDialog):
 
     def _prefer_intensity(self):
         """Choose the intensity image of the last road map, where there is one."""
-        ours = (run.layer("INTENSITY_IMAGE") for run in runs_of(QgsProject.instance()))
+        images = (run.layer("INTENSITY_IMAGE") for run in runs_of(QgsProject.instance()))
         called = (layer for layer in QgsProject.instance().mapLayers().values() if "intensity" in Path(layer.source()).stem.lower())
-        likely = next((layer for layer in (*ours, *called) if layer is not None), None)
+        likely = next((layer for layer in (*images, *called) if layer is not None), None)
         if likely is not None:
             self.intensity.setLayer(likely)
 

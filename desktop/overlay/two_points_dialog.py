@@ -93,17 +93,17 @@ class TwoPointsDialog(QDialog):
         """A point layer with the fields pixel and line; None where points are missing."""
         if any(len(places) < NEEDED for places in self.places.values()):
             return None
-        made = QgsVectorLayer("Point?field=pixel:double&field=line:double", "rough points", "memory")
-        made.setCrs(self.intensity.crs())
+        points = QgsVectorLayer("Point?field=pixel:double&field=line:double", "rough points", "memory")
+        points.setCrs(self.intensity.crs())
         features = []
         for image_point, map_point in zip(*(self.places[view] for view in self.views)):
-            feature = QgsFeature(made.fields())
+            feature = QgsFeature(points.fields())
             feature.setGeometry(QgsGeometry.fromPointXY(map_point))
             feature.setAttributes(list(self._pixel(image_point)))
             features.append(feature)
-        made.dataProvider().addFeatures(features)
-        made.updateExtents()
-        return made
+        points.dataProvider().addFeatures(features)
+        points.updateExtents()
+        return points
 
     def _pixel(self, place):
         """Pixel and line of a place as QGIS shows the image."""

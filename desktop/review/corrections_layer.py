@@ -48,8 +48,9 @@ def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle
     extent, crs : where it lies
     """
     for layer in corrections_layers(project):
-        of = layer.customProperty(SURVEY)
-        if of == survey or not of and layer.featureCount() > 0 and brought_to(extent, crs, layer.crs()).intersects(layer.extent()):
+        layer_survey = layer.customProperty(SURVEY)
+        if layer_survey == survey or not layer_survey and layer.featureCount() > 0 \
+                and brought_to(extent, crs, layer.crs()).intersects(layer.extent()):
             return layer
     return None
 

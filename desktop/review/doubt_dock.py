@@ -104,14 +104,14 @@ class DoubtDock(QDockWidget):
 
     def _button(self, text, tip, what, key=""):
         """A button; `key` presses it while the window has the focus."""
-        made = button(text, what, f"{tip} ({key})" if key else tip)
+        push_button = button(text, what, f"{tip} ({key})" if key else tip)
         if key:
             action = QAction(tip, self)
             action.setShortcut(QKeySequence(key))
             action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
-            action.triggered.connect(lambda checked=False: made.click())
+            action.triggered.connect(lambda checked=False: push_button.click())
             self.addAction(action)
-        return made
+        return push_button
 
     def remove(self) -> None:
         """Take the window out of QGIS."""
@@ -139,9 +139,9 @@ class DoubtDock(QDockWidget):
         """Show the next place of a road map, or the one before; after the last comes the first."""
         if road_map is None:
             return
-        of = [(layer.id(), layer.featureCount()) for layer in road_map.vectors]
-        if of != self._of:
-            self._of, self.road_map = of, road_map
+        counts = [(layer.id(), layer.featureCount()) for layer in road_map.vectors]
+        if counts != self._of:
+            self._of, self.road_map = counts, road_map
             self._list_places()
         self.show()
         self.raise_()
@@ -325,9 +325,9 @@ class DoubtDock(QDockWidget):
         action, target, piece = self._pending or ("", "", None)
         layer = self._layer_to_write() if action else None
         if layer is not None:
-            of = {} if piece is None else dict(road=piece.road, station_m=piece.station, offset_m=piece.offset)
+            location = {} if piece is None else dict(road=piece.road, station_m=piece.station, offset_m=piece.offset)
             add_correction(layer, line, self.iface.mapCanvas().mapSettings().destinationCrs(), None if piece is None else self._former(piece),
-                           action=action, target=target, note=self.note.text() or None, **of)
+                           action=action, target=target, note=self.note.text() or None, **location)
             self.note.clear()
         self._stop_drawing()
         if piece is not None and layer is not None and piece in self.place.pieces:

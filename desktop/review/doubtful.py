@@ -59,8 +59,8 @@ def doubts_of(road_map: RoadMap, kinds: Iterable[str] = ()) -> list[Doubt]:
     lanes = [(piece.road, piece.station) for piece in pieces if piece.kind == "lane"]
     if road_map.layer("DRIVING_LINES") is None or not lanes:
         pieces += _doubtful_rows(road_map, "LANES")
-    for missing in (missing_edges(road_map), grown_surface(road_map), lane_ends(road_map), warned_places(road_map)):
-        pieces += missing
+    for extra in (missing_edges(road_map), grown_surface(road_map), lane_ends(road_map), warned_places(road_map)):
+        pieces += extra
     kept_kinds = set(kinds)
     crs = road_map.vectors[0].crs()
     return _gathered(sorted((piece for piece in pieces if not kept_kinds or piece.kind in kept_kinds),
@@ -132,7 +132,7 @@ def _gathered(pieces, crs):
     for piece in pieces:
         first = groups[-1][0] if groups else None
         if first is not None and first.road == piece.road and piece.station - first.station <= SAME_PLACE:
-            if piece.kind != "warning" or piece.text not in [grouped.text for grouped in groups[-1]]:
+            if piece.kind != "warning" or piece.text not in [earlier.text for earlier in groups[-1]]:
                 groups[-1].append(piece)
         else:
             groups.append([piece])

@@ -123,8 +123,8 @@ def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossi
         if colour is None or layer.geometryType() != Qgis.GeometryType.Line:
             continue
         for feature in layer.getFeatures(line.boundingBox()):
-            met = feature.geometry().intersection(line)
-            for vertex in met.vertices() if not met.isEmpty() else ():
+            intersection = feature.geometry().intersection(line)
+            for vertex in intersection.vertices() if not intersection.isEmpty() else ():
                 z = _height(feature.geometry(), vertex)
                 result.append(Crossing(section.offset(vertex.x(), vertex.y()), z, title_of(layer, feature), colour, z + _curb_height(feature)))
     return sorted(result, key=lambda crossing: -crossing.offset)

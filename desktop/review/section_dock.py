@@ -129,10 +129,10 @@ class SectionDock(QDockWidget):
 
     def _clouds(self, road_map):
         """The point clouds of a road map; the user is asked once where they are, where they are no longer where they were."""
-        clouds, gone = clouds_of(road_map, QgsProject.instance())
-        if gone and road_map.name not in self._asked:
+        clouds, missing = clouds_of(road_map, QgsProject.instance())
+        if missing and road_map.name not in self._asked:
             self._asked.add(road_map.name)
-            folder = self.ask_for_folder(gone)
+            folder = self.ask_for_folder(missing)
             if folder:
                 clouds_lie_in(road_map, folder, QgsProject.instance())
                 clouds, _ = clouds_of(road_map, QgsProject.instance())

@@ -135,12 +135,12 @@ class Ground:
         rows, columns = self._shape
         column = np.clip(((x - self.terrain.corner[0]) / _LOOKUP).astype(np.intp), 0, columns - 1)
         row = np.clip(((y - self.terrain.corner[1]) / _LOOKUP).astype(np.intp), 0, rows - 1)
-        after = self._nearest[row * columns + column]
-        best = self._to_segment(after, x, y)
-        previous = self._to_segment(self._before[after], x, y)
+        nearest = self._nearest[row * columns + column]
+        best = self._to_segment(nearest, x, y)
+        previous = self._to_segment(self._before[nearest], x, y)
         nearer = previous[0] < best[0]
         square, dx, dy, along = (np.where(nearer, b, a) for a, b in zip(best, previous))
-        segment = np.where(nearer, self._before[after], after)
+        segment = np.where(nearer, self._before[nearest], nearest)
         way_x, way_y = self._way[segment, 0], self._way[segment, 1]
         # right of the segment is beyond the edge
         aside = way_y * dx - way_x * dy

@@ -122,12 +122,12 @@ class PlanScene:
         count = len(distance)
         hits = Hits(distance, np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count, dtype=np.int16),
                     np.zeros(count, dtype=np.uint8), np.zeros(count))
-        met = np.flatnonzero(np.isfinite(distance))
-        x, y, _ = origin[:, met] + distance[met] * direction[:, met]
+        returns = np.flatnonzero(np.isfinite(distance))
+        x, y, _ = origin[:, returns] + distance[returns] * direction[:, returns]
         surface = self.ground.at(x, y)
-        hits.station[met], hits.offset[met], hits.strip[met] = x, y, surface.strip
-        facing = surface.slope_x * direction[0, met] + surface.slope_y * direction[1, met] - direction[2, met]
-        hits.cosine[met] = facing / np.sqrt(1.0 + surface.slope_x**2 + surface.slope_y**2)
+        hits.station[returns], hits.offset[returns], hits.strip[returns] = x, y, surface.strip
+        facing = surface.slope_x * direction[0, returns] + surface.slope_y * direction[1, returns] - direction[2, returns]
+        hits.cosine[returns] = facing / np.sqrt(1.0 + surface.slope_x**2 + surface.slope_y**2)
         return hits
 
     def labels(self, strip: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:

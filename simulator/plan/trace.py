@@ -53,9 +53,9 @@ def _follow(ground, origin, direction, t, live, limit, flat, found):
         gap = z - surface.z
         hit = gap <= 0
         below[live[hit]], under[live[hit]] = t[live[hit]], gap[hit]
-        live, gap, margin = live[~hit], gap[~hit], np.abs(surface.away[~hit])
+        live, gap, distance = live[~hit], gap[~hit], np.abs(surface.away[~hit])
         before[live], above[live] = t[live], gap
-        over = np.clip(0.9 * margin, _NEAREST, np.where(surface.away[~hit] > 0, _FARTHEST, np.inf)) / np.maximum(flat[live], 1e-6)
+        over = np.clip(0.9 * distance, _NEAREST, np.where(surface.away[~hit] > 0, _FARTHEST, np.inf)) / np.maximum(flat[live], 1e-6)
         fall = 1.02 * (gap + 0.005) / np.maximum(-direction[2, live], _GRAZING)
         t[live] += np.minimum(over, fall)
         live = live[t[live] < limit[live]]

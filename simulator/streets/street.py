@@ -228,33 +228,33 @@ def _beyond_edge(scene, side, rays, t, s, d):
 
     Returns t, s, d and the signed number of the strip; t is inf where a pulse passes the last border above the ground.
     """
-    found_t, found_s, found_d = np.full(len(t), np.inf), s.copy(), d.copy()
-    found_strip = np.zeros(len(t), dtype=np.int8)
+    hit_t, hit_s, hit_d = np.full(len(t), np.inf), s.copy(), d.copy()
+    hit_strip = np.zeros(len(t), dtype=np.int8)
     outward = side.sign * (rays.vy * rays.cos - rays.vx * rays.sin)
     live = np.flatnonzero(outward > 0.02)
     t, s, distance, ray = t[live], s[live], side.sign * d[live], rays.some(live)
     t, s, distance = ray.reach(side, side.edge, t, s, distance, times=3)
-    on = np.flatnonzero((t > 0) & (np.abs(distance - side.edge) < 0.01))
-    live, ray, t, s, distance = live[on], ray.some(on), t[on], s[on], distance[on]
+    passing = np.flatnonzero((t > 0) & (np.abs(distance - side.edge) < 0.01))
+    live, ray, t, s, distance = live[passing], ray.some(passing), t[passing], s[passing], distance[passing]
     above = ray.oz + t * ray.vz - scene.edge_height(side, s)
     for k in range(1, len(side.borders)):
-        next_t, next_s, next_away = ray.reach(side, side.borders[k], t, s, distance, times=2 if k < 3 else 3)
+        next_t, next_s, next_distance = ray.reach(side, side.borders[k], t, s, distance, times=2 if k < 3 else 3)
         # in a bend a few pulses run along a border without passing it; they are left out
-        passed = (next_t >= t) & (np.abs(next_away - side.borders[k]) < 0.01)
+        passed = (next_t >= t) & (np.abs(next_distance - side.borders[k]) < 0.01)
         ground = scene.edge_height(side, next_s) + side.border_rise(k, next_s)
         next_above = ray.oz + next_t * ray.vz - ground
-        met = np.flatnonzero(passed & (next_above <= 0))
-        if len(met):
-            hits = live[met]
-            found_t[hits], found_s[hits], found_d[hits] = _within_strip(
-                scene, side, k - 1, ray.some(met), (t[met], above[met]), (next_t[met], next_above[met]), s[met])
-            found_strip[hits] = side.sign * k
-        on = np.flatnonzero(passed & (next_above > 0))
-        live, ray = live[on], ray.some(on)
-        t, s, distance, above = next_t[on], next_s[on], next_away[on], next_above[on]
+        landing = np.flatnonzero(passed & (next_above <= 0))
+        if len(landing):
+            hits = live[landing]
+            hit_t[hits], hit_s[hits], hit_d[hits] = _within_strip(
+                scene, side, k - 1, ray.some(landing), (t[landing], above[landing]), (next_t[landing], next_above[landing]), s[landing])
+            hit_strip[hits] = side.sign * k
+        passing = np.flatnonzero(passed & (next_above > 0))
+        live, ray = live[passing], ray.some(passing)
+        t, s, distance, above = next_t[passing], next_s[passing], next_distance[passing], next_above[passing]
         if len(live) == 0:
             break
-    return found_t, found_s, found_d, found_strip
+    return hit_t, hit_s, hit_d, hit_strip
 
 
 def _within_strip(scene, side, strip, rays, near, far, s):
