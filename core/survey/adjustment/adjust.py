@@ -46,10 +46,10 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
     compared: list[PassOffsets] = []
     for k, road in enumerate(roads):
         offsets = pass_offsets(survey, road, progress.part(0.5 * k / len(roads), 0.5 * (k + 1) / len(roads)))
-        apart = _disagree(offsets)
+        disagree = _disagree(offsets)
         if (sigma := sigma_of_passes(offsets)) is not None:
             survey.frame.pass_sigma[road] = sigma
-        solved = solve_corrections(offsets) if apart else {}
+        solved = solve_corrections(offsets) if disagree else {}
         moves.update(solved)
         compared += offsets
         _report_offsets(road, offsets, solved, progress)
@@ -109,10 +109,10 @@ def _disagree(offsets):
 def _report_offsets(road, offsets, found, progress):
     """Log the offsets, and warn of places where passes still differ after the corrections found."""
     if found:
-        apart = _separations(offsets)
-        plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in apart)
+        separations = _separations(offsets)
+        plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in separations)
         message = f"Road {road}: its passes lay {plan} beside and {up} above each other"
-        if max((float(v.max()) for v in apart if len(v)), default=0.0) > REGISTER.max_offset:
+        if max((float(v.max()) for v in separations if len(v)), default=0.0) > REGISTER.max_offset:
             progress.warn(f"{message}, which is more than navigation drifts within a survey. Drives of different years or datums lie so far apart. "
                           "They were laid on each other, each moved by its share. Nothing shows which of them is right, so the map may be off by "
                           "half of that distance. Process the files of each drive by itself, or measure control points.")
@@ -294,8 +294,8 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
         stations = (np.arange(first, last + 1) + 0.5) * WINDOW_LENGTH
         distance = np.abs(stations[:, None] - compared).min(axis=1, initial=np.inf)
         moved = np.hypot(*corrections.metres(p.number, stations)[:2])
-        alone = (distance > REGISTER.pooling_sigma) & (moved > ADJUST.max_remaining)
-        for station, metres in zip(stations[alone].tolist(), moved[alone].tolist()):
+        uncompared = (distance > REGISTER.pooling_sigma) & (moved > ADJUST.max_remaining)
+        for station, metres in zip(stations[uncompared].tolist(), moved[uncompared].tolist()):
             places[station] = max(places.get(station, 0.0), metres)
     return _stretches_of(places)
 

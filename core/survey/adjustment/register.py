@@ -230,9 +230,9 @@ def _uncoupled(survey, road, offsets, seen, rough, order, progress):
     """The PassOffsets, those along each axis of the order measured with those along the other taken out."""
     for k, (taken, measured) in enumerate((order, order[::-1]), start=1):
         moves = {(pair.one, pair.other): _taken_out(pair, taken, rough.get((pair.one, pair.other), {})) for pair in offsets}
-        if apart := sorted({number for places in moves.values() for number in places}):
-            again = _seen(survey, road, apart, moves, progress.part(k / 3.0, (k + 1) / 3.0))
-            offsets = _measured_again(offsets, measured, seen, again)
+        if windows := sorted({number for places in moves.values() for number in places}):
+            evidence = _seen(survey, road, windows, moves, progress.part(k / 3.0, (k + 1) / 3.0))
+            offsets = _measured_again(offsets, measured, seen, evidence)
     return offsets
 
 
@@ -389,9 +389,9 @@ def _combine_windows(pair, evidence):
 def _pool(numbers, values):
     """(N, ...) sums over each window and its neighbours, with Gaussian weights of `pooling_sigma`."""
     sigma = REGISTER.pooling_sigma / WINDOW_LENGTH
-    whole = np.zeros((numbers[-1] - numbers[0] + 1, *values.shape[1:]))
-    whole[numbers - numbers[0]] = values
-    return gaussian_filter1d(whole, sigma, axis=0, mode="constant")[numbers - numbers[0]] * (sigma * np.sqrt(2 * np.pi))
+    by_window = np.zeros((numbers[-1] - numbers[0] + 1, *values.shape[1:]))
+    by_window[numbers - numbers[0]] = values
+    return gaussian_filter1d(by_window, sigma, axis=0, mode="constant")[numbers - numbers[0]] * (sigma * np.sqrt(2 * np.pi))
 
 
 def best_offsets(likeness: np.ndarray, lags: np.ndarray = LAGS) -> tuple[np.ndarray, np.ndarray]:
@@ -402,10 +402,10 @@ def best_offsets(likeness: np.ndarray, lags: np.ndarray = LAGS) -> tuple[np.ndar
     cell = REGISTER.lag_cell * float(lags[1] - lags[0])
     prior = REGISTER.prior_offset_sigma * float(lags[-1]) / float(LAGS[-1])
     products, squares, other_squares, counts = np.moveaxis(likeness, 1, 0)
-    enough = counts[:, len(lags) // 2]
+    shared = counts[:, len(lags) // 2]
     correlation = np.clip(products / np.sqrt(np.maximum(squares * other_squares, 1e-12)), 0.0, REGISTER.max_correlation)
-    fit = np.log(1.0 - correlation**2) * (enough / REGISTER.correlated_cells)[:, None]
-    unlikely = np.where(enough[:, None] >= REGISTER.min_shared_cells, fit, 0.0) + (REGISTER.lag_cell * lags / prior) ** 2
+    fit = np.log(1.0 - correlation**2) * (shared / REGISTER.correlated_cells)[:, None]
+    unlikely = np.where(shared[:, None] >= REGISTER.min_shared_cells, fit, 0.0) + (REGISTER.lag_cell * lags / prior) ** 2
     best = np.argmin(unlikely, axis=1)
     least = unlikely.min(axis=1)
     clear = (least < -REGISTER.min_likelihood_ratio) & (_second_best(unlikely, best) > REGISTER.max_runner_up * least)
@@ -457,8 +457,8 @@ def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
     bounds = np.searchsorted(stations, places - REGISTER.sigma_reach), np.searchsorted(stations, places + REGISTER.sigma_reach, side="right")
     sigmas = []
     for first, end in zip(*bounds):
-        apart = min(np.sqrt(np.mean(left[first:end] ** 2)), MAD_TO_SIGMA * np.median(np.abs(left[first:end])))
-        sigmas.append(apart / np.sqrt(2 * len({*first_numbers[first:end].tolist(), *second_numbers[first:end].tolist()})))
+        spread = min(np.sqrt(np.mean(left[first:end] ** 2)), MAD_TO_SIGMA * np.median(np.abs(left[first:end])))
+        sigmas.append(spread / np.sqrt(2 * len({*first_numbers[first:end].tolist(), *second_numbers[first:end].tolist()})))
     return SigmaAlong(tuple(places.tolist()), tuple(map(float, sigmas)))
 
 

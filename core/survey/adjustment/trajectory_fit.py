@@ -53,17 +53,17 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     shape = shaped_trajectory(clean_trajectory(trajectory))
     for warning in shape.said:
         progress.warn(warning)
-    given = shape.trajectory if shape.said else trajectory
+    unmoved = shape.trajectory if shape.said else trajectory
     if not trajectory.has_time or not all(file.has_time for file in files if file.count):
-        return _FittedTrajectory(given, shape.sigma, False)
+        return _FittedTrajectory(unmoved, shape.sigma, False)
     sample = read_places(files, scanner_field)
     mountings = _near(scanner_mountings(sample, shape.trajectory))
     if mountings and _other_heights(sample, shape.trajectory, mountings, progress):
-        return _FittedTrajectory(given, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
+        return _FittedTrajectory(unmoved, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
     if not (mountings := _met(mountings)):
-        return _FittedTrajectory(given, shape.sigma, False)
+        return _FittedTrajectory(unmoved, shape.sigma, False)
     moved = _carried(sample, shape.trajectory, mountings, progress)
-    return _FittedTrajectory(given if moved is shape.trajectory else moved, shape.sigma, True)
+    return _FittedTrajectory(unmoved if moved is shape.trajectory else moved, shape.sigma, True)
 
 
 def _carried(sample, trajectory, mountings, progress):
@@ -91,8 +91,8 @@ def _other_heights(sample, trajectory, mountings, progress):
             if len(stretched) >= len(mountings) and len(_met(stretched)) == len(stretched):
                 up, height = float(_usual_lever(stretched)[2]), float(np.median(trajectory.z))
                 # from a trajectory that is stretched alike the scanners lie where they ride on the vehicle
-                alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
-                of = "the cloud alone" if alone else "cloud and trajectory"
+                cloud_alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
+                of = "the cloud alone" if cloud_alone else "cloud and trajectory"
                 progress.warn(f"The heights of {of} seem to be {phrase}: the laser beams meet in the scanner only if heights are "
                               f"multiplied by {stretch:.4g}. Curbs are missed, and heights and slopes are wrong by that factor. Convert these "
                               "heights, and run again.")
@@ -384,12 +384,12 @@ def _resected_places(a, b, since, window, middles, rate):
     for _ in range(MIRROR.resection_rounds):
         u, v, phase, misfit, in_front = resected(a, b, 2 * np.pi * rate * since, window, len(middles))
         good = in_front >= MIRROR.min_share_in_front
-        apart = np.diff(middles)
-        step = np.diff(phase) - 2 * np.pi * rate * apart
+        seconds = np.diff(middles)
+        step = np.diff(phase) - 2 * np.pi * rate * seconds
         step = (step + np.pi) % (2 * np.pi) - np.pi
-        near = good[1:] & good[:-1] & (apart < 1.5 * TURNS_WINDOW)
+        near = good[1:] & good[:-1] & (seconds < 1.5 * TURNS_WINDOW)
         if near.sum() >= MIN_WINDOWS:
-            rate += float(np.median(step[near] / apart[near])) / (2 * np.pi)
+            rate += float(np.median(step[near] / seconds[near])) / (2 * np.pi)
     return u, v, good, float(np.median(misfit[good])) if good.any() else np.inf
 
 

@@ -121,9 +121,9 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
         adjusted = _adjusted(samples, tracks, scanners, progress)
     if not _explains(adjusted):
         # a field may have numbered tiles or files
-        if (apart := separated(samples, tracks, progress)) is not None:
-            result = _of_rays(apart[0], tracks, *apart[1:], wkt)
-            result.notes.append(told_apart(len(apart[1])))
+        if (separation := separated(samples, tracks, progress)) is not None:
+            result = _of_rays(separation[0], tracks, *separation[1:], wkt)
+            result.notes.append(told_apart(len(separation[1])))
             return result
         if not by_field:
             refuse_handheld(tracks, scanners)
@@ -175,19 +175,19 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
     for drive, (row, direction) in zip(samples.drives, steps):
         number = lines_of_each(direction, row, drive.stop - drive.start, ways)
         scanner[drive] = np.where(number < 0, UNKNOWN_SCANNER, number)
-    apart = replace(samples, scanner=scanner)
-    scanners = spinning_scanners(apart, tracks)
+    relabelled = replace(samples, scanner=scanner)
+    scanners = spinning_scanners(relabelled, tracks)
     if len(scanners) < 2:
         return None
-    adjusted = _adjusted(apart, tracks, scanners, progress.part(0.0, 0.6))
+    adjusted = _adjusted(relabelled, tracks, scanners, progress.part(0.0, 0.6))
     if not _explains(adjusted):
         return None
     # the rays distinguish the other points, too, and the few that were wrong
     splitter = ScannerSplitter(adjusted.poses, 0.0, np.zeros(3))
-    apart = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
+    relabelled = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
     scanners = [replace(spinning, number=number) for number, spinning in enumerate(scanners)]
-    adjusted = grown_poses(adjusted.poses, np.isfinite(adjusted.misfit), _returns(apart, adjusted.poses, scanners), progress.part(0.6, 1.0))
-    return (apart, scanners, adjusted) if _explains(adjusted) else None
+    adjusted = grown_poses(adjusted.poses, np.isfinite(adjusted.misfit), _returns(relabelled, adjusted.poses, scanners), progress.part(0.6, 1.0))
+    return (relabelled, scanners, adjusted) if _explains(adjusted) else None
 
 
 def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSplitter | None:
@@ -314,10 +314,10 @@ def _refuse_airborne(tracks: list[FirstTrack]) -> None:
 
 def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
     """Refuse points that were measured in two places at most of the times: drives whose clocks overlap."""
-    apart = np.concatenate([_places_apart(samples.time[drive], samples.place[drive, :2], track) for drive, track in zip(samples.drives, tracks)])
-    if len(apart) and np.mean(np.isfinite(apart)) > 0.5:
+    distances = np.concatenate([_places_apart(samples.time[drive], samples.place[drive, :2], track) for drive, track in zip(samples.drives, tracks)])
+    if len(distances) and np.mean(np.isfinite(distances)) > 0.5:
         raise RoadExtractionError(
-            f"At most times the points lie in two places {np.nanmedian(apart):.0f} m apart: these are drives whose clocks overlap, as seconds of "
+            f"At most times the points lie in two places {np.nanmedian(distances):.0f} m apart: these are drives whose clocks overlap, as seconds of "
             "the day or of the week do on other days. Estimate the trajectory of each drive by itself, from its own files.")
 
 
@@ -392,13 +392,13 @@ def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning], heads: S
     if heads:
         # a vehicle may stand most of the time, but where it drives, it is faster than anybody walks
         pace = np.concatenate([_paces_of(head) for head in heads])
-        walks = len(pace) > 0 and pace.max() < ESTIMATE.walking_pace
+        at_walking_pace = len(pace) > 0 and pace.max() < ESTIMATE.walking_pace
     else:
         # between places some seconds apart: the track swings from window to window by more than anybody walks meanwhile
-        apart = round(ESTIMATE.pace_time / TRACK.window)
-        pace = np.concatenate([np.hypot(*(track.foot[apart:, :2] - track.foot[:-apart, :2]).T) / ESTIMATE.pace_time for track in tracks])
-        walks = len(pace) > 0 and np.quantile(pace, 0.9) < ESTIMATE.walking_pace
-    if walks:
+        windows = round(ESTIMATE.pace_time / TRACK.window)
+        pace = np.concatenate([np.hypot(*(track.foot[windows:, :2] - track.foot[:-windows, :2]).T) / ESTIMATE.pace_time for track in tracks])
+        at_walking_pace = len(pace) > 0 and np.quantile(pace, 0.9) < ESTIMATE.walking_pace
+    if at_walking_pace:
         raise RoadExtractionError(
             f"This looks like a handheld or backpack survey: it moved at {np.median(pace):.1f} m/s, at walking pace, and no mirror turns steadily "
             "in it. A trajectory is estimated for scanners on vehicles; give the trajectory that the scanner's own program has computed.")
