@@ -162,8 +162,8 @@ class Call:
 
         path = self.raster(name)
         with gdal_exceptions():
-            own = place_of_raster(open_raster(path))[1]
-        if not own or not crs or same_crs(parse_crs(own), parse_crs(crs)):
+            wkt = place_of_raster(open_raster(path))[1]
+        if not wkt or not crs or same_crs(parse_crs(wkt), parse_crs(crs)):
             return path
         target = self.scratch_file(f"{name.lower()}.vrt")
         with gdal_exceptions():
@@ -188,7 +188,7 @@ class Call:
 
     def check_destinations(self):
         """Prove every output writable before the work, so that a read-only disk is reported now."""
-        taken = {}
+        label_by_target = {}
         for spec in self.algorithm.outputs():
             value = self.destination(spec.name)
             path = destination_path(value)
@@ -201,13 +201,13 @@ class Call:
                     tr("{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.").format(
                         label=spec.label, path=path, input=read))
             # layers of one GeoPackage differ in the rest of the value
-            place = str(path.absolute()) if value == str(path) else value
-            if place in taken:
+            target = str(path.absolute()) if value == str(path) else value
+            if target in label_by_target:
                 raise RoadExtractionError(
                     tr("{first} and {second} would both be written to {path}, and one would be lost. Give each a file of its own, "
                        "or name the layers in one GeoPackage: ogr:dbname='map.gpkg' table=\"road_edges\" (geom).").format(
-                        first=taken[place], second=spec.label, path=path))
-            taken[place] = spec.label
+                        first=label_by_target[target], second=spec.label, path=path))
+            label_by_target[target] = spec.label
             check_writable(path, spec.label)
 
     def _cloud_at(self, path):

@@ -29,6 +29,6 @@ ALGORITHMS = tuple(_declared_in(f".{folder}.{file}") for folder, files in FILES.
 
 def toolbox_number(ID):
     """"2.3" for the third algorithm of the second group: the toolbox sorts by name, and the number keeps the order of the work."""
-    declared = next(one for one in ALGORITHMS if one.ID == ID)
-    group = [one.ID for one in ALGORITHMS if one.GROUP == declared.GROUP]
+    declared = next(algorithm for algorithm in ALGORITHMS if algorithm.ID == ID)
+    group = [algorithm.ID for algorithm in ALGORITHMS if algorithm.GROUP == declared.GROUP]
     return f"{GROUPS.index(declared.GROUP) + 1}.{group.index(ID) + 1}"

@@ -33,18 +33,18 @@ def cloud_files(given: Iterable[str], label: str) -> list[str]:
     RoadExtractionError
         If a folder or wildcard holds no point cloud.
     """
-    found: list[str] = []
+    files: list[str] = []
     for name in filter(None, given):
         path = Path(name)
         if path.is_file():
-            found.append(name)
+            files.append(name)
         elif path.is_dir():
-            found += _clouds(path.iterdir(), tr("{label}: the folder {name} holds no LAS or LAZ file.").format(label=label, name=name))
+            files += _clouds(path.iterdir(), tr("{label}: the folder {name} holds no LAS or LAZ file.").format(label=label, name=name))
         elif has_magic(name):
-            found += _clouds(map(Path, glob(name)), tr("{label}: no LAS or LAZ file is called {name}.").format(label=label, name=name))
+            files += _clouds(map(Path, glob(name)), tr("{label}: no LAS or LAZ file is called {name}.").format(label=label, name=name))
         else:
-            found.append(name)
-    return list(dict.fromkeys(found))
+            files.append(name)
+    return list(dict.fromkeys(files))
 
 
 def survey_name(clouds: list[str]) -> str:

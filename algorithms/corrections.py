@@ -34,14 +34,14 @@ def read_corrections(source):
     """
     import shapely
 
-    place = {name.lower(): k for k, name in enumerate(source.names)}
-    missing = [name for name in NEEDED if name not in place]
+    index = {name.lower(): k for k, name in enumerate(source.names)}
+    missing = [name for name in NEEDED if name not in index]
     if missing:
         raise RoadExtractionError(tr("{label} lacks the field(s) {fields}. Make the layer with the buttons of the window of doubtful places, or "
                                      "give it the fields action and target.").format(label=source.label, fields=", ".join(missing)))
-    columns = [column for column in CORRECTIONS if column.name in place]
-    found = Features("any", list(CORRECTIONS), crs=source.crs)
+    columns = [column for column in CORRECTIONS if column.name in index]
+    result = Features("any", list(CORRECTIONS), crs=source.crs)
     for wkb, values in source.rows(check_validity=False):
-        row = {column.name: values[place[column.name]] for column in columns}
-        found.add(None if wkb is None else shapely.from_wkb(wkb), **row)
-    return found
+        row = {column.name: values[index[column.name]] for column in columns}
+        result.add(None if wkb is None else shapely.from_wkb(wkb), **row)
+    return result

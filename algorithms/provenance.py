@@ -64,9 +64,9 @@ class Provenance:
     @classmethod
     def of_sentence(cls, text: str) -> tuple[Provenance, str] | None:
         """The run and the result that `sentence` told of; None where a text is no such sentence."""
-        found = SENTENCE.search(text)
-        provenance = _read(found[3], found[2], found[5], found[1]) if found else None
-        return None if found is None or provenance is None else (provenance, found[4] or "")
+        match = SENTENCE.search(text)
+        provenance = _read(match[3], match[2], match[5], match[1]) if match else None
+        return None if match is None or provenance is None else (provenance, match[4] or "")
 
     def tags(self) -> dict[str, str]:
         """The same by name, for formats that keep pairs of names and texts."""
@@ -87,9 +87,9 @@ def provenance_now(algorithm: str, values: Mapping[str, Any], warnings: Iterable
 def _without_folders(value, folders):
     """A value of a parameter with the names of files alone; their folders are noted."""
     if isinstance(value, Mapping):
-        return {name: _without_folders(one, folders) for name, one in value.items()}
+        return {name: _without_folders(item, folders) for name, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_without_folders(one, folders) for one in value]
+        return [_without_folders(item, folders) for item in value]
     if isinstance(value, os.PathLike):
         value = os.fspath(value)
     if not isinstance(value, str):

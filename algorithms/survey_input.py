@@ -62,11 +62,11 @@ def estimated_trajectory(call, progress):
     from ..core.survey.estimation import estimate_trajectory
 
     progress.info(tr("No trajectory was given; it is estimated from the points …"))
-    found = estimate_trajectory(call.point_clouds(), call.crs(), call.settings(SURVEY_SETTINGS).scanner_field, progress)
-    for note in found.notes:
+    estimate = estimate_trajectory(call.point_clouds(), call.crs(), call.settings(SURVEY_SETTINGS).scanner_field, progress)
+    for note in estimate.notes:
         progress.warn(note)
-    progress.info(found.summary())
-    return found
+    progress.info(estimate.summary())
+    return estimate
 
 
 def add_execution(algorithm):
@@ -136,8 +136,8 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
     frame = build_frame(trajectory)
     frame.crs, frame.has_time = crs or trajectory.crs, has_time
     # what passes differ by is seen where the points are read; here it comes with what was made of them
-    frame.pass_sigma = {road: sigma for found in ([road_points.pass_sigma] if road_points is not None else [])
-                        + [sigma_of_layer(layer) for layer in (layers or {}).values() if layer is not None] for road, sigma in found.items()}
+    frame.pass_sigma = {road: sigma for sigmas in ([road_points.pass_sigma] if road_points is not None else [])
+                        + [sigma_of_layer(layer) for layer in (layers or {}).values() if layer is not None] for road, sigma in sigmas.items()}
     check_layers_on_roads(call, layers or {}, frame, progress)
     if road_points is not None:
         check_road_points_on_roads(road_points, frame, tr("The points"))

@@ -42,16 +42,16 @@ def read_trajectory_source(source, crs="", heights_needed=True):
             rows.append(values)
             points.append(wkb)
     _refuse_empty(source, len(rows))
-    given = {}
+    coordinates = {}
     if source.kind == POINT:
         firsts = shapely.get_geometry(shapely.from_wkb(np.array(points, object)), 0)  # of what has several
-        given["x"], given["y"], z = shapely.get_coordinates(firsts, include_z=True).T
+        coordinates["x"], coordinates["y"], z = shapely.get_coordinates(firsts, include_z=True).T
         if source.has_z:
-            given["z"] = z
-    found = trajectory_from_rows(source.names, rows, given, crs or source.stored_crs, source.label, heights_needed)
+            coordinates["z"] = z
+    trajectory = trajectory_from_rows(source.names, rows, coordinates, crs or source.stored_crs, source.label, heights_needed)
     # Estimate trajectory writes the ridge of a cloud without times with its uncertainty, and does not know which way it was driven
     estimated = {column.name for column in ESTIMATED_TRAJECTORY} <= set(source.names)
-    return replace(found, way_known=False) if estimated and not found.has_time else found
+    return replace(trajectory, way_known=False) if estimated and not trajectory.has_time else trajectory
 
 
 def _refuse_empty(source, count):
@@ -87,8 +87,8 @@ def trajectory_features(trajectory, **further):
     columns = (trajectory.time if trajectory.has_time else np.full(len(trajectory), np.nan),
                trajectory.roll, trajectory.pitch, trajectory.heading)
     rows = [
-        dict(zip(("time", "roll", "pitch", "heading", "road", "pass", "station_m"), (*values, *where)))
-        for values, where in zip(np.stack(columns, axis=1).tolist(), placed)
+        dict(zip(("time", "roll", "pitch", "heading", "road", "pass", "station_m"), (*values, *location)))
+        for values, location in zip(np.stack(columns, axis=1).tolist(), placed)
     ]
     for name, values in further.items():
         for row, value in zip(rows, values.tolist()):
@@ -102,9 +102,9 @@ def _road_pass_station(trajectory):
 
     from ..core.survey.frame.road_frame import build_frame
 
-    found = [(None, None, None)] * len(trajectory)
+    locations = [(None, None, None)] * len(trajectory)
     for driven in build_frame(trajectory).passes:
         rows = np.flatnonzero((trajectory.time >= driven.time[0]) & (trajectory.time <= driven.time[-1]))
         for row, station in zip(rows, driven.station_at(trajectory.time[rows])):
-            found[row] = (driven.road, driven.number, float(station))
-    return found
+            locations[row] = (driven.road, driven.number, float(station))
+    return locations

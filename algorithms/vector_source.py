@@ -98,14 +98,14 @@ def read_features(source, schema, geometry_type):
     import numpy as np
     import shapely
 
-    index = _columns(source, schema)
+    indices = _columns(source, schema)
     _check_kind(source, geometry_type)
     measured = geometry_type.endswith("ZM")
     result = Features(geometry_type, list(schema), crs=source.crs)
     # scanlines run straight up a wall, which seen from above is no valid line
     for wkb, values in source.rows(measures=measured, check_validity=not measured):
-        row = {column.name: None if place is None or values[place] is None else _value(column, values[place], source.label)
-               for column, place in zip(schema, index)}
+        row = {column.name: None if k is None or values[k] is None else _value(column, values[k], source.label)
+               for column, k in zip(schema, indices)}
         if geometry_type == "None":
             result.add(None, **row)
             continue
@@ -126,15 +126,15 @@ def read_features(source, schema, geometry_type):
 
 def _columns(source, schema):
     """Places of the schema's fields among those of the layer, None for a field that is not needed; the case of names does not matter."""
-    place = {name.lower(): k for k, name in reversed(list(enumerate(source.names)))}
-    place.update({name: k for k, name in enumerate(source.names)})
-    found = [place.get(column.name, place.get(column.name.lower())) for column in schema]
-    missing = [column.name for column, k in zip(schema, found) if k is None and column.needed]
+    index_by_name = {name.lower(): k for k, name in reversed(list(enumerate(source.names)))}
+    index_by_name.update({name: k for k, name in enumerate(source.names)})
+    indices = [index_by_name.get(column.name, index_by_name.get(column.name.lower())) for column in schema]
+    missing = [column.name for column, k in zip(schema, indices) if k is None and column.needed]
     if missing:
         raise RoadExtractionError(
             tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
                 label=source.label, fields=", ".join(missing)))
-    return found
+    return indices
 
 
 def _check_kind(source, geometry_type):
@@ -152,8 +152,8 @@ def _measured_parts(wkb, label):
     if not (has_z and has_m):
         raise RoadExtractionError(
             tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label))
-    for at, count, *_ in _runs(wkb):
-        yield wkb[at - 9:at + 32 * count]   # with its byte order, type and count
+    for first_byte, count, *_ in _runs(wkb):
+        yield wkb[first_byte - 9:first_byte + 32 * count]   # with its byte order, type and count
 
 
 def vertices_of(wkb):
@@ -161,9 +161,9 @@ def vertices_of(wkb):
     import numpy as np
 
     runs = [np.empty((0, 4))]
-    for at, count, has_z, has_m in _runs(wkb):
+    for first_byte, count, has_z, has_m in _runs(wkb):
         runs.append(np.full((count, 4), np.nan))
-        runs[-1][:, [0, 1, *[2] * has_z, *[3] * has_m]] = np.frombuffer(wkb, "<f8", count * (2 + has_z + has_m), at).reshape(count, -1)
+        runs[-1][:, [0, 1, *[2] * has_z, *[3] * has_m]] = np.frombuffer(wkb, "<f8", count * (2 + has_z + has_m), first_byte).reshape(count, -1)
     return np.concatenate(runs)
 
 
@@ -172,8 +172,8 @@ def scaled_wkb(wkb, across, up):
     import numpy as np
 
     data = bytearray(wkb)
-    for at, count, has_z, has_m in _runs(data):
-        values = np.frombuffer(data, "<f8", count * (2 + has_z + has_m), at).reshape(count, -1)
+    for first_byte, count, has_z, has_m in _runs(data):
+        values = np.frombuffer(data, "<f8", count * (2 + has_z + has_m), first_byte).reshape(count, -1)
         values *= [across, across, *[up] * has_z, *[1.0] * has_m]
     return bytes(data)
 
@@ -206,7 +206,7 @@ def in_file_units(features):
         return MeasuredInFileUnits(features, wkt, units)
     import shapely
 
-    moved = [one if one is None else shapely.transform(one, units.in_file, include_z=True) for one in features.geometries]
+    moved = [geometry if geometry is None else shapely.transform(geometry, units.in_file, include_z=True) for geometry in features.geometries]
     on_map = [field.name for field in features.schema if field.on_map]
     rows = [{**row, **{name: row[name] / units.across for name in on_map if row.get(name) is not None}} for row in features.rows]
     return replace(features, geometries=moved, rows=rows, crs=wkt)

@@ -46,11 +46,11 @@ class FileCall(Call):
     def crs(self, name="CRS"):
         from ..core.io.crs import in_metres, parse_crs
 
-        given = self.value(name)
+        text = self.value(name)
         try:
-            return in_metres(parse_crs(given).to_wkt())[0] if given else ""
+            return in_metres(parse_crs(text).to_wkt())[0] if text else ""
         except RoadExtractionError as problem:
-            raise RoadExtractionError(f"{self.label(name)}: the CRS {given} is not known. Give it as EPSG:number.") from problem
+            raise RoadExtractionError(f"{self.label(name)}: the CRS {text} is not known. Give it as EPSG:number.") from problem
 
     def raster(self, name):
         return existing_raster(self.value(name), self.label(name))
@@ -93,11 +93,11 @@ class FileCall(Call):
             return ""
         _, table = file_and_table(value)
         for spec in self.algorithm.inputs():
-            given = self.parameters.get(spec.name)
-            for one in given if isinstance(given, list) else [given]:
-                if not isinstance(one, str):
+            inputs = self.parameters.get(spec.name)
+            for name in inputs if isinstance(inputs, list) else [inputs]:
+                if not isinstance(name, str):
                     continue
-                source, read = file_and_table(one)
+                source, read = file_and_table(name)
                 if Path(source).is_file() and os.path.samefile(path, source) and (not table or table == (read or first_table(source))):
                     return spec.label
         return ""

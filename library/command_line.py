@@ -99,10 +99,10 @@ def _main(arguments, as_json):
 
 
 def _run(algorithm, options, as_json):
-    given = {name: value for name, value in vars(parser_of(algorithm).parse_args(options)).items() if value is not None}
+    parameters = {name: value for name, value in vars(parser_of(algorithm).parse_args(options)).items() if value is not None}
     progress = TextProgress()
     with cancelled_by_signals(progress):
-        results = run(FileCall(algorithm, given, progress), progress)
+        results = run(FileCall(algorithm, parameters, progress), progress)
     if as_json:
         print(json.dumps({"results": results}, ensure_ascii=False, default=str))
     else:
@@ -125,8 +125,8 @@ def parser_of(algorithm):
     inputs, advanced, results = (parser.add_argument_group(title) for title in (tr("inputs"), tr("advanced parameters"), tr("results")))
     for spec in algorithm.parameters:
         group = results if spec.is_output else advanced if spec.advanced else inputs
-        several = dict(action="extend", nargs="+") if spec.kind == "clouds" else {}
-        group.add_argument(f"--{spec.name}", dest=spec.name, metavar=metavar(spec), help=explained(spec).replace("%", "%%"), **several)
+        many_values = dict(action="extend", nargs="+") if spec.kind == "clouds" else {}
+        group.add_argument(f"--{spec.name}", dest=spec.name, metavar=metavar(spec), help=explained(spec).replace("%", "%%"), **many_values)
     for name in algorithm.RETIRED:
         parser.add_argument(f"--{name}", help=argparse.SUPPRESS)
     return parser

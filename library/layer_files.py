@@ -108,13 +108,13 @@ class LayerFile(VectorSource):
 
         with _opened(self.path, self.table) as layer, _reported_errors() as problems:
             try:
-                found = {record["id"] for record in layer.filter(where=condition)}
+                ids = {record["id"] for record in layer.filter(where=condition)}
             except (AttributeFilterError, CPLE_BaseError) as problem:
                 problems.append(str(problem))
         if problems:
             raise RoadExtractionError(f"{condition!r} is no condition on the fields {', '.join(self.names)} of {self.label} ({problems[0]}). "
                                       "Outside QGIS it is one of SQL, such as \"type\" = 'driveway'.")
-        return [record["id"] in found for record in self._records()]
+        return [record["id"] in ids for record in self._records()]
 
     def _records(self):
         with _opened(self.path, self.table) as layer:

@@ -26,8 +26,8 @@ def may_have_measures(path, table):
     suffix = Path(path).suffix.lower()
     if suffix == ".gpkg":
         with closing(sqlite3.connect(f"{Path(path).absolute().as_uri()}?mode=ro", uri=True)) as database:
-            found = database.execute("SELECT m FROM gpkg_geometry_columns WHERE table_name = ?", (table,)).fetchone()
-        return bool(found and found[0])
+            row = database.execute("SELECT m FROM gpkg_geometry_columns WHERE table_name = ?", (table,)).fetchone()
+        return bool(row and row[0])
     return suffix not in (".geojson", ".json")
 
 

@@ -30,11 +30,11 @@ class TextProgress(Progress):
     def report(self, fraction):
         self.check_cancelled()
         left = self._remaining.after(fraction)
-        said = "" if left is None else time_left(left)
+        remaining = "" if left is None else time_left(left)
         percent = PERCENT_STEP * int(100 * fraction / PERCENT_STEP)
         if percent > self._written or left is not None:
             self._written = max(percent, self._written)
-            self._write(f"{100 * fraction:.0f} %" + (said and f", {said[0].lower()}{said[1:]}"))
+            self._write(f"{100 * fraction:.0f} %" + (remaining and f", {remaining[0].lower()}{remaining[1:]}"))
 
     def info(self, text):
         self._write(told(text))

@@ -21,10 +21,10 @@ def algorithms():
 
 def algorithm_named(name):
     """The algorithm of an id; raises RoadExtractionError where there is none."""
-    known = algorithms()
-    algorithm = known.get(name.partition("lanewright:")[2] or name)
+    by_id = algorithms()
+    algorithm = by_id.get(name.partition("lanewright:")[2] or name)
     if algorithm is None:
-        raise RoadExtractionError(f"There is no algorithm {name}. There are: {', '.join(known)}.")
+        raise RoadExtractionError(f"There is no algorithm {name}. There are: {', '.join(by_id)}.")
     return algorithm
 
 

@@ -48,7 +48,7 @@ def _unknown(algorithm, name):
 def _plain(value):
     """Paths as texts, tuples as lists."""
     if isinstance(value, (list, tuple)):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     return fspath(value) if isinstance(value, PathLike) else value
 
 

@@ -105,9 +105,9 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         except RoadExtractionError as error:
             return False, told(str(error))
         with self._network(parameters, context):
-            fine, said = super().checkParameterValues(accept_trajectory_file(self.declaration, parameters, context), context)
-        return fine, said if fine else \
-            out_of_range(self.parameterDefinitions(), parameters) or no_trajectory(self.declaration, parameters) or said
+            fine, message = super().checkParameterValues(accept_trajectory_file(self.declaration, parameters, context), context)
+        return fine, message if fine else \
+            out_of_range(self.parameterDefinitions(), parameters) or no_trajectory(self.declaration, parameters) or message
 
     def prepareAlgorithm(self, parameters, context, feedback):
         """On the main thread, where the layer tree may be looked at."""

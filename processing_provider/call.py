@@ -50,10 +50,10 @@ class QgisCall(Call):
     # -- in ---------------------------------------------------------------------------------
 
     def files(self, name):
-        given = self.parameters.get(name)
-        if not isinstance(given, (list, tuple)) and not hasattr(given, "source"):
-            given = self.processing.parameterAsFileList(self.parameters, name, self.context)
-        return [layer_file(one, self.context) for one in (given if isinstance(given, (list, tuple)) else [given])]
+        names = self.parameters.get(name)
+        if not isinstance(names, (list, tuple)) and not hasattr(names, "source"):
+            names = self.processing.parameterAsFileList(self.parameters, name, self.context)
+        return [layer_file(source, self.context) for source in (names if isinstance(names, (list, tuple)) else [names])]
 
     def file(self, name):
         return self.processing.parameterAsFile(self.parameters, name, self.context)
@@ -67,16 +67,16 @@ class QgisCall(Call):
         from ..core.io.crs import in_metres
 
         crs = self.processing.parameterAsCrs(self.parameters, name, self.context)
-        given = self.parameters.get(name)
-        if isinstance(given, str) and given and not crs.isValid():
+        text = self.parameters.get(name)
+        if isinstance(text, str) and text and not crs.isValid():
             raise RoadExtractionError(
-                tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=given))
+                tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=text))
         return in_metres(crs_text(crs))[0]
 
     def raster(self, name):
-        given = self.parameters.get(name)
-        if isinstance(given, str) and Path(given).is_file():
-            return given  # loaded as a layer, QGIS would write statistics beside it
+        path = self.parameters.get(name)
+        if isinstance(path, str) and Path(path).is_file():
+            return path  # loaded as a layer, QGIS would write statistics beside it
         layer = self.processing.parameterAsRasterLayer(self.parameters, name, self.context)
         if layer is None:
             raise QgsProcessingException(self.processing.invalidRasterError(self.parameters, name))
@@ -163,11 +163,11 @@ class QgisCall(Call):
         return {**self._results, **numbers}
 
     def values(self):
-        given = {definition: self.parameters.get(definition.name(), definition.defaultValue())
-                 for definition in self.processing.parameterDefinitions() if not definition.isDestination()}
+        value_of = {definition: self.parameters.get(definition.name(), definition.defaultValue())
+                    for definition in self.processing.parameterDefinitions() if not definition.isDestination()}
         # a batch gives a NULL of QGIS for what was left empty
         return {definition.name(): None if QgsVariantUtils.isNull(value) else definition.valueAsJsonObject(value, self.context)
-                for definition, value in given.items()}
+                for definition, value in value_of.items()}
 
     def _write(self, name, features):
         """Write a layer, a file beside its destination at first; where it will be."""
@@ -179,8 +179,8 @@ class QgisCall(Call):
         parameters, unfinished, file = self.parameters, "", ""
         if path is not None:
             unfinished = str(self._unfinished.begin(path))
-            beside, file = at_path(value, unfinished)
-            parameters = {**parameters, name: self._redirected(name, beside)}
+            interim, file = at_path(value, unfinished)
+            parameters = {**parameters, name: self._redirected(name, interim)}
         sink, dest = self.processing.parameterAsSink(parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs)
         if sink is None:
             raise QgsProcessingException(self.processing.invalidSinkError(self.parameters, name))
@@ -196,9 +196,9 @@ class QgisCall(Call):
 
     def _redirected(self, name, value):
         """What was given for an output, with another destination."""
-        given = self.parameters.get(name)
-        if not isinstance(given, QgsProcessingOutputLayerDefinition):
+        output = self.parameters.get(name)
+        if not isinstance(output, QgsProcessingOutputLayerDefinition):
             return value
-        redirected = QgsProcessingOutputLayerDefinition(given)
+        redirected = QgsProcessingOutputLayerDefinition(output)
         redirected.sink = QgsProperty.fromValue(value)
         return redirected

@@ -25,9 +25,9 @@ OLDEST_SHAPELY = 2
 
 def missing_packages():
     """One sentence naming what is missing or too old, and the way on; "" when everything is there."""
-    said = missing_in_short()
-    return said and tr("{missing} To install: {command}{where}. Then start QGIS again.").format(
-        missing=said, command=install_command(), where=_where())
+    missing = missing_in_short()
+    return missing and tr("{missing} To install: {command}{where}. Then start QGIS again.").format(
+        missing=missing, command=install_command(), where=_where())
 
 
 def missing_in_short():
@@ -74,12 +74,12 @@ def install_command():
     names = _missing() or ["shapely"]
     if Path("/etc/debian_version").exists():
         system = [DEBIAN[name] for name in names if name in DEBIAN]
-        own = [name for name in names if name not in DEBIAN]
+        by_pip = [name for name in names if name not in DEBIAN]
     else:
-        system, own = [], list(names)
+        system, by_pip = [], list(names)
     commands = [f"sudo apt install {' '.join(system)}"] if system else []
-    if own:
-        commands.append(f'{_python()} -m pip install --no-deps --target "{library_folder()}" {" ".join(map(_wanted, own))}')
+    if by_pip:
+        commands.append(f'{_python()} -m pip install --no-deps --target "{library_folder()}" {" ".join(map(_wanted, by_pip))}')
     return " && ".join(commands)
 
 

@@ -66,11 +66,11 @@ def _in_the_database(layer, title, qml, schema, output, provenance):
 
 def _comment_on_table(layer, text):
     """What PostgreSQL keeps of a table, and QGIS shows as its abstract. QGIS's own way makes a table of its own in every schema."""
-    place = QgsDataSourceUri(layer.source())
-    name, quoted = place.quotedTablename(), text.replace("'", "''")
+    uri = QgsDataSourceUri(layer.source())
+    name, quoted = uri.quotedTablename(), text.replace("'", "''")
     try:
-        known = QgsProviderRegistry.instance().providerMetadata("postgres").createConnection(place.connectionInfo(True), {})
-        known.executeSql(f"COMMENT ON TABLE {name} IS '{quoted}'")
+        connection = QgsProviderRegistry.instance().providerMetadata("postgres").createConnection(uri.connectionInfo(True), {})
+        connection.executeSql(f"COMMENT ON TABLE {name} IS '{quoted}'")
     except QgsProviderConnectionException as problem:
         QgsApplication.messageLog().logMessage(str(problem), "Lanewright", Qgis.MessageLevel.Warning, False)
 

@@ -20,14 +20,14 @@ READ = ("source", "vector", "raster", "layer", "multilayer", "file", "pointcloud
 
 def input_files(algorithm, parameters, context):
     """[(path, table or "", label)] of every file that the inputs name and that is there."""
-    found = []
+    files = []
     for definition in algorithm.parameterDefinitions():
         if definition.type() in READ and not definition.isDestination():
             for source in _sources(parameters.get(definition.name()), context):
                 path, table = _file_of(source)
                 if path is not None:
-                    found.append((path, table, definition.description()))
-    return found
+                    files.append((path, table, definition.description()))
+    return files
 
 
 def written_over(destination, path, inputs):
@@ -92,7 +92,7 @@ def close_database(destination, context):
 def _sources(value, context):
     """The sources of the layers and files that a parameter's value names."""
     if isinstance(value, (list, tuple)):
-        return [source for one in value for source in _sources(one, context)]
+        return [source for item in value for source in _sources(item, context)]
     if isinstance(value, QgsProcessingFeatureSourceDefinition):
         value = value.source.valueAsString(context.expressionContext())[0]
     if isinstance(value, QgsMapLayer):

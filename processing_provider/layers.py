@@ -103,7 +103,7 @@ class QgisSource(VectorSource):
             yield wkb, [_value(value) for value in feature.attributes()]
 
     def kind_label(self, kind):
-        return QgsWkbTypes.geometryDisplayString(next(one for one, ours in KINDS.items() if ours == kind))
+        return QgsWkbTypes.geometryDisplayString(next(geometry_type for geometry_type, name in KINDS.items() if name == kind))
 
 
 def _wkb(geometry, measures):
@@ -128,17 +128,17 @@ def crs_text(crs):
     GeoPackage has entries of its own for that: "Undefined geographic SRS" is what
     GDAL writes for a layer without CRS, whatever its coordinates are.
     """
-    known = crs.isValid() and not crs.description().lower().startswith("undefined ")
-    return crs.toWkt(Qgis.CrsWktVariant.Preferred) if known else ""
+    defined = crs.isValid() and not crs.description().lower().startswith("undefined ")
+    return crs.toWkt(Qgis.CrsWktVariant.Preferred) if defined else ""
 
 
 def write_features(sink, features, fields, feedback=None):
     """All rows, some thousands at a time; raises RoadExtractionError when the sink refuses, Cancelled when the user wishes."""
     rows = qgis_features(features, fields)
-    while some := list(islice(rows, AT_ONCE)):
+    while batch := list(islice(rows, AT_ONCE)):
         if feedback is not None and feedback.isCanceled():
             raise Cancelled
-        if not sink.addFeatures(some, QgsFeatureSink.Flag.FastInsert):
+        if not sink.addFeatures(batch, QgsFeatureSink.Flag.FastInsert):
             raise RoadExtractionError(
                 tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?").format(
                     reason=sink.lastError() or tr("the sink refused the features")))

@@ -47,18 +47,18 @@ def explain(model):
     Those texts are written once, on the parameters of the stages, and are translated there.
     Results keep their names: a model's results are called by them.
     """
-    said = model.helpContent()
-    said["ALG_DESC"] = tr(said.get("ALG_DESC", ""))
-    said["HELP_URL"] = MANUAL_PAGE
-    for name, asked in asked_for(model).items():
-        said[name] = asked.help()
+    texts = model.helpContent()
+    texts["ALG_DESC"] = tr(texts.get("ALG_DESC", ""))
+    texts["HELP_URL"] = MANUAL_PAGE
+    for name, parameter in asked_for(model).items():
+        texts[name] = parameter.help()
         definition = model.parameterDefinition(name).clone()
-        definition.setDescription(asked.description())
-        definition.setHelp(asked.help())
-        definition.setMetadata(asked.metadata())  # which names the widget of the dialog
+        definition.setDescription(parameter.description())
+        definition.setHelp(parameter.help())
+        definition.setMetadata(parameter.metadata())  # which names the widget of the dialog
         model.updateModelParameter(definition)
-    said.update(handed_back(model))
-    model.setHelpContent(said)
+    texts.update(handed_back(model))
+    model.setHelpContent(texts)
     for stage in model.childAlgorithms().values():
         stage.setDescription(tr(stage.description()))  # the boxes in the designer, and the lines of the log
         model.setChildAlgorithm(stage)
@@ -67,7 +67,7 @@ def explain(model):
 
 def asked_for(model):
     """{input of the model: the parameter it goes to}, of the first stage that takes it."""
-    found = {}
+    parameters = {}
     for child in model.childAlgorithms().values():
         algorithm = child.algorithm()
         if algorithm is None:  # before the provider is registered
@@ -76,17 +76,17 @@ def asked_for(model):
             for source in sources:
                 if source.source() == Qgis.ProcessingModelChildParameterSource.ModelParameter:
                     # a copy: the stage may go before its parameter is asked
-                    found.setdefault(source.parameterName(), algorithm.parameterDefinition(name).clone())
-    return found
+                    parameters.setdefault(source.parameterName(), algorithm.parameterDefinition(name).clone())
+    return parameters
 
 
 def handed_back(model):
     """{result of the model: help of the stage's result}."""
     names = {definition.description(): definition.name() for definition in model.destinationParameterDefinitions()}
-    found = {}
+    help_by_result = {}
     for child in model.childAlgorithms().values():
         algorithm = child.algorithm()
         if algorithm is not None:
             for output in child.modelOutputs().values():
-                found[names[output.description()]] = algorithm.parameterDefinition(output.childOutputName()).help()
-    return found
+                help_by_result[names[output.description()]] = algorithm.parameterDefinition(output.childOutputName()).help()
+    return help_by_result

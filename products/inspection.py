@@ -101,10 +101,10 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
             counter.take(block)
             done += len(block)
             progress.report(done / total)
-    found = counter.inspection(files, wkt, trajectory, progress)
+    inspection = counter.inspection(files, wkt, trajectory, progress)
     samples = sample_files(files)
-    found.notes[:0] = copies + [note for note in (coarse_coordinates(samples)[0], intensity_source_of(samples, INTENSITY_SOURCES[0])[1]) if note]
-    return found
+    inspection.notes[:0] = copies + [note for note in (coarse_coordinates(samples)[0], intensity_source_of(samples, INTENSITY_SOURCES[0])[1]) if note]
+    return inspection
 
 
 def _usable(trajectory, wkt):
@@ -141,8 +141,8 @@ class _Counter:
         x, y, z = (np.asarray(block[name], float) for name in "xyz")
         self.count += len(x)
         if len(x):
-            self.minimum, self.maximum = (beyond(known, [end(axis) for axis in (x, y, z)])
-                                          for beyond, end, known in ((np.minimum, np.min, self.minimum), (np.maximum, np.max, self.maximum)))
+            self.minimum, self.maximum = (beyond(extreme, [end(axis) for axis in (x, y, z)])
+                                          for beyond, end, extreme in ((np.minimum, np.min, self.minimum), (np.maximum, np.max, self.maximum)))
         cell, cube = self.settings.cell_size, self.settings.cube_size
         column, row = np.floor((x - self.corner[0]) / cell), np.floor((y - self.corner[1]) / cell)
         self.cells.add(_key(column, row))
@@ -169,31 +169,31 @@ class _Counter:
     def inspection(self, files, wkt, trajectory, progress):
         scanner_field, scanners = self.census.choose()
         has_time = all(file.has_time for file in files) and self.time[1] > self.time[0]
-        found = Inspection(
+        inspection = Inspection(
             files, wkt, self.count, self.minimum, self.maximum,
             _density(self.cells.counts, self.settings.cell_size**2), _density(self.cubes.counts, self.settings.cube_size**3),
             self._raster(), self.intensity, tuple(self.time) if has_time else None, scanner_field, scanners,
             _named(self.returns), _named(self.classes), self.settings, trajectory=trajectory)
         if self.sampled:
-            found.near_share = self.near / self.sampled
+            inspection.near_share = self.near / self.sampled
         if self.near:
-            found.drive = _inspect_drive(self.trajectory, *(np.concatenate(parts) for parts in zip(*self.on_track)))
+            inspection.drive = _inspect_drive(self.trajectory, *(np.concatenate(parts) for parts in zip(*self.on_track)))
         if self.copy_samples:
-            time, place = (np.concatenate(column) for column in zip(*self.copy_samples))
-            if share := 1 - len(distinct_rows(time, place)) / max(len(time), 1):
-                found.notes.append(f"About {100 * share:.2g} % of the points are copies of points in another file, as where tiles overlap. They are "
-                                   "counted here as often as they are there; a road map uses each point once.")
-        _judge_crs(found)
+            time, xyz = (np.concatenate(column) for column in zip(*self.copy_samples))
+            if share := 1 - len(distinct_rows(time, xyz)) / max(len(time), 1):
+                inspection.notes.append(f"About {100 * share:.2g} % of the points are copies of points in another file, as where tiles overlap. "
+                                        "They are counted here as often as they are there; a road map uses each point once.")
+        _judge_crs(inspection)
         if trajectory is not None:
-            _judge_trajectory(found, wkt, has_time, progress)
+            _judge_trajectory(inspection, wkt, has_time, progress)
         if np.count_nonzero(self.intensity) < 2:
-            found.notes.append(f"All intensities are {self.intensity.argmax()}: road edges can be found, markings and driving lines cannot. "
-                               f"{without_intensity(files, INTENSITY_SOURCES[0])}".strip())
+            inspection.notes.append(f"All intensities are {self.intensity.argmax()}: road edges can be found, markings and driving lines cannot. "
+                                    f"{without_intensity(files, INTENSITY_SOURCES[0])}".strip())
         if not has_time:
-            found.notes.append("There is no usable gps_time: each point is assigned to the nearest position on the trajectory, "
-                               "which mixes the passes where a street was driven twice. Export the point clouds with gps_time, or process "
-                               "each drive with its own files.")
-        return found
+            inspection.notes.append("There is no usable gps_time: each point is assigned to the nearest position on the trajectory, "
+                                    "which mixes the passes where a street was driven twice. Export the point clouds with gps_time, or process "
+                                    "each drive with its own files.")
+        return inspection
 
     def _raster(self):
         cell = self.settings.cell_size
@@ -218,8 +218,8 @@ class _Tally:
 
     def add(self, keys):
         new, counts = np.unique(keys, return_counts=True)
-        self.keys, place = np.unique(np.r_[self.keys, new], return_inverse=True)
-        self.counts = np.bincount(place.ravel(), np.r_[self.counts, counts]).astype(np.int64)
+        self.keys, index = np.unique(np.r_[self.keys, new], return_inverse=True)
+        self.counts = np.bincount(index.ravel(), np.r_[self.counts, counts]).astype(np.int64)
 
 
 def _copy_samples(place, time, every):

@@ -77,8 +77,8 @@ class IntensityPeaks:
             records, profiles = records_of(window)
             return _between(records, profiles, row, left, right)
 
-        found = list(ordered_map(peaks_in, windows, progress.part(0.0, 0.6)))
-        row, left, right = (np.concatenate([f[k] for f in found]) for k in range(3))
+        peaks = list(ordered_map(peaks_in, windows, progress.part(0.0, 0.6)))
+        row, left, right = (np.concatenate([f[k] for f in peaks]) for k in range(3))
         kept = in_chains(row, (left + right) / 2, self)
         row, left, right = row[kept], left[kept], right[kept]
         yield from ordered_map(paint_in, windows, progress.part(0.6, 1.0))
@@ -109,10 +109,10 @@ def profile_peaks(records: Columns, row: np.ndarray, settings: IntensityPeaks) -
     padded = np.pad(z, ((0, 0), (reach, reach)))
     limits = np.array([settings.narrowest, settings.widest]) / (PROFILE_CELL * COORDINATE_SCALE)
     # a minimum height excludes the many small peaks of asphalt
-    _, found = find_peaks(padded.ravel(), height=1e-9, prominence=settings.prominence, width=limits, wlen=2 * reach + 1)
-    place = np.stack([found["left_ips"], found["right_ips"]])
-    number = (place[0] // padded.shape[1]).astype(np.int64)
-    borders = np.rint((place - number * padded.shape[1] - reach + low + 0.5) * PROFILE_CELL).astype(np.int64)
+    _, properties = find_peaks(padded.ravel(), height=1e-9, prominence=settings.prominence, width=limits, wlen=2 * reach + 1)
+    feet = np.stack([properties["left_ips"], properties["right_ips"]])
+    number = (feet[0] // padded.shape[1]).astype(np.int64)
+    borders = np.rint((feet - number * padded.shape[1] - reach + low + 0.5) * PROFILE_CELL).astype(np.int64)
     return number + first, borders[0], borders[1]
 
 
@@ -123,12 +123,12 @@ def _profiles(value, row, column):
     count = np.bincount(cell, minlength=size)
     # in whole 64ths: their sums are exact in any order
     total = np.bincount(cell, np.rint(value.astype(float) * 64), size) / 64
-    seen = np.flatnonzero(count)
+    scanned = np.flatnonzero(count)
     places = np.arange(size)
-    after = np.minimum(np.searchsorted(seen, places), len(seen) - 1)
-    before = np.maximum(np.searchsorted(seen, places, side="right") - 1, 0)
-    level = np.interp(places, seen, total[seen] / count[seen]).reshape(shape)
-    unseen = (np.maximum(np.abs(seen[after] - places), np.abs(places - seen[before])) > MAX_EMPTY_PROFILE_CELLS).reshape(shape)
+    after = np.minimum(np.searchsorted(scanned, places), len(scanned) - 1)
+    before = np.maximum(np.searchsorted(scanned, places, side="right") - 1, 0)
+    level = np.interp(places, scanned, total[scanned] / count[scanned]).reshape(shape)
+    unseen = (np.maximum(np.abs(scanned[after] - places), np.abs(places - scanned[before])) > MAX_EMPTY_PROFILE_CELLS).reshape(shape)
     level = ndimage.median_filter(level, (1, MEDIAN_CELLS), mode="nearest")
     level[unseen] = np.nan
     empty = unseen.all(axis=1)
@@ -164,9 +164,9 @@ def _between(records, row, peak_row, left, right):
     order = np.lexsort((left, peak_row))
     width = 1 << 32
     keys = peak_row[order] * width + left[order]
-    at = np.searchsorted(keys, row * width + records["d"], side="right") - 1
-    peak = order[np.maximum(at, 0)]
-    return take_rows(records, (at >= 0) & (peak_row[peak] == row) & (records["d"] <= right[peak]))
+    index = np.searchsorted(keys, row * width + records["d"], side="right") - 1
+    peak = order[np.maximum(index, 0)]
+    return take_rows(records, (index >= 0) & (peak_row[peak] == row) & (records["d"] <= right[peak]))
 
 
 # Thresholds on the points of segments across the road, each of one point density and one range (Otsu); bright points with few bright neighbours
@@ -214,8 +214,8 @@ class PointSegments:
         def paint_in(window):
             first, last = window * length, (window + 1) * length
             records = _bright(_records_between(road_points, road, first - reach, last + reach), length, limits, self)
-            own = (records["s"] >= first) & (records["s"] < last)
-            return take_rows(records, own & dense_enough(records, own, self))
+            inside = (records["s"] >= first) & (records["s"] < last)
+            return take_rows(records, inside & dense_enough(records, inside, self))
 
         yield from ordered_map(paint_in, windows, progress.part(0.5, 1.0))
 
@@ -260,9 +260,9 @@ def _bright(records, length, limits, settings):
     first = int(window.min()), int(segment.min())
     table = np.full((int(window.max()) - first[0] + 1, int(segment.max()) - first[1] + 1), np.inf)
     for number in np.unique(window).tolist():
-        for place, value in limits.get(number, {}).items():
-            if 0 <= place - first[1] < table.shape[1]:
-                table[number - first[0], place - first[1]] = value
+        for column, value in limits.get(number, {}).items():
+            if 0 <= column - first[1] < table.shape[1]:
+                table[number - first[0], column - first[1]] = value
     return take_rows(records, Points(records).value > table[window - first[0], segment - first[1]])
 
 
@@ -278,11 +278,11 @@ def dense_enough(records: Columns, own: np.ndarray, settings: PointSegments) -> 
     count = cKDTree(places).query_ball_point(asked * COORDINATE_SCALE, settings.radius, return_length=True).take(member) - 1
     segment = _segments(records, settings)[rows]
     for number in np.unique(segment):
-        here = np.flatnonzero(segment == number)
+        members = np.flatnonzero(segment == number)
         # sorted, so that sums do not depend on the order of the points
-        counts = np.sort(count[here]).astype(float)
+        counts = np.sort(count[members]).astype(float)
         threshold, _, above, share = otsu(counts)
-        keep[rows[here]] = count[here] >= (min(threshold, RIM_NEIGHBOUR_SHARE * above) if share > 0 else 0.0)
+        keep[rows[members]] = count[members] >= (min(threshold, RIM_NEIGHBOUR_SHARE * above) if share > 0 else 0.0)
     return keep
 
 

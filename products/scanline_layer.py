@@ -117,11 +117,11 @@ def scanlines_from_features(features: Features, frame: RoadFrame) -> tuple[dict[
     if roads.max() >= len(frame.roads):
         raise RoadExtractionError(f"The scanlines belong to {roads.max() + 1} roads, but the trajectory has {len(frame.roads)}. "
                                   "Give both steps the same trajectory.")
-    found = {}
+    scanlines = {}
     for road in np.unique(roads):
-        own = np.flatnonzero(roads == road)
-        found[int(road)] = _in_frame(frame, int(road), [features.geometries[k] for k in own], [features.rows[k] for k in own])
-    return found, float(intervals.pop())
+        rows = np.flatnonzero(roads == road)
+        scanlines[int(road)] = _in_frame(frame, int(road), [features.geometries[k] for k in rows], [features.rows[k] for k in rows])
+    return scanlines, float(intervals.pop())
 
 
 def _in_frame(frame, road, geometries, rows):
@@ -241,8 +241,8 @@ def resample_scanlines(lines: Scanlines, spacing: float) -> tuple[np.ndarray, np
     number = np.floor((along[last] - along[first]) / spacing + 1e-9).astype(np.int64) + 1
     line = np.repeat(np.arange(len(lines)), number)
     within = np.arange(number.sum()) - np.repeat(np.cumsum(number) - number, number)
-    at = np.minimum(along[first][line] + within * spacing, along[last][line])
-    d, z, intensity = (np.interp(at, along, values) for values in (lines.d, lines.z, lines.intensity))
+    distances = np.minimum(along[first][line] + within * spacing, along[last][line])
+    d, z, intensity = (np.interp(distances, along, values) for values in (lines.d, lines.z, lines.intensity))
     return line, d, z, intensity
 
 

@@ -87,9 +87,9 @@ class AssessDrivingLines(Algorithm):
     def _settings(self, call):
         """The core works with half-widths."""
         share = 0.5 if call.value("WIDTH") == "total-width" else 1.0
-        given = {spec.field: call.value(spec.name) for spec in LINE_SETTINGS}
+        values = {spec.field: call.value(spec.name) for spec in LINE_SETTINGS}
         widths = tuple(share * width for width in tolerances(call))
-        return replace(settings_class(LINES)(), **(given | {"tolerance": share * given["tolerance"], "tolerances": widths}))
+        return replace(settings_class(LINES)(), **(values | {"tolerance": share * values["tolerance"], "tolerances": widths}))
 
 
 def _numbers(accuracy, tolerance):

@@ -52,14 +52,14 @@ def layer_and_excluded(call, name):
     """(AssessedLayer, whether each row is excluded, why) of a reference."""
     source = call.source(name)
     excluded = call.rows_where("EXCLUDED", source)
-    layer, places = _read(source)
+    layer, indices = _read(source)
     # `edge` says what an edge is, and `kind` where it runs; layers without `edge` say in `kind` what it is
     kinds = ["" if kind is None and edge is None else str(kind if edge is None else edge)
              for kind, edge in zip(layer.column("kind"), layer.column("edge"))]
     if excluded is None:
         kinds = [kind.lower() for kind in kinds]
         return layer, [kind in NOT_THERE for kind in kinds], kinds
-    return layer, [excluded[place] for place in places], kinds
+    return layer, [excluded[k] for k in indices], kinds
 
 
 def _read(source):
@@ -68,13 +68,13 @@ def _read(source):
 
     from ...products.assess.inputs import AssessedLayer
 
-    layer, places = AssessedLayer(source.label, [], [], source.crs), []
-    for place, (wkb, values) in enumerate(source.rows()):
+    layer, indices = AssessedLayer(source.label, [], [], source.crs), []
+    for k, (wkb, values) in enumerate(source.rows()):
         if wkb is not None:
             layer.geometries.append(shapely.from_wkb(wkb))
             layer.rows.append(dict(zip(source.names, values)))
-            places.append(place)
-    return layer, places
+            indices.append(k)
+    return layer, indices
 
 
 def compared_lines(result, reference, progress):
@@ -103,8 +103,8 @@ def painted_of(call, name, progress):
     crs, units = in_metres(crs)
     if not units.metric:
         polygons = [shapely.transform(polygon, units.in_metres) for polygon in polygons]
-    several = len(set(values.tolist())) > 1
-    return AssessedLayer(call.label(name), polygons, [{"class": str(value)} if several else {} for value in values], crs), True
+    has_classes = len(set(values.tolist())) > 1
+    return AssessedLayer(call.label(name), polygons, [{"class": str(value)} if has_classes else {} for value in values], crs), True
 
 
 def frame_of_drive(call, crs):
@@ -140,6 +140,6 @@ def found_numbers(numbers):
 
 def shares_of(numbers, names):
     """Shares as the log tells them: precision 99.5 %, recall 98.0 %."""
-    told = [f"{name.split('_')[0].capitalize() if name.startswith('F1') else name.split('_')[0].lower()} {numbers[name]:.1f} %"
-            for name in names if name in numbers]
-    return ", ".join(told)
+    shares = [f"{name.split('_')[0].capitalize() if name.startswith('F1') else name.split('_')[0].lower()} {numbers[name]:.1f} %"
+              for name in names if name in numbers]
+    return ", ".join(shares)

@@ -39,26 +39,26 @@ def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, mark
     corrections : of an analyst, and which of them were made; None for none
     """
     lengths = list(road_lengths)
-    found: dict[str, float | None] = {"ROADS": float(len(lengths)), "ROAD_LENGTH": float(sum(lengths))}
+    numbers: dict[str, float | None] = {"ROADS": float(len(lengths)), "ROAD_LENGTH": float(sum(lengths))}
     for layer, length, share in ((edges, "EDGE_LENGTH", "EDGES_MEASURED"), (marking_lines, "LINE_LENGTH", "LINES_MEASURED"),
                                  (driving_lines, "LANE_LENGTH", "LANES_MEASURED")):
-        found[length], found[share] = _measured(layer)
+        numbers[length], numbers[share] = _measured(layer)
     lanes = [] if driving_lines is None else driving_lines.rows
-    found["LANE_COUNT"] = float(len({(row.get("road"), row.get("lane")) for row in lanes}))
-    found["MARKING_COUNT"] = float(0 if markings is None else len(markings))
-    found["TRUST"] = _trust(driving_lines)
-    unmatched = 0 if corrections is None else len({one.row for one in corrections.unmatched})
-    made = 0 if corrections is None else len({one.row for one in corrections.rows}) - unmatched
-    found["CORRECTIONS_MADE"], found["CORRECTIONS_UNMATCHED"] = float(made), float(unmatched)
-    return {name: round(value, 3) for name, value in found.items() if value is not None}
+    numbers["LANE_COUNT"] = float(len({(row.get("road"), row.get("lane")) for row in lanes}))
+    numbers["MARKING_COUNT"] = float(0 if markings is None else len(markings))
+    numbers["TRUST"] = _trust(driving_lines)
+    unmatched = 0 if corrections is None else len({correction.row for correction in corrections.unmatched})
+    made = 0 if corrections is None else len({correction.row for correction in corrections.rows}) - unmatched
+    numbers["CORRECTIONS_MADE"], numbers["CORRECTIONS_UNMATCHED"] = float(made), float(unmatched)
+    return {name: round(value, 3) for name, value in numbers.items() if value is not None}
 
 
 def _trust(layer):
     """Mean confidence of lines by their lengths, None without lines."""
     pieces = [] if layer is None else [(geometry.length, row.get("confidence")) for geometry, row in layer]
-    known = [(length, sure) for length, sure in pieces if sure is not None]
-    total = sum(length for length, _ in known)
-    return sum(length * sure for length, sure in known) / total if total else None
+    rated = [(length, sure) for length, sure in pieces if sure is not None]
+    total = sum(length for length, _ in rated)
+    return sum(length * sure for length, sure in rated) / total if total else None
 
 
 def _measured(layer):

@@ -41,24 +41,24 @@ class CheckMap(Algorithm):
         from ...products.report.hd_map import map_check_report, places_of_findings
 
         path = map_file(call)
-        found, note = (_lanelets if _is_lanelet2(path) else _roads)(path, call.crs(), progress)
+        check, note = (_lanelets if _is_lanelet2(path) else _roads)(path, call.crs(), progress)
         if note:
             progress.warn(note)
-        call.layer("OUTPUT", found.to_features())
+        call.layer("OUTPUT", check.to_features())
         if call.wants("REPORT"):
-            call.text("REPORT", map_check_report(found, path, [note] if note else []))
-        counts = found.counts()
-        groups, _ = found.groups()
-        for one in groups[:ROWS_IN_LOG]:
+            call.text("REPORT", map_check_report(check, path, [note] if note else []))
+        counts = check.counts()
+        groups, _ = check.groups()
+        for group in groups[:ROWS_IN_LOG]:
             progress.warn(tr("{fault}: {count} ({places}). {text}").format(
-                fault=told(one.worst.fault), count=one.count, places=places_of_findings(one, PLACES_IN_LOG), text=told(one.worst.text)))
+                fault=told(group.worst.fault), count=group.count, places=places_of_findings(group, PLACES_IN_LOG), text=told(group.worst.text)))
         if len(groups) > ROWS_IN_LOG:
             progress.warn(tr("The first {shown} of {count}; the layer has all of them.").format(shown=ROWS_IN_LOG, count=len(groups)))
         progress.info(tr("{findings} findings; {lanes} driven lanes and pieces, {successors} links to the next, {neighbours} pairs side by "
                          "side.").format(
-            findings=len(found.found), lanes=found.lanes, successors=found.successors, neighbours=found.neighbours))
-        return {"FINDINGS": float(len(found.found)), "FAULTS": float(len(counts)), "LANES": float(found.lanes),
-                "SUCCESSORS": float(found.successors), "NEIGHBOURS": float(found.neighbours)}
+            findings=len(check.found), lanes=check.lanes, successors=check.successors, neighbours=check.neighbours))
+        return {"FINDINGS": float(len(check.found)), "FAULTS": float(len(counts)), "LANES": float(check.lanes),
+                "SUCCESSORS": float(check.successors), "NEIGHBOURS": float(check.neighbours)}
 
 
 def _is_lanelet2(path):

@@ -77,17 +77,18 @@ def _landxml(call, source, progress):
     from ...products.export.cad.landxml import alignments_of, landxml_text
 
     tolerance = call.value("TOLERANCE")
-    found = alignments_of(source, tolerance)
+    alignments = alignments_of(source, tolerance)
     now = datetime.now()
-    text = landxml_text(found, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))
+    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))
     Path(call.new_file("OUTPUT")).write_text(text, encoding="utf-8")
-    irregular = sum(one.plan is None for one in found)
+    irregular = sum(alignment.plan is None for alignment in alignments)
     if irregular:
         progress.warn(tr("{count} lines are followed by no elements within the tolerance and are irregular lines.").format(count=irregular))
-    missed = max((one.missed for one in found), default=0.0)
+    missed = max((alignment.missed for alignment in alignments), default=0.0)
     progress.info(tr("{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.").format(
-        count=len(found), length=sum(one.length for one in found), missed=missed))
-    rows = [(one.name, told(one.description), round(one.length, 2), len(one.plan.elements) if one.plan is not None else None, len(one.profile))
-            for one in found]
+        count=len(alignments), length=sum(alignment.length for alignment in alignments), missed=missed))
+    rows = [(alignment.name, told(alignment.description), round(alignment.length, 2),
+             len(alignment.plan.elements) if alignment.plan is not None else None, len(alignment.profile))
+            for alignment in alignments]
     tables = [(tr("Alignments"), (tr("Name"), tr("What it is"), tr("Length (m)"), tr("Elements"), tr("Points of the profile")), rows)]
-    return {"LINES": float(len(found)), "ALIGNMENTS": float(len(found)), "MISSED": missed}, tables
+    return {"LINES": float(len(alignments)), "ALIGNMENTS": float(len(alignments)), "MISSED": missed}, tables

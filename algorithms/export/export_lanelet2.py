@@ -54,22 +54,22 @@ class ExportLanelet2(Algorithm):
         Path(path).write_text(lanelet2_text(draft, degrees, call.value("LOCAL_COORDINATES")), encoding="utf-8")
         progress.report(0.6)
         whole = read_lanelet2(path)
-        found = check_lanelets(whole, *node_places(whole, source.lanes.crs))
+        check = check_lanelets(whole, *node_places(whole, source.lanes.crs))
         progress.report(0.8)
         notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
                                   for kind, count in draft.skipped.items())]
         if degrees.local:
             notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
-        warn_of_faults(notes, found, progress)
+        warn_of_faults(notes, check, progress)
         numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
-                   "SUCCESSORS": float(found.successors), "FINDINGS": float(len(found.found))}
+                   "SUCCESSORS": float(check.successors), "FINDINGS": float(len(check.found))}
         progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=told(degrees.way)))
         if call.wants("REPORT"):
             accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else tr("not stated")
-            facts = [(tr("Lanelets"), len(draft.lanelets)), (tr("Links from one lane to the next"), found.successors),
-                     (tr("Pairs of lanes side by side"), found.neighbours), (tr("Ways"), len(whole.ways)), (tr("Nodes"), len(whole.node_ids)),
+            facts = [(tr("Lanelets"), len(draft.lanelets)), (tr("Links from one lane to the next"), check.successors),
+                     (tr("Pairs of lanes side by side"), check.neighbours), (tr("Ways"), len(whole.ways)), (tr("Nodes"), len(whole.node_ids)),
                      (tr("Transformation to latitude and longitude"), told(degrees.way)), (tr("Accuracy of the transformation"), accuracy),
                      (tr("Heights"), told(degrees.vertical))]
-            call.text("REPORT", map_export_report(tr("Lanelet2 map"), call.layer_name("LANES"), facts, fault_table(found), notes,
+            call.text("REPORT", map_export_report(tr("Lanelet2 map"), call.layer_name("LANES"), facts, fault_table(check), notes,
                                                   layers_of_lanelets(whole, source.lanes.crs)))
         return numbers

@@ -57,7 +57,7 @@ class ExportOpenDrive(Algorithm):
         path = call.new_file("OUTPUT")
         Path(path).write_text(opendrive_text(draft.map), encoding="utf-8")
         whole = read_opendrive(path)
-        shown, found = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
+        shown, check = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
         across, rise = border_misses(source.lanes, shown.lanes)
         driven = driving_line_misses(source.driving_lines, shown.lanes)
         led = source.led_to_middles()
@@ -68,12 +68,12 @@ class ExportOpenDrive(Algorithm):
         if across.largest > settings.tolerance or rise.largest > settings.tolerance:
             notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
                             "tolerance.").format(across=across.largest, rise=rise.largest))
-        warn_of_faults(notes, found, progress)
+        warn_of_faults(notes, check, progress)
         progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
             roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
         if call.wants("REPORT"):
-            call.text("REPORT", _report(call, whole, found, shown, (across, rise, driven, single), notes))
-        numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": found.successors, "FINDINGS": len(found.found),
+            call.text("REPORT", _report(call, whole, check, shown, (across, rise, driven, single), notes))
+        numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": check.successors, "FINDINGS": len(check.found),
                    "BORDER_MAXIMUM": across.largest, "HEIGHT_MAXIMUM": rise.largest}
         if driven.places:
             numbers["DRIVING_LINE_P95"] = driven.p95
@@ -97,7 +97,7 @@ def _report(call, whole, found, shown, misses, notes):
              tr("The same, of lanes beside no double line"))
     tables = [
         (tr("Against the survey"), ("", tr("Mean (m)"), "95 % (m)", tr("Largest (m)"), tr("Places")),
-         [(name, round(one.mean, 4), round(one.p95, 4), round(one.largest, 4), one.places) for name, one in zip(names, misses) if one.places]),
+         [(name, round(miss.mean, 4), round(miss.p95, 4), round(miss.largest, 4), miss.places) for name, miss in zip(names, misses) if miss.places]),
         (tr("Elements of the reference lines"), (tr("Element"), tr("Length (m)")),
          [(word(kind, "element"), round(metres, 1)) for kind, metres in sorted(lengths.items())]),
     ]

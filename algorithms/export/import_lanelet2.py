@@ -23,5 +23,5 @@ class ImportLanelet2(Algorithm):
     def work(self, call, progress):
         from ...products.export.lanelet_map import layers_of_lanelets, read_lanelet2
 
-        found = read_lanelet2(map_file(call), progress.part(0.0, 0.5))
-        return write_map_layers(call, layers_of_lanelets(found, call.crs(), progress.part(0.5, 0.95)), progress)
+        lanelet_map = read_lanelet2(map_file(call), progress.part(0.0, 0.5))
+        return write_map_layers(call, layers_of_lanelets(lanelet_map, call.crs(), progress.part(0.5, 0.95)), progress)

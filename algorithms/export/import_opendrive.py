@@ -26,8 +26,8 @@ class ImportOpenDrive(Algorithm):
         from ...products.export.opendrive.layers import layers_of_opendrive
         from ...products.export.opendrive.xodr import read_opendrive
 
-        found = read_opendrive(map_file(call), progress.part(0.0, 0.5))
-        crs, note = crs_of_reference(found.reference, call.crs())
-        layers = layers_of_opendrive(found, crs, progress.part(0.5, 0.95))
+        road_map = read_opendrive(map_file(call), progress.part(0.0, 0.5))
+        crs, note = crs_of_reference(road_map.reference, call.crs())
+        layers = layers_of_opendrive(road_map, crs, progress.part(0.5, 0.95))
         layers.notes += [note] if note else []
         return write_map_layers(call, layers, progress)

@@ -82,5 +82,5 @@ class CrossSections(Algorithm):
 def _numbers(table, count):
     ruts = [value for name in ("rut_l_mm", "rut_r_mm") for value in table.column(name) if value is not None]
     clear = [value for value in table.column("clear_m") if value is not None]
-    found = {"SECTIONS": float(count), "EXCEEDED": float(sum(bool(row["exceeds"]) for row in table.rows))}
-    return {**found, **({"LARGEST_RUT": max(ruts)} if ruts else {}), **({"LEAST_CLEARANCE": min(clear)} if clear else {})}
+    counts = {"SECTIONS": float(count), "EXCEEDED": float(sum(bool(row["exceeds"]) for row in table.rows))}
+    return {**counts, **({"LARGEST_RUT": max(ruts)} if ruts else {}), **({"LEAST_CLEARANCE": min(clear)} if clear else {})}

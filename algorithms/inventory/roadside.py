@@ -69,9 +69,9 @@ class Roadside(Algorithm):
 
         settings = call.settings(ROADSIDE_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.6), ABOVE_ROAD)
-        found = find_roadside(survey, layers, settings, progress.part(0.6, 1.0))
-        lines, points = roadside_to_features(found)
+        roadside = find_roadside(survey, layers, settings, progress.part(0.6, 1.0))
+        lines, points = roadside_to_features(roadside)
         call.layer("OUTPUT", lines)
         call.layer("OBJECTS", points)
-        call.text("REPORT", roadside_report(found, lines, points))
+        call.text("REPORT", roadside_report(roadside, lines, points))
         return {"LENGTH": sum(row["length_m"] for row in lines.rows if row["kind"] != "gutter"), "POLES": float(len(points))}

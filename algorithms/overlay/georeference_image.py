@@ -81,19 +81,19 @@ class GeoreferenceImage(Algorithm):
             # QGIS looks at a raster as a map layer before it starts an algorithm, and passes on what GDAL thinks of it
             progress.info(tr("The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute "
                             "a transformation, is QGIS saying the same and harmless."))
-        found = georeference(image, _control_points(call, image, progress), call.settings(GEOREFERENCE_SETTINGS))
-        for note in found.notes:
+        result = georeference(image, _control_points(call, image, progress), call.settings(GEOREFERENCE_SETTINGS))
+        for note in result.notes:
             progress.warn(note)
-        values = _numbers(found)
+        values = _numbers(result)
         progress.info(tr("Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
-            count=values["POINTS"], order=found.settings.order, rmse=values["RMSE"], left=found.left_out_rmse))
+            count=values["POINTS"], order=result.settings.order, rmse=values["RMSE"], left=result.left_out_rmse))
         if values["CHECK_POINTS"]:
             progress.info(tr("Check points: {count}, RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
         drawn = call.new_file("OUTPUT")
-        departure = draw_image(found, drawn, progress.part(0.02, 0.97))
-        call.layer("RESIDUALS", residual_vectors(found))
+        departure = draw_image(result, drawn, progress.part(0.02, 0.97))
+        call.layer("RESIDUALS", residual_vectors(result))
         if call.wants("REPORT"):
-            call.text("REPORT", call.in_users_names(georeferencing_report(found, drawn, departure)))
+            call.text("REPORT", call.in_users_names(georeferencing_report(result, drawn, departure)))
         return values
 
 
@@ -102,7 +102,7 @@ def _control_points(call, image, progress):
     from ...core.io.crs import horizontal_part, parse_crs, same_crs
     from ...products.overlay.control_points import read_control_points
 
-    given = call.crs()
+    crs = call.crs()
     path = call.file("GCP_FILE")
     source = call.source("GCPS")
     if bool(path) == (source is not None):
@@ -110,10 +110,10 @@ def _control_points(call, image, progress):
             tr("Control points were given twice, as a layer and as a file. Leave one of them empty.") if path else
             tr("There are no control points. Choose a layer, or a .points or CSV file."))
     if path:
-        points = read_control_points(path, image, given)
+        points = read_control_points(path, image, crs)
     else:
-        points = read_control_point_layer(source, image, given)
-    if given and not same_crs(parse_crs(given), parse_crs(points.crs)):
+        points = read_control_point_layer(source, image, crs)
+    if crs and not same_crs(parse_crs(crs), parse_crs(points.crs)):
         progress.warn(tr("The control points say that they are in {own}; the CRS given is for points that name none and was not used.").format(
             own=horizontal_part(parse_crs(points.crs)).name))
     return points

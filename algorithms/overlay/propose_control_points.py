@@ -68,17 +68,17 @@ class ProposeControlPoints(Algorithm):
         settings = call.settings(PROPOSE_SETTINGS)
         rough = rough_place(image, intensity.crs, settings.search, settings.pixel_size, _rough_points(call, image, intensity.crs))
         progress.info(tr("The image is looked for by {source}.").format(source=rough.source))
-        found = propose_control_points(image, intensity, rough, settings, progress.part(0.0, 0.95))
-        for note in found.notes:
+        proposal = propose_control_points(image, intensity, rough, settings, progress.part(0.0, 0.95))
+        for note in proposal.notes:
             progress.warn(note)
-        values = {"PROPOSED": len(found), "ACCEPTED": int(found.accepted.sum()), "GROUND_PIXEL": found.size, "TURN": found.turn_degrees}
+        values = {"PROPOSED": len(proposal), "ACCEPTED": int(proposal.accepted.sum()), "GROUND_PIXEL": proposal.size, "TURN": proposal.turn_degrees}
         if values["ACCEPTED"]:
-            values["RMSE"] = found.rmse
+            values["RMSE"] = proposal.rmse
             progress.info(tr("{accepted} of {count} pairs accepted, RMSE {rmse:.3f} m, each left out in turn.").format(
-                accepted=values["ACCEPTED"], count=values["PROPOSED"], rmse=found.rmse))
-        call.layer("CONTROL_POINTS", found.features())
+                accepted=values["ACCEPTED"], count=values["PROPOSED"], rmse=proposal.rmse))
+        call.layer("CONTROL_POINTS", proposal.features())
         if call.wants("REPORT"):
-            call.text("REPORT", proposed_points_report(found))
+            call.text("REPORT", proposed_points_report(proposal))
         return values
 
 

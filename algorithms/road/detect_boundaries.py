@@ -44,6 +44,6 @@ class DetectBoundaries(Algorithm):
 
         settings = BoundarySettings(call.value("BOUNDARY_METHOD"), call.settings(CURB_SETTINGS), call.settings(SCANLINE_METHOD_SETTINGS))
         survey = open_survey_of(call, progress.part(0.0, 0.5))
-        found = find_curb_points(survey, settings, progress.part(0.5, 0.95))
-        boundaries = draw_boundaries(found, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0), survey)
+        curbs = find_curb_points(survey, settings, progress.part(0.5, 0.95))
+        boundaries = draw_boundaries(curbs, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0), survey)
         call.layer("ROAD_EDGES", boundaries.edges.to_features(survey.frame))

@@ -49,12 +49,12 @@ class EstimateTrajectory(Algorithm):
         from ...core.survey.estimation import estimate_trajectory
         from ...products.report.survey import estimated_trajectory_report
 
-        found = estimate_trajectory(call.point_clouds(), call.crs(), call.value("SCANNER_FIELD"), progress)
-        for note in found.cloud_notes + found.notes:
+        estimate = estimate_trajectory(call.point_clouds(), call.crs(), call.value("SCANNER_FIELD"), progress)
+        for note in estimate.cloud_notes + estimate.notes:
             progress.warn(note)
-        track = found.trajectory
-        progress.info(found.summary())
-        call.layer("TRAJECTORY", trajectory_features(track, sigma_m=found.sigma, sigma_z_m=found.sigma_height))
-        call.text("REPORT", estimated_trajectory_report(found))
-        values = len(track), found.length, len(found.scanners), float(np.median(found.sigma)), float(np.median(found.sigma_height))
+        track = estimate.trajectory
+        progress.info(estimate.summary())
+        call.layer("TRAJECTORY", trajectory_features(track, sigma_m=estimate.sigma, sigma_z_m=estimate.sigma_height))
+        call.text("REPORT", estimated_trajectory_report(estimate))
+        values = len(track), estimate.length, len(estimate.scanners), float(np.median(estimate.sigma)), float(np.median(estimate.sigma_height))
         return {name: value for (name, _), value in zip(self.NUMBERS, values)}

@@ -40,24 +40,24 @@ class InspectSurvey(Algorithm):
         from ...products.inspection import NEAR_TRAJECTORY, inspect_survey, write_density
         from ...products.report.survey import inspection_report
 
-        found = inspect_survey(
+        inspection = inspect_survey(
             call.point_clouds(), call.trajectory(), call.settings(INSPECTION_SETTINGS), call.crs(), progress.part(0.0, 0.95))
-        for note in found.notes:
+        for note in inspection.notes:
             progress.warn(note)
         progress.info(tr("Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), "
                         "intensities {darkest} to {brightest}.").format(
-            count=f"{found.count:,}", files=len(found.files), density=found.per_area["mean"], scanners=len(found.scanners),
-            darkest=found.intensity.nonzero()[0].min(), brightest=found.intensity.nonzero()[0].max()))
-        if found.near_share is not None:
+            count=f"{inspection.count:,}", files=len(inspection.files), density=inspection.per_area["mean"], scanners=len(inspection.scanners),
+            darkest=inspection.intensity.nonzero()[0].min(), brightest=inspection.intensity.nonzero()[0].max()))
+        if inspection.near_share is not None:
             progress.info(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.").format(
-                near=100 * found.near_share, metres=NEAR_TRAJECTORY))
-        call.text("REPORT", inspection_report(found))
+                near=100 * inspection.near_share, metres=NEAR_TRAJECTORY))
+        call.text("REPORT", inspection_report(inspection))
         if call.wants("DENSITY"):
-            write_density(found, call.new_file("DENSITY"))
-        first, last = found.time_span or (None, None)
+            write_density(inspection, call.new_file("DENSITY"))
+        first, last = inspection.time_span or (None, None)
         values = (
-            found.count, found.per_area["mean"], found.per_volume["mean"], first, last, len(found.scanners),
-            _percent(found.near_share), _percent(found.in_time_share),
+            inspection.count, inspection.per_area["mean"], inspection.per_volume["mean"], first, last, len(inspection.scanners),
+            _percent(inspection.near_share), _percent(inspection.in_time_share),
         )
         return {name: float(value) for (name, _), value in zip(self.NUMBERS, values) if value is not None}
 

@@ -74,13 +74,13 @@ def ranked(values: np.ndarray, ranks: np.ndarray | Sequence[int]) -> np.ndarray:
     key = above_least(_sortable_bits(values))
     digit = key >> max(int(key.max()).bit_length() - RADIX_BITS, 0)
     below = np.cumsum(np.bincount(digit))
-    found = np.empty(len(ranks), values.dtype)
-    places = np.searchsorted(below, ranks, side="right")
-    for place in np.unique(places):
-        members = np.sort(values[digit == place])
-        wanted = places == place
-        found[wanted] = members[np.asarray(ranks)[wanted] - (below[place - 1] if place else 0)]
-    return found
+    ranked_values = np.empty(len(ranks), values.dtype)
+    digits = np.searchsorted(below, ranks, side="right")
+    for d in np.unique(digits):
+        members = np.sort(values[digit == d])
+        of_digit = digits == d
+        ranked_values[of_digit] = members[np.asarray(ranks)[of_digit] - (below[d - 1] if d else 0)]
+    return ranked_values
 
 
 def ascending(values: np.ndarray) -> np.ndarray:
@@ -102,18 +102,18 @@ def quantiles(values: np.ndarray, shares: np.ndarray | Sequence[float]) -> np.nd
 
 def quantile_in_order(values: np.ndarray, count: int, share: float) -> float:
     """One quantile of the first `count` of sorted values, interpolated as by `numpy.quantile`."""
-    place = share * (count - 1)
-    k = int(place)
+    rank = share * (count - 1)
+    k = int(rank)
     a, b = float(values[k]), float(values[min(k + 1, count - 1)])
-    share = place - k
+    share = rank - k
     return a + (b - a) * share if share < 0.5 else b - (b - a) * (1.0 - share)
 
 
 def _interpolated(shares: np.ndarray | Sequence[float], count: int, at_ranks: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    place = np.asarray(shares) * (count - 1)
-    before = np.floor(place).astype(np.int64)
+    rank = np.asarray(shares) * (count - 1)
+    before = np.floor(rank).astype(np.int64)
     a, b = at_ranks(np.r_[before, np.minimum(before + 1, count - 1)]).astype(float).reshape(2, -1)
-    share = place - before
+    share = rank - before
     return np.where(share < 0.5, a + (b - a) * share, b - (b - a) * (1.0 - share))
 
 
@@ -133,8 +133,8 @@ def members_of(number: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
 
     They are found by sorting: a search of its members for every group compares everything with everything.
     """
-    known = np.flatnonzero(number >= 0)
-    order = known[np.argsort(number[known], kind="stable")]
+    grouped = np.flatnonzero(number >= 0)
+    order = grouped[np.argsort(number[grouped], kind="stable")]
     starts = np.flatnonzero(np.diff(number[order], prepend=-1))
     for begin, end in zip(starts.tolist(), [*starts[1:].tolist(), len(order)]):
         yield int(number[order[begin]]), order[begin:end]
@@ -200,11 +200,11 @@ def _ranges(starts, ends):
     count = np.maximum(ends - starts, 0)
     total = np.cumsum(count)
     cuts = np.unique(np.searchsorted(total, np.arange(PAIRS_PER_BLOCK, total[-1] if len(total) else 0, PAIRS_PER_BLOCK), side="left"))
-    for some in np.split(np.arange(len(count)), cuts):
-        size = count[some]
+    for rows in np.split(np.arange(len(count)), cuts):
+        size = count[rows]
         if size.any():
             within = np.arange(size.sum()) - np.repeat(np.cumsum(size) - size, size)
-            yield np.repeat(some, size), np.repeat(starts[some], size) + within
+            yield np.repeat(rows, size), np.repeat(starts[rows], size) + within
 
 
 # Things of one kind as columns: dataclasses of arrays that have one entry for each of them.

@@ -49,15 +49,16 @@ def column(name: str = "", unknown: Any = None) -> dict[str, Any]:
 
 def _columns_of(kind: type[LayerRows]) -> dict[str, _Column]:
     """The columns of a layer by attribute."""
-    schema, found = {one.name: one for one in kind.SCHEMA}, {}
-    for one in fields(kind):  # type: ignore[arg-type]
-        if _KEY in one.metadata:
-            name, unknown = one.metadata[_KEY]
-            usual = {int: -1, float: np.nan, str: ""}[schema[name or one.name].type]
-            known = unknown is not None
-            unknown = unknown if known else usual
-            found[one.name] = _Column(schema[name or one.name], unknown, object if isinstance(unknown, str) else type(unknown), known)
-    return found
+    schema, columns = {attribute.name: attribute for attribute in kind.SCHEMA}, {}
+    for attribute in fields(kind):  # type: ignore[arg-type]
+        if _KEY in attribute.metadata:
+            name, unknown = attribute.metadata[_KEY]
+            usual = {int: -1, float: np.nan, str: ""}[schema[name or attribute.name].type]
+            has_unknown = unknown is not None
+            unknown = unknown if has_unknown else usual
+            columns[attribute.name] = _Column(schema[name or attribute.name], unknown, object if isinstance(unknown, str) else type(unknown),
+                                              has_unknown)
+    return columns
 
 
 _columns: Callable[[type], dict[str, _Column]] = cache(_columns_of)
@@ -83,32 +84,34 @@ class LayerRows(Rows):
 
     def to_features(self, frame: Any = None) -> Features:
         """The layer in map coordinates, in the same order. `frame` : RoadFrame."""
-        columns = {one.field.name: one.written(getattr(self, name)) for name, one in _columns(type(self)).items()}
+        columns = {attribute.field.name: attribute.written(getattr(self, name)) for name, attribute in _columns(type(self)).items()}
         derived = self.derived(frame)
-        columns.update({one.name: [one.value(value) for value in derived[one.name]] for one in self.SCHEMA if one.name in derived})
+        columns.update({attribute.name: [attribute.value(value) for value in derived[attribute.name]]
+                        for attribute in self.SCHEMA if attribute.name in derived})
         rows = [dict(zip(columns, row)) for row in zip(*columns.values())]
         return Features(self.GEOMETRY_TYPE, list(self.SCHEMA), list(self.on_map(frame)), rows, self.crs)
 
     @classmethod
     def read_columns(cls, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         """Arrays by attribute of rows of the layer, whose fields may be missing."""
-        return {name: one.array([None if (value := row.get(one.field.name)) == "" else value for row in rows]) for name, one in _columns(cls).items()}
+        return {name: attribute.array([None if (value := row.get(attribute.field.name)) == "" else value for row in rows])
+                for name, attribute in _columns(cls).items()}
 
     @classmethod
     def gathered(cls, things: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         """Arrays by attribute of things of which each is a dict of attribute to value; what is missing is unknown."""
-        return {name: one.array([thing.get(name) for thing in things]) for name, one in _columns(cls).items()}
+        return {name: attribute.array([entry.get(name) for entry in things]) for name, attribute in _columns(cls).items()}
 
     @classmethod
     def array_of(cls, name: str, values: Any) -> np.ndarray:
         """The array of an attribute, of the type of its field."""
-        one = _columns(cls).get(name)
-        return np.asarray(values, None if one is None else one.kind)
+        attribute = _columns(cls).get(name)
+        return np.asarray(values, None if attribute is None else attribute.kind)
 
     @classmethod
     def filled(cls: type[AnyLayerRows], count: int, crs: str = "", **values: Any) -> AnyLayerRows:
         """`count` entries: of each attribute an array, or a value that all share; what is not given is unknown."""
-        values = {**{name: one.unknown for name, one in _columns(cls).items()}, **values}
+        values = {**{name: attribute.unknown for name, attribute in _columns(cls).items()}, **values}
         return cls(*(np.array(np.broadcast_to(cls.array_of(name, values.get(name, np.nan)), count)) for name in cls.names()), crs=crs)  # type: ignore[call-arg]
 
     @classmethod

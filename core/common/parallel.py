@@ -161,14 +161,14 @@ def by_rows(function: Callable[[slice], np.ndarray], count: int, at_once: int = 
 
     The rows do not depend on each other.
     """
-    found = function(slice(0, min(at_once, count)))
+    head = function(slice(0, min(at_once, count)))
     if count <= at_once:
-        return found
-    whole = np.empty((count, *found.shape[1:]), found.dtype)
-    whole[:at_once] = found
+        return head
+    whole = np.empty((count, *head.shape[1:]), head.dtype)
+    whole[:at_once] = head
     for first in range(at_once, count, at_once):
-        some = slice(first, min(first + at_once, count))
-        whole[some] = function(some)
+        rows = slice(first, min(first + at_once, count))
+        whole[rows] = function(rows)
     return whole
 
 
@@ -350,9 +350,9 @@ def is_lack_of_memory(error: BaseException) -> bool:
 
 
 def _causes(error: BaseException | None) -> Iterator[BaseException]:
-    seen: set[int] = set()
-    while error is not None and id(error) not in seen:
-        seen.add(id(error))
+    visited: set[int] = set()
+    while error is not None and id(error) not in visited:
+        visited.add(id(error))
         yield error
         error = error.__cause__ or error.__context__
 

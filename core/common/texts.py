@@ -143,14 +143,14 @@ class CoreMessages:
 
     def told(self, text: str) -> str:
         """A message in the user's language, sentence by sentence where it is not known as a whole; as it is where none of it is known."""
-        found = self._recognised(text.strip())
-        if found is None:
+        translated = self._recognised(text.strip())
+        if translated is None:
             sentences = BETWEEN_SENTENCES.split(text.strip())
             if len(sentences) < 2:
                 return text
-            found = " ".join(self._recognised(sentence) or sentence for sentence in sentences)
+            translated = " ".join(self._recognised(sentence) or sentence for sentence in sentences)
         before, after = text[:len(text) - len(text.lstrip())], text[len(text.rstrip()):]
-        return before + found + after
+        return before + translated + after
 
     def _recognised(self, text):
         """The translation of what is known as a whole, None of what is not."""
@@ -158,14 +158,14 @@ class CoreMessages:
             return self._known[text]
         first = None
         for pattern, target in self._sentences:
-            found = pattern.fullmatch(text)
-            if found:
-                values = [self._value(value) for value in found.groups()]
-                told = _filled(target, values)
+            match = pattern.fullmatch(text)
+            if match:
+                values = [self._value(value) for value in match.groups()]
+                translated = _filled(target, values)
                 # a sentence of which a phrase stays unknown may be another one, whose phrases are all known
-                if not any(value == before and before.count(" ") >= PHRASE for value, before in zip(values, found.groups())):
-                    return told
-                first = first or told
+                if not any(value == before and before.count(" ") >= PHRASE for value, before in zip(values, match.groups())):
+                    return translated
+                first = first or translated
         return first
 
     def _value(self, value):
@@ -174,8 +174,8 @@ class CoreMessages:
             return self.word(value)
         if " " not in value.strip():
             return value
-        found = self.told(value)
-        return found if found != value else ", ".join(map(self._part, value.split(", ")))
+        translated = self.told(value)
+        return translated if translated != value else ", ".join(map(self._part, value.split(", ")))
 
     def _part(self, part):
         amount = AMOUNT.fullmatch(part)

@@ -91,26 +91,26 @@ def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections:
 
 def _replaced(kind, pieces, spans, correction):
     """Pieces without the stretches, or with the stretches accepted."""
-    of: dict[int, list[tuple[float, float]]] = {}
+    spans_of: dict[int, list[tuple[float, float]]] = {}
     for k, a, b in spans:
-        of.setdefault(k, []).append((a, b))
-    found = []
+        spans_of.setdefault(k, []).append((a, b))
+    result = []
     for k, piece in enumerate(pieces):
-        if k not in of:
-            found.append(piece)
+        if k not in spans_of:
+            result.append(piece)
             continue
         line = kind.columns(piece)
         length = float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum())
-        parts = pieces_of(length, of[k])
+        parts = pieces_of(length, spans_of[k])
         for a, b, along in parts:
-            one = piece if len(parts) == 1 else kind.part(piece, a, b)
+            stretch = piece if len(parts) == 1 else kind.part(piece, a, b)
             if not along:
-                found.append(one)
+                result.append(stretch)
             elif correction.action == "accept":
-                found.append(kind.accepted(one))
+                result.append(kind.accepted(stretch))
             elif correction.action == "take":
-                found.append(kind.taken(one, correction))
-    return found
+                result.append(kind.taken(stretch, correction))
+    return result
 
 
 def _with_heights(kind, correction):
@@ -143,15 +143,15 @@ def spans_along(lines: Sequence[np.ndarray], correction: Correction, reach: floa
     low, high = places.min(0) - reach, places.max(0) + reach
     near = [k for k, line in enumerate(lines) if len(line) > 1 and (line[:, :2].max(0) >= low).all() and (line[:, :2].min(0) <= high).all()]
     if len(places) == 1:
-        found = [(float(shapely.distance(shapely.linestrings(lines[k][:, :2]), shapely.points(places[0]))), k) for k in near]
-        best = min(found, default=(np.inf, -1))
+        candidates = [(float(shapely.distance(shapely.linestrings(lines[k][:, :2]), shapely.points(places[0]))), k) for k in near]
+        best = min(candidates, default=(np.inf, -1))
         return [(best[1], 0.0, _arcs(lines[best[1]])[-1])] if best[0] <= reach else []
     stretches = sorted(stretch for k in near for stretch in _beside(lines[k][:, :2], k, places, reach))
-    taken: list[tuple[float, float]] = []
+    covered: list[tuple[float, float]] = []
     spans = []
     for _, k, a, b, first, last in stretches:
-        if sum(max(min(last, v) - max(first, u), 0.0) for u, v in taken) < (last - first) / 2:
-            taken.append((first, last))
+        if sum(max(min(last, v) - max(first, u), 0.0) for u, v in covered) < (last - first) / 2:
+            covered.append((first, last))
             spans.append((k, a, b))
     return spans
 
@@ -159,21 +159,21 @@ def spans_along(lines: Sequence[np.ndarray], correction: Correction, reach: floa
 def _beside(line, number, places, reach):
     """(mean distance, number, from, to, first, last along the correction) of each stretch of a line beside a correction."""
     arcs = _arcs(line)
-    at = np.unique(np.r_[np.arange(0.0, arcs[-1], CORRECTING.step), arcs[-1]])
-    xy = np.c_[np.interp(at, arcs, line[:, 0]), np.interp(at, arcs, line[:, 1])]
+    along = np.unique(np.r_[np.arange(0.0, arcs[-1], CORRECTING.step), arcs[-1]])
+    xy = np.c_[np.interp(along, arcs, line[:, 0]), np.interp(along, arcs, line[:, 1])]
     course = shapely.linestrings(places)
     u = shapely.line_locate_point(course, shapely.points(xy))
-    away = shapely.distance(course, shapely.points(xy))
+    distance = shapely.distance(course, shapely.points(xy))
     head, tail = _excess(xy, places[0], places[1]), _excess(xy, places[-1], places[-2])
-    inside = (away <= reach) & ~((u <= 0) & (head > CORRECTING.step)) & ~((u >= course.length) & (tail > CORRECTING.step))
+    inside = (distance <= reach) & ~((u <= 0) & (head > CORRECTING.step)) & ~((u >= course.length) & (tail > CORRECTING.step))
     least = min(CORRECTING.shortest, course.length / 2)
     for i, j in mask_runs(inside):
-        a, b = at[i], at[j - 1]
+        a, b = along[i], along[j - 1]
         first, last = u[i:j].min(), u[i:j].max()
         if b - a < least and b - a < arcs[-1] / 2 or last - first < CORRECTING.along * (b - a) or b <= a:
             continue
         a, b = 0.0 if a < CORRECTING.shortest_rest else a, arcs[-1] if arcs[-1] - b < CORRECTING.shortest_rest else b
-        yield float(away[i:j].mean()), number, float(a), float(b), float(first), float(last)
+        yield float(distance[i:j].mean()), number, float(a), float(b), float(first), float(last)
 
 
 def _excess(xy, end, inner):
@@ -190,20 +190,20 @@ def cut(columns: np.ndarray, start: float, end: float) -> np.ndarray:
     """(K, C) the rows of (V, C) columns, x and y first, from one place to another, m along them; columns are interpolated at both ends."""
     arcs = _arcs(columns)
     inside = (arcs > start + 1e-6) & (arcs < end - 1e-6)
-    at = np.r_[start, arcs[inside], end]
-    ends = np.array([[np.interp(place, arcs, column) for column in columns.T] for place in (at[0], at[-1])])
+    along = np.r_[start, arcs[inside], end]
+    ends = np.array([[np.interp(distance, arcs, column) for column in columns.T] for distance in (along[0], along[-1])])
     return np.concatenate([ends[:1], columns[inside], ends[1:]])
 
 
 def pieces_of(length: float, spans: Sequence[tuple[float, float]]) -> list[tuple[float, float, bool]]:
     """(from, to, whether it is a span) of a line that is cut where spans begin and end, in order."""
-    found, at = [], 0.0
+    result, reached = [], 0.0
     for a, b in sorted(spans):
-        a, b = max(a, at), max(b, at)
-        found += [(at, a, False), (a, b, True)]
-        at = b
+        a, b = max(a, reached), max(b, reached)
+        result += [(reached, a, False), (a, b, True)]
+        reached = b
     # sums of lengths differ in their last digits
-    return [(a, b, along) for a, b, along in [*found, (at, length, False)] if b - a > CORRECTING.no_length]
+    return [(a, b, along) for a, b, along in [*result, (reached, length, False)] if b - a > CORRECTING.no_length]
 
 
 def _heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
@@ -215,9 +215,9 @@ def _heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -
     z[lacking] = otherwise[lacking]
     if len(known):
         count = min(CORRECTING.height_neighbours, len(known))
-        away, row = cKDTree(known[:, :2]).query(places[lacking, :2], count, distance_upper_bound=CORRECTING.near_vertices)
-        away, row = away.reshape(len(lacking), count), row.reshape(len(lacking), count)
-        weight = np.where(np.isfinite(away), 1.0 / np.maximum(away, 0.05), 0.0)
+        distance, row = cKDTree(known[:, :2]).query(places[lacking, :2], count, distance_upper_bound=CORRECTING.near_vertices)
+        distance, row = distance.reshape(len(lacking), count), row.reshape(len(lacking), count)
+        weight = np.where(np.isfinite(distance), 1.0 / np.maximum(distance, 0.05), 0.0)
         total = weight.sum(1)
         near = total > 0
         heights = np.append(known[:, 2], 0.0)[np.minimum(row, len(known))]
@@ -248,12 +248,12 @@ class _Edges(LineKind):
 
 def correct_edges(edges: RoadEdges, frame: RoadFrame, corrections: Corrections) -> RoadEdges:
     """Road edges with the corrections of the target edge, which are noted where something was found for them; the same object without any."""
-    wanted = corrections.of("edge")
-    if not wanted:
+    edge_corrections = corrections.of("edge")
+    if not edge_corrections:
         return edges
     places = np.c_[edges.course.x, edges.course.y, edges.course.z]
     kind = _Edges(frame, places)
-    pieces, matched, changed = apply_corrections(kind, [_piece_of(edges, k, places) for k in range(len(edges))], wanted)
+    pieces, matched, changed = apply_corrections(kind, [_piece_of(edges, k, places) for k in range(len(edges))], edge_corrections)
     corrections.matched |= matched
     if not changed:
         return edges
@@ -263,7 +263,7 @@ def correct_edges(edges: RoadEdges, frame: RoadFrame, corrections: Corrections) 
 
 def _piece_of(edges: RoadEdges, k: int, places: np.ndarray) -> dict[str, Any]:
     """A row of RoadEdges as the fields of EdgePiece, with local vertices."""
-    names = [one.name for one in fields(EdgePiece) if one.name not in ("vertices", "road")]
+    names = [field.name for field in fields(EdgePiece) if field.name not in ("vertices", "road")]
     values = {name: getattr(edges, name)[k] for name in names}
     return dict({name: value.item() if hasattr(value, "item") else value for name, value in values.items()}, road=int(edges.road[k]),
                 local=places[edges.course.line(k)])
@@ -293,9 +293,9 @@ class _Lines(LineKind):
         widths = [piece["width"] for piece in pieces if np.isfinite(piece["width"])]
         blank = dict(road=correction.road, line=free, kind="", pattern=USUAL_PATTERN, station=correction.station, end=correction.station,
                      width=float(np.median(widths)) if widths else np.nan)
-        said = {name: value for name, value in (("kind", correction.kind), ("pattern", correction.pattern)) if value}
+        attributes = {name: value for name, value in (("kind", correction.kind), ("pattern", correction.pattern)) if value}
         u, _ = fit.curve.project(places[[0, -1], 0], places[[0, -1], 1])
-        piece = dict(blank if like is None else like, **said, status=DRAWN, curve=fit.curve, arc=u, rmse=np.nan,
+        piece = dict(blank if like is None else like, **attributes, status=DRAWN, curve=fit.curve, arc=u, rmse=np.nan,
                      offset=correction.offset, places=places)
         return self.with_stations(piece, places)
 
@@ -306,18 +306,18 @@ def correct_markings(markings: MarkingObjects, corrections: Corrections) -> Mark
     A correction is about the markings whose middle lies within 0.5 m of its line, or of which its point lies within 0.5 m.
     Corrections that something was found for are noted; to accept a marking changes nothing of it.
     """
-    wanted = [one for one in corrections.of("marking") if one.action in ("accept", "delete")]
-    if not wanted or not len(markings):
+    marking_corrections = [row for row in corrections.of("marking") if row.action in ("accept", "delete")]
+    if not marking_corrections or not len(markings):
         return markings
     polygons = markings.outlines.polygons()
     middles = shapely.point_on_surface(polygons)
     keep = np.ones(len(markings), bool)
-    for correction in wanted:
-        about = _about(correction, polygons, middles)
-        if about.any():
+    for correction in marking_corrections:
+        affected = _about(correction, polygons, middles)
+        if affected.any():
             corrections.matched.add(correction.row)
             if correction.action == "delete":
-                keep &= ~about
+                keep &= ~affected
     return markings if keep.all() else markings[keep]
 
 
@@ -332,10 +332,10 @@ def correct_marking_lines(lines: PaintedLines, frame: RoadFrame, corrections: Co
 
     Lines that were drawn have no `kind` unless the correction says one. `known` : (K, 3) further local places whose heights are known.
     """
-    wanted = corrections.of("marking")
-    if not wanted or lines.fitted is None:
+    line_corrections = corrections.of("marking")
+    if not line_corrections or lines.fitted is None:
         return lines
     kind = _Lines(frame, np.concatenate([lines.fitted.vertices, known]))
-    pieces, matched, changed = apply_corrections(kind, pieces_of_lines(lines), wanted)
+    pieces, matched, changed = apply_corrections(kind, pieces_of_lines(lines), line_corrections)
     corrections.matched |= matched
     return painted_lines_of(pieces, frame, lines.crs) if changed else lines

@@ -55,8 +55,8 @@ class Correction:
 
     def described(self) -> str:
         """What it asks for and where, in a few words."""
-        place = f"road {self.road}, station {self.station:.1f} m, offset {self.offset:+.1f} m" if self.on_a_road else "off the roads of this survey"
-        return f"row {self.row}, {self.action} {self.target}, {place}" + (f" ({self.note})" if self.note else "")
+        site = f"road {self.road}, station {self.station:.1f} m, offset {self.offset:+.1f} m" if self.on_a_road else "off the roads of this survey"
+        return f"row {self.row}, {self.action} {self.target}, {site}" + (f" ({self.note})" if self.note else "")
 
 
 @dataclass
@@ -71,25 +71,26 @@ class Corrections:
 
     def of(self, target: str) -> list[Correction]:
         """Those of one target, in the order of the layer."""
-        return [one for one in self.rows if one.target == target]
+        return [row for row in self.rows if row.target == target]
 
     def taken(self, frame: RoadFrame) -> list[TakenReading]:
         """The second readings of lanes that were taken, for the estimate of lines and lanes."""
-        found = []
-        for one in self.of("lane"):
-            if one.action == "take" and one.on_a_road:
-                s, d = frame.roads[one.road].locate(*one.places[:, :2].T)
+        readings = []
+        for row in self.of("lane"):
+            if row.action == "take" and row.on_a_road:
+                s, d = frame.roads[row.road].locate(*row.places[:, :2].T)
                 order = np.argsort(s)
                 order = order[np.isfinite(s[order])]
                 if len(order):
                     middle = float(np.median(d[order]))
-                    found.append(TakenReading(one.road, s[order], d[order], tuple((offset - middle, width, way) for offset, width, way in one.lanes)))
-        return found
+                    readings.append(TakenReading(row.road, s[order], d[order],
+                                                 tuple((offset - middle, width, way) for offset, width, way in row.lanes)))
+        return readings
 
     @property
     def unmatched(self) -> list[Correction]:
         """Those for which this run has nothing at their place."""
-        return [one for one in self.rows if one.row not in self.matched]
+        return [row for row in self.rows if row.row not in self.matched]
 
 
 def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "") -> Corrections:
@@ -111,12 +112,12 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
     RoadExtractionError
         If an action or target is unknown, a row has no place, or what is moved or drawn has no line.
     """
-    found = Corrections()
+    result = Corrections()
     for number, (geometry, row) in enumerate(zip(_in_crs(features, crs), features.rows), start=1):
         action, target = (str(row.get(name) or "").strip().lower() for name in ("action", "target"))
-        for name, value, known in (("action", action, ACTIONS), ("target", target, TARGETS)):
-            if value not in known:
-                raise RoadExtractionError(f"Row {number} of the corrections has the {name} {value!r}; it must be one of {', '.join(known)}.")
+        for name, value, allowed in (("action", action, ACTIONS), ("target", target, TARGETS)):
+            if value not in allowed:
+                raise RoadExtractionError(f"Row {number} of the corrections has the {name} {value!r}; it must be one of {', '.join(allowed)}.")
         parts = [places for places in _parts_of(geometry, row, frame, number) if len(places)]
         if action in ("move", "draw") and any(len(places) < 2 for places in parts):
             raise RoadExtractionError(f"Row {number} of the corrections is to {action} something, which takes a line; it has a point. "
@@ -127,26 +128,26 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
             lanes, kind = _second_reading(row.get("other"), target, number)
         for places in parts:
             road, station, offset = _located(frame, places)
-            found.rows.append(Correction(number, action, target, places, road, station, offset, kind, pattern, note, lanes))
-    return found
+            result.rows.append(Correction(number, action, target, places, road, station, offset, kind, pattern, note, lanes))
+    return result
 
 
 def taken_reading(row: dict[str, Any], target: str) -> dict[str, str] | None:
     """The fields of a correction that takes the second reading of a piece, in its field `other`, in place of the first; None where it has none."""
-    other = str(row.get("other") or "")
-    return {"action": "take", "target": target, "other": other} if other.startswith("{") else None
+    reading = str(row.get("other") or "")
+    return {"action": "take", "target": target, "other": reading} if reading.startswith("{") else None
 
 
 def _second_reading(text: Any, target: str, number: int) -> tuple[tuple[tuple[float, float, int], ...], str]:
     """The lanes, and the kind of line, of a second reading in JSON."""
     try:
-        found = json.loads(text or "")
+        reading = json.loads(text or "")
         if target == "lane":
-            lanes = tuple((float(lane["offset_m"]), float(lane["width_m"]), int(lane["direction"])) for lane in found["lanes"])
+            lanes = tuple((float(lane["offset_m"]), float(lane["width_m"]), int(lane["direction"])) for lane in reading["lanes"])
             if all(np.isfinite(lane).all() and lane[1] > 0 and lane[2] in (-1, 1) for lane in lanes):
                 return lanes, ""
         elif target == "marking":
-            return (), str(found["kind"])
+            return (), str(reading["kind"])
     except (ValueError, KeyError, TypeError):
         pass
     raise RoadExtractionError(f"Row {number} of the corrections is to take a second reading of a {target}, but its field other holds none. "

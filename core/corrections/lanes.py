@@ -71,7 +71,7 @@ class _Lanes(LineKind):
         return dict(super().accepted(piece), confidence=SURE, other="", changed=True)
 
     def drawn(self, correction, places, like, pieces):
-        line = next(one for one in self.lines if one.get("drawn_by") is correction)
+        line = next(candidate for candidate in self.lines if candidate.get("drawn_by") is correction)
         middle = line["places"]
         way = np.gradient(middle[:, :2], axis=0)
         left = np.c_[-way[:, 1], way[:, 0]] / np.maximum(np.hypot(*way.T), 1e-9)[:, None] * line["width"] / 2
@@ -89,18 +89,20 @@ def correct_lanes(lines: DrivingLines, elements: CurveElements, lanes: Lanes, fr
     roads. Where half of a curve was taken away its elements go too. `lane_width` : m of a lane that is drawn where its road has none; `known` :
     (K, 3) further local places whose heights are known.
     """
-    wanted = corrections.of("lane")
-    if not wanted:
+    lane_corrections = corrections.of("lane")
+    if not lane_corrections:
         return lines, elements, lanes
     known = np.concatenate([lines.vertices, known])
     width = float(np.median(lines.width)) if len(lines) else lane_width
     before = _rows_of_lines(lines)
-    wanted = [part for one in wanted for part in (_taken(one, before, frame) if one.action == "take" else [one])]
-    corrections.matched |= {one.row for one in corrections.of("lane") if one.action == "take" and one.on_a_road and not one.lanes}
-    rows, of_lines, lines_changed = apply_corrections(_DrivingLines(frame, known, width), before, wanted)
+    lane_corrections = [part for correction in lane_corrections
+                        for part in (_taken(correction, before, frame) if correction.action == "take" else [correction])]
+    corrections.matched |= {correction.row for correction in corrections.of("lane")
+                            if correction.action == "take" and correction.on_a_road and not correction.lanes}
+    rows, of_lines, lines_changed = apply_corrections(_DrivingLines(frame, known, width), before, lane_corrections)
     # the area of a lane is drawn about its driving line
-    wanted = [one for one in wanted if not one.draws or one.row in of_lines]
-    areas, of_lanes, lanes_changed = apply_corrections(_Lanes(frame, known, rows), _rows_of_lanes(lanes), wanted)
+    lane_corrections = [correction for correction in lane_corrections if not correction.draws or correction.row in of_lines]
+    areas, of_lanes, lanes_changed = apply_corrections(_Lanes(frame, known, rows), _rows_of_lanes(lanes), lane_corrections)
     corrections.matched |= of_lines | of_lanes
     if lines_changed:
         lines, elements = DrivingLines.of_pieces(rows, lines.crs), _remaining(elements, before, rows)
@@ -118,37 +120,38 @@ def _taken(correction, pieces, frame):
     s, d = road.locate(*correction.places[:, :2].T)
     if not np.isfinite(d).all():
         return [correction]
-    found = [replace(correction, action="delete")]
+    result = [replace(correction, action="delete")]
     for offset, width, way in correction.lanes:
         x, y = road.to_map(s, d + offset - np.median(d))
         order = np.argsort(s * way)
         drawn = replace(correction, action="draw", places=np.c_[x, y, correction.places[:, 2]][order], offset=offset, width=width)
-        same = [piece["places"] for piece in pieces if piece["direction"] == way]
-        length = sum(last - first for _, first, last in spans_along(same, replace(drawn, action="accept"), CORRECTING.taken_reach))
+        same_way = [piece["places"] for piece in pieces if piece["direction"] == way]
+        length = sum(last - first for _, first, last in spans_along(same_way, replace(drawn, action="accept"), CORRECTING.taken_reach))
         if length >= CORRECTING.taken_share * np.hypot(*np.diff(drawn.places[:, :2], axis=0).T).sum():
             # what the estimate made is accepted, and not deleted with the lane beside it
-            found = [one for one in found if one.action != "delete"]
-            found.append(replace(drawn, action="accept"))
+            result = [part for part in result if part.action != "delete"]
+            result.append(replace(drawn, action="accept"))
         else:
-            found.append(drawn)
-    return found
+            result.append(drawn)
+    return result
 
 
 def _rows_of_lines(lines):
-    names = [one.name for one in fields(lines) if one.name not in ("curve", "vertices", "start", "crs")]
+    names = [field.name for field in fields(lines) if field.name not in ("curve", "vertices", "start", "crs")]
     return [dict({name: getattr(lines, name)[k] for name in names}, curve=lines.curve[k], places=lines.vertices[lines.start[k]:lines.start[k + 1]])
             for k in range(len(lines))]
 
 
 def _rows_of_lanes(lanes):
     names = ("road", "lane", "lane_id", "type", "direction", "status", "confidence", "other", "station", "end")
-    found = []
+    rows = []
     for k in range(len(lanes)):
         left, right = lanes.borders(k)
-        about = [(lanes.left_line[k], lanes.left_kind[k], lanes.left_pattern[k]), (lanes.right_line[k], lanes.right_kind[k], lanes.right_pattern[k])]
-        found.append(dict({name: getattr(lanes, name)[k] for name in names}, about=about, successors=lanes.successors[k],
-                          columns=np.c_[(left + right) / 2, left, right], changed=False))
-    return found
+        borders = [(lanes.left_line[k], lanes.left_kind[k], lanes.left_pattern[k]),
+                   (lanes.right_line[k], lanes.right_kind[k], lanes.right_pattern[k])]
+        rows.append(dict({name: getattr(lanes, name)[k] for name in names}, about=borders, successors=lanes.successors[k],
+                         columns=np.c_[(left + right) / 2, left, right], changed=False))
+    return rows
 
 
 def _lanes_of(pieces, frame, crs):
@@ -156,8 +159,8 @@ def _lanes_of(pieces, frame, crs):
     changed = {(piece["road"], piece["lane"]) for piece in pieces if piece["changed"]}
     before = {piece["lane_id"] for piece in pieces}
     for road, lane in sorted(changed):
-        own = sorted((piece for piece in pieces if (piece["road"], piece["lane"]) == (road, lane)), key=lambda piece: piece["station"])
-        for number, piece in enumerate(own, start=1):
+        pieces_of_lane = sorted((piece for piece in pieces if (piece["road"], piece["lane"]) == (road, lane)), key=lambda piece: piece["station"])
+        for number, piece in enumerate(pieces_of_lane, start=1):
             piece["lane_id"] = f"{road}.{lane}.{number}"
     for piece in pieces:
         middle, half = piece["columns"], np.hypot(*(piece["columns"][:, 3:5] - piece["columns"][:, 6:8]).T) / 2
@@ -165,15 +168,15 @@ def _lanes_of(pieces, frame, crs):
         first, last = d if piece["direction"] >= 0 else d[::-1]
         piece.update(first=float(first), last=float(last), width=float(2 * np.median(half)), left=middle[:, 3:6], right=middle[:, 6:9])
         piece.setdefault("successors", ())
-    gone = before - {piece["lane_id"] for piece in pieces}
-    roads = {road for road, _ in changed} | {piece["road"] for piece in pieces if gone & set(piece["successors"])}
+    lost_ids = before - {piece["lane_id"] for piece in pieces}
+    roads = {road for road, _ in changed} | {piece["road"] for piece in pieces if lost_ids & set(piece["successors"])}
     for road in sorted(roads):
         follow([piece for piece in pieces if piece["road"] == road])
     ids = {piece["lane_id"] for piece in pieces}
     after = {piece["lane_id"]: (piece["lane"], set(piece["successors"]) & ids) for piece in pieces}
     for piece in pieces:
         # behind a short piece lies what follows that piece
-        through = {name for other in after[piece["lane_id"]][1] if after[other][0] == piece["lane"] for name in after[other][1]}
+        through = {name for follower in after[piece["lane_id"]][1] if after[follower][0] == piece["lane"] for name in after[follower][1]}
         piece["successors"] = tuple(name for name in piece["successors"] if name in ids - through)
     return make_lanes(pieces, crs)
 
@@ -183,11 +186,11 @@ def _remaining(elements: CurveElements, before: list[dict[str, Any]], after: lis
     keep = np.ones(len(elements), bool)
     for k in range(len(elements)):
         lane = (elements.road[k], elements.lane[k])
-        held, left = (sum(max(min(elements.end[k], row["end"]) - max(elements.station[k], row["station"]), 0.0) for row in rows
-                          if (row["road"], row["lane"]) == lane and row["status"] != DRAWN) for rows in (before, after))
-        keep[k] = left >= (1 - CORRECTING.most_lost) * held
+        covered, left = (sum(max(min(elements.end[k], row["end"]) - max(elements.station[k], row["station"]), 0.0) for row in rows
+                             if (row["road"], row["lane"]) == lane and row["status"] != DRAWN) for rows in (before, after))
+        keep[k] = left >= (1 - CORRECTING.most_lost) * covered
     rows = np.flatnonzero(keep)
-    arrays = {one.name: getattr(elements, one.name)[rows] for one in fields(elements) if isinstance(getattr(elements, one.name), np.ndarray)}
+    arrays = {field.name: getattr(elements, field.name)[rows] for field in fields(elements) if isinstance(getattr(elements, field.name), np.ndarray)}
     return replace(elements, **arrays, arc=[elements.arc[k] for k in rows])
 
 

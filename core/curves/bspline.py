@@ -36,33 +36,33 @@ class _SplineBasis:
     """
 
     def __init__(self, lines: Sequence[tuple[np.ndarray, Sequence[float]]]) -> None:
-        each = [(t, b) for t, bandwidths in lines for b in bandwidths]
-        lengths = np.array([float(t[-1]) for t, _ in each])
-        pieces = np.array([_knot_intervals(length, b) for length, (_, b) in zip(lengths.tolist(), each)])
+        blocks = [(t, b) for t, bandwidths in lines for b in bandwidths]
+        lengths = np.array([float(t[-1]) for t, _ in blocks])
+        pieces = np.array([_knot_intervals(length, b) for length, (_, b) in zip(lengths.tolist(), blocks)])
         steps = lengths / pieces
         self.knots = [step * np.arange(-SPLINE_DEGREE, count + SPLINE_DEGREE + 1) for step, count in zip(steps, pieces.tolist())]
-        self.counts, self.sizes = pieces + SPLINE_DEGREE, np.array([len(t) for t, _ in each])
+        self.counts, self.sizes = pieces + SPLINE_DEGREE, np.array([len(t) for t, _ in blocks])
         self.starts, self.rows = np.cumsum(self.counts) - self.counts, np.cumsum(self.sizes) - self.sizes
         whole, size = int(self.counts.sum()), int(self.sizes.sum())
         step, most = np.repeat(steps, self.sizes), np.repeat(pieces, self.sizes)
-        inside = np.clip(np.concatenate([t for t, _ in each]) / step, 0.0, most)
+        inside = np.clip(np.concatenate([t for t, _ in blocks]) / step, 0.0, most)
         piece = np.minimum(inside.astype(np.int32), most - 1)
         f = inside - piece
         g = 1 - f
         values = np.stack([g**3, (3 * f - 6) * f * f + 4, ((3 - 3 * f) * f + 3) * f + 1, f**3], axis=1) / 6
         slopes = np.stack([-g * g, (3 * f - 4) * f, (2 - 3 * f) * f + 1, f * f], axis=1) / (2 * step[:, None])
-        at = (piece + np.repeat(self.starts, self.sizes)).astype(np.int32)[:, None] + np.arange(4, dtype=np.int32)
+        columns = (piece + np.repeat(self.starts, self.sizes)).astype(np.int32)[:, None] + np.arange(4, dtype=np.int32)
         four = np.arange(0, 4 * size + 1, 4, dtype=np.int32)
-        self._values = csr_matrix((values.ravel(), at.ravel(), four), (size, whole))
-        self._slopes = csr_matrix((slopes.ravel(), at.ravel(), four), (size, whole))
+        self._values = csr_matrix((values.ravel(), columns.ravel(), four), (size, whole))
+        self._slopes = csr_matrix((slopes.ravel(), columns.ravel(), four), (size, whole))
         self._transposed = self._values.T
         # contribution of each point to the upper banded form of the normal matrix: products of its four values
         first, second = np.triu_indices(SPLINE_DEGREE + 1)
         ten = np.arange(0, 10 * size + 1, 10, dtype=np.int32)
-        band = 4 * at[:, second] + (SPLINE_DEGREE - (second - first)).astype(np.int32)
+        band = 4 * columns[:, second] + (SPLINE_DEGREE - (second - first)).astype(np.int32)
         self._products = csc_matrix(((values[:, first] * values[:, second]).ravel(), band.ravel(), ten), (4 * whole, size))
-        scale = self.sizes / np.maximum(lengths, 1e-6) * np.array([b for _, b in each]) ** 6 / steps**5
-        self._penalty = np.concatenate([_roughness(count) * by for count, by in zip(self.counts.tolist(), scale.tolist())])
+        scale = self.sizes / np.maximum(lengths, 1e-6) * np.array([b for _, b in blocks]) ** 6 / steps**5
+        self._penalty = np.concatenate([_roughness(count) * factor for count, factor in zip(self.counts.tolist(), scale.tolist())])
 
     def robustly_solved(self, values: np.ndarray, residuals_of: Callable[[np.ndarray, np.ndarray], np.ndarray],
                         rounds: int) -> list[Any]:
@@ -99,7 +99,7 @@ class _SplineBasis:
 
     def _weights(self, residuals):
         """`robust_weights` of (N,) residuals, with a scale for each block."""
-        found, size = np.empty(len(residuals)), np.abs(residuals)
+        weights, size = np.empty(len(residuals)), np.abs(residuals)
         k = 0
         while k < len(self.sizes):
             # successive blocks of one length are rows of a table
@@ -108,11 +108,11 @@ class _SplineBasis:
                 alike += 1
             rows = slice(self.rows[k], self.rows[k] + count * (alike - k))
             scale = np.maximum(FITS.soft_l1_scale, MAD_TO_SIGMA * row_medians(size[rows].reshape(-1, count)))
-            found[rows] = (size[rows].reshape(-1, count) / scale).ravel()
+            weights[rows] = (size[rows].reshape(-1, count) / scale).ravel()
             k = alike
-        found *= found
-        found += 1.0
-        return 1.0 / np.sqrt(found, out=found)
+        weights *= weights
+        weights += 1.0
+        return 1.0 / np.sqrt(weights, out=weights)
 
 
 @lru_cache(maxsize=64)
@@ -192,7 +192,7 @@ def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[
     .. [1] Eilers and Marx (1996), Statistical Science 11, 89-121; the effective
        dimension is the integral of 1 / (1 + (w b)^6).
     """
-    selections = [_SplineSelection(*checked_points(x, y, 4), known, bandwidth) for (x, y), known in zip(lines, along or [None] * len(lines))]
+    selections = [_SplineSelection(*checked_points(x, y, 4), distances, bandwidth) for (x, y), distances in zip(lines, along or [None] * len(lines))]
     waiting = [line for line in selections if line.waiting]
     while waiting:
         check_cancelled()
@@ -228,8 +228,8 @@ class _SplineSelection:
 
     def take(self, fitted):
         """Compare what was fitted with the first of the waiting bandwidths."""
-        for b, found in zip(self.waiting, fitted):
-            fit = CurveFit(found, found[2], _effective_parameters(self.length, b))
+        for b, spline in zip(self.waiting, fitted):
+            fit = CurveFit(spline, spline[2], _effective_parameters(self.length, b))
             # the larger bandwidth wins unless the BIC of the smaller one is lower
             if self.best is None or fit.bic < self.best.bic:
                 self.best = fit
@@ -286,19 +286,19 @@ def smooth_profiles(profiles: Sequence[tuple[np.ndarray, np.ndarray]], bandwidth
     Of each profile, (t, values) with (N,) metres and t rising, a function of (M,) t that gives (M,) metres, constant beyond both ends.
     """
     profiles = [(np.asarray(t, float), np.asarray(values, float)) for t, values in profiles]
-    found: list[Any] = [None] * len(profiles)
-    which = []
+    functions: list[Any] = [None] * len(profiles)
+    smoothable = []
     for k, (t, values) in enumerate(profiles):
         if len(t) < 4 or t[-1] - t[0] < 1.0:
-            found[k] = _constant(median(values))
+            functions[k] = _constant(median(values))
         else:
-            which.append(k)
-    for first, end in batches([len(profiles[k][0]) for k in which], FITS.spline_points_per_batch):
+            smoothable.append(k)
+    for first, end in batches([len(profiles[k][0]) for k in smoothable], FITS.spline_points_per_batch):
         check_cancelled()
-        some = which[first:end]
-        for k, smooth in zip(some, _smooth([profiles[k] for k in some], bandwidth)):
-            found[k] = smooth
-    return found
+        batch = smoothable[first:end]
+        for k, smooth in zip(batch, _smooth([profiles[k] for k in batch], bandwidth)):
+            functions[k] = smooth
+    return functions
 
 
 def _constant(level):

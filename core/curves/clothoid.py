@@ -158,8 +158,8 @@ class _ClothoidProblem:
 
     def fit(self, line, unknown, x, y, residuals, state):
         curve = Clothoid(*unknown.tolist(), 0.0)
-        found = curve.cut(float(state[0][0]), float(state[0][-1])).moved(float(self.about[0][line]), float(self.about[1][line]))
-        return CurveFit(found, residuals.copy(), 5)
+        moved = curve.cut(float(state[0][0]), float(state[0][-1])).moved(float(self.about[0][line]), float(self.about[1][line]))
+        return CurveFit(moved, residuals.copy(), 5)
 
 
 def _moments(groups, unknown, direction, bend, change, u):
@@ -171,8 +171,8 @@ def _moments(groups, unknown, direction, bend, change, u):
     for k in range(least, most + 1):
         rows = slice(None) if least == most else np.flatnonzero(rule == k)
         nodes, weights = GAUSS_RULES[k]
-        at = np.multiply.outer(nodes, u[rows])
-        turn = direction[rows] + (bend[rows] + 0.5 * change[rows] * at) * at
+        arcs = np.multiply.outer(nodes, u[rows])
+        turn = direction[rows] + (bend[rows] + 0.5 * change[rows] * arcs) * arcs
         powers = weights * nodes ** np.arange(3)[:, None]
         cosines[:, rows], sines[:, rows] = powers @ np.cos(turn), powers @ np.sin(turn)
     return cosines, sines
@@ -194,17 +194,17 @@ def _start(groups, x, y):
     cx, cy = np.append(np.diff(bx), 0.0), np.append(np.diff(by), 0.0)
     length, heading = np.hypot(cx, cy), np.arctan2(cy, cx)
     length[last], heading[last] = 0.0, heading[last - 1]
-    at = np.cumsum(length) - length
-    at -= np.repeat(at[first], count)
+    arcs = np.cumsum(length) - length
+    arcs -= np.repeat(arcs[first], count)
     turn = np.diff(heading, prepend=heading[0])
     turn[first] = 0.0
     heading = np.cumsum(turn - 2 * np.pi * np.round(turn / (2 * np.pi)))
     heading += np.repeat(np.arctan2(cy, cx)[first] - heading[first], count)
     c, s = np.cos(heading)[binned.owner], np.sin(heading)[binned.owner]
-    along = at[binned.owner] + (x - bx[binned.owner]) * c + (y - by[binned.owner]) * s
+    along = arcs[binned.owner] + (x - bx[binned.owner]) * c + (y - by[binned.owner]) * s
     centre = (along[groups.starts] + along[groups.starts + groups.counts - 1]) / 2
     u = along - centre[owner]
-    direction, bend, change = _parabolas(count, at + length / 2 - np.repeat(centre, count), heading)
+    direction, bend, change = _parabolas(count, arcs + length / 2 - np.repeat(centre, count), heading)
     unknown = np.stack([np.zeros(len(lines)), np.zeros(len(lines)), direction, bend, 2 * change], axis=1)
     cosines, sines = _moments(groups, unknown, *(column[owner] for column in unknown.T[2:]), u)
     unknown[:, 0], unknown[:, 1] = groups.medians(x - u * cosines[0]), groups.medians(y - u * sines[0])

@@ -61,12 +61,12 @@ class SegmentIndex:
         points, owner = shapely.get_coordinates(np.asarray(lines, object), include_z=True, return_index=True)
         run = np.hypot(*np.diff(points[:, :2], axis=0).T) if len(points) > 1 else np.empty(0)
         along = np.r_[0.0, np.cumsum(run)] if len(points) else run
-        own = np.flatnonzero((owner[1:] == owner[:-1]) & (run > 0)) if len(points) > 1 else np.empty(0, int)
+        segments = np.flatnonzero((owner[1:] == owner[:-1]) & (run > 0)) if len(points) > 1 else np.empty(0, int)
         begins = np.searchsorted(owner, np.arange(len(lines)))
-        self.a, self.b, self.line = points[own], points[own + 1], owner[own]
-        self.length = run[own]
-        self.start = along[own] - along[begins[self.line]] if len(own) else np.empty(0)
-        self._along = along[own] if len(own) else np.empty(0)
+        self.a, self.b, self.line = points[segments], points[segments + 1], owner[segments]
+        self.length = run[segments]
+        self.start = along[segments] - along[begins[self.line]] if len(segments) else np.empty(0)
+        self._along = along[segments] if len(segments) else np.empty(0)
         self._line_start = along[begins] if len(points) else np.empty(0)
         ends = np.searchsorted(owner, np.arange(len(lines)), side="right") - 1
         self._line_length = along[ends] - self._line_start if len(points) else np.empty(0)
@@ -110,14 +110,14 @@ class SegmentIndex:
         for k in range(0, len(xy), QUERY_BATCH):
             progress.report(k / len(xy))
             check_cancelled()
-            some = slice(k, k + QUERY_BATCH)
+            rows = slice(k, k + QUERY_BATCH)
             if max_angle is not None and self._heading is None:
                 self._heading = self.heading_at(self.line, self.start + self.length / 2)
             if max_angle is None:
-                pairs = self._tree.query_nearest(shapely.points(xy[some]), all_matches=False)
+                pairs = self._tree.query_nearest(shapely.points(xy[rows]), all_matches=False)
             else:
-                pairs = self._parallel(xy[some], np.asarray(heading)[some], max_angle, reach)
-            parts.append(self._nearest_points(xy[some], *pairs))
+                pairs = self._parallel(xy[rows], np.asarray(heading)[rows], max_angle, reach)
+            parts.append(self._nearest_points(xy[rows], *pairs))
         return NearestPoints.join(parts)
 
     def _parallel(self, xy, heading, max_angle, reach):
@@ -138,15 +138,15 @@ class SegmentIndex:
         return nearest_xyz, share, np.hypot(off[:, 0], off[:, 1])
 
     def _nearest_points(self, xy, point, segment):
-        found = _no_nearest_points(len(xy))
+        result = _no_nearest_points(len(xy))
         nearest_xyz, share, distance = self._project(xy[point], segment)
         step, off = (self.b - self.a)[segment], xy[point] - self.a[segment, :2]
-        found.distance[point] = distance
-        found.side[point] = np.where(step[:, 0] * off[:, 1] - step[:, 1] * off[:, 0] >= 0, 1.0, -1.0)
-        found.xy[point], found.z[point] = nearest_xyz[:, :2], nearest_xyz[:, 2]
-        found.line[point] = self.line[segment]
-        found.station[point] = self.start[segment] + share * self.length[segment]
-        return found
+        result.distance[point] = distance
+        result.side[point] = np.where(step[:, 0] * off[:, 1] - step[:, 1] * off[:, 0] >= 0, 1.0, -1.0)
+        result.xy[point], result.z[point] = nearest_xyz[:, :2], nearest_xyz[:, 2]
+        result.line[point] = self.line[segment]
+        result.station[point] = self.start[segment] + share * self.length[segment]
+        return result
 
 
 def _no_nearest_points(count):

@@ -73,10 +73,10 @@ def _ellipse(x, y):
     check_cancelled()
     rows = PointGroups([len(x)]).subsampled(FITS.coarse_points)
     try:
-        few = fit_ellipse(x[rows], y[rows], MAX_MISFIT)
+        coarse = fit_ellipse(x[rows], y[rows], MAX_MISFIT)
         if len(rows) == len(x):
-            return few
-        return fit_ellipse(x, y) if few.residual_p95 <= MAX_MISFIT else None
+            return coarse
+        return fit_ellipse(x, y) if coarse.residual_p95 <= MAX_MISFIT else None
     except RoadExtractionError:
         return None
 
@@ -122,10 +122,10 @@ class _ModelSelection:
         """Add the fit of the next kind."""
         self.found.append(fit)
         least = bic_lower_bound(len(fit.residuals), MIN_CURVE_PARAMETERS)
-        for one in self._acceptable():
-            if one.bic <= least + FITS.bic_margin:
+        for candidate in self._acceptable():
+            if candidate.bic <= least + FITS.bic_margin:
                 self.decided = True  # whatever may follow
-            if one.bic <= self._best_bic() + FITS.bic_margin:
+            if candidate.bic <= self._best_bic() + FITS.bic_margin:
                 break                # what follows decides
 
     def _acceptable(self):

@@ -90,13 +90,13 @@ class PointGroups:
 
 def batches(counts: Sequence[int] | np.ndarray, max_points: int = FITS.fit_points_per_batch) -> list[tuple[int, int]]:
     """[(first, end)] of successive lines with at most `max_points` points together; a single line may have more."""
-    found, first, size = [], 0, 0
+    ranges, first, size = [], 0, 0
     for k, count in enumerate(counts):
         if k > first and size + count > max_points:
-            found.append((first, k))
+            ranges.append((first, k))
             first, size = k, 0
         size += count
-    return [*found, (first, len(counts))] if len(counts) else []
+    return [*ranges, (first, len(counts))] if len(counts) else []
 
 
 def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callable[..., Any], max_misfit: float = np.inf) -> list[Any]:
@@ -110,7 +110,7 @@ def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callab
         `with_points(points, x, y, lines, state)`: the same unknowns for more points of some of its lines
     max_misfit : metres; a curve from which a twentieth of the points lie farther is not refined with all points
     """
-    found = [None] * len(lines)
+    fits = [None] * len(lines)
     counts = np.array([len(x) for x, _ in lines], np.int64)
     for first, end in batches(np.minimum(counts, FITS.coarse_points)):
         numbers = np.arange(first, end)
@@ -120,14 +120,14 @@ def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callab
         problem = problem_of(PointGroups(np.minimum(whole.counts, FITS.coarse_points)), x[rows], y[rows])
         tolerance = np.where(whole.counts <= FITS.coarse_points, FITS.fit_tolerance, FITS.coarse_fit_tolerance)
         solved = _minimise_batch(problem, problem.start(), problem.scale, tolerance, max_misfit)
-        _store_fits(found, numbers, np.flatnonzero(whole.counts <= FITS.coarse_points), problem, lines, *solved)
+        _store_fits(fits, numbers, np.flatnonzero(whole.counts <= FITS.coarse_points), problem, lines, *solved)
         long = np.flatnonzero(whole.counts > FITS.coarse_points)
         for a, b in batches(whole.counts[long]):
-            there = np.concatenate([np.arange(whole.starts[k], whole.starts[k] + whole.counts[k]) for k in long[a:b]])
-            state = tuple(np.interp(there, rows, values) for values in solved[2])
-            part = problem.with_points(PointGroups(whole.counts[long[a:b]]), x[there], y[there], long[a:b], state)
-            _refine(found, numbers[long[a:b]], part, lines, solved[0][long[a:b]], max_misfit)
-    return found
+            indices = np.concatenate([np.arange(whole.starts[k], whole.starts[k] + whole.counts[k]) for k in long[a:b]])
+            state = tuple(np.interp(indices, rows, values) for values in solved[2])
+            part = problem.with_points(PointGroups(whole.counts[long[a:b]]), x[indices], y[indices], long[a:b], state)
+            _refine(fits, numbers[long[a:b]], part, lines, solved[0][long[a:b]], max_misfit)
+    return fits
 
 
 def _refine(found, numbers, problem, lines, unknown, max_misfit):
@@ -143,9 +143,9 @@ def _refine(found, numbers, problem, lines, unknown, max_misfit):
 
 def _store_fits(found, numbers, which, problem, lines, unknown, residuals, state):
     for k in which.tolist():
-        own = slice(problem.groups.starts[k], problem.groups.starts[k] + problem.groups.counts[k])
+        rows = slice(problem.groups.starts[k], problem.groups.starts[k] + problem.groups.counts[k])
         x, y = lines[numbers[k]]
-        found[numbers[k]] = problem.fit(k, unknown[k], x, y, residuals[own], tuple(values[own] for values in state))
+        found[numbers[k]] = problem.fit(k, unknown[k], x, y, residuals[rows], tuple(values[rows] for values in state))
 
 
 def _minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, tolerance: float | np.ndarray = FITS.fit_tolerance,
@@ -172,10 +172,10 @@ def _minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, toleranc
     state : tuple of (N,) arrays, the state of the residuals
     """
     exact = np.broadcast_to(tolerance, len(start))
-    found, residuals, state = _levenberg_marquardt(problem, np.array(start, float), scale, np.full(len(start), np.inf), problem.state,
-                                                   np.maximum(exact, FITS.coarse_fit_tolerance / 10), max_misfit)
+    unknown, residuals, state = _levenberg_marquardt(problem, np.array(start, float), scale, np.full(len(start), np.inf), problem.state,
+                                                     np.maximum(exact, FITS.coarse_fit_tolerance / 10), max_misfit)
     misfit = MAD_TO_SIGMA * problem.groups.medians(np.abs(residuals))
-    return _levenberg_marquardt(problem, found, scale, np.maximum(FITS.soft_l1_scale, misfit), state, exact, max_misfit)
+    return _levenberg_marquardt(problem, unknown, scale, np.maximum(FITS.soft_l1_scale, misfit), state, exact, max_misfit)
 
 
 def _levenberg_marquardt(problem, found, scale, f_scale, state, exact, max_misfit):
@@ -185,37 +185,37 @@ def _levenberg_marquardt(problem, found, scale, f_scale, state, exact, max_misfi
     results = None
     lines, rows = np.arange(len(found)), slice(None)
     residuals, state = problem.evaluate(found, state)
-    now, damping, steps = _cost(problem, residuals, f_scale), np.full(len(found), 1e-3), np.zeros(len(found), int)
+    cost, damping, steps = _cost(problem, residuals, f_scale), np.full(len(found), 1e-3), np.zeros(len(found), int)
     while True:
         check_cancelled()
         groups = problem.groups
         owner = groups.owner
         weight = 1.0 / np.sqrt(1.0 + (residuals / f_scale[owner]) ** 2)
-        by = problem.jacobian(found, state)
+        jacobian = problem.jacobian(found, state)
         # by the second derivative of soft L1, which is the weight's cube: the weight itself takes three times the steps
-        weighted = by * weight**3
+        weighted = jacobian * weight**3
         normal = np.empty((len(found), size, size))
-        normal[:, above, below] = normal[:, below, above] = groups.sums(by[above] * weighted[below]).T
+        normal[:, above, below] = normal[:, below, above] = groups.sums(jacobian[above] * weighted[below]).T
         normal *= scale[:, :, None] * scale[:, None, :]
-        right = groups.sums(by * (weight * residuals)).T * scale
+        right = groups.sums(jacobian * (weight * residuals)).T * scale
         normal[:, diagonal, diagonal] += damping[:, None] * (normal[:, diagonal, diagonal] + 1e-12)
         step = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
         proposed = found - scale * step
         tried, new = problem.evaluate(proposed, state)
-        then = _cost(problem, tried, f_scale)
-        better, small = then <= now, np.abs(step).max(axis=1) < exact
+        new_cost = _cost(problem, tried, f_scale)
+        better, small = new_cost <= cost, np.abs(step).max(axis=1) < exact
         steps += better
-        gain = now - then
-        given_up = (gain <= FITS.stalled_gain * now) & (then > groups.counts * max_misfit**2)
-        over = np.where(better, (gain <= 1e-4 * exact * now) & small | given_up | (steps >= FITS.max_steps), (damping > FITS.max_damping) | small)
+        gain = cost - new_cost
+        given_up = (gain <= FITS.stalled_gain * cost) & (new_cost > groups.counts * max_misfit**2)
+        over = np.where(better, (gain <= 1e-4 * exact * cost) & small | given_up | (steps >= FITS.max_steps), (damping > FITS.max_damping) | small)
         damping = np.where(better, np.maximum(damping / 8, 1e-10), damping * 8)
         if better.all():
-            found, residuals, state, now = proposed, tried, new, then
+            found, residuals, state, cost = proposed, tried, new, new_cost
         else:
-            there = better[owner]
-            found, now = np.where(better[:, None], proposed, found), np.where(better, then, now)
-            residuals = np.where(there, tried, residuals)
-            state = tuple(np.where(there, a, b) for a, b in zip(new, state))
+            members = better[owner]
+            found, cost = np.where(better[:, None], proposed, found), np.where(better, new_cost, cost)
+            residuals = np.where(members, tried, residuals)
+            state = tuple(np.where(members, a, b) for a, b in zip(new, state))
         if not over.any():
             continue
         if results is None:
@@ -229,12 +229,12 @@ def _levenberg_marquardt(problem, found, scale, f_scale, state, exact, max_misfi
         if over.all():
             return results
         left = np.flatnonzero(~over)
-        there = np.flatnonzero(~over[owner])
-        problem = problem.subset(left, there)
-        lines, rows = lines[left], rows[there]
+        members = np.flatnonzero(~over[owner])
+        problem = problem.subset(left, members)
+        lines, rows = lines[left], rows[members]
         found, scale, f_scale, exact = found[left], scale[left], f_scale[left], exact[left]
-        now, damping, steps = now[left], damping[left], steps[left]
-        residuals, state = residuals[there], tuple(values[there] for values in state)
+        cost, damping, steps = cost[left], damping[left], steps[left]
+        residuals, state = residuals[members], tuple(values[members] for values in state)
 
 
 def _cost(problem, residuals, f_scale):
@@ -283,16 +283,16 @@ def robustly_smoothed(values: np.ndarray, weight: np.ndarray, stiffness: float) 
     if len(values) < 3:
         return values.copy()
     penalty = np.zeros((3, len(values)))
-    for i, one in enumerate((1.0, -2.0, 1.0)):
-        for j, other in enumerate((1.0, -2.0, 1.0)[:i + 1]):
-            penalty[2 - (i - j), i:len(values) - 2 + i] += stiffness * one * other
+    for i, a in enumerate((1.0, -2.0, 1.0)):
+        for j, b in enumerate((1.0, -2.0, 1.0)[:i + 1]):
+            penalty[2 - (i - j), i:len(values) - 2 + i] += stiffness * a * b
     robust = np.ones(len(values))
-    found = values
+    smoothed = values
     for _ in range(FITS.robust_rounds):
         matrix = penalty.copy()
         matrix[2] += weight * robust + 1e-9
-        found = solveh_banded(matrix, (weight * robust)[:, None] * values, check_finite=False)
-        off = np.linalg.norm(values - found, axis=1)
+        smoothed = solveh_banded(matrix, (weight * robust)[:, None] * values, check_finite=False)
+        off = np.linalg.norm(values - smoothed, axis=1)
         usual = float(np.median(off[weight > 0])) if (weight > 0).any() else 0.0
         robust = 1.0 / (1.0 + (off / (FITS.outlier_factor * usual + 1e-9)) ** 2)
-    return found
+    return smoothed

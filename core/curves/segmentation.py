@@ -112,13 +112,13 @@ class _Costs:
 
     def of(self, begun, j):
         """(M, 3) costs of elements that began at some nodes and end at node j."""
-        found = np.empty((len(begun), len(ELEMENT_DEGREES)))
+        costs = np.empty((len(begun), len(ELEMENT_DEGREES)))
         scale = (self.nodes[j] - self.nodes[begun])[:, None] ** -np.arange(4.0)
         normal = self.powers[begun][:, _EXPONENT_SUMS] * (scale[:, :, None] * scale[:, None, :])
         normal[:, _DIAGONAL, _DIAGONAL] += 1e-10 * np.maximum(self.begin[j] - self.begin[begun], 1)[:, None]
         for kind, sums in enumerate((self.whole, self.less, self.less)):
             size = kind + 2
             right = sums[begun, :size] * scale[:, :size]
-            by = np.linalg.solve(normal[:, :size, :size], right[:, :, None])[:, :, 0]
-            found[:, kind] = sums[begun, -1] - (by * right).sum(axis=1)
-        return np.maximum(found, 0.0) / self.sigma**2
+            solution = np.linalg.solve(normal[:, :size, :size], right[:, :, None])[:, :, 0]
+            costs[:, kind] = sums[begun, -1] - (solution * right).sum(axis=1)
+        return np.maximum(costs, 0.0) / self.sigma**2

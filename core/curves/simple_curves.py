@@ -232,13 +232,13 @@ def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> Cur
     t, _, e = nearest(unknown)
     cx, cy, a, b, tilt = unknown
     t = np.unwrap(t)
-    found = Ellipse(float(cx), float(cy), abs(float(a)), abs(float(b)), float(tilt), float(t[0]), float(t[-1]))
-    if abs(found.heading(np.array([found.length]))[0] - found.heading(np.zeros(1))[0]) < FITS.min_ellipse_turn:
+    ellipse = Ellipse(float(cx), float(cy), abs(float(a)), abs(float(b)), float(tilt), float(t[0]), float(t[-1]))
+    if abs(ellipse.heading(np.array([ellipse.length]))[0] - ellipse.heading(np.zeros(1))[0]) < FITS.min_ellipse_turn:
         raise RoadExtractionError(
             "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. "
             "Choose curve = automatic or circle.")
     # outside the ellipse is right of a left turn
-    return CurveFit(found.moved(*middle), -np.sign(t[-1] - t[0]) * e, 5)
+    return CurveFit(ellipse.moved(*middle), -np.sign(t[-1] - t[0]) * e, 5)
 
 
 def _direct(x, y):
@@ -360,7 +360,7 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
     weight = np.ones(len(x))
     for _ in range(FITS.polynomial_reweightings):
         root = np.sqrt(weight)
-        found = np.linalg.lstsq(design * root[:, None], across * root, rcond=None)[0]
-        weight = robust_weights(across - design @ found)
-    curve = Polynomial(middle_x, middle_y, tilt, scale, tuple(found.tolist()), float(along[0]), float(along[-1]))
+        coefficients = np.linalg.lstsq(design * root[:, None], across * root, rcond=None)[0]
+        weight = robust_weights(across - design @ coefficients)
+    curve = Polynomial(middle_x, middle_y, tilt, scale, tuple(coefficients.tolist()), float(along[0]), float(along[-1]))
     return CurveFit(curve, curve.project(x, y)[1], degree + 1)

@@ -42,7 +42,7 @@ def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[li
     divided into elements once, with all of their evidence, and each lane's elements are the parallels. A lane that is not parallel to the others is
     divided alone.
     """
-    found: list[list[Element]] = [[] for _ in tracks]
+    elements: list[list[Element]] = [[] for _ in tracks]
     groups: list[tuple[list[tuple[int, float]], np.ndarray, int]] = []
     order = sorted(range(len(tracks)), key=lambda i: (-len(tracks[i]), i))
     by_length = [tracks[i] for i in order]
@@ -54,8 +54,8 @@ def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[li
     groups = [([(order[rank], offset) for rank, offset in members], axis, first) for members, axis, first in groups]
     for (members, _, _), divided in zip(groups, _divided([_Axis.of(s, axis, first, road) for _, axis, first in groups])):
         for i, offset in members:
-            found[i] = _of_lane(tracks[i], offset, divided, s, road)
-    return found
+            elements[i] = _of_lane(tracks[i], offset, divided, s, road)
+    return elements
 
 
 def _parallel_lanes(longest, tracks, waiting, spans):
@@ -83,10 +83,10 @@ def _parallel_lanes(longest, tracks, waiting, spans):
             waiting.remove(k)
             added = True
             for more in (spans.near(common.low, low), spans.near(high, common.high)):
-                for other in more.tolist():
-                    if other > k and other in waiting and other not in queued:
-                        heappush(queue, other)
-                        queued.add(other)
+                for neighbour in more.tolist():
+                    if neighbour > k and neighbour in waiting and neighbour not in queued:
+                        heappush(queue, neighbour)
+                        queued.add(neighbour)
     return members, common.total[common.low - common.first:common.high + 1 - common.first] / \
         common.weight[common.low - common.first:common.high + 1 - common.first], common.low
 
@@ -111,20 +111,20 @@ class _CommonAxis:
             room = [max(more, len(self.total)) if more else 0 for more in (before, behind)]
             self.total, self.weight = (np.pad(values, room) for values in (self.total, self.weight))
             self.first -= room[0]
-        own = slice(track.first - self.first, track.last + 1 - self.first)
+        window = slice(track.first - self.first, track.last + 1 - self.first)
         # a bridged place says little, but more than nothing where it is alone
         w = np.where(track.status == BRIDGED, 1e-3, 1.0)
-        self.total[own] += w * (track.d - offset)
-        self.weight[own] += w
+        self.total[window] += w * (track.d - offset)
+        self.weight[window] += w
 
     def offset_of(self, track):
         """By how much a lane lies beside the axis; None where it is not parallel to it, or where they hardly run together."""
         begin, end = max(track.first, self.first), min(track.last + 1, self.first + len(self.total))
-        own, there = slice(begin - self.first, end - self.first), slice(begin - track.first, end - track.first)
-        shared = self.weight[own] > 0
+        of_axis, of_track = slice(begin - self.first, end - self.first), slice(begin - track.first, end - track.first)
+        shared = self.weight[of_axis] > 0
         if shared.sum() * STATION_STEP < min(ALIGNMENT.min_shared_lane_length, 0.5 * len(track) * STATION_STEP):
             return None
-        apart = track.d[there][shared] - self.total[own][shared] / self.weight[own][shared]
+        apart = track.d[of_track][shared] - self.total[of_axis][shared] / self.weight[of_axis][shared]
         offset = float(np.median(apart))
         return None if np.percentile(np.abs(apart - offset), 95) > ALIGNMENT.max_parallel_deviation else offset
 
@@ -140,9 +140,9 @@ class _Axis:
 
     @classmethod
     def of(cls, s, d, first, road):
-        at = s[first:first + len(d)]
-        x, y = road.to_map(at, d)
-        return cls(at, x, y, np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+        stations = s[first:first + len(d)]
+        x, y = road.to_map(stations, d)
+        return cls(stations, x, y, np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
 
     @property
     def thinned(self):
@@ -162,12 +162,12 @@ def _divided(axes):
     cuts = element_ranges([axes[k].thinned for k in long])
     parts = [(k, first, last) for k, bounds in zip(long, cuts) for first, last, _ in bounds]
     choices = select_each([axes[k].part(first, last) for k, first, last in parts])
-    found = [[] for _ in axes]
+    divisions = [[] for _ in axes]
     for (k, first, last), choice in zip(parts, choices):
-        found[k].append((first, last, choice.best))
-    found = _without_steps(axes, found)
+        divisions[k].append((first, last, choice.best))
+    divisions = _without_steps(axes, divisions)
     return [[(*map(float, np.interp([first, last], axis.u, axis.at)), best.curve) for first, last, best in parts]
-            for axis, parts in zip(axes, found)]
+            for axis, parts in zip(axes, divisions)]
 
 
 def _without_steps(axes, found):
@@ -179,8 +179,8 @@ def _without_steps(axes, found):
     found = [list(elements) for elements in found]
     # of each pair of neighbours the clothoid in place of both, and how far it misses their places
     joints = [[None] * max(len(elements) - 1, 0) for elements in found]
-    missed = [[np.inf] * len(one) for one in joints]
-    new = [(k, j) for k, one in enumerate(joints) for j in range(len(one))]
+    missed = [[np.inf] * len(row) for row in joints]
+    new = [(k, j) for k, row in enumerate(joints) for j in range(len(row))]
     open_ones = list(range(len(axes)))
     while open_ones:
         new = [(k, j) for k, j in new if _is_step(found[k][j], found[k][j + 1])]
@@ -189,15 +189,15 @@ def _without_steps(axes, found):
             joints[k][j], missed[k][j] = joint, joint.residual_p95
         new, merging, open_ones = [], open_ones, []
         for k in merging:
-            least = min(missed[k], default=np.inf)
-            if least < ALIGNMENT.max_transition_misfit:
-                j = missed[k].index(least)
+            best_misfit = min(missed[k], default=np.inf)
+            if best_misfit < ALIGNMENT.max_transition_misfit:
+                j = missed[k].index(best_misfit)
                 found[k][j:j + 2] = [(found[k][j][0], found[k][j + 1][1], joints[k][j])]
                 del joints[k][j], missed[k][j]
-                beside = [i for i in (j - 1, j) if 0 <= i < len(missed[k])]
-                for i in beside:
+                neighbours = [i for i in (j - 1, j) if 0 <= i < len(missed[k])]
+                for i in neighbours:
                     missed[k][i] = np.inf
-                new += [(k, i) for i in beside]
+                new += [(k, i) for i in neighbours]
                 open_ones.append(k)
     return found
 
@@ -210,22 +210,22 @@ def _is_step(one, other):
 
 
 def _of_lane(track, offset, divided, s, road):
-    at = s[track.first:track.last + 1]
-    x, y = road.to_map(at, track.d)
+    stations = s[track.first:track.last + 1]
+    x, y = road.to_map(stations, track.d)
     elements = []
     ends = [end for _, end, _ in divided]
-    for k in range(bisect_left(ends, at[0]), len(divided)):
+    for k in range(bisect_left(ends, stations[0]), len(divided)):
         start, end, curve = divided[k]
-        if start > at[-1]:
+        if start > stations[-1]:
             break
-        a, b = max(start, at[0]), min(end, at[-1])
-        inside = slice(np.searchsorted(at, a), np.searchsorted(at, b, side="right"))
+        a, b = max(start, stations[0]), min(end, stations[-1])
+        inside = slice(np.searchsorted(stations, a), np.searchsorted(stations, b, side="right"))
         if not isinstance(curve, Arc) or inside.stop - inside.start < ALIGNMENT.min_places_per_fit:
             continue
         u, e = curve.parallel(offset).project(x[inside], y[inside])
         arc = curve.parallel(offset + float(np.median(e)))
         u, e = arc.project(x[inside], y[inside])
-        complete = 0 < k < len(divided) - 1 and start >= at[0] and end <= at[-1]
+        complete = 0 < k < len(divided) - 1 and start >= stations[0] and end <= stations[-1]
         elements.append(Element(a, b, _cut(arc, float(u[0]), float(u[-1])), float(np.sqrt(np.mean(e**2))), complete))
     return elements
 
@@ -254,40 +254,40 @@ def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: l
     fits = fit_curves([_known_places(track, s, road) for track in tracks])
     drawn = [fit.curve.sample(STATION_STEP) for fit in fits]
     stations = road.locate(*np.concatenate(drawn).T)[0] if drawn else np.empty(0)
-    found, first = [], 0
+    courses, first = [], 0
     for fit, places, of_lane in zip(fits, drawn, elements):
         station = stations[first:first + len(places)]
         first += len(places)
-        good = np.isfinite(station)
-        good[good] &= station[good] > np.r_[-np.inf, np.maximum.accumulate(station[good])[:-1]]
-        places, station = places[good], station[good]
+        rising = np.isfinite(station)
+        rising[rising] &= station[rising] > np.r_[-np.inf, np.maximum.accumulate(station[rising])[:-1]]
+        places, station = places[rising], station[rising]
         for element in of_lane:
             if element.rmse < ALIGNMENT.max_shared_arc_rmse:
                 _draw_to(element, places, station)
         check_cancelled()
-        found.append(Course(places[:, 0], places[:, 1], station, fit.curve, fit.rmse))
-    return found
+        courses.append(Course(places[:, 0], places[:, 1], station, fit.curve, fit.rmse))
+    return courses
 
 
 def _known_places(track, s, road):
     """x, y of a lane where it is not bridged, of all of it where little is known."""
-    known = track.status != BRIDGED
-    if known.sum() < ALIGNMENT.min_places_per_fit:
-        known = np.ones(len(track), bool)
-    return road.to_map(s[track.first:track.last + 1][known], track.d[known])
+    measured = track.status != BRIDGED
+    if measured.sum() < ALIGNMENT.min_places_per_fit:
+        measured = np.ones(len(track), bool)
+    return road.to_map(s[track.first:track.last + 1][measured], track.d[measured])
 
 
 def _draw_to(element, places, station):
     """Move places onto an element, less and less towards its ends unless the lane ends there."""
     inside = slice(np.searchsorted(station, element.start), np.searchsorted(station, element.end, side="right"))
-    at = station[inside]
-    if not len(at):
+    stations = station[inside]
+    if not len(stations):
         return
-    share = np.ones(len(at))
+    share = np.ones(len(stations))
     if element.start - station[0] > STATION_STEP:
-        share = np.minimum(share, (at - element.start) / ALIGNMENT.arc_blend_length)
+        share = np.minimum(share, (stations - element.start) / ALIGNMENT.arc_blend_length)
     if station[-1] - element.end > STATION_STEP:
-        share = np.minimum(share, (element.end - at) / ALIGNMENT.arc_blend_length)
+        share = np.minimum(share, (element.end - stations) / ALIGNMENT.arc_blend_length)
     u, e = element.arc.project(places[inside, 0], places[inside, 1])
     heading = element.arc.heading(u)
     places[inside] -= (np.clip(share, 0.0, 1.0) * e)[:, None] * np.c_[-np.sin(heading), np.cos(heading)]
@@ -309,8 +309,8 @@ def without_short_status(status: np.ndarray) -> np.ndarray:
         if length >= int(ALIGNMENT.min_status_length / STATION_STEP):
             break
         end = ends.pop(begin)
-        beside = [status[k] for k in (begin - 1, end) if 0 <= k < len(status)]
-        status[begin:end] = max(beside)
+        neighbours = [status[k] for k in (begin - 1, end) if 0 <= k < len(status)]
+        status[begin:end] = max(neighbours)
         if begin and status[begin - 1] == status[begin]:
             begin = begins[begin]
         if end < len(status) and status[end] == status[begin]:
@@ -323,8 +323,8 @@ def without_short_status(status: np.ndarray) -> np.ndarray:
 def track_pieces(track: LaneTrack, s: np.ndarray) -> list[tuple[int, float, float]]:
     """(status, start station, end station) of the pieces of a lane, cut where its status changes and where doubt begins or ends; ends touch."""
     kinds = len(LANE_STATUS)
-    found = _status_pieces(without_short_status(track.status + kinds * track.in_doubt()), track.first, s)
-    return [(code % kinds, start, end) for code, start, end in found]
+    pieces = _status_pieces(without_short_status(track.status + kinds * track.in_doubt()), track.first, s)
+    return [(code % kinds, start, end) for code, start, end in pieces]
 
 
 def _status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[int, float, float]]:
@@ -337,7 +337,7 @@ def _status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[
 
 def element_of(elements: list[Element], start: float, end: float) -> Element | None:
     """The arc or straight that covers nine tenths of a piece between two stations, or None."""
-    for element in elements[bisect_left([one.end for one in elements], start):]:
+    for element in elements[bisect_left([candidate.end for candidate in elements], start):]:
         if element.start > end:
             break
         if min(end, element.end) - max(start, element.start) >= ALIGNMENT.min_element_share * (end - start):
@@ -363,13 +363,13 @@ def circular_curve_elements(radius: float, delta: float) -> dict[str, float]:
     lengths = dict(radius=radius, length=radius * delta, tangent=radius * np.tan(half),
                    middle=radius * (1 - np.cos(half)), chord=2 * radius * np.sin(half),
                    ext=radius * (1 / np.cos(half) - 1))
-    found = {}
+    result = {}
     for name, metres in lengths.items():
-        found[f"{name}_m"], found[f"{name}_ft"] = float(metres), float(metres / FOOT)
-    found["delta_deg"] = float(np.degrees(delta))
-    found["degree_m"] = float(np.degrees(100.0 / radius))
-    found["degree_ft"] = float(np.degrees(100.0 / (radius / FOOT)))
-    return found
+        result[f"{name}_m"], result[f"{name}_ft"] = float(metres), float(metres / FOOT)
+    result["delta_deg"] = float(np.degrees(delta))
+    result["degree_m"] = float(np.degrees(100.0 / radius))
+    result["degree_ft"] = float(np.degrees(100.0 / (radius / FOOT)))
+    return result
 
 
 def curve_points(start: Sequence[float], heading: float, radius: float, delta: float, left: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -70,28 +70,28 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     if estimates.against_arrows:
         progress.warn("The vehicle drove against the arrows painted in its lanes; lanes lead the way it drove. Look at the times of the trajectory, "
                       "or set Side of traffic if the arrows are right.")
-    for count, (number, one) in enumerate(estimates.roads.items()):
+    for count, (number, estimated) in enumerate(estimates.roads.items()):
         part = progress.part(0.4 + 0.6 * count / len(estimates.roads), 0.4 + 0.6 * (count + 1) / len(estimates.roads))
-        s = one.lines.s
+        s = estimated.lines.s
         passes = frame.passes_sigma(number, s)
         tracks = [replace(track, confidence=track.confidence * share_within(passes[track.first:track.last + 1]))
-                  for track in _road_lanes(one, settings, estimates.lane_width)]
+                  for track in _road_lanes(estimated, settings, estimates.lane_width)]
         part.report(0.25)
         alignment = lane_elements(tracks, s, frame.roads[number])
         part.report(0.5)
-        heights = lane_heights(one.lines, road_points, number, tracks, part.part(0.5, 0.7))
+        heights = lane_heights(estimated.lines, road_points, number, tracks, part.part(0.5, 0.7))
         if any(np.isnan(z).any() for z in heights):
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
         courses = lane_courses(tracks, s, frame.roads[number], alignment)
         spacing = None if road_points is None else point_spacing(road_points, number, s)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
-            sigma = lane_sigma(track, course, frame.roads[number], one, paint, passes[track.first:track.last + 1], spacing)
-            rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z, sigma)]
+            sigma = lane_sigma(track, course, frame.roads[number], estimated, paint, passes[track.first:track.last + 1], spacing)
+            rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, estimated.lines, z, sigma)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
             part.report(0.8 + 0.1 * lane / len(tracks))
         tracks = [track.without_jumps(s) for track in tracks]
-        areas += lane_areas(one, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number))
+        areas += lane_areas(estimated, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number))
         lanes[number] = RoadLanes(s, tracks, heights)
         part.report(1.0)
     areas += connectors_between_roads(lanes, frame, areas)
@@ -104,17 +104,17 @@ def _road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: floa
     """The lanes of one road as a list of LaneTrack, by first station, then from right to left; `lane_width` where only one line is painted."""
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
     tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, _shown(road.boundaries))
-    known = [track.without_doubtful_ends() for track in laid_out(tracks)]
-    tracks = [replace(track, confidence=track.said_confidence()) for track in known
+    clear = [track.without_doubtful_ends() for track in laid_out(tracks)]
+    tracks = [replace(track, confidence=track.said_confidence()) for track in clear
               if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
 
 
 def _shown(boundaries):
     """(K,) bool, whether any line is seen at a grid station."""
-    spans, found = boundaries.d.spans, np.zeros(len(boundaries.s), bool)
-    found[spans.station[boundaries.seen.values & boundaries.painted[spans.owner]]] = True
-    return found
+    spans, shown = boundaries.d.spans, np.zeros(len(boundaries.s), bool)
+    shown[spans.station[boundaries.seen.values & boundaries.painted[spans.owner]]] = True
+    return shown
 
 
 def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Element], road_lines: CrossSections,
@@ -124,17 +124,17 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
     grid = s[track.first:track.last + 1]
     for code, start, end in _cut_by_sigma(track_pieces(track, s), grid, sigma):
         rows = slice(np.searchsorted(grid, start), np.searchsorted(grid, end) + 1)
-        x, y, at = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
+        x, y, stations = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
         if len(x) < 2:
             continue
-        places = np.c_[x, y, np.interp(at, grid, z)]
+        vertices = np.c_[x, y, np.interp(stations, grid, z)]
         element = element_of(elements, start, end)
         yield dict(
             pattern=_patterns(track, rows, way, road_lines), direction=way, source="offset" if track.offset[rows].mean() > 0.5 else "pair",
             status=LANE_STATUS[code], **track.said(rows),
             curve=element.arc if element is not None else course.curve, rmse=course.rmse,
             sigma=sigma[rows].mean(), station=start, end=end,
-            offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=places[::-1] if way < 0 else places)
+            offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=vertices[::-1] if way < 0 else vertices)
 
 
 def _cut_by_sigma(pieces, grid, sigma):
@@ -151,23 +151,23 @@ def _patterns(track, rows, way, lines):
     A line may be drawn otherwise farther on: the pattern is that of most places of the stretch.
     """
     names, columns = [*lines.names, "none"], np.arange(track.first, track.first + len(track))[rows]
-    found = []
+    patterns = []
     for side in (track.left[rows], track.right[rows])[::way]:
         painted = (side >= 0) & (side < len(lines.d))
         row = np.where(painted, side, 0)
         drawn = lines.drawn[row, columns]
         drawn = np.where(painted, np.where(drawn < 0, lines.usual[row], drawn), len(lines.names))
-        found.append(names[np.bincount(drawn).argmax()] or "none")
-    return "|".join(found)
+        patterns.append(names[np.bincount(drawn).argmax()] or "none")
+    return "|".join(patterns)
 
 
 def _between(course, start, end, code_first, code_last):
     """Vertices of a course from one station to another, with a vertex of its own at every cut."""
     s = course.s
     inside = slice(np.searchsorted(s, start + 0.02, side="right"), np.searchsorted(s, end - 0.02))
-    at = np.r_[s[0] if code_first else start, s[inside], s[-1] if code_last else end]
-    at = at[np.r_[True, np.diff(at) > 0]]
-    return np.interp(at, s, course.x), np.interp(at, s, course.y), at
+    stations = np.r_[s[0] if code_first else start, s[inside], s[-1] if code_last else end]
+    stations = stations[np.r_[True, np.diff(stations) > 0]]
+    return np.interp(stations, s, course.x), np.interp(stations, s, course.y), stations
 
 
 def _lane_curves(way: int, elements: list[Element]) -> Iterator[dict[str, Any]]:
@@ -235,29 +235,29 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoa
 def _mean_square_of_borders(track, known, paint, spacing):
     """(N,) m², of the middle of a lane from what its borders are off by."""
     lines, made_of = known.lines, np.append(known.boundaries.made_of, OUTSIDE)
-    painted, square, away = (np.stack(both) for both in zip(*(_border(track, lines, paint, rows) for rows in (track.left, track.right))))
+    painted, square, distance = (np.stack(sides) for sides in zip(*(_border(track, lines, paint, rows) for rows in (track.left, track.right))))
     hatched = np.stack([made_of[rows] == HATCHING for rows in (track.left, track.right)])
     bounding = painted | hatched
-    told = np.isfinite(square)
-    mean = np.where(told, square, 0.0).sum(axis=0) / np.maximum(told.sum(axis=0), 1)
-    usual = np.median(mean[told.any(axis=0)]) if told.any() else SIGMA.usual_scatter**2
-    scatter = np.where(told, square, np.where(told.any(axis=0), mean, usual))
-    seen = SIGMA.border_sigma**2 + (SIGMA.spacing_share * spacing) ** 2 + SIGMA.border_share**2 * scatter
-    off = np.where(hatched, SIGMA.hatching_sigma**2, seen + (SIGMA.gap_share * away) ** 2)
+    finite = np.isfinite(square)
+    mean = np.where(finite, square, 0.0).sum(axis=0) / np.maximum(finite.sum(axis=0), 1)
+    usual = np.median(mean[finite.any(axis=0)]) if finite.any() else SIGMA.usual_scatter**2
+    scatter = np.where(finite, square, np.where(finite.any(axis=0), mean, usual))
+    line_error = SIGMA.border_sigma**2 + (SIGMA.spacing_share * spacing) ** 2 + SIGMA.border_share**2 * scatter
+    error = np.where(hatched, SIGMA.hatching_sigma**2, line_error + (SIGMA.gap_share * distance) ** 2)
     share = np.where(bounding.sum(axis=0) == 1, np.where(bounding, SIGMA.own_border, SIGMA.far_border), SIGMA.between_borders)
     share = np.where(track.offset & bounding.any(axis=0), bounding / np.maximum(bounding.sum(axis=0), 1), share)
     measured = track.status == MEASURED
     unbounded = np.where(bounding.any(axis=0), 0.0, SIGMA.gap_share * _distance_to(measured))
-    beside = np.where(~measured & track.offset, SIGMA.width_sigma, 0.0)
-    return (share**2 * off).sum(axis=0) + unbounded**2 + beside**2
+    by_width = np.where(~measured & track.offset, SIGMA.width_sigma, 0.0)
+    return (share**2 * error).sum(axis=0) + unbounded**2 + by_width**2
 
 
 def _mean_square_misfit(track, course, road, lines):
     """(N,) m², of the smooth line from the mean of the lane's places over MISFIT_WINDOW, over MISFIT_REACH either way."""
     s = lines.s[track.first:track.last + 1]
     drawn = road.locate(np.interp(s, course.s, course.x), np.interp(s, course.s, course.y), s)[1]
-    beside = uniform_filter1d(np.nan_to_num(drawn - track.d), int(SIGMA.misfit_window / STATION_STEP), mode="nearest")
-    return SIGMA.misfit_share**2 * uniform_filter1d(beside**2, int(2 * SIGMA.misfit_reach / STATION_STEP), mode="nearest")
+    misfit = uniform_filter1d(np.nan_to_num(drawn - track.d), int(SIGMA.misfit_window / STATION_STEP), mode="nearest")
+    return SIGMA.misfit_share**2 * uniform_filter1d(misfit**2, int(2 * SIGMA.misfit_reach / STATION_STEP), mode="nearest")
 
 
 def _mean_square_bias(track, course, lines):
@@ -269,7 +269,7 @@ def _mean_square_bias(track, course, lines):
     s = lines.s[track.first:track.last + 1]
     if len(s) < 3:
         return np.zeros(len(s))
-    dx, dy = (np.gradient(np.interp(s, course.s, places)) for places in (course.x, course.y))
+    dx, dy = (np.gradient(np.interp(s, course.s, values)) for values in (course.x, course.y))
     step = np.maximum(np.hypot(dx, dy), 0.1 * STATION_STEP)
     smooth = SIGMA.curvature_sigma / STATION_STEP
     heading = gaussian_filter1d(np.unwrap(np.arctan2(dy, dx)), smooth, mode="nearest")
@@ -295,13 +295,13 @@ def _border(track, lines, paint, rows):
     if not painted.any():
         return painted, np.full(len(track), np.nan), np.zeros(len(track))
     names, of = np.unique(np.where(painted, lines.number[np.where(painted, rows, 0), columns], -1), return_inverse=True)
-    square = np.array([paint.get(one, np.nan) ** 2 if one >= 0 else np.nan for one in names.tolist()])[of]
-    away = np.zeros(len(track))
+    square = np.array([paint.get(name, np.nan) ** 2 if name >= 0 else np.nan for name in names.tolist()])[of]
+    distance = np.zeros(len(track))
     cuts = np.r_[0, np.flatnonzero(np.diff(np.where(painted, rows, -1))) + 1, len(rows)].tolist()
     for begin, end in zip(cuts[:-1], cuts[1:]):
         if painted[begin]:
-            away[begin:end] = _distance_to_paint(lines.seen, int(rows[begin]), track.first + begin, track.first + end)
-    return painted, square, away
+            distance[begin:end] = _distance_to_paint(lines.seen, int(rows[begin]), track.first + begin, track.first + end)
+    return painted, square, distance
 
 
 def _distance_to_paint(seen, row, first, end):
@@ -309,9 +309,9 @@ def _distance_to_paint(seen, row, first, end):
     if not seen.row(row).any():
         return np.zeros(end - first)
     low = max(first - int(SIGMA.max_gap_distance / STATION_STEP), 0)
-    known = seen[row, low:end + int(SIGMA.max_gap_distance / STATION_STEP)]
-    away = _distance_to(known) if known.any() else np.full(len(known), SIGMA.max_gap_distance)
-    return away[first - low:end - low]
+    painted = seen[row, low:end + int(SIGMA.max_gap_distance / STATION_STEP)]
+    distance = _distance_to(painted) if painted.any() else np.full(len(painted), SIGMA.max_gap_distance)
+    return distance[first - low:end - low]
 
 
 def _distance_to(known):

@@ -25,26 +25,26 @@ HEIGHT_POINTS = 500_000   # derived: road points that a worker process looks at,
 def _road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack],
                   progress: Progress = Progress()) -> list[np.ndarray]:
     """Median height of road points within 0.3 m of the places along lanes: (N,) z for each track, NaN where there are fewer than 3 points."""
-    found, spans = [np.full(len(track), np.nan) for track in tracks], spans_of(tracks)
+    result, spans = [np.full(len(track), np.nan) for track in tracks], spans_of(tracks)
     size, length = int(HEIGHT_WINDOW / STATION_STEP), road_points.store.section_length
     windows, places = [], []
     for first in range(0, len(s), size):
         last = min(first + size, len(s)) - 1
         inside = [(k, max(first, tracks[k].first), min(last, tracks[k].last)) for k in spans.near(first, last).tolist()]
         if inside:
-            near = [int(np.floor((s[k] + side * STATION_STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]
+            sections = [int(np.floor((s[k] + side * STATION_STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]
             lanes = [(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]) for k, a, b in inside]
-            windows.append((near, s[first:last + 1], lanes))
+            windows.append((sections, s[first:last + 1], lanes))
             places.append([(k, a - tracks[k].first) for k, a, _ in inside])
     executor = road_points.executor
     points = sum(road_points.store.size(road, number) for number in road_points.sections(road))
     together = max(HEIGHT_POINTS * len(windows) // max(points, 1), 1) if executor.folder else 1
     phase = Phase(heights_of_windows, road_points, (road,), lambda item: road_points.survey.stretch(road, item[0][1][0], item[-1][1][-1]))
     items = [windows[k:k + together] for k in range(0, len(windows), together)]
-    for own, heights in zip(places, (one for some in executor.run(phase, items, progress) for one in some)):
-        for (k, first), z in zip(own, heights):
-            found[k][first:first + len(z)] = z
-    return found
+    for lanes_of_window, heights in zip(places, (heights_of_window for batch in executor.run(phase, items, progress) for heights_of_window in batch)):
+        for (k, first), z in zip(lanes_of_window, heights):
+            result[k][first:first + len(z)] = z
+    return result
 
 
 def heights_of_windows(road_points: RoadPoints, item: list[tuple[Any, ...]], road: int) -> list[list[np.ndarray]]:
@@ -53,26 +53,26 @@ def heights_of_windows(road_points: RoadPoints, item: list[tuple[Any, ...]], roa
     `item` : of each window the first and the last section that it lies in, (K,) m its stations, and of each lane (M,) int those that it has, and
     (M,) m its offsets there.
     """
-    found = []
+    result = []
     for (first, last), s, lanes in item:
         check_cancelled()
         sections = [road_points.section(road, number).records for number in range(first, last + 1)]
-        found.append(_heights([records for records in sections if len(records)], s, lanes))
-    return found
+        result.append(_heights([records for records in sections if len(records)], s, lanes))
+    return result
 
 
 def _heights(sections, s, lanes):
     """Median heights along lanes, each (cells, offsets), of sections of road points about grid stations s."""
     # where points are dense, those right beside the grid stations are enough
-    beside = _Near(sections, s, np.arange(len(s)), HEIGHTS.dense_slice, lanes)
-    found = beside.medians(lanes) if beside.most >= HEIGHTS.dense_count else [(np.full(len(d), np.nan), np.zeros(len(d), int)) for _, d in lanes]
-    few = [np.flatnonzero(count < HEIGHTS.dense_count) for _, count in found]
-    lacking = [(cells[which], d[which]) for (cells, d), which in zip(lanes, few)]
+    close = _Near(sections, s, np.arange(len(s)), HEIGHTS.dense_slice, lanes)
+    medians = close.medians(lanes) if close.most >= HEIGHTS.dense_count else [(np.full(len(d), np.nan), np.zeros(len(d), int)) for _, d in lanes]
+    few = [np.flatnonzero(count < HEIGHTS.dense_count) for _, count in medians]
+    lacking = [(cells[rows], d[rows]) for (cells, d), rows in zip(lanes, few)]
     cells = np.unique(np.concatenate([cells for cells, _ in lacking]))
     if len(cells):
-        for (z, _), which, (more, count) in zip(found, few, _Near(sections, s, cells, STATION_STEP / 2, lacking).medians(lacking)):
-            z[which] = np.where(count >= HEIGHTS.min_points_per_height, more, np.nan)
-    return [z for z, _ in found]
+        for (z, _), rows, (more, count) in zip(medians, few, _Near(sections, s, cells, STATION_STEP / 2, lacking).medians(lacking)):
+            z[rows] = np.where(count >= HEIGHTS.min_points_per_height, more, np.nan)
+    return [z for z, _ in medians]
 
 
 def _beside(lanes):
@@ -92,7 +92,7 @@ class _Near:
     def __init__(self, sections, s, cells, reach, lanes):
         # of the points' own kind, or all stations would be copied to compare them
         bounds = np.ceil((s[cells] + reach * np.array([[-1], [1]])) / COORDINATE_SCALE).astype(np.int32)
-        first, beside = _beside([d for _, d in lanes if len(d)])
+        first, near_lanes = _beside([d for _, d in lanes if len(d)])
         parts = [(np.empty(0, int), *np.empty((2, 0), np.int32))]
         for records in sections:
             # points lie by station
@@ -102,9 +102,9 @@ class _Near:
             even = np.array_equal(low[1:], high[:-1])   # one cell begins where the last one ends
             rows = low[:1] if even else np.arange(end[-1]) + np.repeat(low - (end - count), count)
             offset = (records.row_range(int(low[0]), int(high[-1])) if even else records.take(rows))["d"]
-            near = np.flatnonzero(beside.take((offset >> OFFSET_GRAIN_BITS) - first, mode="clip"))
-            parts.append((np.repeat(cells, np.diff(np.searchsorted(near, end), prepend=0)), offset.take(near),
-                          records.take(near + rows if even else rows.take(near))["z"]))
+            kept = np.flatnonzero(near_lanes.take((offset >> OFFSET_GRAIN_BITS) - first, mode="clip"))
+            parts.append((np.repeat(cells, np.diff(np.searchsorted(kept, end), prepend=0)), offset.take(kept),
+                          records.take(kept + rows if even else rows.take(kept))["z"]))
         self.cell, self.offset, self.height = (np.concatenate(columns) for columns in zip(*parts))
         self.most = int(np.bincount(self.cell).max(initial=0))
 
@@ -122,19 +122,19 @@ class _Near:
     def _medians(self, cells, d):
         middle, reach = np.rint(d / COORDINATE_SCALE).astype(np.int32), int(HEIGHTS.height_reach / COORDINATE_SCALE)
         low, high = np.array([middle.min() - reach, middle.max() + reach], np.int32) >> OFFSET_GRAIN_BITS
-        near = slice(np.searchsorted(self.across, low), np.searchsorted(self.across, high, side="right"))
-        at = np.full(int(cells[-1]) + 2, -1)
-        at[cells] = np.arange(len(cells))
-        place = at.take(self.cell[near], mode="clip")
-        inside = np.flatnonzero((place >= 0) & (np.abs(self.offset[near] - middle.take(place, mode="clip")) <= reach))
-        place, height = place[inside], self.height[near][inside]
-        height = height[order_by(height, place)] * COORDINATE_SCALE
-        count = np.bincount(place, minlength=len(cells))
+        window = slice(np.searchsorted(self.across, low), np.searchsorted(self.across, high, side="right"))
+        number_of_cell = np.full(int(cells[-1]) + 2, -1)
+        number_of_cell[cells] = np.arange(len(cells))
+        cell = number_of_cell.take(self.cell[window], mode="clip")
+        inside = np.flatnonzero((cell >= 0) & (np.abs(self.offset[window] - middle.take(cell, mode="clip")) <= reach))
+        cell, height = cell[inside], self.height[window][inside]
+        height = height[order_by(height, cell)] * COORDINATE_SCALE
+        count = np.bincount(cell, minlength=len(cells))
         begin = np.cumsum(count) - count
-        found, some = np.full(len(cells), np.nan), np.flatnonzero(count)
+        medians, filled = np.full(len(cells), np.nan), np.flatnonzero(count)
         lower, upper = begin + (count - 1) // 2, begin + count // 2
-        found[some] = (height[lower[some]] + height[upper[some]]) / 2
-        return found, count
+        medians[filled] = (height[lower[filled]] + height[upper[filled]]) / 2
+        return medians, count
 
 
 def _line_heights(lines: CrossSections, first: int, d: np.ndarray) -> np.ndarray:
@@ -143,14 +143,14 @@ def _line_heights(lines: CrossSections, first: int, d: np.ndarray) -> np.ndarray
     # the nearest line on either side, and its height
     a, b, za, zb = np.repeat([[np.inf], [np.inf], [np.nan], [np.nan]], len(d), axis=1)
     for row in spans.near(first, end - 1).tolist():
-        own = spans.values_of(row, first, end)
+        window = spans.values_of(row, first, end)
         begin = max(int(spans.first[row]) - first, 0)
-        inside = slice(begin, begin + own.stop - own.start)
-        at, z = lines.d.values[own], lines.z.values[own]
-        for sign, away, height in ((1, a[inside], za[inside]), (-1, b[inside], zb[inside])):
-            apart = sign * (at - d[inside])
-            nearer = np.isfinite(z) & (apart < away) & ((apart >= 0) if sign > 0 else (apart > 0))
-            away[nearer], height[nearer] = apart[nearer], z[nearer]
+        inside = slice(begin, begin + window.stop - window.start)
+        offset, z = lines.d.values[window], lines.z.values[window]
+        for sign, smallest, height in ((1, a[inside], za[inside]), (-1, b[inside], zb[inside])):
+            apart = sign * (offset - d[inside])
+            nearer = np.isfinite(z) & (apart < smallest) & ((apart >= 0) if sign > 0 else (apart > 0))
+            smallest[nearer], height[nearer] = apart[nearer], z[nearer]
     with np.errstate(invalid="ignore"):
         between = (za * b + zb * a) / (a + b)
     return np.where(np.isfinite(a) & np.isfinite(b), between, np.where(np.isfinite(a), za, np.where(np.isfinite(b), zb, np.nan)))
@@ -158,11 +158,11 @@ def _line_heights(lines: CrossSections, first: int, d: np.ndarray) -> np.ndarray
 
 def _smooth_heights(z: np.ndarray) -> np.ndarray:
     """Gaps closed along the lane, stray medians taken out, the rest smoothed; NaN only if all is."""
-    known = np.isfinite(z)
-    if not known.any():
+    finite = np.isfinite(z)
+    if not finite.any():
         return z
     rows = np.arange(len(z))
-    z = np.interp(rows, rows[known], z[known])
+    z = np.interp(rows, rows[finite], z[finite])
     z = median_filter(z, size=min(7, len(z)), mode="nearest")
     # slopes go on beyond the ends
     pad = min(int(4 * HEIGHTS.height_smoothing_sigma / STATION_STEP), len(z) - 1)
@@ -182,9 +182,9 @@ def lane_heights(lines: CrossSections, road_points: RoadPoints | None, road: int
 def _height(measured, painted):
     if measured is None:
         return _smooth_heights(painted)
-    both = np.isfinite(measured) & np.isfinite(painted)
+    shared = np.isfinite(measured) & np.isfinite(painted)
     # where the road was not scanned the lines' height serves, shifted to what the road says nearby
-    if both.any():
+    if shared.any():
         rows = np.arange(len(measured))
-        painted = painted + np.interp(rows, rows[both], (measured - painted)[both])
+        painted = painted + np.interp(rows, rows[shared], (measured - painted)[shared])
     return _smooth_heights(np.where(np.isfinite(measured), measured, painted))

@@ -58,8 +58,8 @@ def _sides(road, track, part, z, frame, number):
     for side, row in ((1, track.left[part]), (-1, track.right[part])):
         x, y = frame.roads[number].to_map(s, d + side * half)
         painted = (row >= 0) & (row < len(road.lines.d))
-        own = np.where(painted, road.lines.z[np.where(painted, row, 0), columns], np.nan) if len(road.lines.d) else np.full(len(s), np.nan)
-        sides.append(np.c_[x, y, np.where(np.isfinite(own), own, z[part])])
+        line_z = np.where(painted, road.lines.z[np.where(painted, row, 0), columns], np.nan) if len(road.lines.d) else np.full(len(s), np.nan)
+        sides.append(np.c_[x, y, np.where(np.isfinite(line_z), line_z, z[part])])
     return sides
 
 
@@ -68,11 +68,11 @@ def _area(road, curbs, track, part, z, frame, number):
     columns = np.arange(track.first, track.last + 1)[part]
     s, d = road.lines.s[columns], track.d[part]
     sides = _sides(road, track, part, z, frame, number)
-    about = [_border(road, curbs, rows[part], uses[part], columns)
-             for rows, uses in ((track.left, track.left_use), (track.right, track.right_use))]
+    borders = [_border(road, curbs, rows[part], uses[part], columns)
+               for rows, uses in ((track.left, track.left_use), (track.right, track.right_use))]
     if track.direction < 0:
-        sides, about = [side[::-1] for side in sides[::-1]], about[::-1]
-    return dict(road=number, type="driving", direction=track.direction, left=sides[0], right=sides[1], about=about,
+        sides, borders = [side[::-1] for side in sides[::-1]], borders[::-1]
+    return dict(road=number, type="driving", direction=track.direction, left=sides[0], right=sides[1], about=borders,
                 **track.said(part), station=float(s[0]), end=float(s[-1]), first=float(d[0]), last=float(d[-1]),
                 width=float(np.median(track.width[part])))
 
@@ -88,8 +88,8 @@ def _border(road, curbs, rows, separates, columns):
         drawn = road.lines.drawn[row, columns]
         number = int(np.bincount(numbers[numbers >= 0]).argmax()) if (numbers >= 0).any() else 0
         pattern = road.lines.names[int(np.bincount(drawn[drawn >= 0]).argmax())] if (drawn >= 0).any() else road.lines.patterns[row]
-        what = separates[rows == row]
-        return f"line {number}", KIND_OF_BORDER.get(int(np.bincount(what[what >= 0]).argmax()) if (what >= 0).any() else EDGE_LINE), pattern
+        uses = separates[rows == row]
+        return f"line {number}", KIND_OF_BORDER.get(int(np.bincount(uses[uses >= 0]).argmax()) if (uses >= 0).any() else EDGE_LINE), pattern
     if made_of in (CURB, ISLAND) and curbs is not None:
         return f"edge {int(curbs.number.row(row - len(road.lines.d)).max())}", "curb", ""
     if made_of == HATCHING:
@@ -104,13 +104,13 @@ def follow(rows: list[dict[str, Any]]) -> None:
         row["successors"] = ()
         if not (way := row["direction"]):
             continue
-        at, d = (row["end"], row["last"]) if way > 0 else (row["station"], row["first"])
+        tip, d = (row["end"], row["last"]) if way > 0 else (row["station"], row["first"])
         (stations, of), reach = begins[way], AREAS.next_lane_gap + STATION_STEP
-        near = [rows[k] for k in sorted(of[slice(*np.searchsorted(stations, [at - reach, at + reach]))])]
+        candidates = [rows[k] for k in sorted(of[slice(*np.searchsorted(stations, [tip - reach, tip + reach]))])]
         row["successors"] = tuple(
-            other["lane_id"] for other in near if other is not row
-            and -STATION_STEP <= way * ((other["station"] if way > 0 else other["end"]) - at) <= AREAS.next_lane_gap
-            and abs((other["first"] if way > 0 else other["last"]) - d) < max(row["width"], other["width"]) / 2)
+            candidate["lane_id"] for candidate in candidates if candidate is not row
+            and -STATION_STEP <= way * ((candidate["station"] if way > 0 else candidate["end"]) - tip) <= AREAS.next_lane_gap
+            and abs((candidate["first"] if way > 0 else candidate["last"]) - d) < max(row["width"], candidate["width"]) / 2)
 
 
 def _begins(rows, way):
@@ -125,7 +125,7 @@ def make_lanes(rows: list[dict[str, Any]], crs: str) -> Lanes:
     """Lanes of the rows of all roads."""
     borders = [dict(zip(("left_line", "left_kind", "left_pattern", "right_line", "right_kind", "right_pattern"), (*left[:3], *right[:3])))
                for left, right in (row["about"] for row in rows)]
-    return Lanes.of_pieces([{**row, **about} for row, about in zip(rows, borders)], crs)
+    return Lanes.of_pieces([{**row, **border} for row, border in zip(rows, borders)], crs)
 
 
 # Shoulders: the paved strips between the edge line of the outermost lane and the edge of the pavement.
@@ -145,28 +145,28 @@ def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[n
     rows, spans = [], spans_of(tracks)
     for track, (left, right) in zip(tracks, borders):
         columns = np.arange(track.first, track.last + 1)
-        for sign, own, use, border in ((1, track.left, track.left_use, left), (-1, track.right, track.right_use, right)):
+        for sign, line_row, use, border in ((1, track.left, track.left_use, left), (-1, track.right, track.right_use, right)):
             inner = track.d + sign * track.width / 2
             nearest, width = _nearest_edge(pavement, columns[0] + shift, inner, sign)
-            others = [tracks[k] for k in spans.near(track.first, track.last).tolist()]
-            wide = np.isfinite(width) & (use == EDGE_LINE) & (own >= 0) & (own < len(lines.d)) & ~_taken(others, track, inner, sign)
+            neighbours = [tracks[k] for k in spans.near(track.first, track.last).tolist()]
+            wide = np.isfinite(width) & (use == EDGE_LINE) & (line_row >= 0) & (line_row < len(lines.d)) & ~_taken(neighbours, track, inner, sign)
             for a, b in mask_runs(wide):
                 if (b - a - 1) * STATION_STEP < AREAS.shortest_shoulder or np.median(width[a:b]) < AREAS.least_shoulder:
                     continue
                 part, edge = slice(a, b), nearest[a:b]
-                places = columns[part] + shift
+                stations = columns[part] + shift
                 x, y = frame.roads[number].to_map(s[columns[part]], inner[part] + sign * width[part])
-                z = pavement.z[edge, places]
+                z = pavement.z[edge, stations]
                 outer = np.c_[x, y, np.where(np.isfinite(z), z, border[part, 2])]
-                seen = bool(pavement.seen[edge, places].mean() > 0.5)
+                is_seen = bool(pavement.seen[edge, stations].mean() > 0.5)
                 middle = inner[part] + sign * width[part] / 2
-                drawn = lines.drawn[own[part], columns[part]]
-                about = [(f"line {_usual(lines.number[own[part], columns[part]])}", "edge", lines.names[_usual(drawn)]),
-                         (f"edge {_usual(pavement.number[edge, places])}", "pavement", "")]
+                drawn = lines.drawn[line_row[part], columns[part]]
+                described = [(f"line {_usual(lines.number[line_row[part], columns[part]])}", "edge", lines.names[_usual(drawn)]),
+                             (f"edge {_usual(pavement.number[edge, stations])}", "pavement", "")]
                 strip = [border[part], outer]
                 rows.append(dict(
-                    road=number, type="shoulder", direction=0, left=strip[sign > 0], right=strip[sign < 0], about=about[::-sign],
-                    status="measured" if seen else "inferred", confidence=float(track.confidence[part].mean()), station=float(s[columns[a]]),
+                    road=number, type="shoulder", direction=0, left=strip[sign > 0], right=strip[sign < 0], about=described[::-sign],
+                    status="measured" if is_seen else "inferred", confidence=float(track.confidence[part].mean()), station=float(s[columns[a]]),
                     end=float(s[columns[b - 1]]), first=float(middle[0]), last=float(middle[-1]), width=float(np.median(width[part]))))
     return rows
 
@@ -176,30 +176,30 @@ def _nearest_edge(pavement, first, inner, sign):
     nearest, width = np.zeros(len(inner), int), np.full(len(inner), np.inf)
     spans = pavement.d.spans
     for row in spans.near(int(first), int(first) + len(inner) - 1).tolist():
-        own = slice(max(int(spans.first[row] - first), 0), min(int(spans.end[row] - first), len(inner)))
-        away = sign * (pavement.d[row, own.start + first:own.stop + first] - inner[own])
-        nearer = (away >= STRIP_WIDTH[0]) & (away <= STRIP_WIDTH[1]) & (away < width[own])
-        nearest[own], width[own] = np.where(nearer, row, nearest[own]), np.where(nearer, away, width[own])
+        window = slice(max(int(spans.first[row] - first), 0), min(int(spans.end[row] - first), len(inner)))
+        offset = sign * (pavement.d[row, window.start + first:window.stop + first] - inner[window])
+        nearer = (offset >= STRIP_WIDTH[0]) & (offset <= STRIP_WIDTH[1]) & (offset < width[window])
+        nearest[window], width[window] = np.where(nearer, row, nearest[window]), np.where(nearer, offset, width[window])
     return nearest, width
 
 
 def _usual(numbers):
     """The most frequent of some numbers, those below 0 left out; 0 where there are no others."""
-    known = numbers[numbers >= 0]
-    return int(np.bincount(known).argmax()) if len(known) else 0
+    valid = numbers[numbers >= 0]
+    return int(np.bincount(valid).argmax()) if len(valid) else 0
 
 
 def _taken(tracks, own, inner, sign):
     """(N,) bool, where another lane lies on the far side of a border of this one."""
-    found = np.zeros(len(own), bool)
+    result = np.zeros(len(own), bool)
     for other in tracks:
         a, b = max(own.first, other.first), min(own.last, other.last)
         if other is own or a > b:
             continue
-        here, there = slice(a - own.first, b - own.first + 1), slice(a - other.first, b - other.first + 1)
-        apart = sign * (other.d[there] - inner[here])
-        found[here] |= (apart > 0) & (apart < STRIP_WIDTH[1] + other.width[there] / 2)
-    return found
+        of_own, of_other = slice(a - own.first, b - own.first + 1), slice(a - other.first, b - other.first + 1)
+        apart = sign * (other.d[of_other] - inner[of_own])
+        result[of_own] |= (apart > 0) & (apart < STRIP_WIDTH[1] + other.width[of_other] / 2)
+    return result
 
 
 # Connectors: where the vehicle drove on from the end of a lane to the beginning of the next, over a junction or from one road to another.
@@ -220,13 +220,13 @@ def _connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np
             for p in np.flatnonzero(directions == way).tolist():
                 if not abs(driven[p, a] - before.at(a)[0]) < before.at(a)[1] / 2:
                     continue
-                near = sorted(by_station[slice(bisect_left(stations, a - reach), bisect_right(stations, a + reach))])
-                found = [(way * (b - a), after, z, b) for after, z, b in map(begins.__getitem__, near)
-                         if AREAS.next_lane_gap < way * (b - a) * STATION_STEP < AREAS.longest_connector
-                         and abs(driven[p, b] - after.at(b)[0]) < after.at(b)[1] / 2]
-                if not found:
+                candidates = sorted(by_station[slice(bisect_left(stations, a - reach), bisect_right(stations, a + reach))])
+                options = [(way * (b - a), after, z, b) for after, z, b in map(begins.__getitem__, candidates)
+                           if AREAS.next_lane_gap < way * (b - a) * STATION_STEP < AREAS.longest_connector
+                           and abs(driven[p, b] - after.at(b)[0]) < after.at(b)[1] / 2]
+                if not options:
                     continue
-                _, after, z_after, b = min(found, key=lambda one: one[0])
+                _, after, z_after, b = min(options, key=lambda option: option[0])
                 low, high = sorted((a, b))
                 columns = np.arange(low, high + 1)
                 if not np.isfinite(driven[p, columns]).all():
@@ -241,9 +241,9 @@ def _connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np
 def _connector(before, after, a, b, columns, driven, s, heights, frame, number):
     share = _eased((columns - a) / (b - a))
     ends = [track.at(k) for track, k in ((before, a), (after, b))]
-    off = [place - driven[k] for (place, _), k in zip(ends, (a, b))]
+    offsets = [middle - driven[k] for (middle, _), k in zip(ends, (a, b))]
     # from the middle of the one lane to the middle of the other, along the drive between them
-    d = driven[columns] + off[0] * (1 - share) + off[1] * share
+    d = driven[columns] + offsets[0] * (1 - share) + offsets[1] * share
     half = (ends[0][1] * (1 - share) + ends[1][1] * share) / 2
     z = heights[0][a - before.first] * (1 - share) + heights[1][b - after.first] * share
     sides = [np.column_stack([*frame.roads[number].to_map(s[columns], d + side * half), z]) for side in (1, -1)]
@@ -286,16 +286,16 @@ def connectors_between_roads(lanes: dict[int, RoadLanes], frame: RoadFrame, rows
 
     Each is of the road that is left, and names the piece of lane that it leads to; among `rows`, `successors` of the lane that is left name it.
     """
-    found: dict[tuple[int, int, int, int], dict[str, Any]] = {}
+    turns: dict[tuple[int, int, int, int], dict[str, Any]] = {}
     rows_of: dict[int, dict[int, list[dict[str, Any]]]] = {}   # by road and lane
     for row in rows:
         rows_of.setdefault(row["road"], {}).setdefault(row["lane"], []).append(row)
     for before, after in zip(frame.passes[:-1], frame.passes[1:]):
-        on = 0 <= after.time[0] - before.time[-1] <= AREAS.driven_on
-        if not on or before.road == after.road or before.road not in lanes or after.road not in lanes:
+        follows = 0 <= after.time[0] - before.time[-1] <= AREAS.driven_on
+        if not follows or before.road == after.road or before.road not in lanes or after.road not in lanes:
             continue
         left, entered = _lane_end(lanes[before.road], before, leaving=True), _lane_end(lanes[after.road], after, leaving=False)
-        if left is None or entered is None or (key := (before.road, left.lane, after.road, entered.lane)) in found:
+        if left is None or entered is None or (key := (before.road, left.lane, after.road, entered.lane)) in turns:
             continue
         area = _turn(left, entered, before, after, lanes, frame)
         if area is None:
@@ -305,57 +305,58 @@ def connectors_between_roads(lanes: dict[int, RoadLanes], frame: RoadFrame, rows
                     successors=(_piece_at(rows_of[after.road][entered.lane], lanes[after.road].s[entered.at])["lane_id"],))
         piece = _piece_at(rows_of[before.road][left.lane], lanes[before.road].s[left.at])
         piece["successors"] += (area["lane_id"],)
-        found[key] = area
+        turns[key] = area
         rows_of[before.road][number] = [area]
-    return list(found.values())
+    return list(turns.values())
 
 
 def _lane_end(lanes: RoadLanes, drive: Pass, leaving: bool) -> _LaneEnd | None:
     """The last lane of its direction at whose end a pass is in it, or the first at whose beginning it is."""
     first, last = drive.span
-    found = []
+    ends = []
     for number, (track, z) in enumerate(zip(lanes.tracks, lanes.heights), start=1):
-        at = track.last if leaving == (drive.direction > 0) else track.first
-        if track.direction != drive.direction or not first <= lanes.s[at] <= last:
+        tip = track.last if leaving == (drive.direction > 0) else track.first
+        if track.direction != drive.direction or not first <= lanes.s[tip] <= last:
             continue
-        d, width = track.at(at)
-        if abs(drive.at_station(lanes.s[at:at + 1])[0][0] - d) < width / 2:
-            found.append(_LaneEnd(number, track, float(z[at - track.first]), at))
-    if not found:
+        d, width = track.at(tip)
+        if abs(drive.at_station(lanes.s[tip:tip + 1])[0][0] - d) < width / 2:
+            ends.append(_LaneEnd(number, track, float(z[tip - track.first]), tip))
+    if not ends:
         return None
-    return (max if leaving == (drive.direction > 0) else min)(found, key=lambda one: one.at)
+    return (max if leaving == (drive.direction > 0) else min)(ends, key=lambda end: end.at)
 
 
 def _turn(left, entered, before, after, lanes, frame):
     """The area between two lane ends along two passes that follow each other; None where it is too long or there is no way between them."""
-    path, off, half = [], [], []
+    path, offsets, half = [], [], []
     for end, drive, ahead in ((left, before, True), (entered, after, False)):
         s = lanes[drive.road].s
         d, width = end.track.at(end.at)
-        off.append(drive.direction * (d - drive.at_station(s[end.at:end.at + 1])[0][0]))
+        offsets.append(drive.direction * (d - drive.at_station(s[end.at:end.at + 1])[0][0]))
         half.append(width / 2)
         # from the lane to the end of its pass, or from the beginning of its pass to the lane
         to = drive.span[1 if ahead == (drive.direction > 0) else 0]
         stations = np.linspace(s[end.at], to, max(int(abs(to - s[end.at]) / STATION_STEP), 1) + 1)
         x, y = frame.roads[drive.road].to_map(stations, drive.at_station(stations)[0])
         path.append(np.c_[x, y] if ahead else np.c_[x, y][::-1])
-    places = np.concatenate(path)
-    places = places[np.r_[True, np.hypot(*np.diff(places, axis=0).T) > STATION_STEP / 2]]
-    if len(places) < 3:
+    points = np.concatenate(path)
+    points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > STATION_STEP / 2]]
+    if len(points) < 3:
         return None
-    along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(places, axis=0).T))]
-    if not AREAS.next_lane_gap < along[-1] < AREAS.longest_connector:
+    chainage = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    if not AREAS.next_lane_gap < chainage[-1] < AREAS.longest_connector:
         return None
-    share = _eased(along / along[-1])
-    ahead = np.gradient(places, along, axis=0)
-    across = np.c_[-ahead[:, 1], ahead[:, 0]] / np.hypot(*ahead.T)[:, None]
-    middle = off[0] * (1 - share) + off[1] * share
+    share = _eased(chainage / chainage[-1])
+    ahead = np.gradient(points, chainage, axis=0)
+    normal = np.c_[-ahead[:, 1], ahead[:, 0]] / np.hypot(*ahead.T)[:, None]
+    middle = offsets[0] * (1 - share) + offsets[1] * share
     wide = half[0] * (1 - share) + half[1] * share
     z = left.z * (1 - share) + entered.z * share
-    sides = [np.c_[places + across * (middle + side * wide)[:, None], z] for side in (1, -1)]
+    sides = [np.c_[points + normal * (middle + side * wide)[:, None], z] for side in (1, -1)]
     start = float(lanes[before.road].s[left.at])
     d = float(left.track.at(left.at)[0])
-    return _row(before.road, left.track, entered.track, sides, wide, station=start, end=start + before.direction * float(along[-1]), first=d, last=d)
+    return _row(before.road, left.track, entered.track, sides, wide, station=start,
+                end=start + before.direction * float(chainage[-1]), first=d, last=d)
 
 
 def _piece_at(rows, station):

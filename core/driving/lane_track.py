@@ -81,8 +81,8 @@ class LaneTrack:
 
         s : (K,) metres, grid stations
         """
-        own = s[self.first:self.last + 1]
-        left, right = (led_over(own, self.d + side * self.width / 2, rows) for side, rows in ((1, self.left), (-1, self.right)))
+        stations = s[self.first:self.last + 1]
+        left, right = (led_over(stations, self.d + side * self.width / 2, rows) for side, rows in ((1, self.left), (-1, self.right)))
         return replace(self, d=(left + right) / 2, width=left - right)
 
     def at(self, k: int) -> tuple[float, float]:
@@ -97,17 +97,17 @@ class LaneTrack:
 
     def in_doubt(self, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
         """(N,) bool, where a second reading is almost as probable, or the lane lies beside where its own borders show it."""
-        behind = np.array([np.inf if one is None else one.nats for one in self.second])
-        found = (behind < weights.doubt) | (np.abs(self.aside) > SAME_LANE)
-        for first, end in mask_runs(~found):
-            if first and end < len(found) and (end - first) * STATION_STEP < TRACKS.near_doubt:
-                found[first:end] = True
-        return found
+        behind = np.array([np.inf if reading is None else reading.nats for reading in self.second])
+        doubtful = (behind < weights.doubt) | (np.abs(self.aside) > SAME_LANE)
+        for first, end in mask_runs(~doubtful):
+            if first and end < len(doubtful) and (end - first) * STATION_STEP < TRACKS.near_doubt:
+                doubtful[first:end] = True
+        return doubtful
 
     def said_confidence(self, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
         """(N,) how often such lanes are right, at most `most_in_doubt` where there is a second reading."""
-        found = confidence_of(self.confidence, self.directed, weights)
-        return np.where(self.in_doubt(weights), np.minimum(found, weights.most_in_doubt), found)
+        confidence = confidence_of(self.confidence, self.directed, weights)
+        return np.where(self.in_doubt(weights), np.minimum(confidence, weights.most_in_doubt), confidence)
 
     def said(self, rows: slice, weights: EstimateWeights = EstimateWeights()) -> dict[str, Any]:
         """The confidence of part of the lane, and `other`, its second reading as JSON where most of the part is in doubt, else "".
@@ -121,24 +121,24 @@ class LaneTrack:
 
     def _other(self, rows, weights):
         readings = []
-        for own, d, width, aside in zip(self.second[rows], self.d[rows], self.width[rows], self.aside[rows]):
+        for second, d, width, aside in zip(self.second[rows], self.d[rows], self.width[rows], self.aside[rows]):
             if abs(aside) > SAME_LANE:
                 readings.append(Reading(0.0, ((d - aside, width, self.direction),)))
-            elif own is not None and own.nats < weights.doubt:
-                readings.append(own)
-        ways = [tuple(way for _, _, way in one.lanes) for one in readings]
-        most = max(sorted(set(ways)), key=ways.count)
-        same = [one for one, way in zip(readings, ways) if way == most]
-        lanes = np.median(np.array([one.lanes for one in same], float).reshape(len(same), -1, 3), axis=0)
-        return json.dumps({"nats": round(float(np.median([one.nats for one in same])), 2), "lanes": [
+            elif second is not None and second.nats < weights.doubt:
+                readings.append(second)
+        ways = [tuple(way for _, _, way in reading.lanes) for reading in readings]
+        usual = max(sorted(set(ways)), key=ways.count)
+        alike = [reading for reading, way in zip(readings, ways) if way == usual]
+        lanes = np.median(np.array([reading.lanes for reading in alike], float).reshape(len(alike), -1, 3), axis=0)
+        return json.dumps({"nats": round(float(np.median([reading.nats for reading in alike])), 2), "lanes": [
             {"offset_m": round(d, 2), "width_m": round(width, 2), "direction": int(way)} for d, width, way in lanes.tolist()]})
 
     def without_doubtful_ends(self) -> LaneTrack | None:
         """The track less stretches at its ends that only led over a gap, or are improbable; None if nothing is left."""
         led_over = (self.status == BRIDGED) | self.offset & (self.left < 0) & (self.right < 0)
-        least = np.array(TRACKS.least_probability_of_end)[self.offset.astype(int)]
-        known = np.flatnonzero(~led_over & (self.probability >= least))
-        return self.part(known[0], known[-1] + 1) if len(known) else None
+        min_probability = np.array(TRACKS.least_probability_of_end)[self.offset.astype(int)]
+        sure = np.flatnonzero(~led_over & (self.probability >= min_probability))
+        return self.part(sure[0], sure[-1] + 1) if len(sure) else None
 
 
 def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -147,21 +147,21 @@ def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
     Each jump is spread over `jump_lead` times its size, `longest_lead` at most, half of it on either side; less where the lane ends before, and
     places aside at its very end are continued with the others.
     """
-    found, jumps, steps = offset.copy(), np.diff(offset), np.diff(s)
+    result, jumps, steps = offset.copy(), np.diff(offset), np.diff(s)
     sudden = (np.diff(rows) != 0) & (np.abs(jumps) > TRACKS.least_jump) | (np.abs(jumps) > TRACKS.most_oblique_border * steps)
     for k in np.flatnonzero(sudden):
-        at = (s[k] + s[k + 1]) / 2
-        room = 2 * min(at - s[0], s[-1] - at)
+        middle = (s[k] + s[k + 1]) / 2
+        room = 2 * min(middle - s[0], s[-1] - middle)
         if room > 2 * STATION_STEP:
             lead = min(max(TRACKS.jump_lead * abs(jumps[k]), 2 * STATION_STEP), TRACKS.longest_lead, room)
-            near = slice(*np.searchsorted(s, [at - lead, at + lead]))
-            share = np.clip((s[near] - at) / lead + 0.5, 0.0, 1.0)
-            found[near] += jumps[k] * (share**2 * (3 - 2 * share) - (s[near] > at))
-        elif at - s[0] < s[-1] - at:   # the place or two at an end lie aside
-            found[:k + 1] += jumps[k]
+            window = slice(*np.searchsorted(s, [middle - lead, middle + lead]))
+            share = np.clip((s[window] - middle) / lead + 0.5, 0.0, 1.0)
+            result[window] += jumps[k] * (share**2 * (3 - 2 * share) - (s[window] > middle))
+        elif middle - s[0] < s[-1] - middle:   # the place or two at an end lie aside
+            result[:k + 1] += jumps[k]
         else:
-            found[k + 1:] -= jumps[k]
-    return found
+            result[k + 1:] -= jumps[k]
+    return result
 
 
 def _between(a, b, d, width):
@@ -173,7 +173,8 @@ def _between(a, b, d, width):
     # what leads from one to the other is moved as far as either, and as doubtful
     aside = a.aside[-1] + (b.aside[0] - a.aside[-1]) * np.arange(1, len(d) + 1) / (len(d) + 1)
     second = np.full(len(d), None, object)
-    second[:] = [min((one for one in (a.second[-1], b.second[0]) if one is not None), key=lambda one: one.nats, default=None)] * len(d)
+    second[:] = [min((reading for reading in (a.second[-1], b.second[0]) if reading is not None),
+                     key=lambda reading: reading.nats, default=None)] * len(d)
     return LaneTrack(a.last + 1, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, *sure, directed, a.direction, second,
                      aside)
 
@@ -195,7 +196,7 @@ def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, 
 
 def _connected(tracks, lines, most_bridged, most_inferred, shown):
     tracks = sorted(tracks, key=lambda t: (t.first, float(t.d[0])))
-    reach, near = int(max(most_bridged, most_inferred) / STATION_STEP), int(TRACKS.gap_neighbourhood / STATION_STEP)
+    reach, margin = int(max(most_bridged, most_inferred) / STATION_STEP), int(TRACKS.gap_neighbourhood / STATION_STEP)
     spans = spans_of(tracks)
     firsts = np.array([track.first for track in tracks])
     pairs = []
@@ -203,7 +204,7 @@ def _connected(tracks, lines, most_bridged, most_inferred, shown):
         check_cancelled()
         low, high = np.searchsorted(firsts, [a.last + 1, a.last + 1 + reach + 1])
         for j in range(low, high):
-            around = [tracks[k] for k in spans.near(a.last - near, tracks[j].first + near).tolist()]
+            around = [tracks[k] for k in spans.near(a.last - margin, tracks[j].first + margin).tolist()]
             join = _join(a, tracks[j], around, lines, most_bridged, most_inferred, shown)
             if join is not None:
                 pairs.append((tracks[j].first - a.last, abs(join[0]), i, j, join[1]))
@@ -238,8 +239,8 @@ def _join(a, b, tracks, lines, most_bridged, most_inferred, shown):
     wa, wb = a.end_width(False), b.end_width(True)
     course, status = _guide(a, b, lines, [t for t in tracks if t is not a and t is not b]) if count else (None, None)
     # where lines are seen and no lane was found among them there is none, but for short gaps
-    seen = count > 0 and shown[a.last + 1:b.first].mean() > TRACKS.min_shown_share
-    if count * STATION_STEP > (most_bridged if course is None or seen else most_inferred):
+    lines_seen = count > 0 and shown[a.last + 1:b.first].mean() > TRACKS.min_shown_share
+    if count * STATION_STEP > (most_bridged if course is None or lines_seen else most_inferred):
         return None
     path = course if course is not None else np.zeros(count + 2)
     jump = (b.d[0] - path[-1]) - (a.d[-1] - path[0])
@@ -287,11 +288,11 @@ def _guide(a, b, lines, others):
 
 
 def _one_to_one(a, b, wa, wb, tracks):
-    near = int(TRACKS.gap_neighbourhood / STATION_STEP)
+    margin = int(TRACKS.gap_neighbourhood / STATION_STEP)
     starts = [t.d[max(b.first - t.first, 0)] for t in tracks
-              if t is not a and a.last < t.first <= b.first + near and t.last >= b.first]
+              if t is not a and a.last < t.first <= b.first + margin and t.last >= b.first]
     ends = [t.d[min(a.last - t.first, len(t) - 1)] for t in tracks
-            if t is not b and a.last - near <= t.last < b.first and t.first <= a.last]
+            if t is not b and a.last - margin <= t.last < b.first and t.first <= a.last]
     faced = sum(abs(d - a.d[-1]) < 0.5 * wa + 0.2 for d in starts)
     facing = sum(abs(d - b.d[0]) < 0.5 * wb + 0.2 for d in ends)
     return faced == 1 and facing == 1

@@ -32,10 +32,10 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
     for i, (first, last) in enumerate(zip(estimate.candidates.first.tolist(), estimate.candidates.last.tolist())):
         parts = [part for span in spans.get(i, []) for part in [_part(boundaries, span, first, last, lane_width, line_distance)] if part is not None]
         follows = _followed(open_tracks, parts, first)
-        closed += [LaneTrack.joined(one.parts) for k, one in enumerate(open_tracks) if k not in follows.values()]
+        closed += [LaneTrack.joined(lane.parts) for k, lane in enumerate(open_tracks) if k not in follows.values()]
         open_tracks = [_appended(open_tracks[follows[k]], part) if k in follows else _OpenLane([part], np.zeros(2)) for k, part in enumerate(parts)]
         check_cancelled()
-    return [_to_its_ends(track, boundaries) for track in closed + [LaneTrack.joined(one.parts) for one in open_tracks]]
+    return [_to_its_ends(track, boundaries) for track in closed + [LaneTrack.joined(lane.parts) for lane in open_tracks]]
 
 
 @dataclass
@@ -47,15 +47,15 @@ class _OpenLane:
 
     def tail(self, stations: int) -> LaneTrack:
         """The last stations of the lane, so many of them as there are, which become its last part."""
-        taken: list[LaneTrack] = []
+        parts: list[LaneTrack] = []
         while self.parts and stations > 0:
             part = self.parts.pop()
             cut = max(len(part) - stations, 0)
             if cut:
                 self.parts.append(part.part(0, cut))
-            taken.insert(0, part.part(cut, len(part)))
+            parts.insert(0, part.part(cut, len(part)))
             stations -= len(part) - cut
-        self.parts.append(LaneTrack.joined(taken))
+        self.parts.append(LaneTrack.joined(parts))
         return self.parts[-1]
 
     def since_surer(self, rank: int) -> int:
@@ -77,11 +77,11 @@ def _to_its_ends(track, boundaries):
         left, right = int(track.left[tip]), int(track.right[tip])
         if min(left, right) < 0 or not boundaries.painted[[left, right]].all():
             continue
-        at = track.first if head else track.last
+        end = track.first if head else track.last
         reach, last = STATIONS_OF_CELL, len(boundaries.s) - 1
-        ahead = np.arange(at - 1, max(at - reach, 0) - 1, -1) if head else np.arange(at + 1, min(at + reach, last) + 1)
-        both = np.isfinite(boundaries.d[left, ahead]) & np.isfinite(boundaries.d[right, ahead])
-        ahead = ahead[:len(both) if both.all() else int(np.argmin(both))]
+        ahead = np.arange(end - 1, max(end - reach, 0) - 1, -1) if head else np.arange(end + 1, min(end + reach, last) + 1)
+        bounded = np.isfinite(boundaries.d[left, ahead]) & np.isfinite(boundaries.d[right, ahead])
+        ahead = ahead[:len(bounded) if bounded.all() else int(np.argmin(bounded))]
         if len(ahead):
             ahead = np.sort(ahead)
             d_left, d_right = boundaries.d[left, ahead], boundaries.d[right, ahead]
@@ -92,12 +92,12 @@ def _to_its_ends(track, boundaries):
 
 def _within_its_borders(track, boundaries):
     """The track less the stations at its ends where a painted border has ended more than a station before."""
-    columns, there = np.arange(track.first, track.last + 1), np.ones(len(track), bool)
+    columns, bounded = np.arange(track.first, track.last + 1), np.ones(len(track), bool)
     for rows in (track.left, track.right):
         bounding = (rows >= 0) & boundaries.bounding[rows]
-        there &= ~bounding | np.isfinite(boundaries.d[rows, columns])
-    known = np.flatnonzero(binary_dilation(there))
-    return track.part(known[0], known[-1] + 1) if len(known) else track
+        bounded &= ~bounding | np.isfinite(boundaries.d[rows, columns])
+    present = np.flatnonzero(binary_dilation(bounded))
+    return track.part(present[0], present[-1] + 1) if len(present) else track
 
 
 def _rank(track):
@@ -124,12 +124,12 @@ def _appended(found, part):
         # the lane is moved back to where its place was surer
         track = found.tail(found.since_surer(before[-1]))
         return _OpenLane([*found.parts[:-1], _shifted(track, -step, _held(_rank(track)[::-1])[::-1]), part], np.zeros(2))
-    held = _held(after)
+    weights = _held(after)
     if after[0] < before[-1] or after[0] == BESIDE_ONE:
-        return _OpenLane([*found.parts, _shifted(part, step, held)], step * held[-1])
-    own = (step - moved) / 2
-    track = _shifted(track, -own, _evened(before[::-1])[::-1])
-    return _OpenLane([*found.parts[:-1], track, _shifted(_shifted(part, moved, held), own, _evened(after))], moved * held[-1])
+        return _OpenLane([*found.parts, _shifted(part, step, weights)], step * weights[-1])
+    shift = (step - moved) / 2
+    track = _shifted(track, -shift, _evened(before[::-1])[::-1])
+    return _OpenLane([*found.parts[:-1], track, _shifted(_shifted(part, moved, weights), shift, _evened(after))], moved * weights[-1])
 
 
 def _with_lines_up_to(rank, other):
@@ -169,14 +169,14 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     made_of = [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]
     seen = np.stack([boundaries.seen[row, rows] for row in sides])
     begin, width = lane_places(left, right, *made_of, span.count, lane_width, boundaries.bend[rows])
-    both = all(painted) or not line_distance and _has_all_room(made_of, seen, left - right - span.count * width)
-    beside_one = any(painted) and not both
+    between_both = all(painted) or not line_distance and _has_all_room(made_of, seen, left - right - span.count * width)
+    beside_one = any(painted) and not between_both
     if beside_one and (line_distance or beside_surface_end(*made_of)):
         # the end of the surface is ragged, a lane is not
         width = np.full(len(left), 2 * line_distance or np.median(width))
         begin = left if painted[0] else right + width * span.count
     d = begin - width * (span.count - span.place - 0.5)
-    shown = seen.sum(axis=0) if both else seen[painted].sum(axis=0)
+    shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 else INFERRED])
     return _track_of(span, first, d, width, status, beside_one)
 
@@ -190,16 +190,16 @@ def _track_of(span, first, d, width, status, beside_one):
     """The LaneTrack of a span at some places, (N,) m; `beside_one` : whether the place comes from one line only."""
     left = span.left if span.place == span.count - 1 else -1
     right = span.right if span.place == 0 else -1
-    about = (beside_one, left, right, span.left_border, span.right_border, span.probability, span.confidence, span.directed)
+    values = (beside_one, left, right, span.left_border, span.right_border, span.probability, span.confidence, span.directed)
     second = np.full(len(d), None, object)
     second[:] = [span.second] * len(d)
-    return LaneTrack(first, d, width, status, *(np.full(len(d), value) for value in about), span.direction, second)
+    return LaneTrack(first, d, width, status, *(np.full(len(d), value) for value in values), span.direction, second)
 
 
 def _filled(values):
     """Offsets with those that are missing at the ends of an interval."""
-    known = np.flatnonzero(np.isfinite(values))
-    return np.interp(np.arange(len(values)), known, values[known]) if len(known) else None
+    finite = np.flatnonzero(np.isfinite(values))
+    return np.interp(np.arange(len(values)), finite, values[finite]) if len(finite) else None
 
 
 def _followed(found, parts, first):
@@ -209,9 +209,9 @@ def _followed(found, parts, first):
     """
     pairs = []
     for k, part in enumerate(parts):
-        for j, one in enumerate(found):
-            track = one.parts[-1]
-            step = min(abs(part.d[0] - track.d[-1]), abs(part.d[0] - track.d[-1] + one.moved[0]))
+        for j, lane in enumerate(found):
+            track = lane.parts[-1]
+            step = min(abs(part.d[0] - track.d[-1]), abs(part.d[0] - track.d[-1] + lane.moved[0]))
             if track.last == first - 1 and track.direction == part.direction \
                     and step < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
                 pairs.append((step, k, j))
@@ -232,17 +232,17 @@ def _followed(found, parts, first):
 def laid_out(tracks: list[LaneTrack]) -> list[LaneTrack]:
     """The same lanes with through lanes as wide along tapers as beside the lanes that open there, and these from their full width on."""
     # each end of a lane with the lanes that lead on beside it, and where
-    spans, beside = spans_of(tracks), []
+    spans, openings = spans_of(tracks), []
     for k, head in ((k, head) for k in range(len(tracks)) for head in (True, False)):
         before = tracks[k].first - 1 if head else tracks[k].last + 1
-        found = [(j, _opening(tracks[k], tracks[j], head)) for j in spans.near(before, before).tolist() if j != k] if before >= 0 else []
-        beside.append((k, head, [(j, at) for j, at in found if at is not None]))
+        neighbours = [(j, _opening(tracks[k], tracks[j], head)) for j in spans.near(before, before).tolist() if j != k] if before >= 0 else []
+        openings.append((k, head, [(j, station) for j, station in neighbours if station is not None]))
     through = [replace(track, d=track.d.copy(), width=track.width.copy(), status=track.status.copy()) for track in tracks]
-    for k, head, others in beside:
-        for j, at in others:
-            _keep_width(through[j], tracks[k], at, head)
-    for k, head, others in beside:
-        if others:
+    for k, head, opening_lanes in openings:
+        for j, station in opening_lanes:
+            _keep_width(through[j], tracks[k], station, head)
+    for k, head, opening_lanes in openings:
+        if opening_lanes:
             through[k] = _from_full_width(through[k], head)
     return through
 
@@ -255,10 +255,10 @@ def _opening(lane, other, head):
     end, step = (lane.first, 1) if head else (lane.last, -1)
     if lane.direction != other.direction or not other.first <= end - step <= other.last:
         return None
-    for at in range(end, end + step * min(STATIONS_OF_CELL + 1, len(lane)), step):
-        (d, width), (d_other, width_other) = lane.at(at), other.at(at)
+    for station in range(end, end + step * min(STATIONS_OF_CELL + 1, len(lane)), step):
+        (d, width), (d_other, width_other) = lane.at(station), other.at(station)
         if abs(abs(d - d_other) - (width + width_other) / 2) < TRACKS.missing_share * width_other:
-            return at
+            return station
     return None
 
 
@@ -266,9 +266,9 @@ def _keep_width(track, opens, at, head):
     """Make a through lane, in place, that before (or behind) the grid station at which another one lies beside it first no wider than beside that."""
     side = np.sign(opens.at(at)[0] - track.at(at)[0])
     at -= track.first
-    near, reach = int(TRACKS.end_width_length / STATION_STEP), int(TRACKS.longest_taper / STATION_STEP)
-    beside = track.width[at:at + near] if head else track.width[max(at - near + 1, 0):at + 1]
-    width = float(np.median(beside))
+    margin, reach = int(TRACKS.end_width_length / STATION_STEP), int(TRACKS.longest_taper / STATION_STEP)
+    widths = track.width[at:at + margin] if head else track.width[max(at - margin + 1, 0):at + 1]
+    width = float(np.median(widths))
     ahead = np.arange(at - 1, max(at - reach, 0) - 1, -1) if head else np.arange(at + 1, min(at + reach, len(track) - 1) + 1)
     wider = track.width[ahead] > width + TRACKS.least_widening
     begin = int(np.argmax(wider))
@@ -284,11 +284,11 @@ def _keep_width(track, opens, at, head):
 
 def _narrows(excess):
     """Whether a lane that is wider by (N,) m as far as it is known becomes narrower all along, as beside a taper that ends farther on."""
-    along = STATION_STEP * np.arange(len(excess))
-    if len(excess) < 2 or along[-1] < TRACKS.shown_taper:
+    distance = STATION_STEP * np.arange(len(excess))
+    if len(excess) < 2 or distance[-1] < TRACKS.shown_taper:
         return False
-    slope = np.polyfit(along, excess, 1)[0]
-    return slope < 0.0 and along[-1] + excess[-1] / -slope <= TRACKS.longest_taper
+    slope = np.polyfit(distance, excess, 1)[0]
+    return slope < 0.0 and distance[-1] + excess[-1] / -slope <= TRACKS.longest_taper
 
 
 def _from_full_width(track, head):

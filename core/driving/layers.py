@@ -70,8 +70,8 @@ class Lanes(LayerRows):
     @property
     def width(self) -> np.ndarray:
         """(P,) metres, median in plan between the borders."""
-        across = np.hypot(*(self.left - self.right)[:, :2].T)
-        return np.array([np.median(across[a:b]) for a, b in zip(self.start[:-1], self.start[1:])])
+        widths = np.hypot(*(self.left - self.right)[:, :2].T)
+        return np.array([np.median(widths[a:b]) for a, b in zip(self.start[:-1], self.start[1:])])
 
     @property
     def length(self) -> np.ndarray:
@@ -134,9 +134,9 @@ def _ring(geometry: Any, name: str) -> np.ndarray:
 
 
 def _check_names(names: np.ndarray, types: np.ndarray) -> None:
-    found, counts = np.unique(names.astype(str), return_counts=True)
+    unique_names, counts = np.unique(names.astype(str), return_counts=True)
     if (counts > 1).any():
-        raise RoadExtractionError(f"The lane_id {found[counts > 1][0]} is there {counts.max()} times; each must be there once. "
+        raise RoadExtractionError(f"The lane_id {unique_names[counts > 1][0]} is there {counts.max()} times; each must be there once. "
                                   "Choose the lanes of one survey.")
     unknown = sorted(set(types) - set(LANE_TYPES))
     if unknown:
@@ -180,11 +180,11 @@ class DrivingLines(LayerRows):
         places = [piece["places"] for piece in pieces]
         return DrivingLines(
             **DrivingLines.gathered(pieces), curve=[piece["curve"] for piece in pieces], vertices=np.concatenate([*places, np.empty((0, 3))]),
-            start=np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs=crs)
+            start=np.append(0, np.cumsum([len(vertices) for vertices in places], dtype=int)), crs=crs)
 
     def on_map(self, frame: RoadFrame) -> list[Any]:
         """P lines with Z in map coordinates."""
-        return [shapely.linestrings(places) for places in self._map_places(frame)]
+        return [shapely.linestrings(vertices) for vertices in self._map_places(frame)]
 
     def _map_places(self, frame: RoadFrame) -> list[np.ndarray]:
         return [self.vertices[a:b] + frame.origin for a, b in zip(self.start[:-1], self.start[1:])]

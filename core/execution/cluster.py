@@ -121,7 +121,7 @@ class Cluster(Executor):
 
     def sees(self, paths: Sequence[Path]) -> bool:
         sizes = {str(path): path.stat().st_size for path in paths}
-        return all(found is True for found in self.client.run(sees_files, sizes, on_error="return").values())
+        return all(visible is True for visible in self.client.run(sees_files, sizes, on_error="return").values())
 
     def new_file(self) -> Path:
         return self.folder / f"file{next(self._numbers)}.plain"
@@ -147,16 +147,16 @@ class _Work:
     def submit(self, parts, count=1):
         """Send parts, so many successive ones in a task, the largest tasks first."""
         tasks = [parts[k:k + count] for k in range(0, len(parts), count)]
-        sizes = [sum(part.size for part in some) for some in tasks]
+        sizes = [sum(part.size for part in batch) for batch in tasks]
         rank = {size: k for k, size in enumerate(sorted(set(sizes)))}
-        for some, size in zip(tasks, sizes):
-            items = [self.cluster.new_file() for _ in some]
-            for item, part in zip(items, some):
+        for batch, size in zip(tasks, sizes):
+            items = [self.cluster.new_file() for _ in batch]
+            for item, part in zip(items, batch):
                 write_plain(item, part.item)
-            future = self.client.submit(items_done, str(self.shipped), [str(item) for item in items], [str(part.file) for part in some],
+            future = self.client.submit(items_done, str(self.shipped), [str(item) for item in items], [str(part.file) for part in batch],
                                         self.code, pure=False, retries=0, priority=rank[size],
                                         key=f"{self.phase.function.__name__}-{uuid4().hex}")
-            self.pending[future.key] = some, future, items
+            self.pending[future.key] = batch, future, items
             future.add_done_callback(self.ready.put)
 
     def take(self):
@@ -346,8 +346,8 @@ def _check_greeting(address, security):
 
     A scheduler greets whoever connects. One that cannot be reached is left to Client, which waits until it has started.
     """
-    scheme, _, place = address.rpartition("://")
-    host, _, port = place.rstrip("/").rpartition(":")
+    scheme, _, location = address.rpartition("://")
+    host, _, port = location.rstrip("/").rpartition(":")
     if scheme not in ("", "tcp", "tls"):
         return
     try:
@@ -380,22 +380,22 @@ def wait_for_workers(client: Any, progress: Progress) -> dict[str, int]:
 
 def _check_versions(client: Any) -> None:
     """Refuse workers whose Python or packages are others than ours; the message names the worker, the package and both versions."""
-    here = versions(EQUAL)
+    local = versions(EQUAL)
     # functions of the standard library, which every worker has
-    minor = {worker: found if isinstance(found, BaseException) else ".".join(found.split(".")[:2])
-             for worker, found in client.run(platform.python_version, on_error="return").items()}
-    _compare("Python", minor, here["python"])
+    minor = {worker: installed if isinstance(installed, BaseException) else ".".join(installed.split(".")[:2])
+             for worker, installed in client.run(platform.python_version, on_error="return").items()}
+    _compare("Python", minor, local["python"])
     for name in EQUAL:
         # the plugin is no installed package; what it consists of is compared by `_check_workers`
-        _compare(name, client.run(importlib.metadata.version, name, on_error="return"), here[name])
+        _compare(name, client.run(importlib.metadata.version, name, on_error="return"), local[name])
 
 
 def _compare(name, found, here):
-    for worker, there in found.items():
-        if isinstance(there, BaseException):
+    for worker, installed in found.items():
+        if isinstance(installed, BaseException):
             raise RoadExtractionError(f"The worker {worker} has no {name}. Install it for its Python: {INSTALL} (QGIS is not needed there).")
-        if here and there != here:
-            raise RoadExtractionError(f"The worker {worker} has {name} {there}, this computer has {here}; results could differ. Install the same "
+        if here and installed != here:
+            raise RoadExtractionError(f"The worker {worker} has {name} {installed}, this computer has {here}; results could differ. Install the same "
                                       "version for both.")
 
 
@@ -404,19 +404,19 @@ def _check_workers(client: Any, folder: Path, word: str, named: bool, progress: 
 
     `named` tells whether the user chose the folder.
     """
-    for worker, found in client.run(look_around, str(folder), word, on_error="return").items():
-        if isinstance(found, BaseException) or found["code"] != code_digest():
+    for worker, report in client.run(look_around, str(folder), word, on_error="return").items():
+        if isinstance(report, BaseException) or report["code"] != code_digest():
             raise RoadExtractionError(f"The worker {worker} has another {PACKAGE} than this computer, although maybe of the same version. Install "
                                       f"this one there: {INSTALL}, or pip install . in its folder.")
-        if found["problem"]:
-            problem = found["problem"]
+        if report["problem"]:
+            problem = report["problem"]
             if named:
                 raise RoadExtractionError(f"The worker {worker} cannot use the folder {folder}: {problem}. Choose a WORK_FOLDER that all machines "
                                           "see under the same path and may write to.")
             raise RoadExtractionError(f"The worker {worker} cannot use the folder {folder}: {problem}. Where workers are on other computers, or "
                                       "belong to another user, WORK_FOLDER must name a folder that all of them see.")
-        if 0 < found["memory"] < EXECUTION.least_memory:
-            progress.warn(f"The worker {worker} may take {found['memory'] / 2**20:.0f} MiB of memory; a dense survey needs about "
+        if 0 < report["memory"] < EXECUTION.least_memory:
+            progress.warn(f"The worker {worker} may take {report['memory'] / 2**20:.0f} MiB of memory; a dense survey needs about "
                           f"{EXECUTION.least_memory / 2**20:.0f}. Start it with a higher --memory-limit if workers end.")
     threads = max(client.nthreads().values())
     if threads > 1:
@@ -431,11 +431,11 @@ def _check_workers(client: Any, folder: Path, word: str, named: bool, progress: 
 def _all_paused(client: Any) -> bool:
     """Whether every worker pauses because its memory is nearly full."""
     try:
-        found = client.scheduler_info(n_workers=-1)
+        scheduler = client.scheduler_info(n_workers=-1)
     # of versions that tell of all anyway
     except TypeError:
-        found = client.scheduler_info()
-    return all(worker.get("status") == "paused" for worker in found["workers"].values())
+        scheduler = client.scheduler_info()
+    return all(worker.get("status") == "paused" for worker in scheduler["workers"].values())
 
 
 def _allowed_failures(client):

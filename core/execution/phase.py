@@ -236,10 +236,10 @@ def checksum(file: BinaryIO, count: int = -1) -> int:
 
 
 def _read_bytes(file, count):
-    found = file.read(count) if 0 <= count <= os.fstat(file.fileno()).st_size else b""
-    if len(found) != count:
+    content = file.read(count) if 0 <= count <= os.fstat(file.fileno()).st_size else b""
+    if len(content) != count:
         raise OSError(f"{file.name} ends early")
-    return found
+    return content
 
 
 def _bytes_of(array):
@@ -265,11 +265,11 @@ def digest(value: Any, without: str = "") -> str:
     """
     arrays: list[np.ndarray] = []
     text = json.dumps(_tree(value, arrays))
-    found = hashlib.sha256((text.replace(json.dumps(without)[1:-1], "") if without else text).encode())
+    sha = hashlib.sha256((text.replace(json.dumps(without)[1:-1], "") if without else text).encode())
     for array in arrays:
-        found.update(f"{array.dtype.str}{array.shape}".encode())
-        found.update(np.ascontiguousarray(array).tobytes())
-    return found.hexdigest()[:32]
+        sha.update(f"{array.dtype.str}{array.shape}".encode())
+        sha.update(np.ascontiguousarray(array).tobytes())
+    return sha.hexdigest()[:32]
 
 
 def _tree(value, arrays):
@@ -305,19 +305,19 @@ def _state(value):
 def _value(tree, arrays):
     if not isinstance(tree, dict):
         return tree
-    kind, held = next(iter(tree.items()))
+    kind, content = next(iter(tree.items()))
     if kind == "number":
-        return np.dtype(held[0]).type(held[1])
+        return np.dtype(content[0]).type(content[1])
     if kind == "array":
-        return arrays[held]
+        return arrays[content]
     if kind == "scalar":
-        return arrays[held][()]
+        return arrays[content][()]
     if kind == "dict":
-        return {_value(key, arrays): _value(item, arrays) for key, item in held}
+        return {_value(key, arrays): _value(item, arrays) for key, item in content}
     if kind in ("list", "tuple"):
-        items = [_value(item, arrays) for item in held]
+        items = [_value(item, arrays) for item in content]
         return items if kind == "list" else tuple(items)
-    return _object(named(held), {name: _value(item, arrays) for name, item in tree["state"]})
+    return _object(named(content), {name: _value(item, arrays) for name, item in tree["state"]})
 
 
 def _object(kind, state):

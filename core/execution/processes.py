@@ -54,8 +54,8 @@ class WorkerProcesses(Executor):
         except OSError as error:
             raise self.disk_error(error) from error
         count = items_together(phase, len(items), self.workers)
-        some = [items[k:k + count] for k in range(0, len(items), count)]
-        for results in ordered_map(lambda few: [self._result(phase, shipped, item) for item in few], some, progress, self.workers):
+        batches = [items[k:k + count] for k in range(0, len(items), count)]
+        for results in ordered_map(lambda few: [self._result(phase, shipped, item) for item in few], batches, progress, self.workers):
             yield from results
         (self.folder / shipped).unlink(missing_ok=True)
 

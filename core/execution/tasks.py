@@ -211,9 +211,9 @@ def _remove_after(folder):
         patience = float(beat.read_text(encoding="utf-8"))
         while time.monotonic() - since < patience:
             # clocks of two machines differ, so the time of the file is only compared with itself
-            now = beat.stat().st_mtime_ns
-            if now != last:
-                last, since = now, time.monotonic()
+            modified = beat.stat().st_mtime_ns
+            if modified != last:
+                last, since = modified, time.monotonic()
             time.sleep(EXECUTION.watch_time)
         shutil.rmtree(folder, ignore_errors=True)
     except (OSError, ValueError):
@@ -235,13 +235,13 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 
 def versions(names: Sequence[str] = NEEDED) -> dict[str, str]:
     """The versions of Python (its first two numbers) and of packages in this process; "" for what was not installed as a package."""
-    found = {"python": ".".join(map(str, sys.version_info[:2]))}
+    result = {"python": ".".join(map(str, sys.version_info[:2]))}
     for name in names:
         try:
-            found[name] = version(name)
+            result[name] = version(name)
         except PackageNotFoundError:
-            found[name] = ""
-    return found
+            result[name] = ""
+    return result
 
 
 def command_of(interpreter: str, *arguments: str) -> list[str]:

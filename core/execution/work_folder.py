@@ -56,12 +56,12 @@ class WorkFolder:
 
     def discard(self) -> None:
         """Remove this folder, at once for others, and what is in it."""
-        gone = self.path.with_name(f"{self.path.name}.{uuid4().hex}.part")
+        renamed = self.path.with_name(f"{self.path.name}.{uuid4().hex}.part")
         try:
-            os.replace(self.path, gone)
+            os.replace(self.path, renamed)
         except OSError:
             return   # Windows, while somebody reads in it: it stays
-        shutil.rmtree(gone, ignore_errors=True)
+        shutil.rmtree(renamed, ignore_errors=True)
 
     def finished(self, name: str) -> tuple[Path, list[tuple[str, str]]] | None:
         """The folder and the messages that were kept under a name; None where there are none, or not all as they were written."""
@@ -69,9 +69,9 @@ class WorkFolder:
         try:
             if note.stat().st_size > EXECUTION.longest_note:
                 return None
-            found = json.loads(note.read_bytes())
-            folder, messages = found["folder"], [(str(kind), str(text)) for kind, text in found["messages"]]
-            whole = Path(folder).name == folder and _checksums(self.path / folder) == found["files"]
+            content = json.loads(note.read_bytes())
+            folder, messages = content["folder"], [(str(kind), str(text)) for kind, text in content["messages"]]
+            whole = Path(folder).name == folder and _checksums(self.path / folder) == content["files"]
         except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
             return None   # a damaged note may hold any JSON or none
         return (self.path / folder, messages) if whole else None
@@ -79,11 +79,11 @@ class WorkFolder:
 
 def _checksums(folder):
     """{name of each file in a folder: [bytes, CRC-32]}."""
-    found = {}
+    sums = {}
     for path in sorted(folder.iterdir()):
         with open(path, "rb", buffering=0) as file:
-            found[path.name] = [os.fstat(file.fileno()).st_size, checksum(file)]
-    return found
+            sums[path.name] = [os.fstat(file.fileno()).st_size, checksum(file)]
+    return sums
 
 
 class KeptResults(Executor):
@@ -108,11 +108,11 @@ class KeptResults(Executor):
             folder.mkdir(exist_ok=True)
             for file in missing:   # what the failing power left of a file
                 file.unlink(missing_ok=True)
-            made = self.executor.run(phase, list(missing.values()), progress, list(missing))
+            results = self.executor.run(phase, list(missing.values()), progress, list(missing))
             for file in files:
                 if file in missing:
                     del missing[file]   # a later item may be the same
-                    result = next(made)
+                    result = next(results)
                     if not file.exists():
                         write_plain(file, result)
                 else:
@@ -130,7 +130,7 @@ class KeptResults(Executor):
 def code_digest() -> str:
     """A digest of the code that phases run: other code may give other results."""
     package = Path(__file__).resolve().parents[2]
-    found = hashlib.sha256()
+    sha = hashlib.sha256()
     for path in sorted(path for folder in ("core", "products") for path in (package / folder).rglob("*.py")):
-        found.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
-    return found.hexdigest()
+        sha.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
+    return sha.hexdigest()

@@ -42,16 +42,16 @@ class VehicleDistances:
         Across the track, or horizontally from the vehicle with the sign of the side; UNKNOWN_DISTANCE where no pass drove at the point's time.
         """
         time, number = points.time, points.pass_number
-        found = [np.full(len(points), UNKNOWN_DISTANCE, np.int32) for _ in kinds]
+        result = [np.full(len(points), UNKNOWN_DISTANCE, np.int32) for _ in kinds]
         for table in self._tables if len(points) else ():
             rows = table.rows(time, number)
             if rows is None:
-                for whole, distances in zip(found, table.distances(points, time, kinds)):
+                for whole, distances in zip(result, table.distances(points, time, kinds)):
                     whole[:] = distances
             elif len(rows):
-                for whole, distances in zip(found, table.distances(points[rows], time[rows], kinds)):
+                for whole, distances in zip(result, table.distances(points[rows], time[rows], kinds)):
                     whole[rows] = distances
-        return found
+        return result
 
 
 class _PassTable:
@@ -174,15 +174,15 @@ class IntensityHistograms:
         distances : for each of `kinds` (N,) int32 of `VehicleDistances.of`
         intensity : (N,) NaN where it could not be corrected
         """
-        known = distances[0] != UNKNOWN_DISTANCE
+        usable = distances[0] != UNKNOWN_DISTANCE
         if intensity.dtype.kind == "f":
-            known &= ~np.isnan(intensity)
-        if not known.all():
-            distances, intensity, scanner = [row[known] for row in distances], intensity[known], scanner[known]
+            usable &= ~np.isnan(intensity)
+        if not usable.all():
+            distances, intensity, scanner = [row[usable] for row in distances], intensity[usable], scanner[usable]
         if not len(intensity):
             return []
         level, scanners = to_level(intensity), self.counts.shape[1]
-        found = []
+        result = []
         for kind, row in zip(kinds, distances):
             number = _distance_bin(row)
             first, bins = int(number.min()), int(np.ptp(number)) + 1
@@ -192,19 +192,19 @@ class IntensityHistograms:
             number *= INTENSITY_LEVELS
             number += level
             counts = np.bincount(number, minlength=scanners * bins * INTENSITY_LEVELS).reshape(scanners, bins, INTENSITY_LEVELS)
-            found.append(BinCounts(kind, first, counts))
-        return found
+            result.append(BinCounts(kind, first, counts))
+        return result
 
     def add(self, found: Sequence[BinCounts], times: int = 1) -> None:
         """Add results of `count`; each counted point stands for some `times` of them."""
-        for some in found:
-            bins = slice(some.first, some.first + some.counts.shape[1])
-            self.counts[some.kind, :, bins] += some.counts if times == 1 else times * some.counts
+        for part in found:
+            bins = slice(part.first, part.first + part.counts.shape[1])
+            self.counts[part.kind, :, bins] += part.counts if times == 1 else times * part.counts
 
     @classmethod
     def together(cls, found: Sequence[Sequence[BinCounts]]) -> list[BinCounts]:
         """Results of `count` as one, which takes no more room than the largest."""
-        parts = [part for some in found for part in some]
+        parts = [part for counts in found for part in counts]
         if len(found) < 2 or not parts:
             return parts
         whole = cls(parts[0].counts.shape[0])
@@ -224,9 +224,9 @@ def asphalt_of_histograms(histograms: np.ndarray) -> tuple[np.ndarray, np.ndarra
     and left out, and the median is taken again: paint never raises it.
     """
     total = histograms.sum(axis=-1)
-    known = total >= ASPHALT.min_asphalt_points
+    dense = total >= ASPHALT.min_asphalt_points
     median, sigma = np.full(total.shape, np.nan), np.full(total.shape, np.nan)
-    counts = histograms[known].astype(float)
+    counts = histograms[dense].astype(float)
     if not len(counts):
         return median, sigma
     limit = np.full(len(counts), INTENSITY_LEVELS)
@@ -235,19 +235,19 @@ def asphalt_of_histograms(histograms: np.ndarray) -> tuple[np.ndarray, np.ndarra
         low, middle = _histogram_quantile(remaining, LOWER_QUANTILE), _histogram_quantile(remaining, 0.5)
         # a level is 1.1 %: no smaller spread can be resolved
         limit = middle + ASPHALT.paint_sigmas * np.maximum(middle - low, 1.0)
-    median[known] = to_intensity(middle)
-    sigma[known] = median[known] - to_intensity(low)
+    median[dense] = to_intensity(middle)
+    sigma[dense] = median[dense] - to_intensity(low)
     return median, sigma
 
 
 def _histogram_quantile(counts, q):
     """Level (fractional) below which a share q of the counts lies, along the last axis."""
     sums = np.cumsum(counts, axis=-1)
-    wanted = q * sums[..., -1:]
-    k = np.argmax(sums >= wanted, axis=-1)
+    target = q * sums[..., -1:]
+    k = np.argmax(sums >= target, axis=-1)
     above = np.take_along_axis(sums, k[..., None], -1)[..., 0]
-    here = np.take_along_axis(counts, k[..., None], -1)[..., 0]
-    return k + 0.5 - (above - wanted[..., 0]) / np.maximum(here, 1e-9)
+    level_counts = np.take_along_axis(counts, k[..., None], -1)[..., 0]
+    return k + 0.5 - (above - target[..., 0]) / np.maximum(level_counts, 1e-9)
 
 
 @dataclass
@@ -280,13 +280,13 @@ class AsphaltTable:
         kind = np.where(spread[FROM_VEHICLE] < 0.9 * spread[ACROSS_TRACK], FROM_VEHICLE, ACROSS_TRACK)
         rows = kind, np.arange(len(kind))
         median, sigma, weight = median[rows], sigma[rows], weight[rows]
-        known = np.isfinite(median) & ~_mixed(sigma / np.maximum(median, 1e-9))
-        reference = weighted_median(median[known], weight[known])
+        usable = np.isfinite(median) & ~_mixed(sigma / np.maximum(median, 1e-9))
+        reference = weighted_median(median[usable], weight[usable])
         # beyond the last level nothing tells how asphalt goes on: how far that is must not turn on the density of the points
         joined = _sparse_bins_joined(histograms[rows])
-        levels = np.where(known, median, asphalt_of_histograms(joined)[0])
-        asphalt = np.stack([_smoothed(row, count) for row, count in zip(levels, np.where(known, weight, joined.sum(axis=-1)))])
-        return cls(asphalt, known, kind, reference, is_logarithmic(median, sigma, weight))
+        levels = np.where(usable, median, asphalt_of_histograms(joined)[0])
+        asphalt = np.stack([_smoothed(row, count) for row, count in zip(levels, np.where(usable, weight, joined.sum(axis=-1)))])
+        return cls(asphalt, usable, kind, reference, is_logarithmic(median, sigma, weight))
 
     def lookup(self) -> np.ndarray:
         """Corrections at each distance: (scanners, LOOKUP_STEPS + 1) float32 factors, or summands where `logarithmic`.
@@ -297,8 +297,8 @@ class AsphaltTable:
         distance = (((np.arange(LOOKUP_STEPS) << LOOKUP_SHIFT) - LOOKUP_HALF) + (1 << LOOKUP_SHIFT) / 2) * COORDINATE_SCALE
         position = np.clip((distance + ASPHALT.max_distance) / ASPHALT.distance_bin - 0.5, 0, DISTANCE_BINS - 1)
         asphalt = np.stack([np.interp(position, np.arange(DISTANCE_BINS), row) for row in self.asphalt])
-        found = self.reference - asphalt if self.logarithmic else self.reference / np.maximum(asphalt, 1e-6)
-        return np.pad(found.astype(np.float32), ((0, 0), (0, 1)), constant_values=np.nan)
+        corrections = self.reference - asphalt if self.logarithmic else self.reference / np.maximum(asphalt, 1e-6)
+        return np.pad(corrections.astype(np.float32), ((0, 0), (0, 1)), constant_values=np.nan)
 
     @staticmethod
     def corrections(lookup: np.ndarray, scanner: np.ndarray, distance: np.ndarray) -> np.ndarray:
@@ -342,10 +342,10 @@ def _mixed(spread):
     """Bins whose relative spread stands out from their neighbours': a line painted at one distance fills much of them."""
     n = ASPHALT.mixed_bin_neighbours
     around = np.stack([np.roll(np.pad(spread, ((0, 0), (n, n)), constant_values=np.nan), k, axis=1)[:, n:-n] for k in range(-n, n + 1)])
-    known = np.isfinite(spread)  # so that each has at least one neighbour: itself
-    found = np.zeros(spread.shape, bool)
-    found[known] = spread[known] > ASPHALT.mixed_bin_spread * np.nanmedian(around[:, known], axis=0)
-    return found
+    finite = np.isfinite(spread)  # so that each has at least one neighbour: itself
+    mixed = np.zeros(spread.shape, bool)
+    mixed[finite] = spread[finite] > ASPHALT.mixed_bin_spread * np.nanmedian(around[:, finite], axis=0)
+    return mixed
 
 
 def _sparse_bins_joined(histograms):
@@ -357,25 +357,25 @@ def _sparse_bins_joined(histograms):
             group: list[int] = []
             for k in side:
                 group = [*group[1 - ASPHALT.max_joined_bins:], k] if 0 < counts[scanner, k] < ASPHALT.min_asphalt_points else []
-                own = counts[scanner, group]
-                if own.sum() >= ASPHALT.min_asphalt_points:
-                    joined[scanner, int(np.rint((own * group).sum() / own.sum()))] = histograms[scanner, group].sum(axis=0)
+                group_counts = counts[scanner, group]
+                if group_counts.sum() >= ASPHALT.min_asphalt_points:
+                    joined[scanner, int(np.rint((group_counts * group).sum() / group_counts.sum()))] = histograms[scanner, group].sum(axis=0)
                     group = []
     return joined
 
 
 def _smoothed(values, weight, sigma=0.7):
     """A row of the table, smoothed by a local line; between known bins interpolated, at the ends extended."""
-    known = np.flatnonzero(np.isfinite(values))
-    if not len(known):
+    bins = np.flatnonzero(np.isfinite(values))
+    if not len(bins):
         return values
     # intensity falls by a share per metre: its logarithm is closer to a line
-    found = np.log(np.maximum(values[known], 1e-3))
-    u = (known - known[:, None]).astype(float)
-    w = np.exp(-0.5 * (u / sigma) ** 2) * np.minimum(weight[known], 20 * ASPHALT.min_asphalt_points)
+    logarithm = np.log(np.maximum(values[bins], 1e-3))
+    u = (bins - bins[:, None]).astype(float)
+    w = np.exp(-0.5 * (u / sigma) ** 2) * np.minimum(weight[bins], 20 * ASPHALT.min_asphalt_points)
     s0, s1, s2 = w.sum(axis=1), (w * u).sum(axis=1), (w * u * u).sum(axis=1)
-    t0, t1 = (w * found).sum(axis=1), (w * u * found).sum(axis=1)
+    t0, t1 = (w * logarithm).sum(axis=1), (w * u * logarithm).sum(axis=1)
     determinant = s0 * s2 - s1 * s1
     with np.errstate(invalid="ignore", divide="ignore"):
         fitted = np.where(determinant > 1e-3 * s0 * s0, (s2 * t0 - s1 * t1) / determinant, t0 / s0)
-    return np.exp(np.interp(np.arange(len(values)), known, fitted))
+    return np.exp(np.interp(np.arange(len(values)), bins, fitted))

@@ -105,10 +105,10 @@ class _ElevationModel:
 
     def elevation_bin(self, points: Points) -> np.ndarray:
         """(N,) int, the bin of elevation; -1 where no pass drove at the point's time."""
-        found = np.full(len(points), -1)
+        bins = np.full(len(points), -1)
         for rows, geometry in self.geometries(points):
-            found[rows] = geometry.elevation_bin(self.signs)
-        return found
+            bins[rows] = geometry.elevation_bin(self.signs)
+        return bins
 
     def geometries(self, points: Points) -> Iterator[tuple[np.ndarray, _BeamGeometry]]:
         """Yield (indices, _BeamGeometry) of the points of each pass, the same for all signs."""
@@ -193,9 +193,9 @@ class Beams:
         counts = np.zeros((len(self.models), ELEVATION_BINS, INTENSITY_LEVELS), np.int64)
         for k, (scanner, model) in enumerate(self.models.items()):
             rows = np.flatnonzero(points.scanner == scanner)
-            place = model.elevation_bin(points[rows])
-            known = place >= 0
-            flat = place[known] * INTENSITY_LEVELS + to_level(points.intensity[rows][known])
+            bins = model.elevation_bin(points[rows])
+            valid = bins >= 0
+            flat = bins[valid] * INTENSITY_LEVELS + to_level(points.intensity[rows][valid])
             counts[k] = np.bincount(flat, minlength=ELEVATION_BINS * INTENSITY_LEVELS).reshape(ELEVATION_BINS, INTENSITY_LEVELS)
         return counts
 
@@ -206,18 +206,18 @@ class Beams:
         starts = np.r_[0, valleys]
         median, lower = asphalt_of_histograms(np.add.reduceat(levels, starts, axis=0))
         weight = np.add.reduceat(levels.sum(axis=1), starts)
-        known = np.flatnonzero(np.isfinite(median) & (median > 0))
-        if len(known) < 2 * BEAMS.neighbour_beams:
+        usable = np.flatnonzero(np.isfinite(median) & (median > 0))
+        if len(usable) < 2 * BEAMS.neighbour_beams:
             return
-        reference = weighted_median(median[known], weight[known])
-        padded = np.pad(median[known], BEAMS.neighbour_beams, mode="edge")
+        reference = weighted_median(median[usable], weight[usable])
+        padded = np.pad(median[usable], BEAMS.neighbour_beams, mode="edge")
         neighbours = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * BEAMS.neighbour_beams + 1), axis=1)
-        if weighted_median(np.abs(median[known] - neighbours), weight[known]) < BEAMS.unequal_beams * reference:
+        if weighted_median(np.abs(median[usable] - neighbours), weight[usable]) < BEAMS.unequal_beams * reference:
             return
         # a beam with few points on the road is interpolated between its neighbours
-        median = np.interp(np.arange(len(median)), known, median[known])
+        median = np.interp(np.arange(len(median)), usable, median[usable])
         self.beam[scanner] = np.searchsorted(starts, np.arange(ELEVATION_BINS), side="right") - 1
-        self.added[scanner] = is_logarithmic(median[known], lower[known], weight[known])
+        self.added[scanner] = is_logarithmic(median[usable], lower[usable], weight[usable])
         self.corrections[scanner] = reference - median if self.added[scanner] else reference / median
 
     def equalised(self, points: Points) -> np.ndarray:
@@ -225,10 +225,10 @@ class Beams:
         value = points.intensity.astype(float)
         for scanner, corrections in self.corrections.items():
             rows = np.flatnonzero(points.scanner == scanner)
-            place = self.models[scanner].elevation_bin(points[rows])
-            rows, place = rows[place >= 0], place[place >= 0]
-            by = corrections[self.beam[scanner][place]]
-            value[rows] = np.maximum(value[rows] + by, 0.0) if self.added[scanner] else value[rows] * by
+            bins = self.models[scanner].elevation_bin(points[rows])
+            rows, bins = rows[bins >= 0], bins[bins >= 0]
+            correction = corrections[self.beam[scanner][bins]]
+            value[rows] = np.maximum(value[rows] + correction, 0.0) if self.added[scanner] else value[rows] * correction
         return value
 
     @property
@@ -243,24 +243,24 @@ def _samples(road_points: RoadPoints, frame: RoadFrame, scanners: int) -> dict[i
         start, end = frame.road(road).start, frame.road(road).end
         places += [(road, s) for s in np.linspace(start, max(end - BEAMS.sample_window, start), BEAMS.sample_windows)]
     samples: dict[int, list[Points]] = {}
-    for found in ordered_map(lambda place: _samples_of_window(road_points, *place, scanners), places):
-        for scanner, points in found:
+    for window_samples in ordered_map(lambda place: _samples_of_window(road_points, *place, scanners), places):
+        for scanner, points in window_samples:
             samples.setdefault(scanner, []).append(points)
     return {scanner: samples[scanner] for scanner in sorted(samples)}
 
 
 def _samples_of_window(road_points, road, s, scanners):
     """[(scanner, Points)] of the window that begins at station s."""
-    points, found = road_points.window(road, s, s + BEAMS.sample_window), []
-    of = points.scanner
+    points, result = road_points.window(road, s, s + BEAMS.sample_window), []
+    scanner_of_point = points.scanner
     for scanner in range(scanners):
-        rows = np.flatnonzero(of == scanner)
+        rows = np.flatnonzero(scanner_of_point == scanner)
         if len(rows) >= ASPHALT.min_asphalt_points:
-            some = points[rows[::-(-len(rows) // BEAMS.max_sample_points)]].records
+            records = points[rows[::-(-len(rows) // BEAMS.max_sample_points)]].records
             # copies of the columns, so that the memory of the sections is freed
-            own = Columns({name: some[name] for name in SAMPLE_COLUMNS}, np.dtype([(name, some.dtype[name]) for name in SAMPLE_COLUMNS]))
-            found.append((scanner, Points(own)))
-    return found
+            columns = Columns({name: records[name] for name in SAMPLE_COLUMNS}, np.dtype([(name, records.dtype[name]) for name in SAMPLE_COLUMNS]))
+            result.append((scanner, Points(columns)))
+    return result
 
 
 def _sharpest(samples: list[Points], passes: Sequence[Pass], turns: _ScannerTurns) -> _ElevationModel | None:
@@ -271,9 +271,9 @@ def _sharpest(samples: list[Points], passes: Sequence[Pass], turns: _ScannerTurn
         model = _ElevationModel(passes, turns, by_turn)
         geometries = [geometry for points in samples for _, geometry in model.geometries(points)]
         for signs in all_signs:
-            found = sharpness(sum((_histogram(geometry.elevation_bin(signs)) for geometry in geometries), np.zeros(ELEVATION_BINS)))
-            if found > best:
-                best, sharpest = found, replace(model, signs=signs)
+            value = sharpness(sum((_histogram(geometry.elevation_bin(signs)) for geometry in geometries), np.zeros(ELEVATION_BINS)))
+            if value > best:
+                best, sharpest = value, replace(model, signs=signs)
     return sharpest
 
 

@@ -88,12 +88,12 @@ def _accumulated(counts):
 def saturation_of(road_points: RoadPoints) -> Saturation:
     """Saturation of the raw intensities of road points."""
     def count(key):
-        points, found = road_points.section(*key), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64)
+        points, levels = road_points.section(*key), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64)
         intensity, scanner = points.intensity, points.scanner
         for first in range(0, len(points), ASPHALT.points_at_once):
             rows = slice(first, first + ASPHALT.points_at_once)
-            found += np.bincount(scanner[rows].astype(np.int32) * np.int32(INTENSITY_LEVELS) + to_level(intensity[rows]), minlength=len(found))
-        return found
+            levels += np.bincount(scanner[rows].astype(np.int32) * np.int32(INTENSITY_LEVELS) + to_level(intensity[rows]), minlength=len(levels))
+        return levels
 
     counts = sum(ordered_map(count, road_points.all_sections()), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64))
     return Saturation.from_levels(counts.reshape(SCANNER_NUMBERS, INTENSITY_LEVELS))
@@ -290,22 +290,22 @@ def corrected_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequ
 
     Returns the road, (number of a section, (N,) float32 corrected intensity) of each section, and counts of the corrected intensities.
     """
-    histograms, found, counts = IntensityHistograms(len(table.distance_kind)), [], []
+    histograms, sections, counts = IntensityHistograms(len(table.distance_kind)), [], []
     for key in road_points.store.in_stretch(stretch):
         points = road_points.section(*key)
         records: Any = points.records
         corrected, distances_of = np.empty(len(points), np.float32), VehicleDistances(passes, points.time).of
         for first in range(0, len(points), ASPHALT.points_at_once):
-            here = points[first:first + ASPHALT.points_at_once]
-            distances = distances_of(here, kinds)
-            distance: Any = distances[0] if len(distances) == 1 else np.where(table.distance_kind[here.scanner] == ACROSS_TRACK, *distances)
-            by, intensity = table.corrections(lookup, here.scanner, distance), beams.equalised(here) if beams else here.intensity
-            np.add(intensity, by, out=by) if table.logarithmic else np.multiply(intensity, by, out=by)
-            corrected[first:first + ASPHALT.points_at_once] = by
-        some = _stripes(Points(records.with_columns(corrected=corrected)), step)
-        counts.append(histograms.count(some.scanner, distances_of(some, kinds), some.corrected, kinds))
-        found.append((key[1], corrected))
-    return stretch[0], found, IntensityHistograms.together(counts)
+            batch = points[first:first + ASPHALT.points_at_once]
+            distances = distances_of(batch, kinds)
+            distance: Any = distances[0] if len(distances) == 1 else np.where(table.distance_kind[batch.scanner] == ACROSS_TRACK, *distances)
+            correction, intensity = table.corrections(lookup, batch.scanner, distance), beams.equalised(batch) if beams else batch.intensity
+            np.add(intensity, correction, out=correction) if table.logarithmic else np.multiply(intensity, correction, out=correction)
+            corrected[first:first + ASPHALT.points_at_once] = correction
+        sample = _stripes(Points(records.with_columns(corrected=corrected)), step)
+        counts.append(histograms.count(sample.scanner, distances_of(sample, kinds), sample.corrected, kinds))
+        sections.append((key[1], corrected))
+    return stretch[0], sections, IntensityHistograms.together(counts)
 
 
 def _sampling_step(road_points):
@@ -328,8 +328,8 @@ def _stripes(points, step):
 
 def _points_by_scanner(points):
     """(256,) how many points each scanner has."""
-    scanner, many = points.scanner, ASPHALT.points_at_once
-    return sum((np.bincount(scanner[k:k + many], minlength=SCANNER_NUMBERS) for k in range(0, len(scanner), many)),
+    scanner, size = points.scanner, ASPHALT.points_at_once
+    return sum((np.bincount(scanner[k:k + size], minlength=SCANNER_NUMBERS) for k in range(0, len(scanner), size)),
                np.zeros(SCANNER_NUMBERS, np.int64))
 
 
@@ -348,11 +348,11 @@ def _report(before, after, table, points_by_scanner):
     rows = table.distance_kind, np.arange(len(table.distance_kind))
     medians = [asphalt_of_histograms(counts[rows])[0] for counts in (before, after)]
     weight = before[rows].sum(axis=-1)
-    known = table.known & np.isfinite(medians[0]) & np.isfinite(medians[1])
+    usable = table.known & np.isfinite(medians[0]) & np.isfinite(medians[1])
     report = IntensityReport("logarithmic" if table.logarithmic else "linear", table.reference)
     distances = np.abs(np.arange(weight.shape[1]) * ASPHALT.distance_bin + ASPHALT.distance_bin / 2 - ASPHALT.max_distance)
-    for scanner in np.flatnonzero(known.any(axis=1)):
-        use = known[scanner]
+    for scanner in np.flatnonzero(usable.any(axis=1)):
+        use = usable[scanner]
         row = dict(scanner=int(scanner), points=int(points_by_scanner[scanner]),
                    nearest=float(distances[use].min()), farthest=float(distances[use].max()))
         for name, levels in zip(("before", "after"), medians):
@@ -363,7 +363,7 @@ def _report(before, after, table, points_by_scanner):
     for name, levels in zip(("before", "after"), medians):
         means = [row[f"asphalt_{name}"] for row in report.scanners]
         setattr(report, f"between_{name}", max(means) / max(min(means), 1e-9))
-        setattr(report, f"spread_{name}", _variation(levels[known], weight[known])[1])
+        setattr(report, f"spread_{name}", _variation(levels[usable], weight[usable])[1])
     return report
 
 

@@ -73,9 +73,9 @@ class _WeightedSums:
         r0, r1 = max(-down, 0), min(other.total.shape[0] - down, height)
         c0, c1 = max(-right, 0), min(other.total.shape[1] - right, width)
         if r0 < r1 and c0 < c1:
-            place = slice(r0 + down, r1 + down), slice(c0 + right, c1 + right)
-            other.total[place] += self.total[r0:r1, c0:c1]
-            other.weights[place] += self.weights[r0:r1, c0:c1]
+            window = slice(r0 + down, r1 + down), slice(c0 + right, c1 + right)
+            other.total[window] += self.total[r0:r1, c0:c1]
+            other.weights[window] += self.weights[r0:r1, c0:c1]
 
 
 def _reach_of(settings: ImageSettings) -> int:
@@ -133,12 +133,12 @@ def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nd
 
 def _in_cell(units, origin, cell_size):
     """The cell that coordinates lie in, (N,) whole float64, and how far from its middle, (N,) float32 in cells."""
-    place = (units * COORDINATE_SCALE + origin) / cell_size
-    cell = np.floor(place)
+    position = (units * COORDINATE_SCALE + origin) / cell_size
+    cell = np.floor(position)
     # subtracted in double precision
-    place -= cell
-    place -= 0.5
-    return cell, place.astype(np.float32)
+    position -= cell
+    position -= 0.5
+    return cell, position.astype(np.float32)
 
 
 def _kernels(settings: ImageSettings) -> list[_Kernel]:
@@ -149,7 +149,7 @@ def _kernels(settings: ImageSettings) -> list[_Kernel]:
                    if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < radius]
         near = [offset for offset in offsets if max(map(abs, offset)) <= 1]
         _thread.settings = settings
-        _thread.kernels = [_Kernel(settings, some) for some in (offsets, near, [offset for offset in offsets if offset not in near])]
+        _thread.kernels = [_Kernel(settings, cells) for cells in (offsets, near, [offset for offset in offsets if offset not in near])]
     return _thread.kernels
 
 
@@ -184,25 +184,25 @@ class _Kernel:
             sums_of_runs.append(cv2.transpose(runs @ weights, kept(name, np.float32).reshape(size)))
         added = cv2.merge(sums_of_runs, self._kept.of(2 * len(starts) * len(self.offsets))("added", np.float32).reshape(*size, 2))
         target = number[starts].astype(np.intp)
-        for (right, up), both in zip(self.offsets, added.view(np.complex64)[:, :, 0]):
-            sums[target + (right - up * width)] += both
+        for (right, up), contribution in zip(self.offsets, added.view(np.complex64)[:, :, 0]):
+            sums[target + (right - up * width)] += contribution
 
     def weights(self, east: np.ndarray, north: np.ndarray) -> np.ndarray:
         """(N, K) float32 weights by distance alone, of points at places in their own cells; valid until the next call."""
-        own = self._kept.of(4 * len(east))("own", np.float32).reshape(-1, 4)
-        own[:, 0] = east * east + north * north
-        own[:, 1], own[:, 2], own[:, 3] = east, north, 1.0
-        found = self._kept.of(len(east) * len(self.offsets))("found", np.float32).reshape(len(east), -1)
+        coordinates = self._kept.of(4 * len(east))("own", np.float32).reshape(-1, 4)
+        coordinates[:, 0] = east * east + north * north
+        coordinates[:, 1], coordinates[:, 2], coordinates[:, 3] = east, north, 1.0
+        weights = self._kept.of(len(east) * len(self.offsets))("found", np.float32).reshape(len(east), -1)
         farthest = self._weight(np.full(1, self.settings.radius_cells * self.settings.cell_size + IMAGE.distance_offset, np.float32))
         for first in range(0, len(east), self.rows_at_once):
-            some = found[first:first + self.rows_at_once]
-            cv2.gemm(own[first:first + self.rows_at_once], self._squares, 1.0, None, 0.0, some)
-            cv2.sqrt(some, some)
-            some *= np.float32(self.settings.cell_size)
-            some += np.float32(IMAGE.distance_offset)
-            self._weight(some)
-            cv2.threshold(some, float(farthest[0]) * (1 - IMAGE.radius_rounding), 0.0, cv2.THRESH_TOZERO, some)
-        return found
+            rows = weights[first:first + self.rows_at_once]
+            cv2.gemm(coordinates[first:first + self.rows_at_once], self._squares, 1.0, None, 0.0, rows)
+            cv2.sqrt(rows, rows)
+            rows *= np.float32(self.settings.cell_size)
+            rows += np.float32(IMAGE.distance_offset)
+            self._weight(rows)
+            cv2.threshold(rows, float(farthest[0]) * (1 - IMAGE.radius_rounding), 0.0, cv2.THRESH_TOZERO, rows)
+        return weights
 
     def _weight(self, distance):
         """1 / distance^power, in place."""
@@ -428,13 +428,13 @@ def _sums_of_piece(road_points, piece, settings):
     low, high = piece.limits
 
     def brightness(value):
-        found = value - np.float32(low)
-        found /= np.float32(max(high - low, 1e-9))
-        np.maximum(found, np.float32(0.0), out=found)
-        np.minimum(found, np.float32(1.0), out=found)
-        found *= np.float32(settings.beta)
-        found += np.float32(1.0 - settings.beta)
-        return found
+        scaled = value - np.float32(low)
+        scaled /= np.float32(max(high - low, 1e-9))
+        np.maximum(scaled, np.float32(0.0), out=scaled)
+        np.minimum(scaled, np.float32(1.0), out=scaled)
+        scaled *= np.float32(settings.beta)
+        scaled += np.float32(1.0 - settings.beta)
+        return scaled
 
     return _interpolation_sums(_points_of(road_points, piece.road, piece.number), brightness, road_points.origin, settings, piece.step)
 
@@ -466,8 +466,8 @@ class _Grid:
         whole = _WeightedSums(self.column + column * GEOTIFF_TILE, self.row - row * GEOTIFF_TILE, *np.zeros((2, *shape), np.float32))
         for part in parts:
             part.add_to(whole)
-        seen = whole.weights > 0
-        return np.divide(whole.total, whole.weights, out=np.full(shape, np.float32(NODATA)), where=seen) if seen.any() else None
+        filled = whole.weights > 0
+        return np.divide(whole.total, whole.weights, out=np.full(shape, np.float32(NODATA)), where=filled) if filled.any() else None
 
 
 # Whether an intensity image shows the road points it is used with.
@@ -487,10 +487,10 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
         return
     x, y = (np.concatenate(part) for part in zip(*places))
     left, size, _, top, _, _ = image.geotransform
-    seen = np.isfinite(image.sample(x, y))
-    if seen.mean() < IMAGE.min_shown_share:
+    shown = np.isfinite(image.sample(x, y))
+    if shown.mean() < IMAGE.min_shown_share:
         raise RoadExtractionError(
             f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, "
             f"y {top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, "
-            f"y {y.min():.1f} to {y.max():.1f}, and {100 * seen.mean():.0f} % of them are on it. Give the intensity image that "
+            f"y {y.min():.1f} to {y.max():.1f}, and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that "
             "was made from these points.")

@@ -48,20 +48,20 @@ class TiledImage(IntensityImage):
         """How other processes open the image, whose pixels lie in its folder."""
         rows = []
         for tile in self._tiles.values():
-            place, packing = cast(StoredColumn, tile.values)[:2]
-            rows.append((tile.column, tile.row, *tile.shape, place, packing.least, sum(packing.widths)))
+            first_byte, packing = cast(StoredColumn, tile.values)[:2]
+            rows.append((tile.column, tile.row, *tile.shape, first_byte, packing.least, sum(packing.widths)))
         return Recipe("core.intensity.tiled_image:_shared_image", dict(
             file=str(self._file.path) if self._file else "", tiles=np.array(rows, np.int64).reshape(-1, 7),
             geotransform=[float(number) for number in self.geotransform], width=int(self.width), height=int(self.height), crs=self.crs))
 
     def put(self, column: int, row: int, values: np.ndarray) -> None:
         """Put a tile of (H, W) float32, NODATA or NaN where there is none; column and row of its first pixel are multiples of its side."""
-        known = np.isfinite(values) & (values != np.float32(NODATA))
-        rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
+        filled = np.isfinite(values) & (values != np.float32(NODATA))
+        rows, columns = np.flatnonzero(filled.any(axis=1)), np.flatnonzero(filled.any(axis=0))
         if not len(rows):
             return
         box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-        pixels = np.where(known[box], values[box], np.float32(np.nan))
+        pixels = np.where(filled[box], values[box], np.float32(np.nan))
         stored: np.ndarray | StoredColumn = pixels
         if pixels.nbytes <= self._free:
             self._free -= pixels.nbytes
@@ -110,8 +110,8 @@ class TiledImage(IntensityImage):
 def _shared_image(file: str, tiles: np.ndarray, geotransform: list[float], width: int, height: int, crs: str) -> TiledImage:
     """What `TiledImage.recipe` describes: of each tile first column and row, shape, first byte, least value and bytes of a packed value."""
     image, pixels = TiledImage(tuple(geotransform), width, height, crs), ColumnFile(Path(file))
-    for column, row, high, wide, place, least, nbytes in tiles.tolist():
+    for column, row, high, wide, first_byte, least, nbytes in tiles.tolist():
         packing = Packing(np.dtype(np.float32), high * wide, least, PART_WIDTHS.get(nbytes, (nbytes,)))
-        stored = StoredColumn(place, packing, pixels)
+        stored = StoredColumn(first_byte, packing, pixels)
         image._tiles[column // GEOTIFF_TILE, row // GEOTIFF_TILE] = _StoredTile(column, row, (high, wide), stored)
     return image

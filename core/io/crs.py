@@ -161,16 +161,16 @@ def _crs_of_clouds(files, given):
     if contradictory is not None and not given:
         raise RoadExtractionError(f"What {contradictory.path} says about its coordinates cannot be used: {contradictory.crs_problem}. Give the CRS "
                                   "that they are in by the parameter CRS, or export the file again.")
-    known: dict[str, str] = {}
+    path_by_crs: dict[str, str] = {}
     for file in files:
         if file.crs:
-            known.setdefault(file.crs, file.path)
-    (first, path), *others = [(horizontal_part(parse_crs(wkt)), path) for wkt, path in known.items()] or [(None, "")]
-    for crs, other in others:
+            path_by_crs.setdefault(file.crs, file.path)
+    (first, path), *rest = [(horizontal_part(parse_crs(wkt)), path) for wkt, path in path_by_crs.items()] or [(None, "")]
+    for crs, other_path in rest:
         if not crs.equals(first, ignore_axis_order=True):
             raise RoadExtractionError(f"The point clouds use different CRSs: {path} is in {first.name}, "
-                                      f"{other} in {crs.name}. Reproject them to one CRS first.")
-    return next(iter(known), "")
+                                      f"{other_path} in {crs.name}. Reproject them to one CRS first.")
+    return next(iter(path_by_crs), "")
 
 
 def _refuse_degrees(files, trajectory_crs):
@@ -188,8 +188,8 @@ def _refuse_degrees(files, trajectory_crs):
 
 def _bounds(files):
     """(3,) least and (3,) greatest coordinates of the clouds."""
-    held = [file for file in files if file.count]
-    return np.min([file.minimum for file in held], axis=0), np.max([file.maximum for file in held], axis=0)
+    filled = [file for file in files if file.count]
+    return np.min([file.minimum for file in filled], axis=0), np.max([file.maximum for file in filled], axis=0)
 
 
 def _in_degrees(files):
@@ -204,9 +204,9 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
         return ("The point cloud carries no CRS, and neither do the results: they lie in its own coordinates. Where these are "
                 "map coordinates, give their CRS by the parameter CRS (such as EPSG:25832) and run again.")
     notes = [check_extent(crs, _bounds(files), "The point cloud")]
-    own = next((file.crs for file in files if file.crs), "")
-    if given and own and not same_crs(parse_crs(given), parse_crs(own)):
-        notes.append(f"The point cloud says that it is in {horizontal_part(parse_crs(own)).name}; the parameter CRS "
+    stated = next((file.crs for file in files if file.crs), "")
+    if given and stated and not same_crs(parse_crs(given), parse_crs(stated)):
+        notes.append(f"The point cloud says that it is in {horizontal_part(parse_crs(stated)).name}; the parameter CRS "
                      f"({horizontal_part(parse_crs(given)).name}) is for clouds that carry none and was not used.")
     notes += [f"What {file.path} says about its coordinates was not used, but the parameter CRS: {file.crs_problem}."
               for file in files if file.crs_problem][:1]
@@ -259,7 +259,7 @@ def place_on_ground(crs: Any, x: float, y: float) -> _MapPlace:
     datum = crs.geodetic_crs
     to_radians = datum.axis_info[0].unit_conversion_factor
     steps = IO.scale_step * np.array([(0, 0), (1, 0), (0, 1), (1, 1)])
-    u, v = (np.asarray(found) * to_radians for found in Transformer.from_crs(crs, datum, always_xy=True).transform(*(steps + (x, y)).T))
+    u, v = (np.asarray(angle) * to_radians for angle in Transformer.from_crs(crs, datum, always_xy=True).transform(*(steps + (x, y)).T))
     if not np.isfinite([u, v]).all():
         return _MapPlace(np.nan, np.nan, np.nan)
     along_x, along_y, diagonal = np.array(crs.get_geod().inv(*([end[0]] * 3 for end in (u, v)), u[1:], v[1:], radians=True)[2]) / IO.scale_step
@@ -294,23 +294,23 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
     if not crs.is_projected:
         return ""
     x, y = place
-    there = place_on_ground(crs, x, y)
-    area = _area_of_use(wkt, there.true_to_scale)
-    beside = _beside(there, area)
-    if beside > IO.min_exchanged:
+    location = place_on_ground(crs, x, y)
+    area = _area_of_use(wkt, location.true_to_scale)
+    outside = _beside(location, area)
+    if outside > IO.min_exchanged:
         turned = place_on_ground(crs, y, x)
         if turned.true_to_scale and _beside(turned, area) == 0:
             raise RoadExtractionError(
                 f"{what} has x and y exchanged: x is about {x:.0f} and y about {y:.0f}, and in its CRS {crs.name} only the place with y as the "
                 f"easting lies in the area of this CRS ({_named(area)}). Export it with the easting as x and the northing as y, and run again.")
-    if beside > IO.max_outside_area and max(abs(x), abs(y)) < IO.max_local:
+    if outside > IO.max_outside_area and max(abs(x), abs(y)) < IO.max_local:
         return (f"{what} says that it is in {crs.name}, but its coordinates (about {x:.0f}, {y:.0f}) are those of a local system, or lack their "
                 "leading digits. They are taken as metres as they are; the results lie elsewhere on a map until the coordinates are complete.")
-    if not there.true_to_scale:
-        raise _not_true_to_scale(what, crs, place, there, area if beside > IO.min_exchanged else None)
-    if beside > IO.max_outside_area:
-        return (f"{what} lies at {_degrees(there)}, outside the area of its CRS {crs.name} ({_named(area)}): if the survey was not made there, its "
-                "CRS is wrong, and so is that of the results. Correct it in the data.")
+    if not location.true_to_scale:
+        raise _not_true_to_scale(what, crs, place, location, area if outside > IO.min_exchanged else None)
+    if outside > IO.max_outside_area:
+        return (f"{what} lies at {_degrees(location)}, outside the area of its CRS {crs.name} ({_named(area)}): if the survey was not made there, "
+                "its CRS is wrong, and so is that of the results. Correct it in the data.")
     return ""
 
 
@@ -513,15 +513,15 @@ def _metric_form(crs):
 def _with_metres(content):
     """PROJJSON with every length of the projection and every axis in metres."""
     if isinstance(content, list):
-        return [_with_metres(one) for one in content]
+        return [_with_metres(item) for item in content]
     if not isinstance(content, dict):
         return content
-    made = {key: _with_metres(value) for key, value in content.items()}
+    result = {key: _with_metres(value) for key, value in content.items()}
     unit = content.get("unit")
     if isinstance(unit, dict) and unit.get("type") == "LinearUnit":
-        made["unit"] = "metre"
+        result["unit"] = "metre"
         if "value" in content:
-            made["value"] = content["value"] * unit["conversion_factor"]
+            result["value"] = content["value"] * unit["conversion_factor"]
     if "coordinate_system" in content or content.get("type") == "CompoundCRS":
-        made.pop("id", None)
-    return made
+        result.pop("id", None)
+    return result

@@ -71,8 +71,8 @@ class IntensityImage:
         with reading(self.path):
             data = np.frombuffer(band.ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=_float32()), np.float32).reshape(r1 - r0, c1 - c0)
         nodata = band.GetNoDataValue()
-        known = np.isfinite(data) if nodata is None else np.isfinite(data) & (data != np.float32(nodata))
-        values[r0 - row:r1 - row, c0 - column:c1 - column] = np.where(known, data, np.nan)
+        filled = np.isfinite(data) if nodata is None else np.isfinite(data) & (data != np.float32(nodata))
+        values[r0 - row:r1 - row, c0 - column:c1 - column] = np.where(filled, data, np.nan)
         return values
 
     @gdal_exceptions()
@@ -157,7 +157,7 @@ def filled_tiles(dataset: Any) -> list[tuple[int, int]]:
     from osgeo import gdal
 
     band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
-    waiting, found = [(0, 0, -(-width // GEOTIFF_TILE), -(-height // GEOTIFF_TILE))], []
+    waiting, tiles = [(0, 0, -(-width // GEOTIFF_TILE), -(-height // GEOTIFF_TILE))], []
     while waiting:
         c0, r0, c1, r1 = waiting.pop()
         column, row = c0 * GEOTIFF_TILE, r0 * GEOTIFF_TILE
@@ -165,14 +165,14 @@ def filled_tiles(dataset: Any) -> list[tuple[int, int]]:
         if not flags & gdal.GDAL_DATA_COVERAGE_STATUS_DATA:
             continue
         if c1 - c0 == r1 - r0 == 1:
-            found.append((row, column))
+            tiles.append((row, column))
         elif c1 - c0 >= r1 - r0:
             middle = (c0 + c1) // 2
             waiting += [(c0, r0, middle, r1), (middle, r0, c1, r1)]
         else:
             middle = (r0 + r1) // 2
             waiting += [(c0, r0, c1, middle), (c0, middle, c1, r1)]
-    return [(column, row) for row, column in sorted(found)]
+    return [(column, row) for row, column in sorted(tiles)]
 
 
 class _NewGeoTiff:
@@ -260,10 +260,10 @@ def write_display_image(image_path: str | os.PathLike[str], path: str | os.PathL
         for column, row in image.tiles():
             width, height = min(GEOTIFF_TILE, image.width - column), min(GEOTIFF_TILE, image.height - row)
             values = image.read_pixels(column, row, width, height)
-            known = np.isfinite(values)
-            if known.any():
+            filled = np.isfinite(values)
+            if filled.any():
                 grey = 1 + np.rint(254 * np.clip((values - low) / max(high - low, 1e-9), 0, 1))
-                picture.write(column, row, np.where(known, grey, 0).astype(np.uint8))
+                picture.write(column, row, np.where(filled, grey, 0).astype(np.uint8))
             progress.report(row / image.height)
     progress.report(1.0)
 

@@ -101,9 +101,9 @@ def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
         mixed = _sample_lines(data)
         recognised = _recognise_format(mixed)
         if recognised is None:
-            seen = next((line.strip()[:80] for line in lines if line.strip()), "")
+            first_line = next((line.strip()[:80] for line in lines if line.strip()), "")
             raise RoadExtractionError(
-                f"{path} holds no table of numbers: it begins {seen!r}. A trajectory needs rows with at least x, y and z, "
+                f"{path} holds no table of numbers: it begins {first_line!r}. A trajectory needs rows with at least x, y and z, "
                 "and time where there is one, with a decimal point.")
         lines = mixed
     delimiter, columns, style = recognised

@@ -89,8 +89,8 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
         phase = Phase(kept_of_windows, NoSource(), (settings,), lambda item: f"markings {item[0][0] * OUTLIER_WINDOW:.0f} m along a road")
         keep = [np.empty(0, bool)]
         for first in range(0, len(windows), WINDOWS_AT_ONCE):
-            some = windows[first:first + WINDOWS_AT_ONCE]
-            items = [[_columns_of(points, *window) for window in some[k:k + together]] for k in range(0, len(some), together)]
+            batch = windows[first:first + WINDOWS_AT_ONCE]
+            items = [[_columns_of(points, *window) for window in batch[k:k + together]] for k in range(0, len(batch), together)]
             part = progress.part(first / len(windows), min(first + WINDOWS_AT_ONCE, len(windows)) / len(windows))
             keep += [mask for masks in executor.run(phase, items, part) for mask in masks]
         _put(kept, points, np.concatenate(keep))
@@ -128,28 +128,28 @@ def kept_of_windows(source: NoSource, windows: Sequence[tuple[int, Sequence[np.n
     -------
     (N,) bool of each window, its own points that are kept
     """
-    return [_kept_of_window(number, Columns(dict(zip(COLUMNS, columns)), [(name, one.dtype) for name, one in zip(COLUMNS, columns)]), settings)
+    return [_kept_of_window(number, Columns(dict(zip(COLUMNS, columns)), [(name, column.dtype) for name, column in zip(COLUMNS, columns)]), settings)
             for number, columns in windows]
 
 
 def _kept_of_window(number, records, settings):
     """(N,) bool of the points of a window, without those about it."""
     s = records["s"] * COORDINATE_SCALE
-    own = np.flatnonzero((s >= number * OUTLIER_WINDOW) & (s < (number + 1) * OUTLIER_WINDOW))
+    inner = np.flatnonzero((s >= number * OUTLIER_WINDOW) & (s < (number + 1) * OUTLIER_WINDOW))
     neighbours = Neighbours(_units(records), settings.neighbours)
     distance = neighbours.distances()
-    band = np.floor(records["d"].take(own) * COORDINATE_SCALE / OUTLIER_BAND)
+    band = np.floor(records["d"].take(inner) * COORDINATE_SCALE / OUTLIER_BAND)
     outliers = [np.empty(0, np.intp)]
     for value in np.unique(band):
-        rows = own[band == value]
+        rows = inner[band == value]
         if len(rows) >= MIN_POINTS_PER_BAND:
             sample = distance[rows[::max(len(rows) // MAX_LIMIT_SAMPLE, 1)]]
             outliers.append(rows[distance[rows] > sample.mean() + settings.std_ratio * sample.std(ddof=1)])
     outliers = np.concatenate(outliers)
     if len(outliers):  # what stands as far apart as its neighbours do is worn or far paint
         outliers = outliers[distance[outliers] > SPARSENESS_FACTOR * np.median(distance[neighbours.of(outliers)[1]], axis=1)]
-    keep = np.ones(len(own), bool)
-    keep[np.searchsorted(own, outliers)] = False
+    keep = np.ones(len(inner), bool)
+    keep[np.searchsorted(inner, outliers)] = False
     return keep
 
 
@@ -187,12 +187,12 @@ class Neighbours:
         self._rows = _in_tree(self._units, self._k)
         self._tree: Any = None
         if self._k:
-            places = self._units.take(self._rows, axis=0)
+            coordinates = self._units.take(self._rows, axis=0)
             if self._units.max() < MAX_FLOAT32_UNITS:
-                self._places = places.astype(np.float32)  # the tree does not keep it alive
+                self._places = coordinates.astype(np.float32)  # the tree does not keep it alive
                 self._tree = cv2.flann_Index(self._places, dict(algorithm=4, leaf_max_size=TREE_LEAF_POINTS))  # 4: one exact kd-tree
             else:
-                self._tree = cKDTree(places)
+                self._tree = cKDTree(coordinates)
 
     def of(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Mean distance of some points to their nearest others, and which these are.
@@ -205,11 +205,11 @@ class Neighbours:
         """
         if not self._k or not len(rows):
             return np.full(len(rows), np.inf), np.empty((len(rows), self._k), np.intp)
-        asked = self._units.take(rows, axis=0)
+        queries = self._units.take(rows, axis=0)
         if isinstance(self._tree, cKDTree):
-            distances, nearest = self._tree.query(asked, self._k + 1)
+            distances, nearest = self._tree.query(queries, self._k + 1)
         else:
-            nearest, squares = self._tree.knnSearch(asked.astype(np.float32), self._k + 1, params={})
+            nearest, squares = self._tree.knnSearch(queries.astype(np.float32), self._k + 1, params={})
             distances = np.sqrt(squares)
         # each point is the first or, beside another at its place, one of the first of its own neighbours
         return distances.sum(axis=1, dtype=np.float64) * (COORDINATE_SCALE / self._k), self._rows.take(nearest[:, 1:])

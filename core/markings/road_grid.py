@@ -64,25 +64,25 @@ class PieceOfRoad:
         d = records["d"]
         grid = RoadGrid(first, last, int(d.min()) // CELL_UNITS - 1, int(d.max()) // CELL_UNITS + 2)
         number, occupied = np.empty(len(d), np.int32), np.zeros(grid.shape, bool)
-        for some, cell in cell_numbers(records, grid):
-            number[some] = cell
+        for block, cell in cell_numbers(records, grid):
+            number[block] = cell
             occupied.ravel()[cell] = True
         return cls(grid, number, occupied, _half_widths(records, first, last), d[::step].copy())
 
     def within(self, grid: RoadGrid) -> tuple[slice, slice]:
         """Where this piece lies in a larger grid: slices of its rows and columns."""
-        mine = self.grid
-        return slice(mine.first - grid.first, mine.last - grid.first), slice(mine.low - grid.low, mine.high - grid.low)
+        own_grid = self.grid
+        return slice(own_grid.first - grid.first, own_grid.last - grid.first), slice(own_grid.low - grid.low, own_grid.high - grid.low)
 
     def numbers_in(self, grid: RoadGrid, cell: np.ndarray) -> np.ndarray:
         """Flat numbers in a larger grid of some cells of this one, by their flat numbers here; (N,) int32 each."""
-        mine = self.grid
-        width, wider = mine.shape[1], grid.shape[1]
+        own_grid = self.grid
+        width, wider = own_grid.shape[1], grid.shape[1]
         # numpy's divmod takes four times as long as its division
         number = cell // np.int32(width)
         number *= np.int32(wider - width)
         number += cell
-        number += np.int32((mine.first - grid.first) * wider + mine.low - grid.low)
+        number += np.int32((own_grid.first - grid.first) * wider + own_grid.low - grid.low)
         return number
 
     def points_on(self, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -90,9 +90,9 @@ class PieceOfRoad:
         mask, rows, cells = mask.ravel(), [], []
         for k in range(0, len(self.cell), POINTS_PER_CELL_BLOCK):
             cell = self.cell[k:k + POINTS_PER_CELL_BLOCK]
-            found = np.flatnonzero(mask.take(cell))
-            rows.append(found + k)
-            cells.append(cell.take(found))
+            inside = np.flatnonzero(mask.take(cell))
+            rows.append(inside + k)
+            cells.append(cell.take(inside))
         return np.concatenate(rows), np.concatenate(cells)
 
 
@@ -144,24 +144,24 @@ def cell_numbers(records: np.ndarray | Columns, grid: RoadGrid) -> Iterator[tupl
     s, d = records["s"], records["d"]
     width = np.int32(grid.shape[1])
     for k in range(0, len(s), POINTS_PER_CELL_BLOCK):
-        some = slice(k, k + POINTS_PER_CELL_BLOCK)
-        cell = s[some] // np.int32(CELL_UNITS)
+        block = slice(k, k + POINTS_PER_CELL_BLOCK)
+        cell = s[block] // np.int32(CELL_UNITS)
         cell -= np.int32(grid.first)
         cell *= width
-        cell += d[some] // np.int32(CELL_UNITS)
+        cell += d[block] // np.int32(CELL_UNITS)
         cell -= np.int32(grid.low)
-        yield some, cell
+        yield block, cell
 
 
 def _half_widths(records, first, last):
     """(2, rows) uint16 mm, the widest of each row of cells on the left and on the right."""
     starts = np.searchsorted(records["s"], (np.arange(first, last + 1) * CELL_UNITS).astype(np.int32))
-    found = np.zeros((2, last - first), np.uint16)
+    widest = np.zeros((2, last - first), np.uint16)
     filled = np.flatnonzero(np.diff(starts))
     if len(filled):
-        for row, beside in zip(found, (records["d"] > 0, records["d"] < 0)):
-            row[filled] = np.maximum.reduceat(records["half_width"] * beside, starts[filled])
-    return found
+        for row, on_side in zip(widest, (records["d"] > 0, records["d"] < 0)):
+            row[filled] = np.maximum.reduceat(records["half_width"] * on_side, starts[filled])
+    return widest
 
 
 # Which occupied cells of a grid belong together: those that touch, and those whose points lie near enough.
@@ -196,11 +196,11 @@ def components(cells: np.ndarray, places: np.ndarray, size: tuple[float, float],
     rows, columns = (int(distance / length) + 1 for length in size)
     low = cells.min(axis=0)
     height, width = (cells.max(axis=0) - low + 1 + [rows, 2 * columns]).tolist()
-    at = (cells[:, 0] - low[0]) * width + cells[:, 1] - low[1] + columns
+    index = (cells[:, 0] - low[0]) * width + cells[:, 1] - low[1] + columns
     touching = 2 * np.hypot(*size) <= distance
-    patch = _patches(at, (height, width)) if touching else np.arange(len(at), dtype=np.int32)
+    patch = _patches(index, (height, width)) if touching else np.arange(len(index), dtype=np.int32)
     image = np.full(height * width + width, -1, np.int32)
-    image[at] = patch
+    image[index] = patch
     count = int(patch.max()) + 1
     linked = [np.empty(0, np.int64)]
     for row in range(rows + 1):
@@ -208,12 +208,12 @@ def components(cells: np.ndarray, places: np.ndarray, size: tuple[float, float],
             step = row * width + column
             if touching and row <= 1 and abs(column) <= 1:
                 continue
-            other = image.take(at + step)
-            apart = np.flatnonzero((other >= 0) & (other != patch))
+            label = image.take(index + step)
+            apart = np.flatnonzero((label >= 0) & (label != patch))
             if len(apart):
-                beside = np.searchsorted(at, at[apart] + step)
-                apart = apart[((places[apart] - places[beside]) ** 2).sum(axis=1) <= distance**2]
-                linked.append(patch[apart].astype(np.int64) * count + image[at[apart] + step])
+                neighbours = np.searchsorted(index, index[apart] + step)
+                apart = apart[((places[apart] - places[neighbours]) ** 2).sum(axis=1) <= distance**2]
+                linked.append(patch[apart].astype(np.int64) * count + image[index[apart] + step])
     first, second = np.divmod(np.unique(np.concatenate(linked)), count)
     return linked_groups(first, second, count)[patch]
 
@@ -243,11 +243,11 @@ def fill_gaps(mask: np.ndarray, limit: int, axis: int = 0) -> np.ndarray:
         return mask.copy()
     length = limit + 1
     size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
-    along = np.ones(size[::-1], np.uint8)
+    kernel = np.ones(size[::-1], np.uint8)
     margin = [length, length, 0, 0] if axis == 0 else [0, 0, length, length]
     # off beyond the rim, so that nothing is closed towards it
-    grown = cv2.dilate(cv2.copyMakeBorder(mask.astype(np.uint8), *margin, cv2.BORDER_CONSTANT, value=0), along, anchor=(0, 0))
-    closed = cv2.erode(grown, along, anchor=behind)
+    grown = cv2.dilate(cv2.copyMakeBorder(mask.astype(np.uint8), *margin, cv2.BORDER_CONSTANT, value=0), kernel, anchor=(0, 0))
+    closed = cv2.erode(grown, kernel, anchor=behind)
     return closed[margin[0]:margin[0] + mask.shape[0], margin[2]:margin[2] + mask.shape[1]].astype(bool)
 
 
@@ -280,9 +280,9 @@ def filled_between_tracks(cells: np.ndarray, reach: np.ndarray) -> tuple[np.ndar
     longest = int(round(TRACKS.max_gap_on_track / CELL_SIZE))
     # a marking may be as long as the road
     for begin in range(0, len(mask), ROWS_AT_ONCE):
-        near = stretch_of(row, begin - longest, begin + ROWS_AT_ONCE + longest - 1)
-        if near.stop > near.start:
-            _fill(mask[begin:begin + ROWS_AT_ONCE], row[near] - begin, column[near], gaps[near], longest)
+        window = stretch_of(row, begin - longest, begin + ROWS_AT_ONCE + longest - 1)
+        if window.stop > window.start:
+            _fill(mask[begin:begin + ROWS_AT_ONCE], row[window] - begin, column[window], gaps[window], longest)
     return mask, first
 
 
@@ -290,12 +290,12 @@ def _fill(mask, row, column, gaps, longest):
     """Turn on, in some rows of a mask, the cells between those at (N,) places with gaps, of these rows and `longest` rows before and behind them."""
     # along each track first: two tracks rarely show points at the same station
     sparse = np.zeros((len(mask) + 2 * longest, mask.shape[1]), np.int16)
-    here = row < len(mask) + longest
-    sparse[row[here] + longest, column[here]] = gaps[here]
+    inside = row < len(mask) + longest
+    sparse[row[inside] + longest, column[inside]] = gaps[inside]
     on_track = fill_gaps(sparse > 0, longest, 0)
-    own = slice(longest, longest + len(mask))
-    widest = np.where(on_track & (sparse == 0), _carried(sparse), sparse)[own]
-    mask |= on_track[own]
+    inner = slice(longest, longest + len(mask))
+    widest = np.where(on_track & (sparse == 0), _carried(sparse), sparse)[inner]
+    mask |= on_track[inner]
     for gap in np.unique(gaps).tolist():
         mask |= fill_gaps(widest >= gap, gap, 1)
 

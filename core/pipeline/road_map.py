@@ -144,18 +144,18 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
 
 def _map_of(survey, image_path, settings, stages, corrections):
     """The map of an open survey, whose store the road points keep."""
-    wanted = Corrections() if corrections is None else corrections_from_features(corrections, survey.frame, survey.crs)
+    map_corrections = Corrections() if corrections is None else corrections_from_features(corrections, survey.frame, survey.crs)
     extent = Extent(survey.store.count / 1e6, sum(road.length for road in survey.frame.roads) / 1e3)
     stages.plan(extent, () if survey.has_intensity else INTENSITY_STAGES)
     if survey.has_intensity:
         # before hours of work, not after
         check_fits(*_span(survey), settings.image)
-    found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
+    curbs = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
     # what workers keep of the curbs is of no use to the stages that follow
     survey.executor.forget()
-    boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges,
+    boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, curbs, survey.frame, settings.edges,
                             survey=survey)
-    edges = correct_edges(boundaries.edges, survey.frame, wanted)
+    edges = correct_edges(boundaries.edges, survey.frame, map_corrections)
     road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface, survey, edges, settings.surface,
                                       ground=boundaries.ground)
     boundaries.ground = None
@@ -166,7 +166,7 @@ def _map_of(survey, image_path, settings, stages, corrections):
     survey.store.clear_cache()
     result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
-                     density=density, country=settings.driving.country, corrections=wanted)
+                     density=density, country=settings.driving.country, corrections=map_corrections)
     result.counts.update(curb_points=len(boundaries.curb_points), road_points=len(road_points))
     if survey.has_intensity:
         _paint(result, image_path, settings, stages, survey.executor)
@@ -174,8 +174,8 @@ def _map_of(survey, image_path, settings, stages, corrections):
         result.without_paint = ("The point cloud has no intensity (all values are the same), so paint cannot be told from "
                                 "asphalt: no markings, marking lines or driving lines were made.")
         stages.progress.warn(result.without_paint)
-    if len(wanted):
-        _tell_corrections(wanted, stages.progress)
+    if len(map_corrections):
+        _tell_corrections(map_corrections, stages.progress)
     return result
 
 
@@ -184,7 +184,7 @@ def _tell_corrections(corrections, progress):
     progress.info(f"Corrections: {len(corrections)}, of which {len(corrections) - len(corrections.unmatched)} were made.")
     if corrections.unmatched:
         progress.warn(f"Corrections that match nothing in this run any more ({len(corrections.unmatched)}): "
-                      + "; ".join(one.described() for one in corrections.unmatched) + ".")
+                      + "; ".join(correction.described() for correction in corrections.unmatched) + ".")
 
 
 def _span(survey):
@@ -222,24 +222,24 @@ def _paint(result, image_path, settings, stages, executor):
                                      executor=executor.passing())
     executor.forget()
     markings = correct_markings(markings, result.corrections)
-    edges, taken = result.edges.densified(frame), result.corrections.taken(frame)
+    edges, readings = result.edges.densified(frame), result.corrections.taken(frame)
     lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines,
-                       edges=edges, road_points=result.road_points, taken=taken)
-    known = np.c_[edges.course.x, edges.course.y, edges.course.z]
-    corrected = correct_marking_lines(lines, frame, result.corrections, known)
+                       edges=edges, road_points=result.road_points, taken=readings)
+    edge_places = np.c_[edges.course.x, edges.course.y, edges.course.z]
+    corrected = correct_marking_lines(lines, frame, result.corrections, edge_places)
     if corrected is not lines:
         lines = named_by_estimate(corrected, frame, country(settings.lines.country).usual_lane, markings, edges, result.road_points, clustered,
-                                  taken=taken)
+                                  taken=readings)
     markings = named_by_lines(markings, lines)
     result.markings, result.marking_lines = markings.to_features(frame), lines.to_features(frame)
     paint = Points(columns_of_roads(clustered.store, clustered.roads()))
     result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
-        markings=markings, edges=edges, road_points=result.road_points, taken=taken)
+        markings=markings, edges=edges, road_points=result.road_points, taken=readings)
     executor.release()
     driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
-                                             settings.driving.lane_width or country(settings.driving.country).usual_lane, known)
+                                             settings.driving.lane_width or country(settings.driving.country).usual_lane, edge_places)
     result.driving_lines, result.curve_elements = driving.to_features(frame), elements.to_features(frame)
     result.lanes = lanes.to_features(frame)
     if not len(result.markings):
@@ -275,18 +275,18 @@ class Extent:
         """
         files = read_headers(paths, given=crs or trajectory.crs)
         trajectory = reproject_trajectory(trajectory, check_projected(files, crs, trajectory.crs))
-        held = [file for file in files if file.count]
-        points = sum(file.count for file in held)
+        filled = [file for file in files if file.count]
+        points = sum(file.count for file in filled)
         places = np.column_stack([trajectory.x, trajectory.y])
-        low, high = (np.array([getattr(file, name)[:2] for file in held]).reshape(-1, 2) for name in ("minimum", "maximum"))
+        low, high = (np.array([getattr(file, name)[:2] for file in filled]).reshape(-1, 2) for name in ("minimum", "maximum"))
         within = ((places > low.min(axis=0, initial=np.inf) - CORRIDOR) & (places < high.max(axis=0, initial=-np.inf) + CORRIDOR)).all(axis=1)
         driven = np.hypot(*np.diff(places, axis=0).T)[within[1:]].sum()
-        return cls(points / 1e6, float(driven) / 1e3, sum(file.count for file in held if file.chunk == 1) / max(points, 1))
+        return cls(points / 1e6, float(driven) / 1e3, sum(file.count for file in filled if file.chunk == 1) / max(points, 1))
 
     def cost(self, name: str, method: str) -> float:
         """Relative run time of a stage, with the given method of boundary detection."""
         if name == "curbs":
-            return sum(self.cost(one, method) for one in ("profiles", "scanlines") if method in (one, "both"))
+            return sum(self.cost(detection, method) for detection in ("profiles", "scanlines") if method in (detection, "both"))
         of_points, of_length = STAGE_COSTS[name]
         if name == "survey":
             of_points *= LAZ_READ_COST + self.plain * (LAS_READ_COST - LAZ_READ_COST)

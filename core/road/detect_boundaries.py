@@ -113,27 +113,27 @@ def _lattice_meanwhile(survey, settings):
 
 def _find_curb_points(decimation, lattice, settings, progress):
     """`find_curb_points` with the points of a PointDecimation and a function that gives the lattice."""
-    survey, both, found = decimation.survey, settings.method == "both", {}
-    beside: dict[int, dict[str, OcclusionGrid]] = {}
-    beside_of_scanlines: dict[int, dict[str, OcclusionGrid]] = {}
+    survey, both_methods, points = decimation.survey, settings.method == "both", {}
+    occlusion: dict[int, dict[str, OcclusionGrid]] = {}
+    occlusion_of_scanlines: dict[int, dict[str, OcclusionGrid]] = {}
     chains: list[dict[tuple[int, str], SideChains]] = [{}, {}]
     if settings.method != "scanlines":
-        part = progress.part(0.0, BOUNDARY.profiles_progress) if both else progress
-        found["profiles"] = detect_curbs(survey, settings.curbs, part, not both, decimation, beside, chains[0])
+        part = progress.part(0.0, BOUNDARY.profiles_progress) if both_methods else progress
+        points["profiles"] = detect_curbs(survey, settings.curbs, part, not both_methods, decimation, occlusion, chains[0])
     if settings.method != "profiles":
-        part = progress.part(BOUNDARY.profiles_progress if both else 0.0, 1.0)
+        part = progress.part(BOUNDARY.profiles_progress if both_methods else 0.0, 1.0)
         source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice(part.part(0.0, BOUNDARY.lattice_progress)),
                                  level=_level_for(decimation, settings.scanlines))
         corners = part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)
-        found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, corners,
-                                                  beside_of_scanlines if both else beside, chains[1])
-        drawn = "both" if both else "scanlines"
-        if both:
-            chosen = _better_points(found, survey.frame, CurbEvidence(chains[1], beside_of_scanlines), CurbEvidence(chains[0], beside))
-            beside_of_scanlines.clear()   # planes lie close: along a long road their grids are large
-            found["both"] = with_pieces_of_both(chosen, chains, beside, survey)
-        found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0), beside)
-    return found
+        points["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, corners,
+                                                   occlusion_of_scanlines if both_methods else occlusion, chains[1])
+        drawn = "both" if both_methods else "scanlines"
+        if both_methods:
+            chosen = _better_points(points, survey.frame, CurbEvidence(chains[1], occlusion_of_scanlines), CurbEvidence(chains[0], occlusion))
+            occlusion_of_scanlines.clear()   # planes lie close: along a long road their grids are large
+            points["both"] = with_pieces_of_both(chosen, chains, occlusion, survey)
+        points[drawn] = with_curb_returns(points[drawn], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0), occlusion)
+    return points
 
 
 def _level_for(decimation, settings):
@@ -235,13 +235,13 @@ def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> _E
                             & edges.of_main_curb):
         vertices = course.line(k)
         good = np.isfinite(course.s[vertices])
-        at, d, z = (values[vertices][good] for values in (course.s, course.d, course.z))
-        if len(at) < 2:
+        station, d, z = (values[vertices][good] for values in (course.s, course.d, course.z))
+        if len(station) < 2:
             continue
-        order = np.argsort(at, kind="stable")
-        at, d, z = at[order], d[order], z[order]
-        inside = stretch_of(s, at[0] - BOUNDARY.comparison_step / 2, at[-1] + BOUNDARY.comparison_step / 2)
-        samples.d[inside], samples.z[inside] = np.interp(s[inside], at, d), np.interp(s[inside], at, z)
+        order = np.argsort(station, kind="stable")
+        station, d, z = station[order], d[order], z[order]
+        inside = stretch_of(s, station[0] - BOUNDARY.comparison_step / 2, station[-1] + BOUNDARY.comparison_step / 2)
+        samples.d[inside], samples.z[inside] = np.interp(s[inside], station, d), np.interp(s[inside], station, z)
         samples.measured[inside] = edges.status[k] == "measured"
         samples.scatter[inside] = edges.rmse[k]
     return samples
@@ -263,17 +263,18 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
     """
     # the chains of both methods keep apart
     others = replace(others, chain=np.where(others.chain < 0, others.chain, others.chain + SECOND_METHOD_CHAIN_OFFSET))
-    found = []
+    parts = []
     for road in frame.roads:
         for side in SIDE_SIGNS:
             first, second = (sample_edges(e, frame, road.number, side) for e in (edges, other_edges))
             take_second = _second_is_better(first, second)
-            level = [_level(measured, other, shown.chains.get((road.number, side)), known.beside.get(road.number, {}).get(side), SIDE_SIGNS[side])
-                     for measured, other, shown, known in ((first, second, seen, others_seen), (second, first, others_seen, seen))]
+            level = [_level(measured, compared, evidence.chains.get((road.number, side)),
+                            compared_evidence.beside.get(road.number, {}).get(side), SIDE_SIGNS[side])
+                     for measured, compared, evidence, compared_evidence in ((first, second, seen, others_seen), (second, first, others_seen, seen))]
             for curbs, better in ((points, ~take_second & ~level[0]), (others, take_second & ~level[1])):
-                own = curbs[(curbs.road == road.number) & (curbs.side == side)]
-                found.append(own[better[_node(first.s, own.station)]])
-    return CurbPoints.join(found, points.crs)
+                of_side = curbs[(curbs.road == road.number) & (curbs.side == side)]
+                parts.append(of_side[better[_node(first.s, of_side.station)]])
+    return CurbPoints.join(parts, points.crs)
 
 
 def _node(s, station):
@@ -283,9 +284,9 @@ def _node(s, station):
 
 def _second_is_better(first, second):
     """(N,) bool: is the second edge the one to draw? False where there is neither."""
-    both = first.measured & second.measured
+    measured_by_both = first.measured & second.measured
     with np.errstate(invalid="ignore"):
-        one_curb = both & (np.abs(first.d - second.d) <= BOUNDARY.max_same_curb_distance)
+        one_curb = measured_by_both & (np.abs(first.d - second.d) <= BOUNDARY.max_same_curb_distance)
     better = second.measured & ~first.measured
     # where neither measured, the one that bridges
     better |= ~first.measured & ~second.measured & np.isfinite(second.d) & np.isnan(first.d)
@@ -311,15 +312,15 @@ def _slopes(d):
 def _level(measured, other, chains, grid, sign):
     """(N,) bool: did one method, whose SideChains are given, measure an edge where the other, whose OcclusionGrid is given, saw level ground?"""
     level, doubtful = np.zeros((2, len(measured.s)), bool)
-    alone = np.flatnonzero(measured.measured & ~other.measured)
-    if grid is None or not len(alone):
+    unmatched = np.flatnonzero(measured.measured & ~other.measured)
+    if grid is None or not len(unmatched):
         return level
-    line = measured.s[alone], sign * measured.d[alone], sign * _slopes(measured.d)[alone]
+    line = measured.s[unmatched], sign * measured.d[unmatched], sign * _slopes(measured.d)[unmatched]
     rise, support = grid.rise(*line), 0.0 if chains is None else chains.support_along(*line)
     doubt = np.clip(1.0 - support / BOUNDARY.sure_support, 0.0, 1.0)
     with np.errstate(invalid="ignore"):
-        level[alone] = np.abs(rise) < doubt * MIN_RISE   # a fall is something else: the roof of a car, say
-        doubtful[alone] = (doubt > 0) & ~(level[alone] | (rise >= CURBS.least_height))
+        level[unmatched] = np.abs(rise) < doubt * MIN_RISE   # a fall is something else: the roof of a car, say
+        doubtful[unmatched] = (doubt > 0) & ~(level[unmatched] | (rise >= CURBS.least_height))
     # what is left beside such places is too short to be a curb on such evidence
     for a, b in mask_runs(doubtful):
         if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_single_method_length and (level[max(a - 1, 0)] or level[min(b, len(level) - 1)]):
@@ -351,21 +352,21 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
     for road in frame.roads:
         for side in SIDE_SIGNS:
             first, second, drawn = (sample_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
-            apart = np.abs(first.d - second.d)
+            difference = np.abs(first.d - second.d)
             for k in np.flatnonzero((edges.road == road.number) & (edges.side == side)):
-                beside = apart[stretch_of(first.s, edges.station[k], edges.end[k])]
-                beside = beside[np.isfinite(beside)]
-                if len(beside):
-                    agree[k] = round(100 * float(np.quantile(beside, BOUNDARY.agreement_quantile)), 1)
+                distances = difference[stretch_of(first.s, edges.station[k], edges.end[k])]
+                distances = distances[np.isfinite(distances)]
+                if len(distances):
+                    agree[k] = round(100 * float(np.quantile(distances, BOUNDARY.agreement_quantile)), 1)
             with np.errstate(invalid="ignore"):
-                differing = (apart > BOUNDARY.min_reported_difference) & np.isfinite(drawn.d)
+                differing = (difference > BOUNDARY.min_reported_difference) & np.isfinite(drawn.d)
             for a, b in mask_runs(differing):
                 if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_reported_length:
                     continue
                 x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])
                 differences.append(EdgePiece(
                     np.c_[x, y, z], road.number, side, "measured", len(differences), float(first.s[a]), float(first.s[b - 1]),
-                    agree=100 * float(apart[a:b].max())))
+                    agree=100 * float(difference[a:b].max())))
     return replace(edges, agree=agree), joined_pieces(differences, frame, edges.crs)
 
 
@@ -396,40 +397,41 @@ def with_pieces_of_both(points: CurbPoints, chains: Sequence[Mapping[tuple[int, 
     chains : of each method, (number of the road, side) -> SideChains
     beside : number of the road -> side -> OcclusionGrid
     """
-    found = [points]
+    result = [points]
     for road in survey.store.roads():
         main, number = main_curbs_of(points, survey, road)
         pieces = CurbPoints.filled(0, points.crs)
         for side in SIDE_SIGNS:
-            of_side = [known[road, side] for known in chains if (road, side) in known]
+            of_side = [of_method[road, side] for of_method in chains if (road, side) in of_method]
             pieces = CurbPoints.join([pieces, _pieces_of_side(points, of_side, survey, road, side, number + len(pieces))], points.crs)
         if len(pieces):
-            found += [pieces, hidden_beside(pieces[pieces.part == "bottom"], main, beside[road], survey, road)]
-    return CurbPoints.join(found, points.crs)
+            result += [pieces, hidden_beside(pieces[pieces.part == "bottom"], main, beside[road], survey, road)]
+    return CurbPoints.join(result, points.crs)
 
 
 def _pieces_of_side(points, chains, survey, road, side, number):
     """CurbPoints of the pieces in the gaps of one main curb, their chains numbered from `number` on."""
     frame, sign = survey.frame, SIDE_SIGNS[side]
-    own = points[(points.road == road) & (points.side == side) & points.of_main_curb & (points.part == "bottom") & (points.status == "measured")]
-    own = own[np.argsort(own.station, kind="stable")]
-    curb = _Ends(own.station, sign * own.offset, own.z - expected_height(survey, road, own.station), own.height)
+    measured = points[(points.road == road) & (points.side == side) & points.of_main_curb & (points.part == "bottom") & (points.status == "measured")]
+    measured = measured[np.argsort(measured.station, kind="stable")]
+    curb = _Ends(measured.station, sign * measured.offset, measured.z - expected_height(survey, road, measured.station), measured.height)
     rows: list[dict] = []
     gap = np.diff(curb.s)
     begin = np.flatnonzero((gap > CURBS.max_joined_gap) & (gap <= CURBS.max_line_gap))
     gaps = np.column_stack([curb.s[begin], curb.s[begin + 1]])
-    of_methods = [StepsByStation(known.steps) for known in chains]
+    of_methods = [StepsByStation(side_chains.steps) for side_chains in chains]
 
     def to_plan(s, u):
         return frame.road(road).to_map(s, sign * u)
 
     for a, b in gaps.tolist():
         before, after = curb[stretch_of(curb.s, a - CURBS.line_fit_length, a)], curb[stretch_of(curb.s, b, b + CURBS.line_fit_length)]
-        pieces = [(known, piece) for known, others in zip(chains, of_methods) for piece in pieces_between(before, after, others, to_plan)]
+        pieces = [(side_chains, piece) for side_chains, by_station in zip(chains, of_methods)
+                  for piece in pieces_between(before, after, by_station, to_plan)]
         # of pieces beside each other the one nearest to the line
         chosen: list[PieceInLine] = []
-        for known, piece in sorted(pieces, key=lambda found: found[1].off):
-            if all(piece.end < other.start or piece.start > other.end for other in chosen):
+        for side_chains, piece in sorted(pieces, key=lambda found: found[1].off):
+            if all(piece.end < kept.start or piece.start > kept.end for kept in chosen):
                 chosen.append(piece)
-                rows += known.points(piece.steps, number + len(rows))
+                rows += side_chains.points(piece.steps, number + len(rows))
     return points_of_rows(survey, road, side, rows, points.crs)

@@ -138,12 +138,12 @@ class BlockReader:
 
     def unfiltered(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary) -> list[tuple[int, Columns]]:
         """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
-        return [(road, points.copy() if own is None else points.take(own).load_all()) for road, points, own in self._near_roads(block, summary)]
+        return [(road, points.copy() if near is None else points.take(near).load_all()) for road, points, near in self._near_roads(block, summary)]
 
     def read(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
              store: SectionStore) -> list[PartitionedPoints]:
         """The points of a block near the road, ready for the store; `summary` and `chosen` are updated."""
-        return [self._partition(road, points, own, chosen, store) for road, points, own in self._near_roads(block, summary, ground)]
+        return [self._partition(road, points, near, chosen, store) for road, points, near in self._near_roads(block, summary, ground)]
 
     def filtered(self, parts: Iterable[tuple[int, Columns]], ground: HeightFilter, chosen: ChosenPoints,
                  store: SectionStore) -> Iterator[PartitionedPoints]:
@@ -197,12 +197,12 @@ class BlockReader:
             yield from self._beyond(columns, points, inside, ground)
             if not inside.any():
                 return
-        for number, own in self._by_road(columns["pass_number"], inside):
+        for number, of_road in self._by_road(columns["pass_number"], inside):
             if ground is not None:
                 near = ground.near(number, columns["s"], columns["z"], buffers)
-                own = _both(own, None if near.all() else near)
-            if own is None or own.any():
-                yield number, points, own
+                of_road = _both(of_road, None if near.all() else near)
+            if of_road is None or of_road.any():
+                yield number, points, of_road
 
     def _usable(self, piece, axes, columns, summary, buffers):
         """Fill the columns x, y and z; (N,) bool of the points that are valid and no outliers, None for all."""
@@ -210,17 +210,17 @@ class BlockReader:
         if usable is not None:
             summary.excluded += len(usable) - int(np.count_nonzero(usable))
         for axis, name in zip(axes, "xyz"):
-            columns[name], there = axis.units(piece.array, buffers)
-            usable = _both(usable, there)
+            columns[name], valid = axis.units(piece.array, buffers)
+            usable = _both(usable, valid)
         return usable
 
     def _add_scanners(self, columns, names, inside, summary):
         """Scanners measure together: at the same times of the drive, or without times along the same stretches of road."""
-        own = slice(None) if self.choice.has_time or inside is None else inside
-        at = columns["time"] if self.choice.has_time else columns["s"][own] * COORDINATE_SCALE
+        rows = slice(None) if self.choice.has_time or inside is None else inside
+        measured_at = columns["time"] if self.choice.has_time else columns["s"][rows] * COORDINATE_SCALE
         for name, key in zip(SCANNER_FIELDS, ("source", "scanner")):
             if name in names:
-                summary.census.add(name, columns[key][own], at, self._span)
+                summary.census.add(name, columns[key][rows], measured_at, self._span)
 
     def _beyond(self, columns, points, inside, ground):
         """As `read`, the ground beyond the corridor that the vehicle saw about as high as its road."""
@@ -359,12 +359,12 @@ class VehicleTracks:
             low, high = np.clip(ends - first, 0, len(offsets) - 1)
             track = offsets[low:high + 1]
             # most points lie beside the whole track
-            beside = _between(across, int(track.min()) - OWN_TRACK_HALF_WIDTH_UNITS, int(track.max()) + OWN_TRACK_HALF_WIDTH_UNITS)
+            near_track = _between(across, int(track.min()) - OWN_TRACK_HALF_WIDTH_UNITS, int(track.max()) + OWN_TRACK_HALF_WIDTH_UNITS)
             if own is not None:
-                beside &= own
+                near_track &= own
             if not only:
-                beside &= number == p.number
-            rows = np.flatnonzero(beside)
+                near_track &= number == p.number
+            rows = np.flatnonzero(near_track)
             cell = (along.take(rows) >> READING.track_cell_bits) - np.int32(first)
             off = across.take(rows)
             off -= offsets.take(cell, mode="clip")
@@ -422,8 +422,8 @@ class HeightHistogram:
         that bridges and trees above do not count.
         """
         heights = {number: _road_height(counts, self.origin) for number, counts in self.counts.items()}
-        known = [height for height in heights.values() if height is not None]
-        usual = float(np.median(known)) if known else READING.default_sensor_height
+        measured = [height for height in heights.values() if height is not None]
+        usual = float(np.median(measured)) if measured else READING.default_sensor_height
         return {number: usual if height is None else height for number, height in heights.items()}
 
     def uneven(self) -> tuple[float, float] | None:

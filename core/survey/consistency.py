@@ -41,20 +41,20 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
     """
     import shapely
 
-    agree, beside, above = [], [], []
+    agree, aside, above = [], [], []
     for geometry, row in features:
         if row.get("station_m") is None:
             continue
         x, y, z = shapely.get_coordinates(geometry, include_z=True).T
         s, d = _located(frame, row["road"], x, y)
-        known = np.isfinite(s)
-        if known.any():
-            above.append(np.median(_above(frame, row["road"], s[known], z[known])))
-        agree.append(bool(known.any()) and abs(_outside(s[known], row["station_m"])) <= STATION_TOLERANCE)
+        inside = np.isfinite(s)
+        if inside.any():
+            above.append(np.median(_above(frame, row["road"], s[inside], z[inside])))
+        agree.append(bool(inside.any()) and abs(_outside(s[inside], row["station_m"])) <= STATION_TOLERANCE)
         if agree[-1] and row.get("offset_m") is not None:
-            beside.append(_outside(d[known], row["offset_m"]))
+            aside.append(_outside(d[inside], row["offset_m"]))
     _refuse_mismatch(agree, label, "features")
-    _refuse_moved(beside, above, label)
+    _refuse_moved(aside, above, label)
 
 
 def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
@@ -109,15 +109,15 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
     RoadExtractionError
         If more than half of the sampled points disagree.
     """
-    agree, beside, above = [], [], []
+    agree, aside, above = [], [], []
     for road, x, y, s, d, z in sample_road_points(road_points):
-        there, offset = _located(frame, road, x, y)
-        agree.append(np.abs(there - s) <= STATION_TOLERANCE)
-        beside.append((d - offset)[agree[-1]])
+        station, offset = _located(frame, road, x, y)
+        agree.append(np.abs(station - s) <= STATION_TOLERANCE)
+        aside.append((d - offset)[agree[-1]])
         if agree[-1].any():
             above.append(_above(frame, road, s[agree[-1]], z[agree[-1]]))
     _refuse_mismatch(np.concatenate(agree) if agree else [], label, "points looked at")
-    across, down = (np.concatenate(column) if column else [] for column in (beside, above))
+    across, down = (np.concatenate(column) if column else [] for column in (aside, above))
     _refuse_moved(across, down, label)
 
 
@@ -172,8 +172,8 @@ def _refuse_moved(beside, above, label):
             "trajectory, or with one that was moved to the scanners, as a warning said then. Run Road map, which makes all layers with the moved "
             "trajectory, or give every stage the trajectory that belongs to the cloud.")
     if np.count_nonzero((above < -LOWEST_SENSOR) | (above > MIRROR.heights[1])) > 0.5 * len(above):
-        apart = float(np.median(above))
+        depth = float(np.median(above))
         raise RoadExtractionError(
-            f"{label} lie {abs(apart):.2f} m {'below' if apart > 0 else 'above'} the trajectory, where its vehicle cannot have driven. They were "
+            f"{label} lie {abs(depth):.2f} m {'below' if depth > 0 else 'above'} the trajectory, where its vehicle cannot have driven. They were "
             "made with another trajectory, or with one that was moved to the height of the scanners, as a warning said then. Run Road map, which "
             "makes all layers with the moved trajectory, or give every stage a trajectory with the heights of the cloud.")

@@ -58,7 +58,7 @@ def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> 
     phase = Phase(cubes_of_stretch, road_points, (), lambda item: survey.stretch(item[0], item[1] * length, item[2] * length))
     stretches = survey.store.stretches(STRETCH_POINTS if road_points.executor.folder else 0)
     parts = list(road_points.executor.run(phase, stretches, progress))
-    of_survey, of_road = (_density_of_parts(found[k] for part in parts for found in part) for k in (0, 1))
+    of_survey, of_road = (_density_of_parts(counted[k] for of_stretch in parts for counted in of_stretch) for k in (0, 1))
     return of_survey, of_road
 
 
@@ -75,12 +75,12 @@ def cubes_of_stretch(road_points: RoadPoints, stretch: Stretch) -> list[list[tup
 
 def _density_of_parts(parts):
     """CubeDensity of the counts of sections."""
-    known = [found for found in parts if found is not None]
-    if not known:
+    counted = [part for part in parts if part is not None]
+    if not counted:
         return CubeDensity(0, float("nan"), float("nan"))
-    keys, counts = zip(*known)
-    _, place = np.unique(np.concatenate(keys), return_inverse=True)
-    number = np.bincount(place.ravel(), np.concatenate(counts))
+    keys, counts = zip(*counted)
+    _, cube = np.unique(np.concatenate(keys), return_inverse=True)
+    number = np.bincount(cube.ravel(), np.concatenate(counts))
     total = int(number.sum())
     return CubeDensity(total, float(number.mean()), float((number**2).sum() / number.sum()))
 
@@ -101,9 +101,9 @@ def _counted(points, *subsets):
         z *= np.int32(size[0])
         z += x
         for count, rows in zip(counts, (None, *subsets)):
-            own = z if rows is None else z.take(rows[slice(*np.searchsorted(rows, (first, first + len(z))))] - first)
-            some = np.bincount(own)
-            count[:len(some)] += some
+            cubes = z if rows is None else z.take(rows[slice(*np.searchsorted(rows, (first, first + len(z))))] - first)
+            chunk = np.bincount(cubes)
+            count[:len(chunk)] += chunk
     return [_occupied(count, low, size) for count in counts]
 
 

@@ -102,9 +102,9 @@ def _kept_survey(work, executor, read, progress):
     states = [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
     name = f"survey-{digest((code_digest(), states, trajectory, settings))}"
     try:
-        found = _found_survey(work, name, files, progress)
-        if found is not None:
-            return found
+        earlier = _found_survey(work, name, files, progress)
+        if earlier is not None:
+            return earlier
         listener = RememberedMessages(progress)
         parts = WorkFolder(str(work.path / f"{name}.parts"))
         if not parts_are_whole(parts.path / "points"):
@@ -116,10 +116,10 @@ def _kept_survey(work, executor, read, progress):
             survey = read_survey(*read, listener, shared)
         except RoadExtractionError:
             # another run, which was quicker, has removed the parts
-            found = _found_survey(work, name, files, progress)
-            if found is None:
+            earlier = _found_survey(work, name, files, progress)
+            if earlier is None:
                 raise
-            return found
+            return earlier
         work.finish(name, survey.folder, listener.messages)
         parts.discard()
         return survey
@@ -129,10 +129,10 @@ def _kept_survey(work, executor, read, progress):
 
 def _found_survey(work, name, files, progress):
     """The survey that an earlier run put into a work folder; None where there is none."""
-    found = work.finished(name)
-    if found is None:
+    finished = work.finished(name)
+    if finished is None:
         return None
-    folder, messages = found
+    folder, messages = finished
     survey = survey_in_folder(str(folder))
     survey.files = files
     progress.info("The points were read by an earlier run and are taken from the work folder. It said:")
@@ -185,8 +185,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
                          settings.memory_limit, folder=None if shared is None else shared.points)
     reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
-    again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
-    read_at = READING.read_progress if again else 1.0
+    several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
+    read_at = READING.read_progress if several_passes else 1.0
     _read_points(reader, files, settings.block, shared, progress.part(0.0, read_at))
     _say_left_out(files, frame, reader, settings, progress)
     height = float(np.mean(list(reader.heights.values())))
@@ -196,10 +196,10 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); "
                  f"sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
-    at = read_at if shared is None else READING.parts_progress * read_at
-    _tell_scanners_apart(survey, reader, progress.part(at, at))
-    _put_in_order(survey, shared, progress.part(at, read_at))
-    mounted = _lay_scanners_and_passes(survey, again, bool(feet), shared, progress)
+    parts_at = read_at if shared is None else READING.parts_progress * read_at
+    _tell_scanners_apart(survey, reader, progress.part(parts_at, parts_at))
+    _put_in_order(survey, shared, progress.part(parts_at, read_at))
+    mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), shared, progress)
     _see_passes(survey, settings.fit_passes, store, shared, progress)
     # what the user says overrules what lies beside the trajectory
     _widen_sigma(survey.frame, max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted))
@@ -331,8 +331,8 @@ def _see_passes(survey, fit_passes, measured, shared, progress):
             file.unlink()
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
     if len(survey.frame.roads) > 1:
-        for said in warnings_of_levels(survey.frame):
-            progress.warn(said)
+        for warning in warnings_of_levels(survey.frame):
+            progress.warn(warning)
         if fit_passes and survey.has_time:
             compare_carriageways(survey, progress.part(1.0, 1.0))
 
@@ -499,12 +499,12 @@ def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:
     ahead, speed = _look_ahead(survey)
     if len(ahead) < READING.min_clock_points or np.percentile(np.abs(ahead), READING.nearest_percentile) < READING.max_look_ahead:
         return
-    away, fast = float(np.median(ahead)), float(np.median(speed))
-    seconds = f", about {abs(away) / fast:.1f} s at its speed" if fast > 1.0 else ""
+    distance, fast = float(np.median(ahead)), float(np.median(speed))
+    seconds = f", about {abs(distance) / fast:.1f} s at its speed" if fast > 1.0 else ""
     progress.warn(f"The times of the points do not seem to fit the trajectory: the road on the vehicle's own way was scanned when it was "
-                  f"{abs(away):.0f} m {'before' if away > 0 else 'past'} that place{seconds}, and scanners see road nearer than that in every turn. "
-                  "The map is blurred where passes are mixed up for it. Check that cloud and trajectory are of one drive and count time alike "
-                  "(leap seconds, a lag of the recorder).")
+                  f"{abs(distance):.0f} m {'before' if distance > 0 else 'past'} that place{seconds}, and scanners see road nearer than that in "
+                  "every turn. The map is blurred where passes are mixed up for it. Check that cloud and trajectory are of one drive and count time "
+                  "alike (leap seconds, a lag of the recorder).")
 
 
 def _look_ahead(survey):
@@ -512,21 +512,21 @@ def _look_ahead(survey):
     keys = [(road, number) for road in survey.store.roads() for number in survey.store.sections(road)]
     sampled = [keys[k] for k in np.unique(np.linspace(0, len(keys) - 1, READING.clock_sections).astype(int))] if keys else []
     # most of the time goes into putting the points of these sections in order
-    found = [part for parts in ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled) for part in parts]
-    ahead, speed = zip(*found) if found else ([np.empty(0)], [np.empty(0)])
+    parts = [part for of_section in ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled) for part in of_section]
+    ahead, speed = zip(*parts) if parts else ([np.empty(0)], [np.empty(0)])
     return np.concatenate(ahead), np.concatenate(speed)
 
 
 def _look_ahead_in_section(survey, key):
     """The same of one section, by pass: list of (ahead, speed)."""
-    points, found = survey.section(*key), []
+    points, parts = survey.section(*key), []
     if len(points) > READING.clock_points_per_section:
         points = points[np.unique(np.linspace(0, len(points) - 1, READING.clock_points_per_section).astype(int))]
     s, d, time, owner = points.s, points.d, points.time, points.pass_number
     for number in np.unique(owner).tolist():
         p = survey.frame.passes[number]
         on_track = np.abs(d - p.at_station(s)[0]) < READING.clock_track_half_width
-        own = np.flatnonzero((owner == number) & on_track & (time >= p.time[0]) & (time <= p.time[-1]))
-        here, soon = (p.station_at(time[own] + wait) for wait in (0.0, 0.5))
-        found.append((p.direction * (s[own] - here), 2.0 * np.abs(soon - here)))
-    return found
+        rows = np.flatnonzero((owner == number) & on_track & (time >= p.time[0]) & (time <= p.time[-1]))
+        now, soon = (p.station_at(time[rows] + wait) for wait in (0.0, 0.5))
+        parts.append((p.direction * (s[rows] - now), 2.0 * np.abs(soon - now)))
+    return parts

@@ -183,7 +183,7 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
         crs, moves, sigma = cloud_crs(header), PassCorrections.of_records(header.vlrs), sigma_of_records(header.vlrs)
     store = SectionStore(point_dtype(ROAD_POINT, farthest))
-    done = 0
+    count = 0
     for block in read_blocks(path, LAS.points_per_block):
         records = _read_records(block, names, scales, store.dtype)
         if moves is not None:
@@ -192,8 +192,8 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         roads = np.asarray(block["road"])
         for road in np.unique(roads):
             store.append(int(road), records[roads == road])
-        done += len(block)
-        progress.report(done / max(total, 1))
+        count += len(block)
+        progress.report(count / max(total, 1))
     if not store.count:
         raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
     return RoadPoints(store, origin, crs, "intensity_corrected" in names, "cluster" in names, moves, "spacing" in names, sigma)

@@ -107,9 +107,9 @@ class Survey:
     def recipe(self, folder: Path) -> Recipe:
         """Move the points to a folder, unless they are there, and say how other processes open the survey."""
         if self.folder is None:
-            own = folder / SURVEY_FOLDER
-            own.mkdir()
-            self.move_to(own)
+            points_folder = folder / SURVEY_FOLDER
+            points_folder.mkdir()
+            self.move_to(points_folder)
         return Recipe("core.survey.survey:survey_in_folder", dict(folder=str(self.folder)))
 
     def move_to(self, folder: Path, executor: Executor = THREADS, progress: Progress = Progress()) -> None:
@@ -158,5 +158,5 @@ class Survey:
 
 def survey_in_folder(folder: str) -> Survey:
     """The survey that `Survey.recipe` put into a folder, without the files that it was read from."""
-    found = read_plain(Path(folder) / SURVEY_FILE)
-    return Survey(files=[], store=SectionStore.opened(Path(folder), **found.pop("store")), folder=Path(folder), **found)
+    fields = read_plain(Path(folder) / SURVEY_FILE)
+    return Survey(files=[], store=SectionStore.opened(Path(folder), **fields.pop("store")), folder=Path(folder), **fields)

@@ -211,8 +211,8 @@ class _PartsOfFiles:
         """What messages call blocks."""
         number, first, _ = self.ranges[item[0]].tolist()
         last, begin, count = self.ranges[item[1] - 1].tolist()
-        other = "" if last == number else f" of {Path(self.files[last].path).name}"
-        return f"{Path(self.files[number].path).name}, points {first + 1:,} to {begin + count:,}{other}"
+        last_file = "" if last == number else f" of {Path(self.files[last].path).name}"
+        return f"{Path(self.files[number].path).name}, points {first + 1:,} to {begin + count:,}{last_file}"
 
     def size(self, item: tuple[int, int]) -> float:
         """Points of blocks."""
@@ -327,9 +327,9 @@ class Finishing:
         first, nodes = self._heights(road_of(road), records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
         doubtful = np.flatnonzero((z < (nodes.max() - below) / COORDINATE_SCALE + 1)
                                   | (z > (nodes.min() + above) / COORDINATE_SCALE - 1))
-        at = records["s"][doubtful] * COORDINATE_SCALE / READING.road_height_step - first
-        k = at.astype(np.int64)
-        h = z[doubtful] * COORDINATE_SCALE - (nodes[k] + (at - k) * (nodes[k + 1] - nodes[k]))
+        node = records["s"][doubtful] * COORDINATE_SCALE / READING.road_height_step - first
+        k = node.astype(np.int64)
+        h = z[doubtful] * COORDINATE_SCALE - (nodes[k] + (node - k) * (nodes[k + 1] - nodes[k]))
         near = np.ones(len(records), bool)
         near[doubtful] = (h > -below) & (h < above)
         return None if near[doubtful].all() else near

@@ -122,9 +122,9 @@ def _values(layer, index):
         return layer.uniqueValues(index)
     from osgeo import gdal
 
-    place = QgsProviderRegistry.instance().decodeUri("ogr", layer.source())
-    data = gdal.OpenEx(place["path"], gdal.OF_VECTOR)
-    table = data and (data.GetLayerByName(place["layerName"]) if place.get("layerName") else data.GetLayer(0))
+    uri = QgsProviderRegistry.instance().decodeUri("ogr", layer.source())
+    data = gdal.OpenEx(uri["path"], gdal.OF_VECTOR)
+    table = data and (data.GetLayerByName(uri["layerName"]) if uri.get("layerName") else data.GetLayer(0))
     return {feature.GetField(layer.fields().at(index).name()) for feature in table} if table else set()
 
 
@@ -143,11 +143,11 @@ def second_reading(other: str) -> str:
 
 def short_alias(alias: str) -> str:
     """A field's name without the values it may have, which the table shows anyway: "Side (left/right)" -> "Side"."""
-    found = re.fullmatch(r"(.*) \(([^)]*)\)", alias)
-    if found is None or not re.search(r"[/,|]", found[2]):
+    match = re.fullmatch(r"(.*) \(([^)]*)\)", alias)
+    if match is None or not re.search(r"[/,|]", match[2]):
         return alias
-    unit = found[2].split(",")[0]
-    return f"{found[1]} ({unit})" if len(unit) <= 2 and not unit.lstrip("-").isdigit() else found[1]
+    unit = match[2].split(",")[0]
+    return f"{match[1]} ({unit})" if len(unit) <= 2 and not unit.lstrip("-").isdigit() else match[1]
 
 
 def widget_of(column: Any) -> QgsEditorWidgetSetup | None:
@@ -164,21 +164,21 @@ def widget_of(column: Any) -> QgsEditorWidgetSetup | None:
 def title_of(output: str, fields: set[str]) -> str:
     """The display expression of a result, of the pieces whose fields the layer has; "" where there is none."""
     parts = _parts()
-    wanted = re.findall(r"{(\w+)}", TITLES.get(output, ""))
-    found = [parts[name][0] for name in wanted if set(parts[name][1]) <= fields]
+    names = re.findall(r"{(\w+)}", TITLES.get(output, ""))
+    pieces = [parts[name][0] for name in names if set(parts[name][1]) <= fields]
     # pieces without a value are left out together with their comma
-    return f"array_to_string(array_filter(array({', '.join(found)}), @element IS NOT NULL AND @element <> ''), ', ')" if found else ""
+    return f"array_to_string(array_filter(array({', '.join(pieces)}), @element IS NOT NULL AND @element <> ''), ', ')" if pieces else ""
 
 
 def map_tip(layer: QgsVectorLayer) -> str:
     """What a map tip shows: the title, where along the road, and a picture where the fields give one."""
     names = {field.name() for field in layer.fields()}
-    where = ""
+    location = ""
     if {"road", "station_m"} <= names:
         end = "|| coalesce(' – ' || format_number(\"end_m\", 1), '')" if "end_m" in names else ""
         road = _in_html('"road"')
-        where = f"<br>{tr('Road')} [% {road} %], {tr('station')} [% format_number(\"station_m\", 1) {end} %] m"
-    return f"<b>[% {_in_html(layer.displayExpression())} %]</b>{where}{tip_picture(names)}"
+        location = f"<br>{tr('Road')} [% {road} %], {tr('station')} [% format_number(\"station_m\", 1) {end} %] m"
+    return f"<b>[% {_in_html(layer.displayExpression())} %]</b>{location}{tip_picture(names)}"
 
 
 def _in_html(expression):

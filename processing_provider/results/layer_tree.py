@@ -38,16 +38,17 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
     """
     layer.setCustomProperty(OUTPUT, output)
     describe_origin(layer, run.provenance, output)
-    this = road_map_of(layer, project)
-    if this is None:
+    road_map = road_map_of(layer, project)
+    if road_map is None:
         return
-    former = [one for one in runs_of(project) if one.group is not None and one.survey == this.survey != "" and layer not in one.layers]
+    former = [earlier for earlier in runs_of(project)
+              if earlier.group is not None and earlier.survey == road_map.survey != "" and layer not in earlier.layers]
     if REPLACES_LAST_RUN.holds():
         _remove_former(layer, output, former, project)
     else:
-        _hide_former(output, this, former, project)
-    if output in IMAGES and this.group is not None:
-        _lay_under_map(layer, this, project)
+        _hide_former(output, road_map, former, project)
+    if output in IMAGES and road_map.group is not None:
+        _lay_under_map(layer, road_map, project)
 
 
 def _remove_former(layer, output, former, project):
@@ -80,12 +81,12 @@ def _lay_under_map(image, this, project):
     root = project.layerTreeRoot()
     for road_map in runs_of(project):
         lines = [layer for layer in map(road_map.layer, LINES) if layer is not None]
-        if road_map.group in (None, this.group) or not any(_overlap(image, one, project) for one in lines):
+        if road_map.group in (None, this.group) or not any(_overlap(image, line, project) for line in lines):
             continue
         below = {layer.id() for layer in map(road_map.layer, BELOW_IMAGES) if layer is not None}
-        places = [place for place, node in enumerate(road_map.group.children()) if QgsLayerTree.isLayer(node) and node.layerId() in below]
+        rows = [row for row, node in enumerate(road_map.group.children()) if QgsLayerTree.isLayer(node) and node.layerId() in below]
         node = root.findLayer(image.id())
-        road_map.group.insertChildNode(min(places, default=len(road_map.group.children())), node.clone())
+        road_map.group.insertChildNode(min(rows, default=len(road_map.group.children())), node.clone())
         this.group.removeChildNode(node)
         if not this.group.children():
             this.group.parent().removeChildNode(this.group)

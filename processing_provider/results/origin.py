@@ -39,22 +39,22 @@ def origin_of(layer: QgsMapLayer) -> Origin | None:
     """The last run of this program that a layer's metadata tell of; None of a layer that is not ours."""
     metadata = layer.metadata()
     lines = [*metadata.history(), *metadata.abstract().splitlines()]
-    told = [found for text in lines if (found := Provenance.of_sentence(text)) is not None]
-    if not told and layer.type() == Qgis.LayerType.Raster and layer.providerType() == "gdal":
+    runs = [run for text in lines if (run := Provenance.of_sentence(text)) is not None]
+    if not runs and layer.type() == Qgis.LayerType.Raster and layer.providerType() == "gdal":
         signed = signed_by(layer.source())
-        told = [] if signed is None else [(signed, IMAGES.get(signed.algorithm, ""))]
-    if not told:
+        runs = [] if signed is None else [(signed, IMAGES.get(signed.algorithm, ""))]
+    if not runs:
         return None
-    provenance, output = max(told, key=lambda one: one[0].ended)
+    provenance, output = max(runs, key=lambda one: one[0].ended)
     provenance = replace(provenance, warnings=tuple(provenance.warnings_among(lines)))
     return Origin(provenance, str(layer.customProperty(OUTPUT) or "") or output or _called(layer))
 
 
 def output_of(layer: QgsMapLayer) -> str:
     """The result that a layer is, such as ROAD_EDGES; "" of a layer that is not ours."""
-    known = layer.customProperty(OUTPUT)
-    origin = None if known else origin_of(layer)
-    return str(known) if known else "" if origin is None else origin.output
+    noted = layer.customProperty(OUTPUT)
+    origin = None if noted else origin_of(layer)
+    return str(noted) if noted else "" if origin is None else origin.output
 
 
 def _called(layer):

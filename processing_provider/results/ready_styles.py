@@ -30,19 +30,19 @@ def add_ready_styles(layer: QgsVectorLayer) -> None:
     manager = layer.styleManager()
     if not further or len(manager.styles()) > 1 or not layer.isSpatial():
         return
-    own = tr("By class")
-    manager.renameStyle(manager.currentStyle(), own)
+    class_style = tr("By class")
+    manager.renameStyle(manager.currentStyle(), class_style)
     for name, renderer in further:
         manager.addStyleFromLayer(name)
         manager.setCurrentStyle(name)
         layer.setRenderer(renderer(layer))
-    manager.setCurrentStyle(own)
+    manager.setCurrentStyle(class_style)
 
 
 def _by_status(layer):
-    found = layer.uniqueValues(layer.fields().lookupField("status"))
+    statuses = layer.uniqueValues(layer.fields().lookupField("status"))
     return QgsCategorizedSymbolRenderer("status", [QgsRendererCategory(value, _symbol(layer, colour), WORDS["status"][value])
-                                                   for value, colour in STATUS if value in found or not found])
+                                                   for value, colour in STATUS if value in statuses or not statuses])
 
 
 def _by_confidence(layer):

@@ -83,23 +83,23 @@ def road_maps(project: QgsProject, active: QgsMapLayer | None = None) -> list[Ro
 
 def road_map_of(layer: QgsMapLayer, project: QgsProject) -> RoadMap | None:
     """The run that a layer of a project belongs to; None of a layer that is not ours."""
-    return next((one for one in runs_of(project) if layer in one.layers), None)
+    return next((road_map for road_map in runs_of(project) if layer in road_map.layers), None)
 
 
 def runs_of(project: QgsProject) -> list[RoadMap]:
     """All runs of this program of which a project has layers, newest first."""
     nodes = [node for node in project.layerTreeRoot().findLayers() if node.layer() is not None]
-    ours = [(node, origin) for node in nodes if (origin := origin_of(node.layer())) is not None]
+    placed = [(node, origin) for node in nodes if (origin := origin_of(node.layer())) is not None]
     whole: dict[Any, Any] = {}  # group of the layer tree -> run in one call whose layers it holds
-    for node, origin in ours:
+    for node, origin in placed:
         if origin.provenance.algorithm in _whole_maps() and node.parent() is not project.layerTreeRoot():
             whole.setdefault(_id(node.parent()), _run_key(origin))
     runs: dict[Any, list] = {}
-    for node, origin in ours:
+    for node, origin in placed:
         in_one_call = origin.provenance.algorithm in _whole_maps()
         key = _run_key(origin) if in_one_call else whole.get(_id(node.parent())) or _place_key(node, project)
         runs.setdefault(key, []).append((node, origin))
-    return sorted((_road_map(found, project) for found in runs.values()), key=lambda one: one.provenance.ended, reverse=True)
+    return sorted((_road_map(entries, project) for entries in runs.values()), key=lambda one: one.provenance.ended, reverse=True)
 
 
 @cache
@@ -130,8 +130,8 @@ def _road_map(found, project):
     """The RoadMap of the (node of the layer tree, Origin) of one run."""
     newest: dict[str, Any] = {}
     for node, origin in found:
-        known = newest.get(origin.output)
-        if known is None or origin.provenance.ended > known[1].provenance.ended:
+        former = newest.get(origin.output)
+        if former is None or origin.provenance.ended > former[1].provenance.ended:
             newest[origin.output] = node, origin
     kept = [(node, origin) for node, origin in found if newest[origin.output][0] is node]
     in_one_call = [origin for _, origin in kept if origin.provenance.algorithm in _whole_maps()]
@@ -148,8 +148,8 @@ def _road_map(found, project):
 
 def _named(provenance):
     """The point clouds of a run: the files of folders and wildcards where they are still there, else the names."""
-    given = provenance.values.get(CLOUDS) or []
-    names = [str(name) for name in (given if isinstance(given, list) else [given])]
+    clouds = provenance.values.get(CLOUDS) or []
+    names = [str(name) for name in (clouds if isinstance(clouds, list) else [clouds])]
     try:
         return cloud_files(names, CLOUDS)
     except RoadExtractionError:
@@ -164,12 +164,12 @@ def clouds_of(road_map: RoadMap, project: QgsProject) -> tuple[list[str], list[s
     moved = next((str(layer.customProperty(MOVED)).split("\n") for layer in road_map.layers if layer.customProperty(MOVED)), None)
     named = moved or _named(road_map.provenance)
     folders = [folder for folder in {project.absolutePath(), *_folders(road_map.layers)} if folder]
-    there, gone = [], []
+    present, missing = [], []
     for name in named:
-        places = [Path(name), *(Path(folder) / part for folder in sorted(folders) for part in (name, Path(name).name))]
-        found = next((place for place in places if place.is_file() and (place.is_absolute() or folders)), None)
-        (gone.append(name) if found is None else there.append(str(found.absolute())))
-    return there, gone
+        paths = [Path(name), *(Path(folder) / part for folder in sorted(folders) for part in (name, Path(name).name))]
+        file = next((path for path in paths if path.is_file() and (path.is_absolute() or folders)), None)
+        (missing.append(name) if file is None else present.append(str(file.absolute())))
+    return present, missing
 
 
 def _folders(layers: Iterable[QgsMapLayer]):
@@ -182,8 +182,8 @@ def _folders(layers: Iterable[QgsMapLayer]):
 
 def clouds_lie_in(road_map: RoadMap, folder: str, project: QgsProject) -> list[str]:
     """Look for the point clouds of a road map in a folder and below, and remember those that are found; the names of those that are not."""
-    there, gone = clouds_of(road_map, project)
-    found = {name: next((str(path) for path in sorted(Path(folder).rglob(Path(name).name)) if path.is_file()), "") for name in gone}
-    for layer in road_map.layers if any(found.values()) else ():
-        layer.setCustomProperty(MOVED, "\n".join([*there, *(path or name for name, path in found.items())]))
-    return [name for name, path in found.items() if not path]
+    present, missing = clouds_of(road_map, project)
+    path_by_name = {name: next((str(path) for path in sorted(Path(folder).rglob(Path(name).name)) if path.is_file()), "") for name in missing}
+    for layer in road_map.layers if any(path_by_name.values()) else ():
+        layer.setCustomProperty(MOVED, "\n".join([*present, *(path or name for name, path in path_by_name.items())]))
+    return [name for name, path in path_by_name.items() if not path]

@@ -54,14 +54,14 @@ def last_run() -> RunRecord | None:
 
 def run_tables() -> list[tuple[str, list[str], list[list[Any]]]]:
     """(title, head, rows) of a table for every algorithm, with a row for each of its runs since QGIS was started."""
-    found = []
+    tables = []
     for title in dict.fromkeys(run.title for run in _runs):
         runs = [run for run in _runs if run.title == title]
         labels = list(dict.fromkeys(label for run in runs for label in run.numbers))
         rows = [[f"{run.began:%Y-%m-%d %H:%M:%S}", run.survey or "–", *(run.numbers.get(label, "–") for label in labels),
                  round(run.seconds, 1), run.failure or "–"] for run in runs]
-        found.append((title, [tr("Begun"), tr("Survey"), *labels, tr("Duration (s)"), tr("Failed")], rows))
-    return found
+        tables.append((title, [tr("Begun"), tr("Survey"), *labels, tr("Duration (s)"), tr("Failed")], rows))
+    return tables
 
 
 def run_table() -> str:

@@ -151,9 +151,9 @@ def assess_boundaries(result: Sequence[Any], reference: Sequence[Any], settings:
     result_lines, result_owner = single_lines(result)
     reference_lines, reference_owner = single_lines(reference)
     excluded_lines, excluded_owner = single_lines(excluded)
-    known = None if sides is None else [{"left": 1, "right": -1}.get(sides[k] or "", 0) for k in reference_owner]
-    known = known if known and any(known) else None
-    along = TrajectoryStationing(frame, settings.corridor) if frame is not None else ReferenceStationing(reference_lines, known)
+    signs = None if sides is None else [{"left": 1, "right": -1}.get(sides[k] or "", 0) for k in reference_owner]
+    signs = signs if signs and any(signs) else None
+    along = TrajectoryStationing(frame, settings.corridor) if frame is not None else ReferenceStationing(reference_lines, signs)
     reference_index, excluded_index = SegmentIndex(reference_lines), SegmentIndex(excluded_lines)
     result_points = sample_lines(result_lines).inside(area)
     # an excluded line counts only where no judged line is nearer, so both are searched
@@ -189,11 +189,11 @@ def _intervals(placed, step):
     sizes = np.cumsum([len(stations.unit) for stations in placed])
     unit, side = (np.concatenate([getattr(stations, name) for stations in placed]) for name in ("unit", "side"))
     station = np.concatenate([stations.station for stations in placed])
-    known = (unit >= 0) & np.isfinite(station)
-    number = np.where(known, np.floor(np.nan_to_num(station) / step), 0).astype(int)
-    keys, inverse = np.unique(np.c_[unit, side, number][known], axis=0, return_inverse=True)
+    valid = (unit >= 0) & np.isfinite(station)
+    number = np.where(valid, np.floor(np.nan_to_num(station) / step), 0).astype(int)
+    keys, inverse = np.unique(np.c_[unit, side, number][valid], axis=0, return_inverse=True)
     rows = np.full(len(unit), -1)
-    rows[known] = inverse.ravel()
+    rows[valid] = inverse.ravel()
     return keys, np.split(rows, sizes[:-1])
 
 
@@ -204,8 +204,8 @@ def _judge(keys, groups, nearest, signed, settings, reasons):
     rows = result_group.interval[inside]
     number, distance = np.bincount(rows, minlength=count), nearest.distance[inside]
     covered = np.bincount(_bins(result_group)[0], minlength=count) * COVERAGE_BIN
-    known = reference_group.interval >= 0
-    reference = np.bincount(reference_group.interval[known], reference_group.points.length[known], count)
+    valid = reference_group.interval >= 0
+    reference = np.bincount(reference_group.interval[valid], reference_group.points.length[valid], count)
     has, partial = reference >= settings.coverage * step, (reference > 0) & (reference < settings.coverage * step)
     why = np.full(count, "", object)
     why[partial] = "the reference covers less than half of the interval"
@@ -231,18 +231,18 @@ def _judge(keys, groups, nearest, signed, settings, reasons):
 
 
 def _mean(rows, values, count):
-    known = np.isfinite(values)
-    total = np.bincount(rows[known], values[known], count)
+    finite = np.isfinite(values)
+    total = np.bincount(rows[finite], values[finite], count)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return total / np.bincount(rows[known], minlength=count)
+        return total / np.bincount(rows[finite], minlength=count)
 
 
 def _bins(group):
     """(interval, a point in it) of every tenth of a metre of station in which the group has a point."""
-    known = np.flatnonzero(group.interval >= 0)
-    pairs = np.c_[group.interval[known], np.floor(group.stations.station[known] / COVERAGE_BIN).astype(int)]
-    found, first = np.unique(pairs, axis=0, return_index=True) if len(known) else (pairs, known)
-    return found[:, 0], found[:, 1], known[first]
+    rows = np.flatnonzero(group.interval >= 0)
+    pairs = np.c_[group.interval[rows], np.floor(group.stations.station[rows] / COVERAGE_BIN).astype(int)]
+    cells, first = np.unique(pairs, axis=0, return_index=True) if len(rows) else (pairs, rows)
+    return cells[:, 0], cells[:, 1], rows[first]
 
 
 def _excluded(reference_group, excluded_group, count, step):
@@ -284,10 +284,10 @@ def interval_lines(accuracy: BoundaryAccuracy, tolerance: float) -> Iterator[tup
     table, k = accuracy.intervals, accuracy.settings.tolerances.index(tolerance)
     outcome = np.where(table.excluded != "", "excluded", np.where(table.hit[:, k], "correct", np.where(table.judged, "missed", "")))
     drawn = _by_interval(accuracy.reference_group)
-    beside = _by_interval(accuracy.excluded_group)
+    excluded = _by_interval(accuracy.excluded_group)
     result = _by_interval(accuracy.result_group)
     for row in range(len(table.unit)):
-        shape = beside.get(row, []) + drawn.get(row, []) if outcome[row] == "excluded" else drawn.get(row, [])
+        shape = excluded.get(row, []) + drawn.get(row, []) if outcome[row] == "excluded" else drawn.get(row, [])
         if outcome[row] and shape:
             yield str(outcome[row]), row, _joined(shape)
         if table.false[row, k] and row in result:
@@ -296,11 +296,11 @@ def interval_lines(accuracy: BoundaryAccuracy, tolerance: float) -> Iterator[tup
 
 def _by_interval(group):
     first, last = constant_runs(group.points, group.interval)
-    found = {}
+    pieces = {}
     for row, piece in zip(group.interval[first], cut_runs(group.lines, group.points, first, last)):
         if row >= 0:
-            found.setdefault(int(row), []).append(piece)
-    return found
+            pieces.setdefault(int(row), []).append(piece)
+    return pieces
 
 
 def _joined(pieces):

@@ -39,12 +39,12 @@ class LineAccuracySettings:
 
 def checked_tolerances(tolerances: Sequence[float], one: float, largest: float) -> tuple[float, ...]:
     """All tolerances with the one that is drawn, sorted, metres; RoadExtractionError where one is below a millimetre or above `largest`."""
-    found = tuple(sorted({*tolerances, one}))
-    if not all(0.001 <= t <= largest for t in found):
-        said = ", ".join(f"{t:g}" for t in found)
+    checked = tuple(sorted({*tolerances, one}))
+    if not all(0.001 <= t <= largest for t in checked):
+        text = ", ".join(f"{t:g}" for t in checked)
         raise RoadExtractionError(
-            f"The tolerances are {said}; give lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
-    return found
+            f"The tolerances are {text}; give lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
+    return checked
 
 
 @dataclass(frozen=True)
@@ -120,9 +120,9 @@ class LineMatch:
         complete, correct, quality, gaps, mean_gap = {}, {}, {}, {}, {}
         for tolerance in tolerances:
             right = self.result_points.length[of_result & (self.to_reference <= tolerance)].sum()
-            found = self.reference_points.length[of_reference & (self.to_result <= tolerance)].sum()
-            complete[tolerance], correct[tolerance] = _share(found, reference_length), _share(right, length)
-            quality[tolerance] = _share(right, length + reference_length - found)
+            matched = self.reference_points.length[of_reference & (self.to_result <= tolerance)].sum()
+            complete[tolerance], correct[tolerance] = _share(matched, reference_length), _share(right, length)
+            quality[tolerance] = _share(right, length + reference_length - matched)
             long = self._gaps(tolerance, of_reference)
             gaps[tolerance] = _share(1000.0 * len(long), reference_length)
             mean_gap[tolerance] = float(np.mean(long)) if len(long) else 0.0

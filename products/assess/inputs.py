@@ -43,8 +43,8 @@ class AssessedLayer:
 
     def column(self, name: str) -> list[Any]:
         """Values of a field, None where the layer or the row has none; the case of the name is ignored."""
-        found = next((key for row in self.rows[:1] for key in row if key.lower() == name.lower()), None)
-        return [None if found is None else row.get(found) for row in self.rows]
+        field = next((key for row in self.rows[:1] for key in row if key.lower() == name.lower()), None)
+        return [None if field is None else row.get(field) for row in self.rows]
 
     def subset(self, mask: np.ndarray) -> AssessedLayer:
         """The rows of a (N,) bool mask."""
@@ -55,8 +55,8 @@ class AssessedLayer:
 def check_kind(layer: AssessedLayer, kinds: Sequence[str], needed: str) -> None:
     """Refuse, with RoadExtractionError, a layer with other geometries than these kinds, such as "LineString"; `needed` says what they are."""
     names = {"Point": "points", "LineString": "lines", "Polygon": "polygons"}
-    found = {g.geom_type.removeprefix("Multi") for g in layer.geometries}
-    wrong = sorted(names.get(kind, kind) for kind in found - set(kinds))
+    present = {g.geom_type.removeprefix("Multi") for g in layer.geometries}
+    wrong = sorted(names.get(kind, kind) for kind in present - set(kinds))
     if wrong:
         raise RoadExtractionError(f"{layer.label} holds {', '.join(wrong)}; {needed} are needed. Choose another layer.")
 
@@ -292,9 +292,9 @@ def _width(*candidates):
 def classes_of(layer: AssessedLayer, name: str) -> list[Any] | None:
     """The class of every row, from the field of this name, or mark_class, or kind; None without any."""
     for candidate in (name, "mark_class", "kind"):
-        found = layer.column(candidate) if candidate else []
-        if any(value is not None for value in found):
-            return found
+        values = layer.column(candidate) if candidate else []
+        if any(value is not None for value in values):
+            return values
     return None
 
 
@@ -321,16 +321,16 @@ def polygons_of_raster(path: str, progress: Progress = Progress()) -> tuple[list
         layer.CreateField(ogr.FieldDefn("value", ogr.OFTInteger))
         band = values.GetRasterBand(1)
         _polygonize(band, layer, progress.part(0.7, 1.0))
-        found, kinds = [], []
+        polygons, kinds = [], []
         for feature in layer:
-            found.append(shapely.from_wkb(bytes(feature.GetGeometryRef().ExportToWkb())))
+            polygons.append(shapely.from_wkb(bytes(feature.GetGeometryRef().ExportToWkb())))
             kinds.append(feature.GetField(0))
         values = band = None
     finally:
         gdal.Unlink(copy)
     crs = raster.GetProjection()
     # patches that touch themselves at a corner are no valid polygons
-    return list(shapely.make_valid(np.asarray(found, object))) if found else [], np.array(kinds, int), crs
+    return list(shapely.make_valid(np.asarray(polygons, object))) if polygons else [], np.array(kinds, int), crs
 
 
 def _polygonize(band, layer, progress):

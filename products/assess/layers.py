@@ -73,10 +73,10 @@ def _why_piece(outcome, distance, settings):
     limit = f"{100 * settings.tolerance:g} cm"
     if outcome == "correct":
         return f"within {limit} of the reference"
-    other = "result" if outcome == "missed" else "reference"
+    counterpart = "result" if outcome == "missed" else "reference"
     if not (distance <= MAX_MATCH_DISTANCE).any():
-        return f"no line of the {other} within {100 * MAX_MATCH_DISTANCE:.0f} cm that runs the same way"
-    return f"the {other} is up to {100 * distance[distance <= MAX_MATCH_DISTANCE].max():.0f} cm away"
+        return f"no line of the {counterpart} within {100 * MAX_MATCH_DISTANCE:.0f} cm that runs the same way"
+    return f"the {counterpart} is up to {100 * distance[distance <= MAX_MATCH_DISTANCE].max():.0f} cm away"
 
 
 def marking_layer(accuracy: MarkingAccuracy, result: Sequence[Any], reference: Sequence[Any], result_classes: Sequence[Any] | None,

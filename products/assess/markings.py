@@ -35,8 +35,8 @@ class MarkingAccuracySettings:
         check_limits(self)
         tolerances = tuple(sorted({0, self.tolerance, *self.tolerances}))
         if any(t != int(t) or not 0 <= t <= 10 for t in tolerances):
-            said = ", ".join(f"{t:g}" for t in tolerances)
-            raise RoadExtractionError(f"The tolerances are {said}; give whole numbers of cells from 0 to 10, such as 0, 1.")
+            text = ", ".join(f"{t:g}" for t in tolerances)
+            raise RoadExtractionError(f"The tolerances are {text}; give whole numbers of cells from 0 to 10, such as 0, 1.")
         object.__setattr__(self, "tolerances", tuple(int(t) for t in tolerances))
 
 
@@ -133,8 +133,8 @@ def assess_markings(result: Sequence[Any], reference: Sequence[Any], settings: M
         bounds = _tile_bounds(tile, settings.cell_size, margin)
         result_ids, reference_ids = (burner.burn(bounds, shape) for burner in burners)
         judged = np.logical_and.reduce([raster.burn(bounds, shape)[inner, inner] > 0 for raster in valid]) if valid else True
-        beside = {t: [_dilated(ids > 0, t)[inner, inner] for ids in (result_ids, reference_ids)] for t in settings.tolerances}
-        values = counts.add(result_ids[inner, inner], reference_ids[inner, inner], beside, judged)
+        widened = {t: [_dilated(ids > 0, t)[inner, inner] for ids in (result_ids, reference_ids)] for t in settings.tolerances}
+        values = counts.add(result_ids[inner, inner], reference_ids[inner, inner], widened, judged)
         counts.add_blocks(values, tile, settings.cell_size)
         if outcome_raster is not None and values.any():
             outcome_raster.write(tile, values)
@@ -162,17 +162,17 @@ class _CellCounts:
             self.cells[tolerance] += near_reference[r].sum(), near_result[t].sum()
         near_result, near_reference = beside[self.tolerance]
         right, right_beside = reference_ids[r] > 0, near_reference[r]
-        found, found_beside = result_ids[t] > 0, near_result[t]
+        detected, detected_beside = result_ids[t] > 0, near_result[t]
         _add(self.result_cells, m), _add(self.result_right, m[right_beside])
-        _add(self.reference_cells, k), _add(self.reference_found, k[found_beside])
+        _add(self.reference_cells, k), _add(self.reference_found, k[detected_beside])
         rc, tc = self.result_class[m], self.reference_class[k]
-        for row, values in enumerate((tc, tc[found], tc[found_beside], rc, rc[right], rc[right_beside],
+        for row, values in enumerate((tc, tc[detected], tc[detected_beside], rc, rc[right], rc[right_beside],
                                       rc[right][rc[right] == self.reference_class[reference_ids[r][right]]])):
             _add(self.by_class[row], values)
         values = np.zeros(result_ids.shape, np.uint8)
         values[r] = np.where(right, HIT, np.where(right_beside, FALSE_BESIDE, FALSE))
-        lost = ~found
-        values[t[0][lost], t[1][lost]] = np.where(found_beside[lost], MISSED_BESIDE, MISSED)
+        lost = ~detected
+        values[t[0][lost], t[1][lost]] = np.where(detected_beside[lost], MISSED_BESIDE, MISSED)
         return values
 
     def add_blocks(self, values, tile, cell_size):
@@ -188,7 +188,8 @@ class _CellCounts:
 
     def accuracy(self, classes, settings):
         result_ids, reference_ids = self.totals.tolist()
-        rates = {t: Rates(int(right), result_ids - int(right), reference_ids - int(found), int(found)) for t, (right, found) in self.cells.items()}
+        rates = {t: Rates(int(right), result_ids - int(right), reference_ids - int(detected), int(detected))
+                 for t, (right, detected) in self.cells.items()}
         by_class = {name: _ClassAccuracy(*self.by_class[:, number].tolist()) for number, name in enumerate(classes, start=1)}
         objects = [self.reference_cells[1:], self.reference_found[1:], self.result_cells[1:], self.result_right[1:]]
         was_found, was_right = (_outcome(objects[k], objects[k + 1], settings.found_share, "wrong") for k in (0, 2))
@@ -217,8 +218,8 @@ def _add(counts, numbers):
 
 
 def _outcome(cells, good, share, otherwise):
-    found = np.where(good >= share * cells, "correct", otherwise)
-    return np.where(cells > 0, found, "excluded")
+    outcome = np.where(good >= share * cells, "correct", otherwise)
+    return np.where(cells > 0, outcome, "excluded")
 
 
 # Polygons rasterised in tiles of small cells, on one grid through the map's origin, and the raster of outcomes.
@@ -284,19 +285,19 @@ class _DataMask:
         row = np.floor(self._inverse[3] + self._inverse[5] * y).astype(int)
         column_inside = (column >= 0) & (column < self._raster.RasterXSize)
         row_inside = (row >= 0) & (row < self._raster.RasterYSize)
-        found = np.zeros(shape, bool)
+        burnt = np.zeros(shape, bool)
         if not column_inside.any() or not row_inside.any():
-            return found
+            return burnt
         column, row = column[column_inside], row[row_inside]
         first, above = int(column.min()), int(row.min())
         wide, high = int(column.max()) - first + 1, int(row.max()) - above + 1
         band = self._raster.GetRasterBand(1)
         data = np.frombuffer(band.ReadRaster(first, above, wide, high, buf_type=gdal.GDT_Float64), np.float64).reshape(high, wide)
-        known = np.isfinite(data)
+        filled = np.isfinite(data)
         if band.GetNoDataValue() is not None:
-            known &= data != band.GetNoDataValue()
-        found[np.ix_(row_inside, column_inside)] = known[np.ix_(row - above, column - first)]
-        return found
+            filled &= data != band.GetNoDataValue()
+        burnt[np.ix_(row_inside, column_inside)] = filled[np.ix_(row - above, column - first)]
+        return burnt
 
 
 def _covering_tiles(polygons: Sequence[Any], cell_size: float, margin: int) -> list[tuple[int, int]]:
@@ -306,10 +307,10 @@ def _covering_tiles(polygons: Sequence[Any], cell_size: float, margin: int) -> l
     if len(polygons):
         bounds = shapely.bounds(np.asarray(polygons, object)) + margin * cell_size * np.array([-1, -1, 1, 1])
         low, high = np.floor(bounds[:, :2] / side).astype(int), np.floor(bounds[:, 2:] / side).astype(int)
-    found: set[tuple[int, int]] = set()
+    tiles: set[tuple[int, int]] = set()
     for (a, b), (c, d) in zip(low.tolist(), high.tolist()):
-        found.update((column, row) for column in range(a, c + 1) for row in range(b, d + 1))
-    return sorted(found)
+        tiles.update((column, row) for column in range(a, c + 1) for row in range(b, d + 1))
+    return sorted(tiles)
 
 
 def _tile_bounds(tile: tuple[int, int], cell_size: float, margin: int = 0) -> tuple[float, float, float, float]:

@@ -76,14 +76,14 @@ def cut_runs(lines: Sequence[shapely.LineString], points: LinePoints, first: np.
     """The pieces of the lines from the first to the last point of each run of `constant_runs`."""
     start = points.station[first] - points.length[first] / 2
     end = points.station[last] + points.length[last] / 2
-    found = []
+    pieces = []
     vertices: dict[int, tuple[np.ndarray, np.ndarray]] = {}
     for k, a, b in zip(points.line[first].tolist(), start.tolist(), end.tolist()):
         if k not in vertices:
             xyz = shapely.get_coordinates(lines[k], include_z=shapely.has_z(lines[k]))
             vertices[k] = xyz, np.r_[0.0, np.cumsum(np.hypot(*np.diff(xyz[:, :2], axis=0).T))]
-        found.append(_cut(*vertices[k], a, b))
-    return found
+        pieces.append(_cut(*vertices[k], a, b))
+    return pieces
 
 
 def _cut(points, along, start, end):
@@ -153,8 +153,8 @@ class ReferenceStationing:
     def of_result(self, points: LinePoints, nearest: NearestPoints) -> Stations:
         """Stations of points of the result; `nearest`: their nearest points on the reference."""
         # what lies beyond the end of a line is not beside it
-        beside = (nearest.station > 1e-6) & (nearest.station < self.length[nearest.line] - 1e-6) if self.count else False
-        near = (nearest.distance <= MAX_BESIDE_DISTANCE) & beside
+        abreast = (nearest.station > 1e-6) & (nearest.station < self.length[nearest.line] - 1e-6) if self.count else False
+        near = (nearest.distance <= MAX_BESIDE_DISTANCE) & abreast
         side = np.where(nearest.line >= 0, self.side[nearest.line] if self.count else 0, 0)
         return Stations(np.where(near, nearest.line, self.count + points.line), np.where(near, nearest.station, points.station),
                         side, np.full(len(points), np.nan))

@@ -87,11 +87,11 @@ class Errors:
     def of(cls, values: np.ndarray, weights: np.ndarray | None = None) -> Errors:
         """Errors of (N,) signed deviations with (N,) weights (lengths); non-finite deviations are ignored."""
         values = np.asarray(values, float)
-        known = np.isfinite(values)
-        if not known.any():
+        finite = np.isfinite(values)
+        if not finite.any():
             return cls(0, NAN, NAN, NAN, NAN)
-        values = values[known]
-        weights = np.ones(len(values)) if weights is None else np.asarray(weights, float)[known]
+        values = values[finite]
+        weights = np.ones(len(values)) if weights is None else np.asarray(weights, float)[finite]
         size = np.abs(values)
         order = np.argsort(size, kind="stable")
         reached = np.cumsum(weights[order]) / weights.sum()

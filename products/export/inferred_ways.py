@@ -66,7 +66,7 @@ def _junctions(lanes):
     for a in range(len(ways)):
         for b in range(a):
             if group[a] != group[b] and _touch(areas[a], areas[b]):
-                group = [group[b] if one == group[a] else one for one in group]
+                group = [group[b] if member == group[a] else member for member in group]
     return [[ways[k] for k in np.flatnonzero(np.array(group) == number)] for number in sorted(set(group)) if group.count(number) > 1]
 
 
@@ -107,24 +107,24 @@ def _arm(lanes, row, end):
     """Rows of the lanes of one direction that end (end -1) or begin (0) beside one, from right to left."""
     heading, place = _heading(lanes, row, end), _place(lanes, row, end)
     along, across = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])
-    found = []
+    members = []
     for k in np.flatnonzero((lanes.type == "driving") & (lanes.road == lanes.road[row]) & (lanes.direction == lanes.direction[row])).tolist():
-        away = _place(lanes, k, end) - place
-        if abs(away @ along) < ARM_DEPTH and abs(away @ across) < ARM_WIDTH and abs(wrapped(_heading(lanes, k, end) - heading)) < HEADED_ALIKE:
-            found.append((float(away @ across), k))
-    return [k for _, k in sorted(found)]
+        offset = _place(lanes, k, end) - place
+        if abs(offset @ along) < ARM_DEPTH and abs(offset @ across) < ARM_WIDTH and abs(wrapped(_heading(lanes, k, end) - heading)) < HEADED_ALIKE:
+            members.append((float(offset @ across), k))
+    return [k for _, k in sorted(members)]
 
 
 def _is_led_to(lanes, starts, goals):
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
-    waiting, seen = deque(starts), set(starts)
+    waiting, visited = deque(starts), set(starts)
     while waiting:
         row = waiting.popleft()
         if row in goals:
             return True
         for name in lanes.successors[row]:
-            if row_of[name] not in seen:
-                seen.add(row_of[name])
+            if row_of[name] not in visited:
+                visited.add(row_of[name])
                 waiting.append(row_of[name])
     return False
 
@@ -144,18 +144,18 @@ def _joined(first, last):
     # places of the last way beside those of the first one, as fractions of its rows
     line = shapely.linestrings(middles[1])
     lengths = np.append(0.0, np.cumsum(np.hypot(*np.diff(middles[1], axis=0).T)))
-    at = shapely.line_locate_point(line, shapely.points(middles[0][rows]))
-    rows, at = rows[np.append(True, np.diff(at) > 0)], at[np.append(True, np.diff(at) > 0)]
-    if len(rows) < 2 or rows[0] == 0 or (np.diff(at) <= 0).any():
+    stations = shapely.line_locate_point(line, shapely.points(middles[0][rows]))
+    rows, stations = rows[np.append(True, np.diff(stations) > 0)], stations[np.append(True, np.diff(stations) > 0)]
+    if len(rows) < 2 or rows[0] == 0 or (np.diff(stations) <= 0).any():
         return None
     share = ((along[rows] - along[rows[0]]) / (along[rows[-1]] - along[rows[0]]))[:, None]
     share = share**2 * (3 - 2 * share)
-    rest = lengths > at[-1] + WAY_STEP / 2
-    found = []
-    for one, other in zip(first, last):
-        beside = np.stack([np.interp(at, lengths, column) for column in other.T], axis=1)
-        found.append(np.concatenate([one[:rows[0]], one[rows] * (1 - share) + beside * share, other[rest]]))
-    return tuple(found)
+    rest = lengths > stations[-1] + WAY_STEP / 2
+    borders = []
+    for border, last_border in zip(first, last):
+        goal = np.stack([np.interp(stations, lengths, column) for column in last_border.T], axis=1)
+        borders.append(np.concatenate([border[:rows[0]], border[rows] * (1 - share) + goal * share, last_border[rest]]))
+    return tuple(borders)
 
 
 def _curved(lanes, entry, exit):
@@ -171,15 +171,15 @@ def _curved(lanes, entry, exit):
     ahead = np.gradient(middle, axis=0)
     across = np.c_[-ahead[:, 1], ahead[:, 0]] / np.hypot(*ahead.T)[:, None]
     corners = [[border[end] for border in lanes.borders(row)] for row, end in ((entry, -1), (exit, 0))]
-    found = []
+    borders = []
     for side, sign in ((0, 1), (1, -1)):
         half = [float(np.hypot(*(corner[0] - corner[1])[:2])) / 2 for corner in corners]
         line = np.c_[middle + sign * across * (half[0] * (1 - c) + half[1] * c), np.zeros(len(u))]
         # the last places are the corners of the lanes themselves
         line[:, :2] += (1 - c) * (corners[0][side] - line[0])[:2] + c * (corners[1][side] - line[-1])[:2]
         line[:, 2] = (corners[0][side][2] * (1 - c) + corners[1][side][2] * c)[:, 0]
-        found.append(line)
-    return tuple(found)
+        borders.append(line)
+    return tuple(borders)
 
 
 def _is_drivable(left, right):
@@ -199,12 +199,12 @@ def _with_connector(lanes, entry, exit, left, right):
     road = int(lanes.road[entry])
     number = int(lanes.lane[lanes.road == road].max()) + 1
     name = f"{road}.{number}.1"
-    own = {"road": road, "lane": number, "lane_id": name, "type": "connector", "direction": int(lanes.direction[entry]), "left_line": "none",
-           "right_line": "none", "left_kind": "none", "right_kind": "none", "left_pattern": "", "right_pattern": "", "status": "inferred",
-           "confidence": UNDRIVEN_CONFIDENCE * float(min(lanes.confidence[entry], lanes.confidence[exit])), "station": float(lanes.end[entry]),
-           "end": float(lanes.end[entry]), "other": ""}
+    values = {"road": road, "lane": number, "lane_id": name, "type": "connector", "direction": int(lanes.direction[entry]), "left_line": "none",
+              "right_line": "none", "left_kind": "none", "right_kind": "none", "left_pattern": "", "right_pattern": "", "status": "inferred",
+              "confidence": UNDRIVEN_CONFIDENCE * float(min(lanes.confidence[entry], lanes.confidence[exit])), "station": float(lanes.end[entry]),
+              "end": float(lanes.end[entry]), "other": ""}
     columns = {}
-    for field, value in own.items():
+    for field, value in values.items():
         column = getattr(lanes, field)
         columns[field] = np.append(column, np.array([value], column.dtype))
     successors = [(*names, name) if k == entry else names for k, names in enumerate(lanes.successors)]

@@ -104,9 +104,9 @@ class _Drafting:
         cuts = cuts_beside(lanes, self.left, self.right, np.repeat(np.isin(np.arange(len(lanes)), used), np.diff(lanes.start)))
         for k in used:
             first = lanes.start[k]
-            at = [first, *(row for row in range(first + 1, lanes.start[k + 1] - 1) if self.left[row] in cuts or self.right[row] in cuts),
-                  lanes.start[k + 1] - 1]
-            for a, b in zip(at[:-1], at[1:]):
+            bounds = [first, *(row for row in range(first + 1, lanes.start[k + 1] - 1) if self.left[row] in cuts or self.right[row] in cuts),
+                      lanes.start[k + 1] - 1]
+            for a, b in zip(bounds[:-1], bounds[1:]):
                 self._lanelet(k, slice(a, b + 1))
         self._objects()
         return self.draft
@@ -214,20 +214,20 @@ def to_degrees(places: np.ndarray, crs: str) -> Degrees:
     """
     from pyproj.transformer import Transformer, TransformerGroup
 
-    known = parse_crs(crs)
-    if known is None and np.abs(places[:, :2]).max(initial=0.0) < SQUARE:
+    parsed = parse_crs(crs)
+    if parsed is None and np.abs(places[:, :2]).max(initial=0.0) < SQUARE:
         lon, lat = Transformer.from_crs(LOCAL_CRS, "EPSG:4326", always_xy=True).transform(places[:, 0], places[:, 1])
         return Degrees(np.c_[lon, lat], "local coordinates about latitude and longitude 0", -1.0, NO_VERTICAL, True)
-    if known is None:
+    if parsed is None:
         raise RoadExtractionError("The layer of lanes has no CRS, so its latitude and longitude are unknown. Set the CRS of the layer and run again.")
-    found = TransformerGroup(horizontal_part(known), "EPSG:4326", always_xy=True).transformers[0]
-    lon, lat = found.transform(places[:, 0], places[:, 1])
+    transformer = TransformerGroup(horizontal_part(parsed), "EPSG:4326", always_xy=True).transformers[0]
+    lon, lat = transformer.transform(places[:, 0], places[:, 1])
     if not (np.isfinite(lon).all() and np.isfinite(lat).all()):
-        raise RoadExtractionError(f"The lanes do not lie where their CRS {horizontal_part(known).name} holds. Check the CRS of the layer.")
-    vertical = known.sub_crs_list[-1].name if known.is_compound else NO_VERTICAL
+        raise RoadExtractionError(f"The lanes do not lie where their CRS {horizontal_part(parsed).name} holds. Check the CRS of the layer.")
+    vertical = parsed.sub_crs_list[-1].name if parsed.is_compound else NO_VERTICAL
     if as_in_file(crs)[1].up != 1.0:
         vertical += ", in metres"
-    return Degrees(np.c_[lon, lat], found.description, found.accuracy if found.accuracy is not None else -1.0, vertical)
+    return Degrees(np.c_[lon, lat], transformer.description, transformer.accuracy if transformer.accuracy is not None else -1.0, vertical)
 
 
 def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) -> str:

@@ -36,8 +36,8 @@ class Lanelet:
 
     def way(self, role: str) -> int | None:
         """The id of the only way of a role, None where there is none or more than one."""
-        found = [id for kind, id in self.members.get(role, ()) if kind == "way"]
-        return found[0] if len(found) == 1 else None
+        ids = [id for kind, id in self.members.get(role, ()) if kind == "way"]
+        return ids[0] if len(ids) == 1 else None
 
 
 @dataclass
@@ -119,24 +119,24 @@ class LaneletNetwork:
 
     def following(self, id: int) -> list[int]:
         """Lanelets that begin with the two nodes at which this one ends."""
-        return [other for other in self._starts.get(self.ends(id)[1], ()) if other != id]
+        return [next_id for next_id in self._starts.get(self.ends(id)[1], ()) if next_id != id]
 
     def head_on(self) -> list[tuple[int, int]]:
         """Pairs of lanelets that end, or begin, on the same two nodes from either side: no traffic flows so."""
-        found = []
+        pairs = []
         for end in (0, 1):
-            at = defaultdict(list)
+            by_nodes = defaultdict(list)
             for id in self.left:
-                at[self.ends(id)[end]].append(id)
-            for (left, right), ids in at.items():
+                by_nodes[self.ends(id)[end]].append(id)
+            for (left, right), ids in by_nodes.items():
                 if left < right:
-                    found += [(id, other) for id in ids for other in at.get((right, left), ())]
-        return found
+                    pairs += [(id, opposite) for id in ids for opposite in by_nodes.get((right, left), ())]
+        return pairs
 
     def beside(self, id: int) -> list[int]:
         """Lanelets that share a border with this one."""
         lanelet = self.whole.lanelets[id]
-        return [other for role in ("left", "right") for other, _ in self._by_border[lanelet.way(role)] if other != id]
+        return [neighbour for role in ("left", "right") for neighbour, _ in self._by_border[lanelet.way(role)] if neighbour != id]
 
     def driven(self, id: int) -> bool:
         """Whether vehicles use it."""
@@ -166,10 +166,10 @@ ALL_IDS = 2**64   # of 64 bits; without a sign, as some programs write them, the
 
 def read_lanelet2(path: str, progress: Progress = Progress()) -> LaneletMap:
     """Read an .osm file; RoadExtractionError if it is no map of this kind, hostile, or has no lanelet."""
-    found = _lanelets_of(read_xml(path, "osm", OSM_KIND, progress))
-    if not found.lanelets:
+    whole = _lanelets_of(read_xml(path, "osm", OSM_KIND, progress))
+    if not whole.lanelets:
         raise RoadExtractionError(f"{path} has no relation of type lanelet. Maps of OpenStreetMap have roads without lanes; choose a Lanelet2 map.")
-    return found
+    return whole
 
 
 def _lanelets_of(root: XmlElement) -> LaneletMap:
@@ -177,7 +177,7 @@ def _lanelets_of(root: XmlElement) -> LaneletMap:
     ids, places, local, twice, ways = [], [], [], [], {}
     tags_twice: list[tuple[str, int, str]] = []
     lanelets: dict[int, Lanelet] = {}
-    others: dict[int, Lanelet] = {}
+    relations: dict[int, Lanelet] = {}
     seen = set()
     for element in root.children:
         if element.tag not in ("node", "way", "relation") or element.get("action") == "delete":
@@ -195,11 +195,11 @@ def _lanelets_of(root: XmlElement) -> LaneletMap:
         elif element.tag == "way":
             ways[id] = Way(id, [_id(child, "ref") for child in element.all("nd")], tags, element.line)
         else:
-            (lanelets if tags.get("type") == "lanelet" else others)[id] = Lanelet(id, tags, _members(element), element.line)
+            (lanelets if tags.get("type") == "lanelet" else relations)[id] = Lanelet(id, tags, _members(element), element.line)
     places_array = np.array(places, float).reshape(-1, 3)
     _check_degrees(places_array, ids)
     return LaneletMap(np.array(ids, np.int64), places_array[:, :2], places_array[:, 2], np.array(local, float).reshape(-1, 2), ways, lanelets,
-                      others, twice, tags_twice)
+                      relations, twice, tags_twice)
 
 
 def _repeated_tags(element, tags):
@@ -281,14 +281,15 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
     """
     from pyproj import Transformer
 
-    known = np.isfinite(whole.degrees).all(1)
+    located = np.isfinite(whole.degrees).all(1)
     heights = np.nan_to_num(whole.heights)
-    at_sea = known.any() and np.abs(whole.degrees[known]).max() < NO_LAND
-    if not known.all() or at_sea:
+    at_sea = located.any() and np.abs(whole.degrees[located]).max() < NO_LAND
+    if not located.all() or at_sea:
         if np.isfinite(whole.local).all():
             return np.c_[whole.local, heights], ""
-        if not known.all():
-            raise RoadExtractionError(f"Node {whole.node_ids[~known][0]} has neither lat and lon nor local_x and local_y. Export the map with them.")
+        if not located.all():
+            raise RoadExtractionError(f"Node {whole.node_ids[~located][0]} has neither lat and lon nor local_x and local_y. "
+                                      "Export the map with them.")
         if not crs:
             x, y = Transformer.from_crs("EPSG:4326", LOCAL_CRS, always_xy=True).transform(*whole.degrees.T)
             return np.c_[x, y, heights], ""
@@ -318,17 +319,17 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
             left=left, right=right, road=1, lane=count + 1, lane_id=str(id), direction=1,
             type=LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "driving"),
             left_kind=kinds[0], right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
-            successors=[str(other) for other in network.following(id) if network.driven(other)]))
+            successors=[str(following) for following in network.following(id) if network.driven(following)]))
         progress.report((count + 1) / len(shown))
-    found = MapLayers(Lanes.of_pieces(rows, crs), list(_lines(whole, places)))
+    layers = MapLayers(Lanes.of_pieces(rows, crs), list(_lines(whole, places)))
     if not crs:
-        found.notes.append("The map has local coordinates: its place on the earth is not known, and the layers have no CRS.")
+        layers.notes.append("The map has local coordinates: its place on the earth is not known, and the layers have no CRS.")
     left_out = len(whole.lanelets) - len(network.left)
     if left_out:
-        found.notes.append(f"{left_out} lanelets lack a border or its nodes and were left out.")
+        layers.notes.append(f"{left_out} lanelets lack a border or its nodes and were left out.")
     if len(whole.heights) and not np.isfinite(whole.heights).all():
-        found.notes.append(f"{int((~np.isfinite(whole.heights)).sum())} nodes have no height (ele); theirs is 0.")
-    return found
+        layers.notes.append(f"{int((~np.isfinite(whole.heights)).sum())} nodes have no height (ele); theirs is 0.")
+    return layers
 
 
 def _lines(whole, places):

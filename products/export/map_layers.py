@@ -172,8 +172,9 @@ def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
     """
     ours, theirs = ([border for k in range(len(lanes)) for border in lanes.borders(k)] for lanes in (source, exported))
     ends = [end for border in ours for end in (_gone_on(border), _gone_on(border[::-1]))]
-    there, back = _distances(_joined(ours), _segments(theirs)), _distances(_joined(theirs), _segments(ours, True), apart_from=_segments(ends))
-    across, rise = (_summary(np.concatenate(both)) for both in zip(there, back))
+    missed_ours, missed_theirs = (_distances(_joined(ours), _segments(theirs)),
+                                  _distances(_joined(theirs), _segments(ours, True), apart_from=_segments(ends)))
+    across, rise = (_summary(np.concatenate(misses)) for misses in zip(missed_ours, missed_theirs))
     return across, rise
 
 
@@ -183,7 +184,7 @@ def _joined(lines):
 
 def _segments(lines, curved=False):
     """(M, 7) both ends of every segment of lines, and by how much it misses the curve that bends like the lines at its ends, if `curved`."""
-    places, line = _joined(lines), np.repeat(np.arange(len(lines)), [len(one) for one in lines])
+    places, line = _joined(lines), np.repeat(np.arange(len(lines)), [len(border) for border in lines])
     way, same = np.diff(places[:, :2], axis=0), line[1:] == line[:-1]
     turn = np.abs((np.diff(np.arctan2(way[:, 1], way[:, 0])) + np.pi) % (2 * np.pi) - np.pi)
     turn = np.concatenate([[np.nan], np.where(same[1:] & same[:-1], turn, np.nan), [np.nan]])
@@ -193,9 +194,9 @@ def _segments(lines, curved=False):
 
 def _gone_on(line):
     """(2, 3) from the start of a line straight on beyond it."""
-    away = line - line[0]
-    far = np.hypot(*away.T[:2]) > LEAST_CHORD
-    way = away[np.argmax(far) if far.any() else -1]
+    offsets = line - line[0]
+    far = np.hypot(*offsets.T[:2]) > LEAST_CHORD
+    way = offsets[np.argmax(far) if far.any() else -1]
     return np.stack([line[0], line[0] - way * BEYOND_END / max(float(np.hypot(*way[:2])), 1e-9)])
 
 
@@ -228,15 +229,15 @@ def _distances(places, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
     first, last = every[near, :3], every[near, 3:6]
     run = (last - first)[:, :2]
     share = np.clip(((places[which, :2] - first[:, :2]) * run).sum(1) / np.maximum((run**2).sum(1), 1e-12), 0.0, 1.0)
-    away, mine = np.hypot(*(places[which] - first - share[:, None] * (last - first)).T[:2]), near < len(segments)
+    distance, mine = np.hypot(*(places[which] - first - share[:, None] * (last - first)).T[:2]), near < len(segments)
     across, left_out = np.full((2, len(places)), np.inf)
-    np.minimum.at(across, which[mine], away[mine] - segments[near[mine], 6])
-    np.minimum.at(left_out, which[~mine], away[~mine])
+    np.minimum.at(across, which[mine], distance[mine] - segments[near[mine], 6])
+    np.minimum.at(left_out, which[~mine], distance[~mine])
     far = np.flatnonzero(np.isinf(across) & np.isinf(left_out))   # the nearest of all segments is looked for only where none lies near
     across[left_out < across] = np.inf
-    found, away = tree.query_nearest(points[far], max_distance=None if np.isinf(farthest) else farthest, return_distance=True, all_matches=False)
-    nearest = found[1] < len(segments)
-    across[far[found[0, nearest]]] = away[nearest] - segments[found[1, nearest], 6]
+    pairs, distance = tree.query_nearest(points[far], max_distance=None if np.isinf(farthest) else farthest, return_distance=True, all_matches=False)
+    nearest = pairs[1] < len(segments)
+    across[far[pairs[0, nearest]]] = distance[nearest] - segments[pairs[1, nearest], 6]
     # where borders of several roads lie on each other, the one at the place's own height is its own
     rise = np.full(len(places), np.inf)
     np.minimum.at(rise, which[mine], np.abs(places[which, 2] - first[:, 2] - share * (last - first)[:, 2])[mine])

@@ -38,19 +38,19 @@ class SharedBorders:
 def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
     """A road map whose lanes share their borders, with a note for the user where one was moved by more than a line is wide."""
     met = meet_lanes(source.lanes)
-    found = share_borders(met)
+    shared = share_borders(met)
     notes = list(source.notes)
-    if found.moved > TOLD_MOVE:
+    if shared.moved > TOLD_MOVE:
         notes.append(f"Maps have one border between two lanes: facing borders, as of a double line, were led along their middle, moved by up to "
-                     f"{found.moved:.2f} m.")
-    rise = np.abs(np.concatenate([found.lanes.left - source.lanes.left, found.lanes.right - source.lanes.right])[:, 2])
+                     f"{shared.moved:.2f} m.")
+    rise = np.abs(np.concatenate([shared.lanes.left - source.lanes.left, shared.lanes.right - source.lanes.right])[:, 2])
     if is_stated(source.lanes) and len(rise) and rise.max() > 2 * MOST_MET:
         row = int(np.argmax(rise)) % len(source.lanes.left)
         name = source.lanes.lane_id[int(np.searchsorted(source.lanes.start, row, side="right")) - 1]
         x, y, _ = source.lanes.left[row]
         notes.append(f"Lanes of the map do not lead on at one height; their borders were led to the middle, moved by up to {rise.max():.2f} m at "
                      f"lane {name} near x {x:.1f}, y {y:.1f}. Correct the heights where the map was made.")
-    return replace(source, lanes=found.lanes, gaps=found.gaps, middles=(met.left + met.right) / 2, notes=notes)
+    return replace(source, lanes=shared.lanes, gaps=shared.gaps, middles=(met.left + met.right) / 2, notes=notes)
 
 
 def meet_lanes(lanes: Lanes) -> Lanes:
@@ -62,14 +62,14 @@ def meet_lanes(lanes: Lanes) -> Lanes:
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
     left, right = lanes.left.copy(), lanes.right.copy()
     most = MOST_MET if is_stated(lanes) else WIDEST_DOUBLE
-    for one, other, at_end in _joints(lanes, row_of):
-        rows = np.arange(lanes.start[one], lanes.start[one + 1])
-        here, there = (rows[-1], lanes.start[other]) if at_end else (rows[0], lanes.start[other + 1] - 1)
+    for connector, lane, at_end in _joints(lanes, row_of):
+        rows = np.arange(lanes.start[connector], lanes.start[connector + 1])
+        end_row, corner_row = (rows[-1], lanes.start[lane]) if at_end else (rows[0], lanes.start[lane + 1] - 1)
         for side in (left, right):
-            away = side[there] - side[here]
-            beside = np.hypot(*away[:2])
-            if SAME_VERTEX < beside < most or beside < SAME_VERTEX and away[2]:
-                side[rows] += _fading(side[rows], at_end)[:, None] * away
+            step = side[corner_row] - side[end_row]
+            distance = np.hypot(*step[:2])
+            if SAME_VERTEX < distance < most or distance < SAME_VERTEX and step[2]:
+                side[rows] += _fading(side[rows], at_end)[:, None] * step
     return replace(lanes, left=left, right=right)
 
 
@@ -77,16 +77,16 @@ def _joints(lanes, row_of):
     """(connector, lane that it joins, whether that follows it)."""
     for k, names in enumerate(lanes.successors):
         for j in (row_of[name] for name in names if name in row_of):
-            for one, other, at_end in ((k, j, True), (j, k, False)):
-                if lanes.type[one] == "connector" != lanes.type[other]:
-                    yield one, other, at_end
+            for connector, lane, at_end in ((k, j, True), (j, k, False)):
+                if lanes.type[connector] == "connector" != lanes.type[lane]:
+                    yield connector, lane, at_end
 
 
 def _fading(line, at_end):
     """(n,) share from 0 to 1 that a line's places have of what its end is moved."""
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T)))
-    away = along[-1] - along if at_end else along
-    share = np.clip(1 - away / max(min(SHARED_FADE, along[-1] / 2), 1e-6), 0.0, 1.0)
+    distance = along[-1] - along if at_end else along
+    share = np.clip(1 - distance / max(min(SHARED_FADE, along[-1] / 2), 1e-6), 0.0, 1.0)
     return share**2 * (3 - 2 * share)
 
 
@@ -133,8 +133,8 @@ def share_borders(lanes: Lanes) -> SharedBorders:
 
 def _typical(gaps):
     """Metres between the stripes at a border, 0 where most of it is one line."""
-    found = float(np.median(gaps)) if len(gaps) else 0.0
-    return found if found > LEAST_STRIPE_GAP else 0.0
+    gap = float(np.median(gaps)) if len(gaps) else 0.0
+    return gap if gap > LEAST_STRIPE_GAP else 0.0
 
 
 def numbered(rows: np.ndarray, rise: float = SAME_ROAD_RISE) -> tuple[np.ndarray, np.ndarray]:
@@ -156,8 +156,8 @@ def cuts_beside(lanes: Lanes, left: np.ndarray, right: np.ndarray, among: np.nda
     rows = rows[among[rows]]
     cuts = set(left[rows].tolist()) | set(right[rows].tolist())
     while True:
-        known = np.array(sorted(cuts))
-        one_sided = np.flatnonzero((np.isin(left, known) ^ np.isin(right, known)) & among)
+        numbers = np.array(sorted(cuts))
+        one_sided = np.flatnonzero((np.isin(left, numbers) ^ np.isin(right, numbers)) & among)
         more = (set(left[one_sided].tolist()) | set(right[one_sided].tolist())) - cuts
         if not more:
             return cuts
@@ -174,9 +174,9 @@ def _levels(lanes, nodes, rows):
     ends = [(lanes.start[k + 1] - 1, lanes.start[row_of[name]]) for k, names in enumerate(lanes.successors) for name in names if name in row_of]
     led = np.array(ends, int).reshape(-1, 2)
     led = np.concatenate([led, led + count])
-    one, other = level[led[nodes[led[:, 0]] == nodes[led[:, 1]]]].T
+    first, second = level[led[nodes[led[:, 0]] == nodes[led[:, 1]]]].T
     size = int(level.max()) + 1
-    return connected_components(coo_matrix((np.ones(len(one)), (one, other)), shape=(size, size)), directed=False)[1][level]
+    return connected_components(coo_matrix((np.ones(len(first)), (first, second)), shape=(size, size)), directed=False)[1][level]
 
 
 def _inward(lanes, nodes, count):
@@ -184,10 +184,10 @@ def _inward(lanes, nodes, count):
     across = (lanes.right - lanes.left)[:, :2]
     across = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]
     ordinary = np.repeat(lanes.type != "connector", np.diff(lanes.start))
-    vectors, known = np.concatenate([across, -across]), np.tile(ordinary, 2)
+    vectors, counted = np.concatenate([across, -across]), np.tile(ordinary, 2)
     total, number = np.zeros((count, 2)), np.zeros(count)
-    np.add.at(total, nodes[known], vectors[known])
-    np.add.at(number, nodes[known], 1)
+    np.add.at(total, nodes[counted], vectors[counted])
+    np.add.at(number, nodes[counted], 1)
     mean = total / np.maximum(number, 1)[:, None]
     size = np.hypot(*mean.T)
     return mean / np.maximum(size, 1e-9)[:, None], (number > 0) & (size > 0.8)
@@ -200,18 +200,18 @@ def _facing(lanes, nodes, places):
     free = np.flatnonzero(free)
     if len(free) < 2:
         return np.empty((0, 2), int), np.empty(0)
-    near, found = cKDTree(places[free, :2]).query(places[free, :2], k=min(FACING_TRIED + 1, len(free)), distance_upper_bound=WIDEST_DOUBLE)
+    near, neighbours = cKDTree(places[free, :2]).query(places[free, :2], k=min(FACING_TRIED + 1, len(free)), distance_upper_bound=WIDEST_DOUBLE)
     best = np.full(len(places), -1)
     least, gaps = np.full(len(places), np.inf), np.zeros(len(places))
-    for distance, other in zip(near.T[1:], found.T[1:]):
-        there = np.flatnonzero(np.isfinite(distance))
-        a, b = free[there], free[other[there]]
+    for distance, neighbour in zip(near.T[1:], neighbours.T[1:]):
+        rows = np.flatnonzero(np.isfinite(distance))
+        a, b = free[rows], free[neighbour[rows]]
         gap = places[b] - places[a]
         beyond = -np.einsum("ij,ij->i", gap[:, :2], inward[a])       # positive outside of a's lane
         along = np.abs(gap[:, 0] * inward[a, 1] - gap[:, 1] * inward[a, 0])
         good = (np.einsum("ij,ij->i", inward[a], inward[b]) < -0.8) & (beyond > -MOST_LANE_OVERLAP) & (along < SAME_SECTION_ALONG)
-        good &= (np.abs(gap[:, 2]) < SAME_ROAD_RISE) & (distance[there] < least[a])
-        best[a[good]], least[a[good]], gaps[a[good]] = b[good], distance[there][good], beyond[good]
+        good &= (np.abs(gap[:, 2]) < SAME_ROAD_RISE) & (distance[rows] < least[a])
+        best[a[good]], least[a[good]], gaps[a[good]] = b[good], distance[rows][good], beyond[good]
     mine = np.flatnonzero(best >= 0)
     mine = mine[(best[best[mine]] == mine) & (mine < best[mine])]
     return np.stack([mine, best[mine]], axis=1), gaps[mine]
@@ -232,9 +232,9 @@ def _faded(lanes, nodes, places, pairs, move):
     distance, _, source = dijkstra(graph, directed=False, indices=common, limit=SHARED_FADE, return_predecessors=True, min_only=True)
     follows = np.flatnonzero(np.isfinite(distance) & (distance > 0))
     share = 1 - distance[follows] / SHARED_FADE
-    found = np.zeros_like(places)
-    found[follows] = move[source[follows]] * (share**2 * (3 - 2 * share))[:, None]
-    return found
+    moves = np.zeros_like(places)
+    moves[follows] = move[source[follows]] * (share**2 * (3 - 2 * share))[:, None]
+    return moves
 
 
 # Borders moved within the tolerance of the map, so that the middles of its lanes are the driving lines.
@@ -261,19 +261,19 @@ def with_driven_middles(source: RoadMapSource, most: float) -> RoadMapSource:
     across = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]
     middles = source.middles if source.middles is not None else (lanes.left + lanes.right) / 2
     wanted = _beside(source, middles[:, :2], across)
-    known = np.flatnonzero(np.isfinite(wanted))
-    if not len(known):
+    rows = np.flatnonzero(np.isfinite(wanted))
+    if not len(rows):
         return source
     nodes, first = numbered(np.concatenate([lanes.left, lanes.right]))
     left, right = nodes[:len(lanes.left)], nodes[len(lanes.left):]
-    sides, lateral = np.concatenate([left[known], right[known]]), np.tile(across[known], (2, 1))
+    sides, lateral = np.concatenate([left[rows], right[rows]]), np.tile(across[rows], (2, 1))
     way = np.zeros((len(first), 2))
     way[sides] = lateral
     turned = np.sign((lateral * way[sides]).sum(1))   # neighbours may be driven against each other
     asked, move = np.maximum(np.bincount(sides, minlength=len(first)), 1), np.zeros(len(first))
     for _ in range(ROUNDS):
-        own = (turned * move[sides]).reshape(2, -1).mean(0)
-        change = np.bincount(sides, turned * np.tile(wanted[known] - own, 2), minlength=len(first))
+        shift = (turned * move[sides]).reshape(2, -1).mean(0)
+        change = np.bincount(sides, turned * np.tile(wanted[rows] - shift, 2), minlength=len(first))
         move = np.clip(move + change / asked, -most, most)
     way = way * move[:, None]
     moved = [np.c_[side[:, :2] + way[of], side[:, 2]] for side, of in ((lanes.left, left), (lanes.right, right))]
@@ -282,16 +282,16 @@ def with_driven_middles(source: RoadMapSource, most: float) -> RoadMapSource:
 
 def _beside(source, middles, across):
     """(V,) metres by which the driving line lies left of the middle of its lane, NaN where none lies near."""
-    lanes, found = source.lanes, np.full(len(middles), np.nan)
+    lanes, offsets = source.lanes, np.full(len(middles), np.nan)
     lines = [geometry for geometry, row in source.driving_lines if geometry is not None and row.get("status") in (None, "measured")]
     driven = np.flatnonzero(np.repeat(lanes.type == "driving", np.diff(lanes.start)))
     if not lines or not len(driven):
-        return found
+        return offsets
     lines, points = shapely.force_2d(np.array(lines, object)), shapely.points(middles[driven])
     which, line = shapely.STRtree(lines).query_nearest(points, max_distance=NEAR_LINE, all_matches=False)
     foot = shapely.get_coordinates(shapely.line_interpolate_point(lines[line], shapely.line_locate_point(lines[line], points[which])))
     rows = driven[which]
-    away = foot - middles[rows]
-    beside = np.abs(away[:, 0] * across[rows, 1] - away[:, 1] * across[rows, 0]) < np.abs((away * across[rows]).sum(1)) + 1e-3
-    found[rows[beside]] = (away * across[rows]).sum(1)[beside]
-    return found
+    vectors = foot - middles[rows]
+    abreast = np.abs(vectors[:, 0] * across[rows, 1] - vectors[:, 1] * across[rows, 0]) < np.abs((vectors * across[rows]).sum(1)) + 1e-3
+    offsets[rows[abreast]] = (vectors * across[rows]).sum(1)[abreast]
+    return offsets

@@ -103,15 +103,15 @@ def checked(source: RoadMapSource) -> RoadMapSource:
 def _linked(source):
     """The source without successors that are not there, with a note for each kind of them."""
     lanes = source.lanes
-    known = set(lanes.lane_id)
-    lost = sum(name not in known for names in lanes.successors for name in names)
+    lane_ids = set(lanes.lane_id)
+    lost = sum(name not in lane_ids for names in lanes.successors for name in names)
     notes = list(source.notes)
     if lost:
         notes.append(f"{lost} successors name lanes that are not in the layer; these links were left out.")
-    own = sum(name in names for name, names in zip(lanes.lane_id, lanes.successors))
-    if own:
-        notes.append(f"{own} lanes name themselves as their successors; these links were left out.")
-    kept = [tuple(name for name in names if name in known and name != own_name) for own_name, names in zip(lanes.lane_id, lanes.successors)]
+    loops = sum(name in names for name, names in zip(lanes.lane_id, lanes.successors))
+    if loops:
+        notes.append(f"{loops} lanes name themselves as their successors; these links were left out.")
+    kept = [tuple(name for name in names if name in lane_ids and name != own_name) for own_name, names in zip(lanes.lane_id, lanes.successors)]
     return replace(source, notes=notes, lanes=replace(lanes, successors=kept))
 
 
@@ -192,11 +192,11 @@ class NearestValues:
 
     def at(self, points: np.ndarray, farthest: float = 0.5) -> np.ndarray:
         """(N,) numbers nearest to (N, 2) points, NaN where none lies within `farthest` metres."""
-        found = np.full(len(points), np.nan)
+        values = np.full(len(points), np.nan)
         if len(self._values) and len(points):
             which, part = self._tree.query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
-            found[which] = self._values[part]
-        return found
+            values[which] = self._values[part]
+        return values
 
 
 # The uncertainty that driving lines carry, lane by lane.
@@ -219,9 +219,9 @@ def sigma_of_lanes(lanes: Lanes, driving_lines: Features | None) -> np.ndarray:
     for row in driving_lines.rows if driving_lines is not None else ():
         if any(row.get(name) is None for name in ("sigma_m", "road", "lane", "station_m", "end_m")):
             continue
-        own = (lanes.road == int(row["road"])) & (lanes.lane == int(row["lane"]))
+        same_lane = (lanes.road == int(row["road"])) & (lanes.lane == int(row["lane"]))
         shared = np.minimum(lanes.end, float(row["end_m"])) - np.maximum(lanes.station, float(row["station_m"]))
-        shared = np.where(own & (shared > MIN_SHARED), shared, 0.0)
+        shared = np.where(same_lane & (shared > MIN_SHARED), shared, 0.0)
         square += shared * float(row["sigma_m"]) ** 2
         length += shared
     return np.sqrt(np.divide(square, length, out=np.full(len(lanes), np.nan), where=length > 0))
@@ -269,10 +269,10 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
     # vertices of neighbours lie at one place, of which the tree gives the points to one
     same, which = np.unique(np.round(vertices[:, :2], 3), axis=0, return_inverse=True)
     which = which.ravel()
-    place = which[owner]
-    order = np.lexsort((height, place))
-    place, height = place[order], height[order]
-    counts = np.bincount(place, minlength=len(same))
+    group = which[owner]
+    order = np.lexsort((height, group))
+    group, height = group[order], height[order]
+    counts = np.bincount(group, minlength=len(same))
     first = np.append(0, np.cumsum(counts))[:-1]
     enough = counts >= FEWEST_POINTS
     if not enough.any():
@@ -282,8 +282,8 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
     median[enough] = height[(first + counts // 2)[enough]]
     change = median[which] - vertices[:, 2]
     change[~(np.abs(change) < MOST_CHANGE)] = np.nan
-    found = np.c_[vertices[:, :2], vertices[:, 2] + _along_borders(change, vertices, lanes.start)]
-    return replace(lanes, left=found[:len(lanes.left)], right=found[len(lanes.left):]), float(enough[which].mean())
+    borders = np.c_[vertices[:, :2], vertices[:, 2] + _along_borders(change, vertices, lanes.start)]
+    return replace(lanes, left=borders[:len(lanes.left)], right=borders[len(lanes.left):]), float(enough[which].mean())
 
 
 def _along_borders(change, vertices, start):
@@ -292,10 +292,10 @@ def _along_borders(change, vertices, start):
     count = len(change) // 2
     for side in (0, count):
         for a, b in zip(start[:-1] + side, start[1:] + side):
-            known = np.isfinite(change[a:b])
-            if known.any() and not known.all():
+            finite = np.isfinite(change[a:b])
+            if finite.any() and not finite.all():
                 along = np.append(0.0, np.cumsum(np.hypot(*np.diff(vertices[a:b, :2], axis=0).T)))
-                filled[a:b] = np.interp(along, along[known], change[a:b][known])
+                filled[a:b] = np.interp(along, along[finite], change[a:b][finite])
     return filled
 
 
@@ -307,14 +307,14 @@ LEAST_CROSSING = 3   # stripes
 
 def stop_lines(markings: Features | None) -> list[np.ndarray]:
     """(2, 3) the middle line of every stop line."""
-    found = [_corners(shape) for shape in _shapes(markings, ("stop", "stop_line"))]
-    return [(corners[[0, 1]] + corners[[3, 2]]) / 2 for corners in found if len(corners)]
+    outlines = [_corners(shape) for shape in _shapes(markings, ("stop", "stop_line"))]
+    return [(corners[[0, 1]] + corners[[3, 2]]) / 2 for corners in outlines if len(corners)]
 
 
 def walked_crossings(markings: Features | None) -> list[tuple[np.ndarray, np.ndarray]]:
     """((2, 3) left, (2, 3) right) sides of every zebra crossing, along the way of those who cross: over the row of its stripes."""
     stripes = _shapes(markings, ("zebra", "crosswalk", "zebra_crossing"))
-    found = []
+    crossings = []
     for group in _groups(stripes):
         corners = _corners(shapely.unary_union(group)) if len(group) > 1 else _corners(group[0])
         if not len(corners) or len(group) < LEAST_CROSSING and len(stripes) >= LEAST_CROSSING:
@@ -323,8 +323,8 @@ def walked_crossings(markings: Features | None) -> list[tuple[np.ndarray, np.nda
         along = corners[1] - corners[0]
         if len(group) > 1 and abs(along[:2] @ across) > abs((corners[2] - corners[1])[:2] @ across):
             corners = corners[[1, 2, 3, 0]]   # walkers go from stripe to stripe, which lie along the road
-        found.append((corners[[3, 2]], corners[[0, 1]]))
-    return found
+        crossings.append((corners[[3, 2]], corners[[0, 1]]))
+    return crossings
 
 
 def _shapes(markings: Features | None, classes: tuple[str, ...]) -> list[Any]:
@@ -338,11 +338,11 @@ def _groups(shapes: list[Any]) -> list[list[Any]]:
     if not shapes:
         return []
     joined = shapely.get_parts(shapely.union_all(shapely.buffer(shapely.force_2d(np.array(shapes, object)), STRIPE_GAP / 2)))
-    found: list[list[Any]] = [[] for _ in joined]
+    groups: list[list[Any]] = [[] for _ in joined]
     tree = shapely.STRtree(joined)
     for shape in shapes:
-        found[int(tree.query(shapely.force_2d(shape).representative_point(), predicate="intersects")[0])].append(shape)
-    return [group for group in found if group]
+        groups[int(tree.query(shapely.force_2d(shape).representative_point(), predicate="intersects")[0])].append(shape)
+    return [group for group in groups if group]
 
 
 def _corners(shape: Any) -> np.ndarray:

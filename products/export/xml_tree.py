@@ -60,10 +60,10 @@ class XmlElement:
 
     def find(self, *path: str) -> XmlElement | None:
         """The first child of a name, its first child of the next name and so on; None where there is none."""
-        here: XmlElement | None = self
+        element: XmlElement | None = self
         for tag in path:
-            here = next(here.all(tag), None) if here is not None else None
-        return here
+            element = next(element.all(tag), None) if element is not None else None
+        return element
 
     def get(self, name: str, missing: str = "") -> str:
         """An attribute."""
@@ -191,15 +191,15 @@ class _Reading:
             return "" if marked in NATIVE else marked
         if head[:4] in ("<".encode("utf-32-le"), "<".encode("utf-32-be")):
             return "utf-32-le" if head[:1] == b"<" else "utf-32-be"
-        said = re.match(rb"""\s*<\?xml[^>]*?\sencoding\s*=\s*["']([^"'>]*)["']""", head)
-        name = said[1].decode("latin-1") if said else ""
+        declared = re.match(rb"""\s*<\?xml[^>]*?\sencoding\s*=\s*["']([^"'>]*)["']""", head)
+        name = declared[1].decode("latin-1") if declared else ""
         try:
             codec = codecs.lookup(name) if name else None
             # others, such as zip and hex, are no encodings of text
-            known = codec is None or codec._is_text_encoding and codec.incrementaldecoder is not None
+            valid = codec is None or codec._is_text_encoding and codec.incrementaldecoder is not None
         except (LookupError, ValueError):
-            known = False
-        if not known:
+            valid = False
+        if not valid:
             raise RoadExtractionError(f"{self.path} declares the encoding {name[:40]!r}, which is not known. Save it again as UTF-8, and say so in "
                                       "its first line.")
         if codec is not None and codec.name.startswith(("utf-16", "utf-32")):

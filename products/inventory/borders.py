@@ -94,9 +94,9 @@ class RoadBorders:
 
     def outer(self, road: int, s: float) -> tuple[float, float]:
         """(right, left) offsets of the carriageway's edges, else of its outermost lanes or lines; NaN where there are none."""
-        found = self.at(road, s) if self.given else None
-        if found is not None:
-            return found[0].right, found[0].left
+        strips = self.at(road, s) if self.given else None
+        if strips is not None:
+            return strips[0].right, strips[0].left
         track = self._track(road, s)
         return _nearest_outside(np.sort(np.array([d for d, _ in _crossings(self.edges, road, s)])), float(track.min()), float(track.max()))
 
@@ -134,21 +134,21 @@ class RoadBorders:
 
     def _lanes(self, road, s, lines):
         if self.lane_borders is not None and len(self.lane_borders.rows):
-            found = []
+            strips = []
             crossed: dict[int, list[float]] = {}
             for d, k in _numbered_crossings(self.lane_borders, road, s):
                 crossed.setdefault(k // 2, []).append(d)
             for piece, ds in crossed.items():
                 row = self.lane_borders.rows[piece]
                 if len(ds) == 2 and row["type"] != "connector":
-                    found.append(Strip(min(ds), max(ds), int(row["lane"]), row["type"], int(row["direction"]), "lanes"))
-            return _apart(found)
-        found = []
+                    strips.append(Strip(min(ds), max(ds), int(row["lane"]), row["type"], int(row["direction"]), "lanes"))
+            return _apart(strips)
+        strips = []
         for d, row in _crossings(self.driving, road, s):
             half = 0.5 * float(row.get("width_m") or self.country.usual_lane)
             right, left = _within(lines[lines < d], d - half), _within(lines[lines > d], d + half)
-            found.append(Strip(right, left, int(row.get("lane") or 0), "driving", int(row.get("direction") or 0), "lines"))
-        return _apart(found)
+            strips.append(Strip(right, left, int(row.get("lane") or 0), "driving", int(row.get("direction") or 0), "lines"))
+        return _apart(strips)
 
     def _between(self, lines, right, left):
         """Lanes between painted lines a lane's width apart."""
@@ -193,10 +193,10 @@ def _pieces(features, frame, wanted=lambda row: True):
     if features is None:
         return None
     parts, row_of = line_parts(features.geometries)
-    own = [k for k, row in enumerate(row_of) if wanted(features.rows[row])]
-    rows = [features.rows[row_of[k]] for k in own]
+    members = [k for k, row in enumerate(row_of) if wanted(features.rows[row])]
+    rows = [features.rows[row_of[k]] for k in members]
     roads = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
-    return _Pieces(lines_in_frame([parts[k] for k in own], roads, frame), rows)
+    return _Pieces(lines_in_frame([parts[k] for k in members], roads, frame), rows)
 
 
 def _lane_borders(features, frame):
@@ -216,13 +216,13 @@ def _crossings(pieces, road, s):
 
 def _numbered_crossings(pieces, road, s):
     """[(offset, number of the line)] where lines cross the section at a station."""
-    found, lines = [], pieces.lines
+    crossings, lines = [], pieces.lines
     for k in np.flatnonzero((lines.road == road) & (pieces.low <= s) & (pieces.high >= s)).tolist():
-        here = lines.line(k)
-        along, d = lines.s[here], lines.d[here]
+        rows = lines.line(k)
+        along, d = lines.s[rows], lines.d[rows]
         step = np.flatnonzero((np.minimum(along[:-1], along[1:]) <= s) & (np.maximum(along[:-1], along[1:]) > s))
         for j in step[:1].tolist():
             ahead = along[j + 1] - along[j]
             if abs(d[j + 1] - d[j]) <= MAX_BORDER_OBLIQUITY * abs(ahead):
-                found.append((float(d[j] + (s - along[j]) / ahead * (d[j + 1] - d[j])), k))
-    return found
+                crossings.append((float(d[j] + (s - along[j]) / ahead * (d[j + 1] - d[j])), k))
+    return crossings

@@ -134,22 +134,22 @@ def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers()
     roads = survey.store.roads()
     for k, road in enumerate(roads):
         part = progress.part(0.4 * k / len(roads), 0.4 * (k + 1) / len(roads))
-        errors[road] = _height_errors(survey, road, [s for at, s in wanted if at == road], borders, stretch, part)
-    found = RoadSections([], errors, survey.frame, survey.crs, settings)
+        errors[road] = _height_errors(survey, road, [s for number, s in wanted if number == road], borders, stretch, part)
+    result = RoadSections([], errors, survey.frame, survey.crs, settings)
 
     def measure(place):
         return _section(survey, *place, borders, errors[place[0]], settings.interval, stretch)
 
     for section, noisy in ordered_map(measure, wanted, progress.part(0.4, 1.0)):
-        found.without_ruts += noisy
+        result.without_ruts += noisy
         if section is not None:
-            found.sections.append(section)
-    if not found.sections:
+            result.sections.append(section)
+    if not result.sections:
         raise RoadExtractionError("No section saw a carriageway: the layers given lie on none of the driven roads. Choose those of this survey.")
     elsewhere = " At the others the layers do not tell where the carriageway ends, or too little of it was seen."
-    progress.info(f"Cross-sections measured at {len(found.sections)} of {len(wanted)} stations.{elsewhere * (len(found.sections) < len(wanted))}")
-    _say(found, progress)
-    return found
+    progress.info(f"Cross-sections measured at {len(result.sections)} of {len(wanted)} stations.{elsewhere * (len(result.sections) < len(wanted))}")
+    _say(result, progress)
+    return result
 
 
 def _stations(survey, road, interval):
@@ -166,10 +166,10 @@ def _reach(strips):
 
 def _grid(survey, road, s, borders, stretch):
     """The carriageway, its lanes and the surface about a section; None where no layer says where the carriageway is."""
-    found = borders.at(road, s)
-    if found is None:
+    strips = borders.at(road, s)
+    if strips is None:
         return None
-    carriageway, lanes = found
+    carriageway, lanes = strips
     slices = max(int(round(stretch / SLICE_LENGTH)), 1)
     return carriageway, lanes, surface_grid(survey, road, s - 0.5 * slices * SLICE_LENGTH, slices, _reach([carriageway, *lanes]))
 
@@ -180,11 +180,11 @@ def _height_errors(survey: Survey, road: int, stations: list[float], borders: Ro
         return HeightErrors()
 
     def overlaps(window):
-        found = _grid(survey, road, stations[window], borders, stretch)
-        return [] if found is None else overlaps_of(found[2], window)
+        result = _grid(survey, road, stations[window], borders, stretch)
+        return [] if result is None else overlaps_of(result[2], window)
 
-    found = [one for some in ordered_map(overlaps, range(len(stations)), progress) for one in some]
-    return solve_height_errors(found, survey.frame.passes)
+    result = [overlap for window_overlaps in ordered_map(overlaps, range(len(stations)), progress) for overlap in window_overlaps]
+    return solve_height_errors(result, survey.frame.passes)
 
 
 def _joined(grid: SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[np.ndarray, np.ndarray]:
@@ -193,9 +193,9 @@ def _joined(grid: SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[
     total = np.zeros_like(weight)
     for g, group in enumerate(grid.groups):
         track = frame.passes[group[0]].at_station(grid.s)[0]
-        here = grid.height[g] - errors.of(group, grid.s[:, None], grid.d - track[:, None])
-        precision = np.where(np.isfinite(here), grid.count[g] / max(grid.sigma[g], 1e-3) ** 2, 0.0)
-        total += np.where(precision > 0, here, 0.0) * precision
+        heights = grid.height[g] - errors.of(group, grid.s[:, None], grid.d - track[:, None])
+        precision = np.where(np.isfinite(heights), grid.count[g] / max(grid.sigma[g], 1e-3) ** 2, 0.0)
+        total += np.where(precision > 0, heights, 0.0) * precision
         weight += precision
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(weight > 0, total / weight, np.nan), np.where(weight > 0, 1.2533 / np.sqrt(weight), np.nan)
@@ -203,10 +203,10 @@ def _joined(grid: SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[
 
 def _section(survey, road, s, borders, errors, interval, stretch):
     """(_RoadSection, lanes without ruts); None where the road was not seen."""
-    found = _grid(survey, road, s, borders, stretch)
-    if found is None:
+    measured = _grid(survey, road, s, borders, stretch)
+    if measured is None:
         return None, 0
-    carriageway, lanes, grid = found
+    carriageway, lanes, grid = measured
     heights, sigma = _joined(grid, errors, survey.frame)
     whole = _plane(grid, heights, carriageway)
     if whole is None:
@@ -219,7 +219,7 @@ def _section(survey, road, s, borders, errors, interval, stretch):
     for strip, clearance in zip([carriageway, *lanes], clearances):
         plane = whole if strip is carriageway else _plane(grid, heights, strip)
         inside = (grid.d > strip.right + BORDER_MARGIN) & (grid.d < strip.left - BORDER_MARGIN)
-        seen = float(np.isfinite(heights[:, inside]).mean()) if inside.any() else 0.0
+        share = float(np.isfinite(heights[:, inside]).mean()) if inside.any() else 0.0
         ruts = np.nan, np.nan
         if strip.lane and plane is not None:
             profiles, noise = _quiet_profiles(grid, np.where(np.abs(plane.residual) < MAX_FROM_SURFACE, heights, np.nan), sigma, inside, plane.along)
@@ -227,10 +227,10 @@ def _section(survey, road, s, borders, errors, interval, stretch):
             depths = rut_depths(grid.d, profiles, (strip.right, strip.left), (carriageway.right + BORDER_MARGIN,
                                 carriageway.left - BORDER_MARGIN), noise)
             ruts = _median(depths[0]), _median(depths[1])
-        across, along = (np.nan, np.nan) if plane is None or seen < MIN_SURFACE_SEEN else _falls(survey, road, s, grid, plane, strip, heading)
+        across, along = (np.nan, np.nan) if plane is None or share < MIN_SURFACE_SEEN else _falls(survey, road, s, grid, plane, strip, heading)
         parts.append(_StripMeasures(
             strip, across, np.nan if plane is None or np.isnan(across) else float(np.hypot(plane.sigma, rolled)), along, ruts,
-            _curbs(grid.d, level, strip) if not strip.lane else (np.nan, np.nan), clearance, seen))
+            _curbs(grid.d, level, strip) if not strip.lane else (np.nan, np.nan), clearance, share))
     inside = (grid.d > carriageway.right - READ_BESIDE) & (grid.d < carriageway.left + READ_BESIDE)
     z = level[inside] + grid.line(np.array([s]))[0]
     return _RoadSection(road, s, heading, grid.d[inside], z, parts), noisy
@@ -275,16 +275,16 @@ def _level(grid, heights, strip):
     plane = _plane(grid, heights, strip)
     along = 0.0 if plane is None else plane.along
     level = heights - along * (grid.s - grid.s.mean())[:, None]
-    found = np.full(heights.shape[1], np.nan)
-    known = np.isfinite(level).any(axis=0)
-    found[known] = np.nanmedian(level[:, known], axis=0)
-    return found
+    profile = np.full(heights.shape[1], np.nan)
+    columns = np.isfinite(level).any(axis=0)
+    profile[columns] = np.nanmedian(level[:, columns], axis=0)
+    return profile
 
 
 def _clearances(survey, road, s, interval, profile, strips):
     """(N,) heights of the lowest thing above N strips within the interval, NaN where there is none, read in short stretches."""
     lowest = np.full(len(strips), np.nan)
-    known = np.isfinite(profile[1])
+    finite = np.isfinite(profile[1])
     pieces = max(int(np.ceil(interval / STRETCH)), 1)
     ends = s + interval * (np.arange(pieces + 1) / pieces - 0.5)
     right, left = min(strip.right for strip in strips) + OVERHEAD_INSIDE, max(strip.left for strip in strips) - OVERHEAD_INSIDE
@@ -294,47 +294,47 @@ def _clearances(survey, road, s, interval, profile, strips):
         d = points.d
         points = points[np.flatnonzero((d > right) & (d < left))]
         nodes = np.linspace(start, end, max(int(round((end - start) / SLICE_LENGTH)), 1) + 1)
-        level = np.interp(points.s, nodes, survey.road_height(road, nodes)) + np.interp(points.d, profile[0][known], profile[1][known])
+        level = np.interp(points.s, nodes, survey.road_height(road, nodes)) + np.interp(points.d, profile[0][finite], profile[1][finite])
         return points, points.z - level
 
     for start, end in zip(ends[:-1], ends[1:]):
         points, above = read(start, end)
-        found = _clear_of(points, above, strips)
-        if np.nanmin(found, initial=np.inf) < HIGHEST_VEHICLE:
+        clear = _clear_of(points, above, strips)
+        if np.nanmin(clear, initial=np.inf) < HIGHEST_VEHICLE:
             points, above = read(start - VEHICLE_REACH, end + VEHICLE_REACH)
             kept = np.flatnonzero((points.s >= start) & (points.s < end) & ~_on_vehicles(points.s, points.d, above))
-            found = _clear_of(points[kept], above[kept], strips)
-        lowest = np.fmin(lowest, found)
+            clear = _clear_of(points[kept], above[kept], strips)
+        lowest = np.fmin(lowest, clear)
     return lowest
 
 
 def _clear_of(points, above, strips):
     """(N,) heights of the lowest thing above N strips, NaN where there is none."""
-    found = [clear_height(points, above, strip.right, strip.left) for strip in strips]
-    return np.array([np.nan if one is None else one for one in found])
+    heights = [clear_height(points, above, strip.right, strip.left) for strip in strips]
+    return np.array([np.nan if height is None else height for height in heights])
 
 
 def _curbs(d, profile, strip):
     """(right, left) heights of the curbs: the ground just outside the edge above the road's own, continued to the edge."""
-    found = []
+    heights = []
     for edge, outward, may_be in ((strip.right, -1.0, strip.curbs[0]), (strip.left, 1.0, strip.curbs[1])):
         u = outward * (d - edge)
         road = np.isfinite(profile) & (u < -CURB_INSIDE[0]) & (u > -CURB_INSIDE[1])
         top = np.isfinite(profile) & (u > CURB_OUTSIDE[0]) & (u < CURB_OUTSIDE[1])
         if not may_be or min(road.sum(), top.sum()) < MIN_CURB_CELLS:
-            found.append(np.nan)
+            heights.append(np.nan)
             continue
         slope, level = np.polyfit(u[road], profile[road], 1)
-        found.append(float(np.median(profile[top]) - level))
-    return found[0], found[1]
+        heights.append(float(np.median(profile[top]) - level))
+    return heights[0], heights[1]
 
 
 def _heading(survey, borders, road, s, carriageway):
     """Tangent of the angle between the carriageway and the reference line: what most of its borders and those of its lanes move across."""
     places = s + STRETCH * np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
-    known = [(at, np.unique([d for strip in [found[0], *found[1]] for d in (strip.right, strip.left)]))
-             for at, found in ((at, borders.at(road, float(at))) for at in places) if found is not None]
-    (first, before), (last, after) = known[0], known[-1]
+    crossed = [(station, np.unique([d for strip in [strips[0], *strips[1]] for d in (strip.right, strip.left)]))
+               for station, strips in ((station, borders.at(road, float(station))) for station in places) if strips is not None]
+    (first, before), (last, after) = crossed[0], crossed[-1]
     across = (after[np.abs(after[:, None] - before).argmin(axis=0)] - before) / max(last - first, 1e-9)
     # where a border begins or ends another one is nearest, and nothing turns
     oblique = across[np.abs(across) < STEEPEST_MIDDLE]
@@ -386,11 +386,11 @@ def _quiet_profiles(grid, heights, sigma, inside, along):
             break
         count = len(level) // slices
         shape = count, slices, level.shape[1]
-        known = np.isfinite(level[:count * slices]).reshape(shape)
-        there = known.sum(axis=1)
+        finite = np.isfinite(level[:count * slices]).reshape(shape)
+        counts = finite.sum(axis=1)
         with np.errstate(invalid="ignore", divide="ignore"):
-            profiles = np.where(known, level[:count * slices].reshape(shape), 0.0).sum(axis=1) / there
-            noise = np.sqrt(np.where(known, sigma[:count * slices].reshape(shape) ** 2, 0.0).sum(axis=1)) / there
+            profiles = np.where(finite, level[:count * slices].reshape(shape), 0.0).sum(axis=1) / counts
+            noise = np.sqrt(np.where(finite, sigma[:count * slices].reshape(shape) ** 2, 0.0).sum(axis=1)) / counts
         noise = np.array([_median(row) for row in noise[:, inside]])
         limit = QUIET_PROFILE if slices < AVERAGED_SLICES[-1] and 2 * slices <= len(level) else MAX_RUT_CORRECTION
         quiet = noise_of_largest(noise) < limit
@@ -401,8 +401,8 @@ def _quiet_profiles(grid, heights, sigma, inside, along):
 
 def _median(values):
     """Median without NaN; NaN where there is nothing else."""
-    known = values[np.isfinite(values)]
-    return float(np.median(known)) if len(known) else np.nan
+    finite = values[np.isfinite(values)]
+    return float(np.median(finite)) if len(finite) else np.nan
 
 
 # The height that is free above a strip of road.
@@ -448,11 +448,11 @@ def clear_height(points: Points, h: np.ndarray, right: float, left: float) -> fl
     free = ~low & ~standing[i, j]
     if not free.any():
         return None
-    place, h = (i * shape[1] + j)[free], h[free]
-    order = np.lexsort((h, place))
-    place, h = place[order], h[order]
-    first = np.flatnonzero(np.r_[True, np.diff(place) > 0])
-    last = np.r_[first[1:], len(place)] - 1
+    cell, h = (i * shape[1] + j)[free], h[free]
+    order = np.lexsort((h, cell))
+    cell, h = cell[order], h[order]
+    first = np.flatnonzero(np.r_[True, np.diff(cell) > 0])
+    last = np.r_[first[1:], len(cell)] - 1
     needed = first + MIN_OVERHEAD_POINTS - 1
     lowest = h[first]
     solid = needed <= last
@@ -469,10 +469,10 @@ def _on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
     """
     from scipy.ndimage import binary_dilation, find_objects, label
 
-    found = np.zeros(len(s), bool)
+    on_vehicle = np.zeros(len(s), bool)
     standing = np.flatnonzero(h > STANDS_FROM)
     if not len(standing):
-        return found
+        return on_vehicle
     s, d, h = s[standing], d[standing], h[standing]
     cells = tuple(np.floor((v - v.min()) / VEHICLE_CELL).astype(np.int64) for v in (s, d, h))
     filled = np.zeros([int(c.max()) + 1 for c in cells], bool)
@@ -484,8 +484,8 @@ def _on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
     np.maximum.at(highest, group, h)
     breadth = np.array([0.0, *((across.stop - across.start - 2 * LINKED_CELLS[1]) * VEHICLE_CELL for _, across, _ in find_objects(groups))])
     vehicle = (lowest < LOWEST_OVERHEAD) & (highest < HIGHEST_VEHICLE) & (breadth < BROADEST_VEHICLE)
-    found[standing] = vehicle[group]
-    return found
+    on_vehicle[standing] = vehicle[group]
+    return on_vehicle
 
 
 # Cross-sections as a layer of lines, one for every lane and carriageway, and as a table.
@@ -551,10 +551,10 @@ def _row(number: int, section: _RoadSection, part: _StripMeasures, limits: Secti
 
 def _line(section, part, frame):
     """The measured profile between the borders of a strip, from left to right."""
-    known = np.isfinite(section.z)
-    inside = known & (section.d > part.strip.right) & (section.d < part.strip.left)
+    finite = np.isfinite(section.z)
+    inside = finite & (section.d > part.strip.right) & (section.d < part.strip.left)
     d = np.r_[part.strip.right, section.d[inside], part.strip.left]
-    z = np.interp(d, section.d[known], section.z[known])
+    z = np.interp(d, section.d[finite], section.z[finite])
     if len(d) > MIN_SECTION_VERTICES:
         d, z = shapely.get_coordinates(shapely.simplify(shapely.linestrings(np.c_[d, z]), LINE_TOLERANCE)).T
     places = frame.to_map(section.road, np.full(len(d), section.station), d, z)

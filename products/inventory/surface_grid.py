@@ -90,34 +90,34 @@ def _grid_of_points(points: Points, road: int, start: float, slices: int, offset
     i = np.floor((s - start) / SLICE_LENGTH).astype(np.int64)
     j = np.floor((d - offsets[0]) / CROSS_CELL).astype(np.int64)
     inside = np.flatnonzero((i >= 0) & (i < slices) & (j >= 0) & (j < columns) & (np.abs(h) < ROAD_REACH))
-    place, h, s = (i * columns + j)[inside], h[inside], s[inside]
-    order = order_by(np.rint((h + ROAD_REACH) * 1e4).astype(np.int32), place)
-    place, h, s, inside = place[order], h[order], s[order], inside[order]
-    ground = np.flatnonzero(lowest_layers(place, h, ROAD_LAYER_JUMP)[0])
-    place, h, s, inside = place[ground], h[ground], s[ground], inside[ground]
+    cell, h, s = (i * columns + j)[inside], h[inside], s[inside]
+    order = order_by(np.rint((h + ROAD_REACH) * 1e4).astype(np.int32), cell)
+    cell, h, s, inside = cell[order], h[order], s[order], inside[order]
+    ground = np.flatnonzero(lowest_layers(cell, h, ROAD_LAYER_JUMP)[0])
+    cell, h, s, inside = cell[ground], h[ground], s[ground], inside[ground]
     key = points.pass_number[inside].astype(np.int64) << 8 | points.scanner[inside]
     values, group = np.unique(key, return_inverse=True)
     groups = [(int(value) >> 8, int(value) & 255) for value in values]
     shape = (len(groups), slices, columns)
     height, count, sigma = np.full(shape, np.nan), np.zeros(shape, np.int32), np.zeros(len(groups))
-    ahead = s - start - (place // columns + 0.5) * SLICE_LENGTH
-    cell = group.ravel() * (slices * columns) + place
-    h = h - _slope_within(cell, ahead, h) * ahead
-    order = order_by(np.rint((h + 2 * ROAD_REACH) * 1e4).astype(np.int32), cell)
-    cell, h = cell[order], h[order]
-    first = np.flatnonzero(np.r_[True, np.diff(cell) > 0]) if len(cell) else np.empty(0, np.int64)
-    n = np.diff(np.r_[first, len(cell)])
+    ahead = s - start - (cell // columns + 0.5) * SLICE_LENGTH
+    group_cell = group.ravel() * (slices * columns) + cell
+    h = h - _slope_within(group_cell, ahead, h) * ahead
+    order = order_by(np.rint((h + 2 * ROAD_REACH) * 1e4).astype(np.int32), group_cell)
+    group_cell, h = group_cell[order], h[order]
+    first = np.flatnonzero(np.r_[True, np.diff(group_cell) > 0]) if len(group_cell) else np.empty(0, np.int64)
+    n = np.diff(np.r_[first, len(group_cell)])
     middle = 0.5 * (h[first + (n - 1) // 2] + h[first + n // 2])
-    owner = cell[first]
+    owner = group_cell[first]
     count.flat[owner] = n
     height.flat[owner] = middle
     off = np.abs(h - np.repeat(middle, n))
-    of = cell // (slices * columns)
+    of = group_cell // (slices * columns)
     rich = np.repeat(n, n) >= SCATTER_POINTS
     for g in range(len(groups)):
-        own = off[(of == g) & rich]
+        deviations = off[(of == g) & rich]
         # mean absolute deviation of a normal distribution: sigma * sqrt(2 / pi), a median's own n costs one degree of freedom
-        sigma[g] = np.sqrt(np.pi / 2) * float(np.minimum(own, ROAD_LAYER_JUMP).mean()) if len(own) else 0.0
+        sigma[g] = np.sqrt(np.pi / 2) * float(np.minimum(deviations, ROAD_LAYER_JUMP).mean()) if len(deviations) else 0.0
     return SurfaceGrid(road, start, offsets[0], base, slope, groups, height, count, sigma)
 
 
@@ -204,7 +204,7 @@ class HeightErrors:
 
 def overlaps_of(grid: SurfaceGrid, window: int) -> list[Overlap]:
     """Steps and differences in tilt between the groups of a grid."""
-    found = []
+    overlaps = []
     station = float(grid.s.mean())
     for a in range(len(grid.groups)):
         for b in range(a + 1, len(grid.groups)):
@@ -213,10 +213,11 @@ def overlaps_of(grid: SurfaceGrid, window: int) -> list[Overlap]:
             if len(j) < MIN_OVERLAP_CELLS:
                 continue
             values, d = apart[shared], grid.d[j]
-            at, width = float(d.mean()), float(np.ptp(d)) + CROSS_CELL
-            step, tilt = _line(d - at, values)
-            found.append(Overlap(window, grid.groups[a], grid.groups[b], at, step, tilt if width >= MIN_OVERLAP_WIDTH else np.nan, width, station))
-    return found
+            centre, width = float(d.mean()), float(np.ptp(d)) + CROSS_CELL
+            step, tilt = _line(d - centre, values)
+            overlaps.append(Overlap(window, grid.groups[a], grid.groups[b], centre, step,
+                                    tilt if width >= MIN_OVERLAP_WIDTH else np.nan, width, station))
+    return overlaps
 
 
 def _line(x, y):
@@ -241,30 +242,30 @@ def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> Heig
     overlaps = list(overlaps)
     if not overlaps:
         return HeightErrors()
-    groups = sorted({group for one in overlaps for group in (one.one, one.other)})
+    groups = sorted({group for overlap in overlaps for group in (overlap.one, overlap.other)})
     scanners = sorted({scanner for _, scanner in groups})
-    numbers, place = np.unique([one.window for one in overlaps], return_inverse=True)
+    numbers, window = np.unique([overlap.window for overlap in overlaps], return_inverse=True)
     stations = np.zeros(len(numbers))
-    stations[place.ravel()] = [one.station for one in overlaps]
+    stations[window.ravel()] = [overlap.station for overlap in overlaps]
     G, W = len(groups), len(numbers)
     direction = np.array([passes[number].direction for number, _ in groups])
     track = np.array([passes[number].at_station(stations)[0] for number, _ in groups])
     steps, tilts, boresight = 0, G * W, 2 * G * W   # where the unknowns of each kind begin
     rows: list[tuple[list[int], list[float], float, float]] = []  # columns, factors, value, sigma
-    for one, w in zip(overlaps, place.ravel().tolist()):
-        a, b = groups.index(one.one), groups.index(one.other)
+    for overlap, w in zip(overlaps, window.ravel().tolist()):
+        a, b = groups.index(overlap.one), groups.index(overlap.other)
         level: tuple[list[int], list[float]] = ([], [])
         tilt: tuple[list[int], list[float]] = ([], [])
         for g, sign in ((a, 1.0), (b, -1.0)):
-            arm = one.at - track[g, w]
+            arm = overlap.at - track[g, w]
             columns = [steps + g * W + w, tilts + g * W + w, boresight + scanners.index(groups[g][1])]
             level[0].extend(columns)
             level[1].extend([sign, sign * arm, sign * arm * direction[g]])
             tilt[0].extend(columns[1:])
             tilt[1].extend([sign, sign * direction[g]])
-        rows.append((*level, one.step, STEP_SIGMA))
-        if np.isfinite(one.tilt):
-            rows.append((*tilt, one.tilt, TILT_SIGMA * max(MIN_OVERLAP_WIDTH / one.width, 0.2)))
+        rows.append((*level, overlap.step, STEP_SIGMA))
+        if np.isfinite(overlap.tilt):
+            rows.append((*tilt, overlap.tilt, TILT_SIGMA * max(MIN_OVERLAP_WIDTH / overlap.width, 0.2)))
     size = 2 * G * W + len(scanners)
     of = np.repeat(np.arange(len(rows)), [len(row[0]) for row in rows])
     design = sparse.csr_matrix((np.concatenate([row[1] for row in rows]), (of, np.concatenate([row[0] for row in rows]))), (len(rows), size))
@@ -275,11 +276,12 @@ def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> Heig
         precision = sparse.diags(weight / sigma**2)
         x = spsolve((design.T @ precision @ design + prior).tocsc(), design.T @ (precision @ value))
         weight = 1.0 / (1.0 + ((design @ x - value) / (STEP_OUTLIER / STEP_SIGMA * sigma)) ** 2)
-    own = x[boresight + np.searchsorted(scanners, [scanner for _, scanner in groups])]
-    tilt_of = x[tilts:boresight].reshape(G, W) + (direction * own)[:, None]
-    opposite = {one.window for one in overlaps if passes[one.one[0]].direction != passes[one.other[0]].direction and np.isfinite(one.tilt)}
+    boresights = x[boresight + np.searchsorted(scanners, [scanner for _, scanner in groups])]
+    tilt_of = x[tilts:boresight].reshape(G, W) + (direction * boresights)[:, None]
+    opposite = {overlap.window for overlap in overlaps
+                if passes[overlap.one[0]].direction != passes[overlap.other[0]].direction and np.isfinite(overlap.tilt)}
     largest = np.zeros(W)
-    np.maximum.at(largest, place.ravel(), np.abs([one.step for one in overlaps]))
+    np.maximum.at(largest, window.ravel(), np.abs([overlap.step for overlap in overlaps]))
     return HeightErrors(stations, {group: g for g, group in enumerate(groups)}, x[:tilts].reshape(G, W), tilt_of,
                         len(opposite) >= OPPOSITE_WINDOWS, float(np.median(largest)))
 
@@ -333,33 +335,33 @@ def rut_depths(d: np.ndarray, profiles: np.ndarray, lane: tuple[float, float], c
     low = max(lane[0] - WHEEL_REACH, carriageway[0])
     high = min(lane[1] + WHEEL_REACH, carriageway[1])
     smooth = smoothed(profiles)
-    found = np.full((2, len(profiles)), np.nan)
+    depths = np.full((2, len(profiles)), np.nan)
     first, last = int(np.searchsorted(d, low)), int(np.searchsorted(d, high)) - count
     if last < first:
-        return found
+        return depths
     middle = 0.5 * (lane[0] + lane[1])
     broken = _breaks(profiles)
     for start in range(first, last + 1, max(int(round(EDGE_STEP / CROSS_CELL)), 1)):
         under, heights = d[start:start + count], smooth[:, start:start + count]
-        known = np.isfinite(heights)
+        finite = np.isfinite(heights)
         depth = _hull_height(under, heights) - heights
-        depth[(known.mean(axis=1) < MIN_SEEN) | broken[:, start:start + count].any(axis=1)] = np.nan
-        for half, own in enumerate((under < middle, under >= middle)):
-            if own.any():
-                found[half] = np.fmax(found[half], np.where(known[:, own], depth[:, own], -np.inf).max(axis=1) + np.where(
+        depth[(finite.mean(axis=1) < MIN_SEEN) | broken[:, start:start + count].any(axis=1)] = np.nan
+        for half, columns in enumerate((under < middle, under >= middle)):
+            if columns.any():
+                depths[half] = np.fmax(depths[half], np.where(finite[:, columns], depth[:, columns], -np.inf).max(axis=1) + np.where(
                     np.isfinite(depth).any(axis=1), 0.0, np.nan))
-    found[~np.isfinite(found)] = np.nan
-    return np.maximum(found - noise_of_largest(sigma), 0.0)
+    depths[~np.isfinite(depths)] = np.nan
+    return np.maximum(depths - noise_of_largest(sigma), 0.0)
 
 
 def _breaks(profiles):
     """(I, J) whether the road breaks off beside a cell: at a step up or down, or where too many cells are unseen."""
-    found = np.zeros(profiles.shape, bool)
+    breaks = np.zeros(profiles.shape, bool)
     for lag in range(1, MAX_GAP_CELLS + 2):
         apart = np.abs(profiles[:, lag:] - profiles[:, :-lag])
-        found[:, :profiles.shape[1] - lag] |= apart > MAX_STEP_PER_CELL * lag
+        breaks[:, :profiles.shape[1] - lag] |= apart > MAX_STEP_PER_CELL * lag
     unseen = np.cumsum(np.pad(np.isnan(profiles), ((0, 0), (1, MAX_GAP_CELLS + 1)), constant_values=False), axis=1)
-    return found | (unseen[:, MAX_GAP_CELLS + 1:-1] - unseen[:, :-MAX_GAP_CELLS - 2] > MAX_GAP_CELLS)
+    return breaks | (unseen[:, MAX_GAP_CELLS + 1:-1] - unseen[:, :-MAX_GAP_CELLS - 2] > MAX_GAP_CELLS)
 
 
 def noise_of_largest(sigma: np.ndarray) -> np.ndarray:
@@ -380,10 +382,10 @@ def smoothed(profiles: np.ndarray) -> np.ndarray:
 def _bridged(profiles):
     """Profiles whose short gaps are filled along straight lines."""
     columns = np.arange(profiles.shape[1])
-    known = np.isfinite(profiles)
-    before = np.maximum.accumulate(np.where(known, columns, -1), axis=1)
-    after = np.minimum.accumulate(np.where(known, columns, profiles.shape[1])[:, ::-1], axis=1)[:, ::-1]
-    gap = ~known & (before >= 0) & (after < profiles.shape[1]) & (after - before <= MAX_GAP_CELLS + 1)
+    finite = np.isfinite(profiles)
+    before = np.maximum.accumulate(np.where(finite, columns, -1), axis=1)
+    after = np.minimum.accumulate(np.where(finite, columns, profiles.shape[1])[:, ::-1], axis=1)[:, ::-1]
+    gap = ~finite & (before >= 0) & (after < profiles.shape[1]) & (after - before <= MAX_GAP_CELLS + 1)
     i, j = np.nonzero(gap)
     low, high = before[i, j], after[i, j]
     filled = profiles.copy()
@@ -396,16 +398,16 @@ def _hull_height(x: np.ndarray, heights: np.ndarray) -> np.ndarray:
 
     NaN heights carry nothing. A profile without heights gives -inf.
     """
-    known = np.isfinite(heights)
-    at = x - x.mean()
-    level = np.where(known, heights, 0.0)
-    n = np.maximum(known.sum(axis=1), 1)
-    mean_x, mean_z = (known * at).sum(axis=1) / n, level.sum(axis=1) / n
-    off = np.where(known, at - mean_x[:, None], 0.0)
-    own = (off * level).sum(axis=1) / np.maximum((off**2).sum(axis=1), 1e-9)
-    flat = np.where(known, heights - mean_z[:, None] - own[:, None] * (at - mean_x[:, None]), -np.inf)
+    finite = np.isfinite(heights)
+    centred = x - x.mean()
+    level = np.where(finite, heights, 0.0)
+    n = np.maximum(finite.sum(axis=1), 1)
+    mean_x, mean_z = (finite * centred).sum(axis=1) / n, level.sum(axis=1) / n
+    off = np.where(finite, centred - mean_x[:, None], 0.0)
+    slope = (off * level).sum(axis=1) / np.maximum((off**2).sum(axis=1), 1e-9)
+    flat = np.where(finite, heights - mean_z[:, None] - slope[:, None] * (centred - mean_x[:, None]), -np.inf)
     steep = np.arange(FINE_SLOPE + COARSE_STEP, STEEPEST + COARSE_STEP / 2, COARSE_STEP)
     slopes = np.r_[-steep, np.arange(-FINE_SLOPE, FINE_SLOPE + FINE_STEP / 2, FINE_STEP), steep]
-    top = (flat[:, None, :] - slopes[:, None] * at).max(axis=2)
-    hull = (top[:, :, None] + slopes[:, None] * at).min(axis=1)
-    return hull + mean_z[:, None] + own[:, None] * (at - mean_x[:, None])
+    top = (flat[:, None, :] - slopes[:, None] * centred).max(axis=2)
+    hull = (top[:, :, None] + slopes[:, None] * centred).min(axis=1)
+    return hull + mean_z[:, None] + slope[:, None] * (centred - mean_x[:, None])

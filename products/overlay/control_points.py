@@ -100,19 +100,19 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     if not rows:
         raise RoadExtractionError(f"{what} holds no control points. It needs a row for each: pixel, line, easting, northing.")
     rows = _rows_of_image(rows, image, None if names is None else _columns_named(names).get("image"), what)
-    where = _guess_columns(rows, image, what) if names is None else _find_columns(names, what)
-    table = {key: _numbers(rows, where.get(key)) for key in ("pixel", "line", "easting", "northing", "height")}
-    known = np.isfinite([table[key] for key in ("pixel", "line", "easting", "northing")]).all(axis=0)
-    if not known.any():
+    columns = _guess_columns(rows, image, what) if names is None else _find_columns(names, what)
+    table = {key: _numbers(rows, columns.get(key)) for key in ("pixel", "line", "easting", "northing", "height")}
+    complete = np.isfinite([table[key] for key in ("pixel", "line", "easting", "northing")]).all(axis=0)
+    if not complete.any():
         raise RoadExtractionError(
             f"{what} holds no row with numbers for pixel, line, easting and northing. "
             "Write numbers with a decimal point (or a comma, where semicolons separate the columns).")
-    usable = [row for row, good in zip(rows, known) if good]
-    roles = _roles(usable, where)
-    pixel, line = _in_the_image(table["pixel"][known], table["line"][known], roles != DISABLED, image, what)
+    usable = [row for row, good in zip(rows, complete) if good]
+    roles = _roles(usable, columns)
+    pixel, line = _in_the_image(table["pixel"][complete], table["line"][complete], roles != DISABLED, image, what)
     crs, units = in_metres(crs)
-    easting, northing, height = units.in_metres(np.stack([table[key][known] for key in ("easting", "northing", "height")], axis=1)).T
-    return ControlPoints(pixel, line, easting, northing, height, _names(usable, where.get("name")), roles, crs, int((~known).sum()))
+    easting, northing, height = units.in_metres(np.stack([table[key][complete] for key in ("easting", "northing", "height")], axis=1)).T
+    return ControlPoints(pixel, line, easting, northing, height, _names(usable, columns.get("name")), roles, crs, int((~complete).sum()))
 
 
 def _plain(names):
@@ -140,16 +140,16 @@ def _rows_of_image(rows, image, column, what):
     column = next((k for k in columns if 2 * sum(bool(IMAGE_FILE.search(text(row, k))) for row in rows) > len(rows)), None)
     if column is None:
         return rows
-    own = PurePath(image.path)
-    seen = [PurePath(text(row, column).replace("\\", "/")) for row in rows]
-    for same in (lambda path: path.name == own.name,
-                 lambda path: path.name.lower() == own.name.lower(), lambda path: path.stem.lower() == own.stem.lower()):
-        kept = [row for row, path in zip(rows, seen) if same(path)]
+    wanted = PurePath(image.path)
+    paths = [PurePath(text(row, column).replace("\\", "/")) for row in rows]
+    for same in (lambda path: path.name == wanted.name,
+                 lambda path: path.name.lower() == wanted.name.lower(), lambda path: path.stem.lower() == wanted.stem.lower()):
+        kept = [row for row, path in zip(rows, paths) if same(path)]
         if kept:
             return kept
-    others = sorted({path.name for path in seen})
+    images = sorted({path.name for path in paths})
     raise RoadExtractionError(
-        f"{what} has no control point of {own.name}: its rows are of {', '.join(others[:3])}{' and others' if len(others) > 3 else ''}. "
+        f"{what} has no control point of {wanted.name}: its rows are of {', '.join(images[:3])}{' and others' if len(images) > 3 else ''}. "
         "Give the image under its own name, or the table of this image.")
 
 
@@ -158,18 +158,18 @@ def _find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
 
     Columns named only `x` and `y` are map coordinates, unless other columns have the names of these.
     """
-    found = _columns_named(names)
+    columns = _columns_named(names)
     plain = _plain(names)
     for bare, keys in (("x", ("easting", "pixel")), ("y", ("northing", "line"))):
-        free = [key for key in keys if key not in found]
+        free = [key for key in keys if key not in columns]
         if bare in plain and free:
-            found[free[0]] = plain.index(bare)
-    missing = [key for key in REQUIRED_COLUMNS if key not in found]
+            columns[free[0]] = plain.index(bare)
+    missing = [key for key in REQUIRED_COLUMNS if key not in columns]
     if missing:
         raise RoadExtractionError(
             f"{what} has the columns {', '.join(map(str, names))}; none of them was recognised as {' or '.join(missing)}. "
             "Name the columns pixel, line, easting, northing.")
-    return found
+    return columns
 
 
 def _guess_columns(rows: Sequence[Sequence[Any]], image: SourceImage, what: str) -> dict[str, int]:
@@ -204,15 +204,15 @@ def _guess_columns(rows: Sequence[Sequence[Any]], image: SourceImage, what: str)
 
 def _that_lies_like_an_image(fits, values, image):
     """Of several readings of a table those that an image turned, scaled and sheared explains, the one with heights where they agree."""
-    away = []
+    misses = []
     for fit in fits:
         pixel, line, easting, northing = (values[:, fit[key]] for key in REQUIRED_COLUMNS)
         ground = np.c_[np.ones(len(values)), easting - easting.mean(), northing - northing.mean()]
-        place = np.c_[pixel, line]
-        away.append(np.sqrt(np.mean((place - ground @ np.linalg.lstsq(ground, place, rcond=None)[0])**2)))
-    near = [fit for fit, distance in zip(fits, away) if distance <= min(away) + 1e-6]
+        positions = np.c_[pixel, line]
+        misses.append(np.sqrt(np.mean((positions - ground @ np.linalg.lstsq(ground, positions, rcond=None)[0])**2)))
+    near = [fit for fit, distance in zip(fits, misses) if distance <= min(misses) + 1e-6]
     # three points lie like an image in any order of the columns
-    clear = len(values) > 3 and min(away) < MAX_DEPARTURE * max(image.width, image.height)
+    clear = len(values) > 3 and min(misses) < MAX_DEPARTURE * max(image.width, image.height)
     alike = all(fit[key] == near[0][key] for fit in near for key in REQUIRED_COLUMNS)
     return [max(near, key=len)] if alike and (clear or len(near) == len(fits)) else near if clear else fits
 

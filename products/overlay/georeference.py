@@ -58,9 +58,9 @@ class GeoreferenceSettings:
         check_limits(self)
         if self.order not in (0, 1, 2, 3):
             raise RoadExtractionError(f"The order of the polynomial is {self.order}; it must be 0 (a shift), 1, 2 or 3.")
-        for name, known in (("extrapolation", EXTRAPOLATIONS), ("resampling", RESAMPLINGS)):
-            if getattr(self, name) not in known:
-                raise RoadExtractionError(f"{name.capitalize()} {getattr(self, name)!r} is not known. Choose one of: {', '.join(known)}.")
+        for name, choices in (("extrapolation", EXTRAPOLATIONS), ("resampling", RESAMPLINGS)):
+            if getattr(self, name) not in choices:
+                raise RoadExtractionError(f"{name.capitalize()} {getattr(self, name)!r} is not known. Choose one of: {', '.join(choices)}.")
 
 
 @dataclass(frozen=True)
@@ -145,9 +145,9 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
     left_out = errors.copy()
     left_out[used] = fit.left_out
     size = settings.pixel_size or _two_digits(own_pixel_size(fit, hull or frame))
-    found = Georeferencing(image, points, settings, fit, size, hull, outside, cut, errors, left_out)
-    found.notes.extend(_notes(found))
-    return found
+    result = Georeferencing(image, points, settings, fit, size, hull, outside, cut, errors, left_out)
+    result.notes.extend(_notes(result))
+    return result
 
 
 def residual_vectors(found: Georeferencing) -> Features:
@@ -187,10 +187,10 @@ def _rough_position(image, points, settings):
     from ...core.io.crs import horizontal_part, parse_crs, same_crs
 
     if image.geotransform is not None:
-        own, wanted = parse_crs(image.crs), parse_crs(points.crs)
-        if own is not None and wanted is not None and not same_crs(own, wanted):
+        image_crs, wanted = parse_crs(image.crs), parse_crs(points.crs)
+        if image_crs is not None and wanted is not None and not same_crs(image_crs, wanted):
             raise RoadExtractionError(
-                f"The image lies in {horizontal_part(own).name}, the control points in {horizontal_part(wanted).name}. A shift (order 0) "
+                f"The image lies in {horizontal_part(image_crs).name}, the control points in {horizontal_part(wanted).name}. A shift (order 0) "
                 "needs both in one CRS: reproject the image or the points, or choose order 1.")
         return image.geotransform
     if settings.pixel_size <= 0:
@@ -336,8 +336,8 @@ def _misfits(found):
     freedom = 2 * fit.free - 2
     if freedom < 2:
         return []
-    own = _burden(fit)
-    others = np.maximum(np.sum(fit.residuals**2) - own, 0.0) / freedom
+    burden = _burden(fit)
+    rest = np.maximum(np.sum(fit.residuals**2) - burden, 0.0) / freedom
     floor = (_MIN_POINT_ERROR * found.pixel_size) ** 2
-    strange = own / 2 > _MISFIT_RESIDUAL**2 * np.maximum(others, floor)
-    return used[strange][np.argsort(-own[strange])][:_MAX_MISFITS]
+    strange = burden / 2 > _MISFIT_RESIDUAL**2 * np.maximum(rest, floor)
+    return used[strange][np.argsort(-burden[strange])][:_MAX_MISFITS]

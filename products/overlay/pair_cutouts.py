@@ -39,8 +39,8 @@ def pair_cutouts(image: SourceImage, intensity: IntensityImage, pixel: np.ndarra
     bands = (1, 2, 3) if dataset.RasterCount - image.has_alpha >= 3 else (1, 1, 1)
     factor, _ = similarity(pixel, line, easting, northing)
     per_cell = 2.0 * half / side
-    for at in zip(pixel, line, easting, northing):
-        yield _photo(dataset, bands, image, at[:2], 1.0 / factor, per_cell, side), _intensity(intensity, at[2:], half, side)
+    for pair in zip(pixel, line, easting, northing):
+        yield _photo(dataset, bands, image, pair[:2], 1.0 / factor, per_cell, side), _intensity(intensity, pair[2:], half, side)
 
 
 def _photo(dataset, bands, image, place, factor, per_cell, side):
@@ -82,9 +82,9 @@ def _intensity(intensity, place, half, side):
 
 def _stretched(values):
     """(H, W, C) values as bytes, dark to light; black where there are none."""
-    known = np.isfinite(values)
-    if not known.any():
+    finite = np.isfinite(values)
+    if not finite.any():
         return np.zeros(values.shape, np.uint8)
-    low, high = np.percentile(values[known], _STRETCH)
-    share = np.clip((np.where(known, values, low) - low) / max(float(high - low), 1e-9), 0.0, 1.0)
-    return np.where(known, np.rint(30 + 225 * share), 0).astype(np.uint8)
+    low, high = np.percentile(values[finite], _STRETCH)
+    share = np.clip((np.where(finite, values, low) - low) / max(float(high - low), 1e-9), 0.0, 1.0)
+    return np.where(finite, np.rint(30 + 225 * share), 0).astype(np.uint8)

@@ -68,10 +68,10 @@ def rough_place(image: SourceImage, crs: str, reach: float, pixel_size: float = 
     tags = read_position_tags(image)
     size = pixel_size or (tags.pixel_size(image) if tags else None) or 0.0
     if not size:
-        known = "its tags say where the camera hung, but not how high or with what focal length" if tags else \
+        reason = "its tags say where the camera hung, but not how high or with what focal length" if tags else \
             "it has neither a position nor position tags"
         raise RoadExtractionError(
-            f"Nothing tells how large the pixels of {image.path} are on the ground: {known}. Give the pixel size, or two points, or a "
+            f"Nothing tells how large the pixels of {image.path} are on the ground: {reason}. Give the pixel size, or two points, or a "
             "world file beside the image.")
     size_range = _GIVEN_SIZE if pixel_size else _TAGGED_SIZE
     if tags is None or not crs:
@@ -88,11 +88,11 @@ def _by_points(pixel, line, easting, northing, middle, reach):
     if not np.isfinite(factor) or spread < 2.0 * _POINTED:
         raise RoadExtractionError(f"The rough points lie {spread:.1f} m apart. Choose two that are far apart in the image.")
     loose = min(0.3, 2.0 * _POINTED / spread)
-    at = shift + factor * complex(middle[0], -middle[1])
+    centre = shift + factor * complex(middle[0], -middle[1])
     # what lies beyond the points is off by more than they are
-    beyond = 1.0 + abs(at - complex(easting.mean(), northing.mean())) / spread
-    return RoughPlace(at.real, at.imag, min(reach, 2.0 * _POINTED * beyond), float(np.angle(factor)), max(np.radians(1.0), loose), abs(factor),
-                      max(0.01, loose), f"{len(pixel)} given points")
+    beyond = 1.0 + abs(centre - complex(easting.mean(), northing.mean())) / spread
+    return RoughPlace(centre.real, centre.imag, min(reach, 2.0 * _POINTED * beyond), float(np.angle(factor)), max(np.radians(1.0), loose),
+                      abs(factor), max(0.01, loose), f"{len(pixel)} given points")
 
 
 def similarity(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray) -> tuple[complex, complex]:
@@ -101,11 +101,11 @@ def similarity(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northin
     pixel, line, easting, northing : (N,), N at least 2
     Returns factor, shift: NaN where all points lie in one place
     """
-    seen, there = pixel - 1j * line, easting + 1j * northing
-    a = seen - seen.mean()
+    source, target = pixel - 1j * line, easting + 1j * northing
+    a = source - source.mean()
     with np.errstate(all="ignore"):
-        factor = ((there - there.mean()) * a.conj()).sum() / (np.abs(a) ** 2).sum()
-    return complex(factor), complex(there.mean() - factor * seen.mean())
+        factor = ((target - target.mean()) * a.conj()).sum() / (np.abs(a) ** 2).sum()
+    return complex(factor), complex(target.mean() - factor * source.mean())
 
 
 def _by_geotransform(image, crs, middle, reach):
@@ -114,22 +114,22 @@ def _by_geotransform(image, crs, middle, reach):
     pixel, line = (axis.ravel() for axis in np.meshgrid([0.0, image.width], [0.0, image.height]))
     easting, northing = to_map(x0 + xp * pixel + xl * line, y0 + yp * pixel + yl * line, image.crs, crs)
     factor, shift = similarity(pixel, line, easting, northing)
-    at = shift + factor * complex(middle[0], -middle[1])
-    if not (np.isfinite(at) and abs(factor) > 0):
+    centre = shift + factor * complex(middle[0], -middle[1])
+    if not (np.isfinite(centre) and abs(factor) > 0):
         raise RoadExtractionError(f"The position of {image.path} cannot be taken to the CRS of the intensity image. Is its CRS the right one?")
-    return RoughPlace(at.real, at.imag, reach, float(np.angle(factor)), _PLACED_TURN, abs(factor), _PLACED_SIZE, "the image's own position")
+    return RoughPlace(centre.real, centre.imag, reach, float(np.angle(factor)), _PLACED_TURN, abs(factor), _PLACED_SIZE, "the image's own position")
 
 
 def _by_tags(tags, crs, reach, size, size_range):
     """By the place of the camera: the middle of an image that looks straight down lies below it."""
     x, y = to_map(np.full(2, tags.longitude), tags.latitude + np.array([0.0, _NORTH_STEP]), "EPSG:4326", crs)
     north = float(np.arctan2(y[1] - y[0], x[1] - x[0]))  # true north on the map, counter-clockwise from east
-    said = "position tags"
+    source = "position tags"
     if tags.heading is None:
-        return RoughPlace(float(x[0]), float(y[0]), reach, 0.0, np.pi, size, size_range, said)
+        return RoughPlace(float(x[0]), float(y[0]), reach, 0.0, np.pi, size, size_range, source)
     # the top of the image points to the heading; its rows run a right angle clockwise from there
     turn = north - np.radians(tags.heading) - np.pi / 2
-    return RoughPlace(float(x[0]), float(y[0]), reach, float(np.angle(np.exp(1j * turn))), _TAGGED_TURN, size, size_range, said)
+    return RoughPlace(float(x[0]), float(y[0]), reach, float(np.angle(np.exp(1j * turn))), _TAGGED_TURN, size, size_range, source)
 
 
 def to_map(x: np.ndarray, y: np.ndarray, source: str, target: str) -> tuple[np.ndarray, np.ndarray]:
@@ -219,8 +219,8 @@ def _first(*values):
 
 def _xmp_text(xmp, name):
     """The text of an attribute or an element, "" where there is none."""
-    found = re.search(rf"\b{name}\s*=\s*[\"']([^\"']*)[\"']|<(?:[\w-]+:)?{name}>([^<]*)<", xmp)
-    return (found.group(1) or found.group(2) or "").strip() if found else ""
+    match = re.search(rf"\b{name}\s*=\s*[\"']([^\"']*)[\"']|<(?:[\w-]+:)?{name}>([^<]*)<", xmp)
+    return (match.group(1) or match.group(2) or "").strip() if match else ""
 
 
 def _xmp_number(xmp, name):
@@ -246,8 +246,8 @@ def _exif_degrees(exif, name):
 def _numbers(text):
     """The number in a text; of several (degrees, minutes, seconds) each counts a sixtieth of the one before."""
     parts = []
-    for one in re.findall(_NUMBER, text):
-        above, _, below = one.partition("/")
+    for number in re.findall(_NUMBER, text):
+        above, _, below = number.partition("/")
         parts.append(float(above) / (float(below) or np.nan) if below else float(above))
     value = sum(part / 60.0**k for k, part in enumerate(parts[:3]))
     return value if parts and np.isfinite(value) else None

@@ -179,7 +179,7 @@ def _with_point_grid(gdal, found, path):
             break
     wkt, units = as_in_file(found.points.crs)
     easting, northing = units.in_file(np.column_stack(polynomial.to_map(pixel, line))).T
-    points = [gdal.GCP(*map(float, place)) for place in zip(easting, northing, np.zeros(len(pixel)), pixel, line)]
+    points = [gdal.GCP(*map(float, point)) for point in zip(easting, northing, np.zeros(len(pixel)), pixel, line)]
     more = {"rgbExpand": "rgb"} if found.image.palette else {}
     return gdal.Translate("", path, format="VRT", GCPs=points, outputSRS=wkt or None, **more)
 

@@ -47,9 +47,9 @@ def boundary_report(accuracy: BoundaryAccuracy, layer: Features, names: tuple[st
 
 def _by_side(accuracy):
     """(side, tolerance, figures) of every side and of all together."""
-    for side, found in (*((name or "unknown", figures) for name, figures in accuracy.by_side.items()), ("together", accuracy.total)):
+    for side, figures in (*((name or "unknown", values) for name, values in accuracy.by_side.items()), ("together", accuracy.total)):
         if side != "unknown" or len(accuracy.by_side) > 1:
-            yield from ((side, tolerance, found[tolerance]) for tolerance in accuracy.settings.tolerances)
+            yield from ((side, tolerance, figures[tolerance]) for tolerance in accuracy.settings.tolerances)
 
 
 def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccuracySettings, layer: Features, names: tuple[str, str],
@@ -64,12 +64,12 @@ def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccur
     """
     along, length = told(along), match.result_points.length
     wrong, missed = match.to_reference > settings.tolerance, match.to_result > settings.tolerance
-    each = match.per_reference_line(settings.tolerances) if 2 <= len(match.reference) <= 60 else []
+    accuracies = match.per_reference_line(settings.tolerances) if 2 <= len(match.reference) <= 60 else []
     return html_page(
         "driving_accuracy", accuracy=accuracy, settings=settings, names=names, notes=notes, total_width=total_width, whole=_whole,
         errors_row=_errors_row, min_gap=MIN_REFERENCE_GAP, max_distance=MAX_MATCH_DISTANCE,
-        lines=[(str(k), one.reference_length, *(percent(shares[t]) for shares in (one.completeness, one.miscoding) for t in settings.tolerances),
-                _centimetres(one.rmse)) for k, one in enumerate(each, start=1)],
+        lines=[(str(k), line.reference_length, *(percent(shares[t]) for shares in (line.completeness, line.miscoding) for t in settings.tolerances),
+                _centimetres(line.rmse)) for k, line in enumerate(accuracies, start=1)],
         map=_outcome_map(layer), error_chart=_error_along_road(station[0], match.lateral, length, along),
         outcome_chart=_outcomes_along_road(
             {"correct": station[0][~wrong], "false": station[0][wrong], "missed": station[1][missed]},
@@ -128,11 +128,11 @@ def _scale_bar(picture, scale, width):
 
 def _error_along_road(station, error, weights, along):
     """SVG and caption of the RMSE and the largest (N,) lateral error along the road, in bins of 10 m or more; empty where none is known."""
-    known = np.isfinite(station) & np.isfinite(error)
-    if not known.any():
+    finite = np.isfinite(station) & np.isfinite(error)
+    if not finite.any():
         return "", ""
-    edges, number = bins_of(station[known])
-    size, weight = np.abs(error[known]), weights[known]
+    edges, number = bins_of(station[finite])
+    size, weight = np.abs(error[finite]), weights[finite]
     count = len(edges) - 1
     mean = np.bincount(number, weight * size**2, count) / np.maximum(np.bincount(number, weight, count), 1e-12)
     largest = np.full(count, np.nan)
@@ -147,10 +147,10 @@ def _error_along_road(station, error, weights, along):
 
 def _error_histogram(error, weights, signed):
     """SVG and caption of a histogram of (N,) lateral errors, metres, with (N,) weights; `signed` says which sign is which."""
-    known = np.isfinite(error)
-    if not known.any():
+    finite = np.isfinite(error)
+    if not finite.any():
         return "", ""
-    error, weights = 100 * error[known], weights[known]
+    error, weights = 100 * error[finite], weights[finite]
     reach = max(float(np.percentile(np.abs(error), 99)) * 1.15, 0.5)
     edges = np.linspace(-reach, reach, ERROR_CLASSES + 1)
     share = 100 * np.histogram(np.clip(error, edges[0], edges[-1]), edges, weights=weights)[0] / weights.sum()
@@ -167,9 +167,9 @@ def _outcomes_along_road(stations: Mapping[str, np.ndarray], lengths: Mapping[st
     edges, _ = bins_of(everything[np.isfinite(everything)])
     count, total, amounts = len(edges) - 1, np.zeros(len(edges) - 1), {}
     for name in stations:
-        known = np.isfinite(stations[name])
-        number = np.clip(np.searchsorted(edges, stations[name][known], side="right") - 1, 0, count - 1)
-        amounts[name] = np.bincount(number, lengths[name][known], count)
+        finite = np.isfinite(stations[name])
+        number = np.clip(np.searchsorted(edges, stations[name][finite], side="right") - 1, 0, count - 1)
+        amounts[name] = np.bincount(number, lengths[name][finite], count)
         total = total + amounts[name]
     chart = Chart((edges[0], edges[-1]), (0, 1.05 * total.max()), tr("along {what} (m)").format(what=along), unit)
     base = np.zeros(count)

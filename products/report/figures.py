@@ -62,8 +62,8 @@ class Chart:
 
     def curve(self, x: np.ndarray, y: np.ndarray, colour: str, title: str = "", width: float = 1.6) -> None:
         """Draw a line of some width, px, through points (N,); NaN interrupts it."""
-        known = np.isfinite(x) & np.isfinite(y)
-        rows = np.flatnonzero(known)
+        finite = np.isfinite(x) & np.isfinite(y)
+        rows = np.flatnonzero(finite)
         for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
             if len(run):
                 points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(self._x(np.asarray(x)[run]), self._y(np.asarray(y)[run])))
@@ -72,11 +72,11 @@ class Chart:
 
     def level(self, y: float, colour: str, label: str = "") -> None:
         """Draw a dashed line across the plot, with its label unless that would lie over another one."""
-        at = float(self._y(y))
-        self.parts.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{at:.1f}" y2="{at:.1f}" stroke="{colour}" stroke-dasharray="5 4"/>')
-        if label and all(abs(at - other) > MIN_LABEL_DISTANCE for other in self.levels):
-            self.levels.append(at)
-            self.parts.append(f'<text x="{PLOT_END - 4}" y="{at - 4:.1f}" text-anchor="end" font-size="11" fill="{colour}">'
+        pixel = float(self._y(y))
+        self.parts.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{pixel:.1f}" y2="{pixel:.1f}" stroke="{colour}" stroke-dasharray="5 4"/>')
+        if label and all(abs(pixel - drawn) > MIN_LABEL_DISTANCE for drawn in self.levels):
+            self.levels.append(pixel)
+            self.parts.append(f'<text x="{PLOT_END - 4}" y="{pixel - 4:.1f}" text-anchor="end" font-size="11" fill="{colour}">'
                               f'{html.escape(label)}</text>')
 
     def svg(self) -> str:
@@ -90,20 +90,20 @@ class Chart:
                 f'<rect width="{CHART_WIDTH}" height="{self.height}" fill="white"/>{inner}</svg>')
 
     def _grid(self):
-        found, foot = [], self.height - BOTTOM_MARGIN
+        parts, foot = [], self.height - BOTTOM_MARGIN
         for x in ticks(self.x0, self.x1, 10):
-            at = float(self._x(x))
-            found.append(f'<line x1="{at:.1f}" x2="{at:.1f}" y1="{TOP_MARGIN}" y2="{foot}" stroke="{GRID_COLOUR}"/>'
-                         f'<text x="{at:.1f}" y="{foot + 15}" text-anchor="middle" fill="{TEXT_COLOUR}">{_number(x)}</text>')
+            pixel = float(self._x(x))
+            parts.append(f'<line x1="{pixel:.1f}" x2="{pixel:.1f}" y1="{TOP_MARGIN}" y2="{foot}" stroke="{GRID_COLOUR}"/>'
+                         f'<text x="{pixel:.1f}" y="{foot + 15}" text-anchor="middle" fill="{TEXT_COLOUR}">{_number(x)}</text>')
         for y in ticks(self.y0, self.y1, 5):
-            at = float(self._y(y))
-            found.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{at:.1f}" y2="{at:.1f}" stroke="{GRID_COLOUR}"/>'
-                         f'<text x="{LEFT_MARGIN - 6}" y="{at + 4:.1f}" text-anchor="end" fill="{TEXT_COLOUR}">{_number(y)}</text>')
+            pixel = float(self._y(y))
+            parts.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{pixel:.1f}" y2="{pixel:.1f}" stroke="{GRID_COLOUR}"/>'
+                         f'<text x="{LEFT_MARGIN - 6}" y="{pixel + 4:.1f}" text-anchor="end" fill="{TEXT_COLOUR}">{_number(y)}</text>')
         middle = TOP_MARGIN + (foot - TOP_MARGIN) / 2
         style = f'text-anchor="middle" fill="{TEXT_COLOUR}"'
-        found.append(f'<text x="{(LEFT_MARGIN + PLOT_END) / 2}" y="{self.height - 6}" {style}>{html.escape(self.labels[0])}</text>')
-        found.append(f'<text x="14" y="{middle}" {style} transform="rotate(-90 14 {middle})">{html.escape(self.labels[1])}</text>')
-        return "".join(found)
+        parts.append(f'<text x="{(LEFT_MARGIN + PLOT_END) / 2}" y="{self.height - 6}" {style}>{html.escape(self.labels[0])}</text>')
+        parts.append(f'<text x="14" y="{middle}" {style} transform="rotate(-90 14 {middle})">{html.escape(self.labels[1])}</text>')
+        return "".join(parts)
 
 
 def ticks(low: float, high: float, count: int) -> np.ndarray:

@@ -60,7 +60,7 @@ def map_check_report(found: Findings, path: str, notes: Sequence[str] = ()) -> s
     """The findings of a map in the file of a path, as HTML."""
     groups, _ = found.groups()
     return html_page("map_check", found=found, file=Path(path).name, notes=notes, faults=FAULTS, count=len(groups),
-                  groups=[(row, places_of_findings(one, MOST_ROWS // 10), one) for row, one in enumerate(groups[:MOST_ROWS], start=1)])
+                  groups=[(row, places_of_findings(group, MOST_ROWS // 10), group) for row, group in enumerate(groups[:MOST_ROWS], start=1)])
 
 
 def places_of_findings(one: SameFindings, most: int) -> str:

@@ -73,9 +73,9 @@ def _exceeded(rows):
                 runs[key][-1].append(row)
             else:
                 runs[key].append([row])
-    found = [(road, str(lane or word("carriageway")), word(name), run[0]["station_m"], run[-1]["station_m"], _worst(run, name))
-             for (road, lane, name), some in runs.items() for run in some]
-    return sorted(found, key=lambda one: (one[0], one[3]))
+    result = [(road, str(lane or word("carriageway")), word(name), run[0]["station_m"], run[-1]["station_m"], _worst(run, name))
+              for (road, lane, name), group in runs.items() for run in group]
+    return sorted(result, key=lambda one: (one[0], one[3]))
 
 
 def _worst(run, name):
@@ -86,10 +86,10 @@ def _worst(run, name):
 
 
 def _parts(rows):
-    found = defaultdict(list)
+    parts = defaultdict(list)
     for row in sorted(rows, key=lambda one: (one["lane"] or 0)):
-        found[tr("lane {number}").format(number=row["lane"]) if row["lane"] else word("carriageway")].append(row)
-    return found
+        parts[tr("lane {number}").format(number=row["lane"]) if row["lane"] else word("carriageway")].append(row)
+    return parts
 
 
 def _summary(name, rows):
@@ -107,11 +107,11 @@ def _plan(rows, station, interval):
     reach = [row["offset_m"] + side * row["width_m"] / 2 for row in rows for side in (-1, 1)]
     chart = Chart(station, (min(reach) - 0.5, max(reach) + 0.5), tr("Station (m)"), tr("Offset (m)"))
     for over, colour in ((False, KEPT_COLOUR), (True, PLAN_EXCEEDED_COLOUR)):
-        own = [row for row in rows if bool(row["exceeds"]) == over and (row["lane"] or over or not any(one["lane"] for one in rows))]
-        if own:
-            middle = np.array([row["station_m"] for row in own])
-            width = np.array([row["width_m"] for row in own])
-            chart.bars(middle - 0.35 * interval, middle + 0.35 * interval, width, colour, np.array([row["offset_m"] for row in own]) - width / 2)
+        drawn = [row for row in rows if bool(row["exceeds"]) == over and (row["lane"] or over or not any(section["lane"] for section in rows))]
+        if drawn:
+            middle = np.array([row["station_m"] for row in drawn])
+            width = np.array([row["width_m"] for row in drawn])
+            chart.bars(middle - 0.35 * interval, middle + 0.35 * interval, width, colour, np.array([row["offset_m"] for row in drawn]) - width / 2)
     return chart.svg()
 
 
@@ -120,13 +120,13 @@ def _chart(rows, station, interval, limits, what):
     title, unit, names, part, lines, limit = what
     levels = [(name, sign * getattr(limits, name)) for name, sign in lines if getattr(limits, name) is not None]
     series = _parts([row for row in rows if row["part"] == part])
-    values = {name: [_value(row, names) for row in some] for name, some in series.items()}
-    known = [value for some in values.values() for value in some if value is not None]
-    if not known:
+    values = {name: [_value(row, names) for row in members] for name, members in series.items()}
+    measured = [value for members in values.values() for value in members if value is not None]
+    if not measured:
         return None
     # limits far off would flatten what was measured
-    near = [level for _, level in levels if min(known) - np.ptp(known) - 1 < level < max(known) + np.ptp(known) + 1]
-    low, high = min([*known, *near]), max([*known, *near])
+    near = [level for _, level in levels if min(measured) - np.ptp(measured) - 1 < level < max(measured) + np.ptp(measured) + 1]
+    low, high = min([*measured, *near]), max([*measured, *near])
     room = max(0.08 * (high - low), 0.02)
     chart = Chart(station, (low - room, high + room), tr("Station (m)"), unit, 200)
     over = sorted({row["station_m"] for row in rows if row["part"] == part and limit and limit in (row["exceeds"] or "").split(", ")})
@@ -137,9 +137,9 @@ def _chart(rows, station, interval, limits, what):
         if level in near:
             chart.level(level, LIMIT_COLOUR, _limit_titles()[name])
     drawn = []
-    for k, (name, some) in enumerate(series.items()):
+    for k, (name, members) in enumerate(series.items()):
         colour = LANE_COLOURS[k % len(LANE_COLOURS)]
-        s, y = _with_gaps([row["station_m"] for row in some], values[name], interval)
+        s, y = _with_gaps([row["station_m"] for row in members], values[name], interval)
         chart.curve(s, y, colour, name, 2.0)
         drawn.append((colour, name))
     return title, chart.svg(), drawn
@@ -153,11 +153,11 @@ def _value(row, names):
 def _with_gaps(stations, values, interval):
     """Stations and values of a curve; a value that stands alone is drawn as a short dash, a missing section as a gap."""
     s, y = [], []
-    for at, value in zip(stations, values):
-        if s and at - s[-1] > 1.2 * interval:
-            s.append(at)
+    for station, value in zip(stations, values):
+        if s and station - s[-1] > 1.2 * interval:
+            s.append(station)
             y.append(np.nan)
-        s += [at - 0.2 * interval, at + 0.2 * interval]
+        s += [station - 0.2 * interval, station + 0.2 * interval]
         y += [np.nan if value is None else value] * 2
     return np.array(s), np.array(y)
 
@@ -189,8 +189,8 @@ def _roadside_plan(found, road, edges, points):
         chart.curve(line.chain.s, line.chain.d, KIND_COLOURS[line.kind], _kind_name(line.kind), 2.4)
     along, across = MARK_SIZE[0] * np.ptp(edges.s), MARK_SIZE[1] * np.ptp(reach)
     for row in points:
-        at = np.array([row["station_m"]])
-        chart.bars(at - along / 2, at + along / 2, np.array([across]), KIND_COLOURS[row["kind"]], np.array([row["offset_m"] - across / 2]),
+        station = np.array([row["station_m"]])
+        chart.bars(station - along / 2, station + along / 2, np.array([across]), KIND_COLOURS[row["kind"]], np.array([row["offset_m"] - across / 2]),
                    f"{_kind_name(row['kind'])}, {row['height_m']:.1f} m")
     kinds = {line.kind for line in lines} | {row["kind"] for row in points}
     return chart.svg(), [(colour, _kind_name(kind)) for kind, colour in KIND_COLOURS.items() if kind in kinds]

@@ -72,14 +72,14 @@ def _averaged(dataset, columns, rows, nodata):
     for left, top in filled_tiles(dataset):
         size = min(GEOTIFF_TILE, width - left), min(GEOTIFF_TILE, height - top)
         values = np.frombuffer(band.ReadRaster(left, top, *size, buf_type=gdal.GDT_Float32), np.float32).reshape(size[::-1])
-        known = np.isfinite(values) if nodata is None else np.isfinite(values) & (values != np.float32(nodata))
+        filled = np.isfinite(values) if nodata is None else np.isfinite(values) & (values != np.float32(nodata))
         column, row = (np.arange(first, first + n) * few // many for first, n, few, many in
                        ((left, size[0], columns, width), (top, size[1], rows, height)))
-        place = slice(row[0], row[-1] + 1), slice(column[0], column[-1] + 1)
-        cells = total[place].shape
-        cell = ((row - row[0])[:, None] * cells[1] + (column - column[0]))[known]
-        total[place] += np.bincount(cell, values[known], cells[0] * cells[1]).reshape(cells)
-        count[place] += np.bincount(cell, minlength=cells[0] * cells[1]).reshape(cells)
+        window = slice(row[0], row[-1] + 1), slice(column[0], column[-1] + 1)
+        cells = total[window].shape
+        cell = ((row - row[0])[:, None] * cells[1] + (column - column[0]))[filled]
+        total[window] += np.bincount(cell, values[filled], cells[0] * cells[1]).reshape(cells)
+        count[window] += np.bincount(cell, minlength=cells[0] * cells[1]).reshape(cells)
     return np.divide(total, count, out=np.full((rows, columns), np.nan), where=count > 0)
 
 

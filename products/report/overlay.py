@@ -47,8 +47,8 @@ def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -
 
 
 def _largest(vectors):
-    known = vectors[np.isfinite(vectors).all(axis=1)]
-    return float(np.hypot(*known.T).max()) if len(known) else float("nan")
+    finite = vectors[np.isfinite(vectors).all(axis=1)]
+    return float(np.hypot(*finite.T).max()) if len(finite) else float("nan")
 
 
 def _residual_picture(found: Georeferencing, drawn: str) -> tuple[np.ndarray, float]:
@@ -69,14 +69,14 @@ def _residual_picture(found: Georeferencing, drawn: str) -> tuple[np.ndarray, fl
     # An arrow starts where the polynomial puts the point and is lengthened from there
     starts = at(points.easting - found.errors[:, 0], points.northing - found.errors[:, 1])
     tips = starts + found.errors * np.array([1.0, -1.0]) * scale * magnification
-    for place, tip, role in sorted(zip(starts, tips, points.roles), key=lambda one: one[2] != DISABLED):
+    for start, tip, role in sorted(zip(starts, tips, points.roles), key=lambda one: one[2] != DISABLED):
         colour = ROLE_COLOURS[str(role)]
         if role == DISABLED:
-            cv2.drawMarker(canvas, _whole(place), colour, cv2.MARKER_TILTED_CROSS, 10, 2, cv2.LINE_AA)
+            cv2.drawMarker(canvas, _whole(start), colour, cv2.MARKER_TILTED_CROSS, 10, 2, cv2.LINE_AA)
             continue
         for tint, width in (((20, 20, 20), 5), (colour, 2)):
-            cv2.arrowedLine(canvas, _whole(place), _whole(tip), tint, width, cv2.LINE_AA, tipLength=0.25)
-        cv2.circle(canvas, _whole(place), 4, colour, -1, cv2.LINE_AA)
+            cv2.arrowedLine(canvas, _whole(start), _whole(tip), tint, width, cv2.LINE_AA, tipLength=0.25)
+        cv2.circle(canvas, _whole(start), 4, colour, -1, cv2.LINE_AA)
     return canvas, magnification
 
 

@@ -60,18 +60,18 @@ def _totals(measure, *columns):
 
 def _totals_with_sigma(length, sigma, *columns):
     """`_totals` of (N,) lengths in the user's words, each with the RMS of (N,) sigmas over its length in mm, a dash where none is known."""
-    known = np.isfinite(sigma)
-    squares = {tuple(key): value for *key, value in _totals((length * sigma**2)[known], *(np.asarray(column, object)[known] for column in columns))}
-    lengths = {tuple(key): value for *key, value in _totals(length[known], *(np.asarray(column, object)[known] for column in columns))}
+    finite = np.isfinite(sigma)
+    squares = {tuple(key): value for *key, value in _totals((length * sigma**2)[finite], *(np.asarray(column, object)[finite] for column in columns))}
+    lengths = {tuple(key): value for *key, value in _totals(length[finite], *(np.asarray(column, object)[finite] for column in columns))}
     return [(*map(word, key), total, 1000.0 * float(np.sqrt(squares[tuple(key)] / lengths[tuple(key)])) if lengths.get(tuple(key)) else "–")
             for *key, total in _totals(length, *columns)]
 
 
 def _agreement(edges, differences):
     """Where profiles and scanlines find different edges: a measure of reliability without a reference."""
-    seen = np.isfinite(edges.agree)
-    length = edges.length[seen].sum()
-    return dict(agreement=(length, (edges.length * edges.agree)[seen].sum() / length) if length else None,
+    compared = np.isfinite(edges.agree)
+    length = edges.length[compared].sum()
+    return dict(agreement=(length, (edges.length * edges.agree)[compared].sum() / length) if length else None,
                 differences=list(zip(differences.road.tolist(), map(word, differences.side.tolist()), *(
                     values.tolist() for values in (differences.station, differences.end, differences.agree)))))
 
@@ -155,7 +155,7 @@ def curvature_along(line: shapely.LineString, step: float = CURVATURE_STEP, base
     station = np.arange(base, length - base + 1e-9, step)
     if not len(station):
         return np.empty(0), np.empty(0)
-    behind, at, ahead = (shapely.get_coordinates(shapely.line_interpolate_point(line, station + k)) for k in (-base, 0.0, base))
-    first, second = np.arctan2(*(at - behind).T[::-1]), np.arctan2(*(ahead - at).T[::-1])
+    behind, middle, ahead = (shapely.get_coordinates(shapely.line_interpolate_point(line, station + k)) for k in (-base, 0.0, base))
+    first, second = np.arctan2(*(middle - behind).T[::-1]), np.arctan2(*(ahead - middle).T[::-1])
     turn = (second - first + np.pi) % (2 * np.pi) - np.pi
     return station, turn / base

@@ -48,11 +48,11 @@ def inspection_report(found: Inspection) -> str:
 def _density_picture(found: Inspection) -> dict[str, Any]:
     """The density of the points with the trajectory on it: `image` (H, W, 3) uint8, `most` points per m² that it shows, `with_track` or not."""
     density, corner = found.density
-    known = np.isfinite(density)
-    top = max(float(np.percentile(density[known], 98)), 1e-9)
-    value = np.where(known, 20 + 235 * np.clip(np.nan_to_num(density) / top, 0, 1), 0).astype(np.uint8)
+    filled = np.isfinite(density)
+    top = max(float(np.percentile(density[filled], 98)), 1e-9)
+    value = np.where(filled, 20 + 235 * np.clip(np.nan_to_num(density) / top, 0, 1), 0).astype(np.uint8)
     image = cv2.applyColorMap(value, cv2.COLORMAP_VIRIDIS)
-    image[~known] = NO_DATA_COLOUR
+    image[~filled] = NO_DATA_COLOUR
     scale = max(DENSITY_PICTURE_SIDE / max(density.shape), 1.0 / 64)
     height, width = (max(int(round(n * scale)), 1) for n in density.shape)
     image = cv2.resize(image, (width, height), interpolation=cv2.INTER_NEAREST if scale >= 1 else cv2.INTER_AREA)
@@ -75,9 +75,9 @@ def _profile_chart(profile, low, high):
 def _histogram(counts, low, high):
     """SVG of how often the values from low to high occur, from the counts (M,) of the values from 0 on."""
     edges = np.linspace(low, high + 1, min(CHART_COLUMNS, high - low + 1) + 1)
-    each = np.histogram(np.arange(low, high + 1), edges, weights=counts[low:high + 1])[0] / np.diff(edges)
-    chart = Chart((low, high + 1), (0.0, float(each.max())), tr("Intensity"), "")
-    chart.bars(edges[:-1], edges[1:], each, BAR_COLOUR)
+    frequency = np.histogram(np.arange(low, high + 1), edges, weights=counts[low:high + 1])[0] / np.diff(edges)
+    chart = Chart((low, high + 1), (0.0, float(frequency.max())), tr("Intensity"), "")
+    chart.bars(edges[:-1], edges[1:], frequency, BAR_COLOUR)
     return chart.svg()
 
 
@@ -96,9 +96,9 @@ def _scanners(found):
     if found.adjusted is None:
         return []
     adjusted, poses = found.adjusted, found.adjusted.poses
-    return [(one.number + 1, abs(float(poses.rate[k])), float(np.degrees(poses.turn[k])), float(np.degrees(poses.lean[k])),
+    return [(scanner.number + 1, abs(float(poses.rate[k])), float(np.degrees(poses.turn[k])), float(np.degrees(poses.lean[k])),
              *map(float, poses.lever[k]), 1000.0 * float(np.median(misfit[np.isfinite(misfit)])))
-            for k, (one, misfit) in enumerate(zip(found.scanners, adjusted.misfit.T))]
+            for k, (scanner, misfit) in enumerate(zip(found.scanners, adjusted.misfit.T))]
 
 
 def _chart_of_sigmas(found):

@@ -63,11 +63,11 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     usual = np.array([_made_of(name) for name in lines.patterns], np.int8)
     drawn, owner = lines.drawn.values, lines.d.spans.owner
     # offsets, where they were seen, what rows are made of, as a whole and at each place
-    found = [(lines.d, lines.seen.values, np.full(len(lines.d), SOLID), lines.d.like(np.where(drawn >= 0, of_name[drawn], usual[owner]), usual))]
+    tables = [(lines.d, lines.seen.values, np.full(len(lines.d), SOLID), lines.d.like(np.where(drawn >= 0, of_name[drawn], usual[owner]), usual))]
     if curbs is not None:
         made_of = np.where(np.array(curbs.kinds, object) == "island", ISLAND, CURB).astype(np.int8)
         d, seen = _on_stations(curbs, lines.s)
-        found.append((d, seen.values, made_of, d.like(made_of[d.spans.owner], made_of)))
+        tables.append((d, seen.values, made_of, d.like(made_of[d.spans.owner], made_of)))
     ends: list[tuple[RowTable, int, np.ndarray | int]] = []
     if surface is not None:
         surface, at_edge = _at_edges(surface, pavement, lines.s)
@@ -76,16 +76,16 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
         ends.append((RowTable.of_rows([(0, row) for row in open_ends], count), OPEN, OPEN))
     if hatching is not None:
         ends.append((hatching, HATCHING, HATCHING))
-    for d, made, at_places in ends:
+    for d, end_kind, at_places in ends:
         patterns = np.empty(d.spans.size, np.int8)
         patterns[:] = at_places
-        found.append((d, np.ones(d.spans.size, bool), np.full(len(d), made), d.like(patterns, made)))
-    found_d, all_patterns = stacked([d for d, *_ in found]), stacked([made_of for *_, made_of in found])
-    found_seen = np.isfinite(found_d.values) & np.concatenate([seen for _, seen, *_ in found])
-    others = len(found_d) - len(lines.d)
+        tables.append((d, np.ones(d.spans.size, bool), np.full(len(d), end_kind), d.like(patterns, end_kind)))
+    found_d, all_patterns = stacked([d for d, *_ in tables]), stacked([made_of for *_, made_of in tables])
+    found_seen = np.isfinite(found_d.values) & np.concatenate([seen for _, seen, *_ in tables])
+    unpainted = len(found_d) - len(lines.d)
     paint = STATION_STEP * np.bincount(found_d.spans.owner, found_seen, len(found_d))
-    return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in found]), all_patterns, paint,
-                      np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(others, -1)].astype(int),
+    return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in tables]), all_patterns,
+                      paint, np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(unpainted, -1)].astype(int),
                       np.zeros(count, bool) if bend is None else bend,
                       *(found_d.like(np.append(share, np.full(found_d.spans.size - len(share), np.nan)), np.nan)
                         for share in (_wide_share(lines), _short_share(lines, dashes))))
@@ -105,9 +105,9 @@ def _at_edges(surface, pavement, s):
     d, seen = _on_stations(pavement, s)
     nearest = np.full(surface.shape, np.inf)
     for row, (first, end) in enumerate(zip(d.spans.first, d.spans.end)):
-        own = slice(first, end)
-        away = np.where(seen.row(row), d.row(row), np.inf) - surface[:, own]
-        nearest[:, own] = np.where(np.isfinite(away) & (np.abs(away) < np.abs(nearest[:, own])), away, nearest[:, own])
+        window = slice(first, end)
+        offset = np.where(seen.row(row), d.row(row), np.inf) - surface[:, window]
+        nearest[:, window] = np.where(np.isfinite(offset) & (np.abs(offset) < np.abs(nearest[:, window])), offset, nearest[:, window])
     at_edge = np.abs(nearest) < LANES.surface_merge
     return np.where(at_edge, surface + np.where(at_edge, nearest, 0.0), surface), at_edge
 
@@ -115,11 +115,11 @@ def _at_edges(surface, pavement, s):
 def _wide_share(lines):
     """Of each place of lines, 0 to 1, whether they are wide against the usual ones of their road, which the narrower of its painted length tells."""
     d, seen, width = (table.values for table in (lines.d, lines.seen, lines.width))
-    known = seen & np.isfinite(d) & (width > 0)
-    if not known.any():
+    measured = seen & np.isfinite(d) & (width > 0)
+    if not measured.any():
         return np.full(len(d), np.nan)
-    usual = np.clip(np.quantile(width[known], LANES.usual_lines), *USUAL_WIDTH)
-    return np.where(known, 1 / (1 + np.exp(-(np.where(known, width, usual) / usual - LANES.wide_line) / LANES.wide_softness)), np.nan)
+    usual = np.clip(np.quantile(width[measured], LANES.usual_lines), *USUAL_WIDTH)
+    return np.where(measured, 1 / (1 + np.exp(-(np.where(measured, width, usual) / usual - LANES.wide_line) / LANES.wide_softness)), np.nan)
 
 
 def _short_share(lines, dashes):
@@ -214,17 +214,17 @@ class _Stretches:
 
     def means(self, share):
         """The same as means of what is not NaN."""
-        known = np.isfinite(share)
+        finite = np.isfinite(share)
         with np.errstate(invalid="ignore", divide="ignore"):
-            return self.sums(np.where(known, share, 0.0)) / self.sums(known)
+            return self.sums(np.where(finite, share, 0.0)) / self.sums(finite)
 
 
 def _in_first_cell(cells, intervals, first_cell, in_cell):
     """(N,) bool, whether rows are in the first cell of their intervals, and so in all cells of them."""
     count = int(cells.of.max(initial=0)) + int(first_cell.max(initial=0)) + 1
-    key, wanted = cells.row * count + cells.of, intervals.row * count + first_cell[intervals.of]
-    at = np.searchsorted(key, wanted).clip(0, max(len(key) - 1, 0))
-    return (key[at] == wanted) & in_cell[at] if len(key) else np.zeros(len(wanted), bool)
+    key, sought = cells.row * count + cells.of, intervals.row * count + first_cell[intervals.of]
+    indices = np.searchsorted(key, sought).clip(0, max(len(key) - 1, 0))
+    return (key[indices] == sought) & in_cell[indices] if len(key) else np.zeros(len(sought), bool)
 
 
 def _entries(boundaries, intervals, size, weights):
@@ -232,12 +232,12 @@ def _entries(boundaries, intervals, size, weights):
     present, row = np.isfinite(boundaries.d.values), intervals.row
     stations = np.maximum(intervals.sums(present), 1)
     dashed, double, edge = (intervals.sums((boundaries.patterns.values == kind) & present) / stations for kind in (DASHED, DOUBLE, PAVEMENT))
-    made = np.where(boundaries.painted[row], np.select([double > 0.5, dashed > 0.5], [DOUBLE, DASHED], SOLID),
-                    np.where(edge > 0.5, PAVEMENT, boundaries.made_of[row]))
+    made_of = np.where(boundaries.painted[row], np.select([double > 0.5, dashed > 0.5], [DOUBLE, DASHED], SOLID),
+                       np.where(edge > 0.5, PAVEMENT, boundaries.made_of[row]))
     trust = np.clip((boundaries.paint[row] - weights.stroke) / (weights.long_line - weights.stroke), 0.02, 1.0)
-    return dict(interval=intervals.of, row=row, d=intervals.sums(np.where(present, boundaries.d.values, 0.0)) / stations, made=made,
+    return dict(interval=intervals.of, row=row, d=intervals.sums(np.where(present, boundaries.d.values, 0.0)) / stations, made=made_of,
                 wide=intervals.means(boundaries.wide.values), short=intervals.means(boundaries.short.values),
-                seen=np.minimum(intervals.sums(boundaries.seen.values) / size[intervals.of], 1.0), trust=np.where(made <= DOUBLE, trust, 1.0))
+                seen=np.minimum(intervals.sums(boundaries.seen.values) / size[intervals.of], 1.0), trust=np.where(made_of <= DOUBLE, trust, 1.0))
 
 
 def _rows(entries, which):
@@ -252,15 +252,15 @@ def _twins(entries):
 
 def _superfluous(entries, boundaries):
     """(N,) bool: a sliver beside a line is that line's ragged edge; the surface ends at its line or curb, and so does a hatched area at its line."""
-    interval, d, made = entries["interval"], entries["d"], entries["made"]
+    interval, d, made_of = entries["interval"], entries["d"], entries["made"]
     paint, twins = boundaries.paint[entries["row"]], _twins(entries)
-    found = np.zeros(len(d), bool)
+    result = np.zeros(len(d), bool)
     for step in (-1, 1):
-        beside, twin = np.roll(made, -step), np.roll(twins, -1) if step > 0 else twins
-        found |= twin & (np.roll(paint, -step) * LANES.weak_twin > paint) & (paint < LANES.ragged_length)
-        near = (np.roll(interval, -step) == interval) & (np.abs(np.roll(d, -step) - d) < LANES.surface_merge)
-        found |= near & ((made == HATCHING) & (beside <= DOUBLE) | np.isin(made, ENDS) & ~np.isin(beside, ENDS))
-    return found
+        neighbour, twin = np.roll(made_of, -step), np.roll(twins, -1) if step > 0 else twins
+        result |= twin & (np.roll(paint, -step) * LANES.weak_twin > paint) & (paint < LANES.ragged_length)
+        close = (np.roll(interval, -step) == interval) & (np.abs(np.roll(d, -step) - d) < LANES.surface_merge)
+        result |= close & ((made_of == HATCHING) & (neighbour <= DOUBLE) | np.isin(made_of, ENDS) & ~np.isin(neighbour, ENDS))
+    return result
 
 
 def _grouped(entries):
@@ -269,32 +269,32 @@ def _grouped(entries):
     if not len(begin):
         return {**entries, "right_row": entries["row"], "right": entries["d"]}
     end = np.r_[begin[1:], len(entries["d"])] - 1
-    found = _rows(entries, begin)
+    groups = _rows(entries, begin)
     for name in ("trust", "seen", "wide", "short"):
-        found[name] = np.maximum.reduceat(entries[name], begin)
-    made, right = np.minimum.reduceat(entries["made"], begin), entries["d"][end]
+        groups[name] = np.maximum.reduceat(entries[name], begin)
+    made_of, right = np.minimum.reduceat(entries["made"], begin), entries["d"][end]
     # two lines closer than that are the two sides of one broad line
-    double = (end > begin) & (found["d"] - right > LANES.double_spacing[0]) & (made <= DOUBLE)
-    found["made"] = np.where(double, DOUBLE, np.where(made == DOUBLE, SOLID, made))
-    found |= {name: np.where(double, np.nan, found[name]) for name in ("wide", "short")}
-    return {**found, "right_row": entries["row"][end], "right": right}
+    double = (end > begin) & (groups["d"] - right > LANES.double_spacing[0]) & (made_of <= DOUBLE)
+    groups["made"] = np.where(double, DOUBLE, np.where(made_of == DOUBLE, SOLID, made_of))
+    groups |= {name: np.where(double, np.nan, groups[name]) for name in ("wide", "short")}
+    return {**groups, "right_row": entries["row"][end], "right": right}
 
 
 def _table(groups, boundaries, first, last):
     """Candidates of boundaries in order of interval, from left to right; where there are too many, of the surest."""
-    of = groups["interval"]
-    surest = np.lexsort((-groups["trust"], of))
-    place = np.empty(len(of), int)
-    place[surest] = np.arange(len(of)) - np.searchsorted(of[surest], of[surest])
-    groups = _rows(groups, place < MAX_BOUNDARIES)
-    of = groups["interval"]
-    shape = len(first), int(np.bincount(of, minlength=len(first)).max(initial=0)) + 2
-    at = of, np.arange(len(of)) - np.searchsorted(of, of) + 1
+    interval = groups["interval"]
+    surest = np.lexsort((-groups["trust"], interval))
+    rank = np.empty(len(interval), int)
+    rank[surest] = np.arange(len(interval)) - np.searchsorted(interval[surest], interval[surest])
+    groups = _rows(groups, rank < MAX_BOUNDARIES)
+    interval = groups["interval"]
+    shape = len(first), int(np.bincount(interval, minlength=len(first)).max(initial=0)) + 2
+    cell = interval, np.arange(len(interval)) - np.searchsorted(interval, interval) + 1
 
     def column(values, missing):
-        found = np.full(shape, missing)
-        found[at] = values
-        return found
+        table = np.full(shape, missing)
+        table[cell] = values
+        return table
 
     left, right = column(groups["d"], -FAR), column(groups["right"], -FAR)
     left[:, 0] = right[:, 0] = FAR

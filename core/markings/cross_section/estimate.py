@@ -68,8 +68,8 @@ class RoadEstimate:
     @property
     def once_total(self) -> float:
         """Nats of the most probable sequence as far as it was seen here."""
-        known = self.once[np.isfinite(self.once)]
-        return float(known.min()) if len(known) else 0.0
+        finite = self.once[np.isfinite(self.once)]
+        return float(finite.min()) if len(finite) else 0.0
 
 
 def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: int, lane_width: float,
@@ -83,22 +83,22 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     paint = candidates.painted
     shown = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1)
     choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))
-    known, total, unnamed_total = np.flatnonzero(paint.any(1)), 0.0, 0.0
+    lined, total, unnamed_total = np.flatnonzero(paint.any(1)), 0.0, 0.0
     # what named the lines is the same evidence
     cost = sections.cost - _by_stretch(lambda part: misnamed_costs(candidates.take(part), sections.take(part), weights), len(sections.cost))
     unnamed, (once, second) = np.argmin(cost, axis=1), np.full((2, *cost.shape), np.inf)
-    if len(known):
+    if len(lined):
         between = np.r_[0.0, np.cumsum(candidates.length)]
-        gap = between[known[1:]] - between[known[:-1] + 1]
-        both = np.minimum(shown[known[:-1]], shown[known[1:]])
-        left = [both * np.exp(-gap / remembered) for remembered in (weights.lanes_remembered, weights.directions_remembered)]
-        transition = transitions(candidates, sections, known, lane_width, left, weights)
-        choice[known], total = best_sequence(sections.cost[known], transition)
-        posterior[known] = probabilities(sections.cost[known], transition)
-        unnamed[known], unnamed_total = best_sequence(cost[known], transition)
-        second[known] = behind_best(cost[known], transition, candidates.length[known], weights.repeats)
-        seen_once = _seen_once(candidates, sections, cost, weights)[known]
-        sureness[known], once[known] = probabilities(seen_once, transition), best_through(seen_once, transition)
+        gap = between[lined[1:]] - between[lined[:-1] + 1]
+        least_shown = np.minimum(shown[lined[:-1]], shown[lined[1:]])
+        left = [least_shown * np.exp(-gap / remembered) for remembered in (weights.lanes_remembered, weights.directions_remembered)]
+        transition = transitions(candidates, sections, lined, lane_width, left, weights)
+        choice[lined], total = best_sequence(sections.cost[lined], transition)
+        posterior[lined] = probabilities(sections.cost[lined], transition)
+        unnamed[lined], unnamed_total = best_sequence(cost[lined], transition)
+        second[lined] = behind_best(cost[lined], transition, candidates.length[lined], weights.repeats)
+        seen_once = _seen_once(candidates, sections, cost, weights)[lined]
+        sureness[lined], once[lined] = probabilities(seen_once, transition), best_through(seen_once, transition)
     return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, weights, unnamed,
                         unnamed_total, once, second)
 
@@ -114,14 +114,14 @@ def _by_stretch(function, count):
 
 def _best_sections(candidates, evidence, weights, lane_width, first_direction):
     """Sections of all intervals; their costs are worked out stretch by stretch, for they are many times as large."""
-    found = []
+    parts = []
     for part in _stretches(len(candidates.first)):
         check_cancelled()
-        own, seen = candidates.take(part), evidence.part(part.start, part.stop)
-        sections = best_sections(own, strip_costs(own, seen, weights, lane_width, first_direction), seen.stops, weights)
-        sections.cost += _roads_of_many_lanes(own, sections, seen.divided, weights)
-        found.append(sections)
-    joined = Sections.joined(found)
+        piece, piece_evidence = candidates.take(part), evidence.part(part.start, part.stop)
+        sections = best_sections(piece, strip_costs(piece, piece_evidence, weights, lane_width, first_direction), piece_evidence.stops, weights)
+        sections.cost += _roads_of_many_lanes(piece, sections, piece_evidence.divided, weights)
+        parts.append(sections)
+    joined = Sections.joined(parts)
     _hold_to_taken(candidates, evidence, joined, lane_width, first_direction, weights)
     return joined
 
@@ -129,15 +129,15 @@ def _best_sections(candidates, evidence, weights, lane_width, first_direction):
 def _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights):
     """Make cross-sections improbable, in place, that have not the lanes that an analyst took."""
     for interval, former, wanted in evidence.taken:
-        own = lane_strips(sections.take(slice(interval, interval + 1)))
-        lanes = _lanes(candidates, lane_width, first_direction, replace(own, interval=own.interval + interval))
-        there = np.abs(lanes.d - former) < SAME_LANE
+        strips = lane_strips(sections.take(slice(interval, interval + 1)))
+        lanes = _lanes(candidates, lane_width, first_direction, replace(strips, interval=strips.interval + interval))
+        overlapping = np.abs(lanes.d - former) < SAME_LANE
         for d, width, _ in wanted:
-            there |= np.abs(lanes.d - d) < width / 2
-        kept = np.arange(sections.cost.shape[1])
-        fits = np.bincount(lanes.section[there], minlength=len(kept)) == len(wanted)
+            overlapping |= np.abs(lanes.d - d) < width / 2
+        numbers = np.arange(sections.cost.shape[1])
+        fits = np.bincount(lanes.section[overlapping], minlength=len(numbers)) == len(wanted)
         for d, _, way in wanted:
-            fits &= np.isin(kept, lanes.section[(np.abs(lanes.d - d) < 2 * SAME_LANE) & (lanes.way == way)])
+            fits &= np.isin(numbers, lanes.section[(np.abs(lanes.d - d) < 2 * SAME_LANE) & (lanes.way == way)])
         sections.cost[interval] += np.where(fits, 0.0, weights.not_taken)
 
 
@@ -153,15 +153,15 @@ def _told_before(sections, cost):
     lane = (sections.strip >= FIRST) & (sections.strip <= SECOND)
     lanes = np.where(lane, sections.strip.astype(np.int16) * lane.shape[2] + sections.right, -1)
     order = np.arange(cost.shape[1])
-    before, told = order < order[:, None], np.empty(cost.shape, bool)
+    before, result = order < order[:, None], np.empty(cost.shape, bool)
     # every cross-section is compared with every other one
     for first in range(0, len(cost), INTERVALS_AT_ONCE):
-        some = slice(first, first + INTERVALS_AT_ONCE)
-        own, strips = cost[some], lanes[some]
-        same = (strips[:, :, None] == strips[:, None]).all(-1)
-        cheaper = (own[:, None] < own[:, :, None]) | (own[:, None] == own[:, :, None]) & before
-        told[some] = (same & cheaper & np.isfinite(own)[:, None]).any(2)
-    return told
+        window = slice(first, first + INTERVALS_AT_ONCE)
+        costs, strips = cost[window], lanes[window]
+        equal = (strips[:, :, None] == strips[:, None]).all(-1)
+        cheaper = (costs[:, None] < costs[:, :, None]) | (costs[:, None] == costs[:, :, None]) & before
+        result[window] = (equal & cheaper & np.isfinite(costs)[:, None]).any(2)
+    return result
 
 
 def _roads_of_many_lanes(c, sections, divided, weights):
@@ -218,28 +218,28 @@ def lane_spans(estimate: RoadEstimate) -> list[LaneSpan]:
 def _lane_spans(estimate, part):
     """Those of some intervals."""
     check_cancelled()
-    found = []
+    spans = []
     c, strips = estimate.candidates, _strips_of(estimate, part)
     borders = _uses(estimate.sections.take(part), estimate.choice[part])
     best = np.flatnonzero(strips.section == estimate.choice[strips.interval])
     lanes = _lanes_of(estimate, strips)
-    own, shares = _place_shares(estimate, lanes, best, part)
-    way = np.where(shares[:, 3] > 0, -lanes.way[own], lanes.way[own])
-    seconds = [min((one for one in both if one is not None), key=lambda one: one.nats, default=None) for both in zip(
-        _second_readings(estimate, lanes, own, way, part), _second_places(estimate, lanes, strips, own, way))]
+    lane_rows, shares = _place_shares(estimate, lanes, best, part)
+    way = np.where(shares[:, 3] > 0, -lanes.way[lane_rows], lanes.way[lane_rows])
+    seconds = [min((reading for reading in readings if reading is not None), key=lambda reading: reading.nats, default=None) for readings in zip(
+        _second_readings(estimate, lanes, lane_rows, way, part), _second_places(estimate, lanes, strips, lane_rows, way))]
     k = 0
     of_best = (values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first))
     for i, m, end, number, first in zip(*of_best):
         # what the borders of its lanes separate, from left to right
         uses = [CENTRE_LINE if inner == first else LANE_LINE for inner in range(number + 1)]
         uses[0], uses[-1] = borders[i - part.start, [m, end]].tolist()
-        for place in range(number):
-            direction = estimate.first_direction if place < first else -estimate.first_direction
+        for lane in range(number):
+            direction = estimate.first_direction if lane < first else -estimate.first_direction
             probability, confidence, directed, turned = shares[k].tolist()
-            found.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, -direction if turned else direction,
-                                  probability, confidence, 1 - directed if turned else directed, uses[place], uses[place + 1], seconds[k]))
+            spans.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - lane, number, -direction if turned else direction,
+                                  probability, confidence, 1 - directed if turned else directed, uses[lane], uses[lane + 1], seconds[k]))
             k += 1
-    return found
+    return spans
 
 
 @dataclass
@@ -256,8 +256,8 @@ class _Lanes:
 
 def _strips_of(estimate, part):
     """The LaneStrips of all cross-sections of some intervals."""
-    found = lane_strips(estimate.sections.take(part))
-    return replace(found, interval=found.interval + part.start)
+    strips = lane_strips(estimate.sections.take(part))
+    return replace(strips, interval=strips.interval + part.start)
 
 
 def _lanes_of(estimate, strips):
@@ -266,13 +266,13 @@ def _lanes_of(estimate, strips):
 
 
 def _lanes(c, lane_width, first_direction, strips):
-    at = strips.interval
-    d_left, each = lane_places(c.right[at, strips.left], c.left[at, strips.right], c.made_of[at, strips.left], c.made_of[at, strips.right],
-                               strips.number, lane_width, c.bend[at])
-    of = np.repeat(np.arange(len(at)), strips.number)
+    row = strips.interval
+    d_left, width_each = lane_places(c.right[row, strips.left], c.left[row, strips.right], c.made_of[row, strips.left], c.made_of[row, strips.right],
+                                     strips.number, lane_width, c.bend[row])
+    of = np.repeat(np.arange(len(row)), strips.number)
     place = np.arange(len(of)) - (np.cumsum(strips.number) - strips.number)[of]
     way = np.where(place < strips.first[of], first_direction, -first_direction)
-    return _Lanes(at[of], strips.section[of], of, d_left[of] - each[of] * (place + 0.5), each[of], way)
+    return _Lanes(row[of], strips.section[of], of, d_left[of] - width_each[of] * (place + 0.5), width_each[of], way)
 
 
 def _place_shares(estimate, lanes, chosen, part):
@@ -283,33 +283,33 @@ def _place_shares(estimate, lanes, chosen, part):
     """
     other = estimate.other
     best = estimate.once_total
-    known = [(lanes.interval, lanes.d, lanes.way, estimate.posterior[lanes.interval, lanes.section], estimate.sureness[lanes.interval, lanes.section],
+    parts = [(lanes.interval, lanes.d, lanes.way, estimate.posterior[lanes.interval, lanes.section], estimate.sureness[lanes.interval, lanes.section],
               estimate.once[lanes.interval, lanes.section] - best, estimate.unnamed[lanes.interval] == lanes.section)]
     if other is not None:
         more = _lanes_of(other, _strips_of(other, part))
         nothing = np.zeros(len(more.d))
-        known.append((more.interval, more.d, more.way, nothing, nothing, other.once[more.interval, more.section] - other.once_total + estimate.behind,
+        parts.append((more.interval, more.d, more.way, nothing, nothing, other.once[more.interval, more.section] - other.once_total + estimate.behind,
                       nothing > 0))
-    joined = [np.concatenate(values) for values in zip(*known)]
+    joined = [np.concatenate(values) for values in zip(*parts)]
     order = np.argsort(joined[0], kind="stable")
     interval, d, way, posterior, sureness, nats, unnamed = (values[order] for values in joined)
     first, last = (np.searchsorted(interval, np.arange(part.stop), side=side) for side in ("left", "right"))
-    own = np.flatnonzero(np.isin(lanes.strip, chosen))
-    size = (last - first)[lanes.interval[own]]
-    one = np.repeat(own, size)
-    beside = np.arange(len(one)) - np.repeat(np.cumsum(size) - size, size) + first[lanes.interval[one]]
-    there = np.abs(d[beside] - lanes.d[one]) < SAME_LANE
-    alike = there & (way[beside] == lanes.way[one])
-    probability, sure, either, as_unnamed = (np.bincount(one[which], values[beside[which]], minlength=len(lanes.d)) for values, which in (
-        (posterior, there), (sureness, alike), (sureness, there), (unnamed, alike)))
+    chosen_lanes = np.flatnonzero(np.isin(lanes.strip, chosen))
+    size = (last - first)[lanes.interval[chosen_lanes]]
+    lane = np.repeat(chosen_lanes, size)
+    compared = np.arange(len(lane)) - np.repeat(np.cumsum(size) - size, size) + first[lanes.interval[lane]]
+    same_place = np.abs(d[compared] - lanes.d[lane]) < SAME_LANE
+    alike = same_place & (way[compared] == lanes.way[lane])
+    probability, sure, either, as_unnamed = (np.bincount(lane[rows], values[compared[rows]], minlength=len(lanes.d)) for values, rows in (
+        (posterior, same_place), (sureness, alike), (sureness, same_place), (unnamed, alike)))
     directed = sure / np.where(either > 0, either, 1.0)
     if other is not None:
-        least = np.full((2, len(lanes.d)), FARTHEST_BEHIND)
-        for values, which in zip(least, (alike, there & ~alike)):
-            np.minimum.at(values, one[which], nats[beside[which]])
-        directed = 1 / (1 + np.exp(least[0] - least[1]))
+        least_nats = np.full((2, len(lanes.d)), FARTHEST_BEHIND)
+        for values, rows in zip(least_nats, (alike, same_place & ~alike)):
+            np.minimum.at(values, lane[rows], nats[compared[rows]])
+        directed = 1 / (1 + np.exp(least_nats[0] - least_nats[1]))
     turned = (either > 0) & (directed < 0.5) & (as_unnamed > 0) & ~_driven_along(estimate.evidence, lanes)
-    return own, np.stack([probability, either, directed, turned], axis=1)[own]
+    return chosen_lanes, np.stack([probability, either, directed, turned], axis=1)[chosen_lanes]
 
 
 def _second_readings(estimate, lanes, own, way, part):
@@ -323,21 +323,22 @@ def _second_readings(estimate, lanes, own, way, part):
     interval, d, width, direction = (np.concatenate([getattr(side, name) for side, _ in sides]) for name in ("interval", "d", "width", "way"))
     order = np.argsort(interval, kind="stable")
     begin, end = (np.searchsorted(interval[order], lanes.interval[own], side=side) for side in ("left", "right"))
-    found = []
+    readings = []
     for row, facing, first, last in zip(own.tolist(), way.tolist(), begin.tolist(), end.tolist()):
-        beside, of_place = order[first:last], nats[lanes.interval[row]]
-        alike = (np.abs(d[beside] - lanes.d[row]) < SAME_LANE) & (direction[beside] == facing)
+        candidates, of_place = order[first:last], nats[lanes.interval[row]]
+        alike = (np.abs(d[candidates] - lanes.d[row]) < SAME_LANE) & (direction[candidates] == facing)
         without = np.ones(len(of_place), bool)
-        without[slot[beside[alike]]] = False
+        without[slot[candidates[alike]]] = False
         second = int(np.argmin(np.where(without, of_place, np.inf)))
-        least = of_place[~without].min(initial=np.inf)
-        if not np.isfinite(of_place[second]) or not without[second] or not np.isfinite(least):
-            found.append(None)
+        best_nats = of_place[~without].min(initial=np.inf)
+        if not np.isfinite(of_place[second]) or not without[second] or not np.isfinite(best_nats):
+            readings.append(None)
             continue
-        there = beside[(slot[beside] == second) & (np.abs(d[beside] - lanes.d[row]) < (width[beside] + lanes.width[row]) / 2 - SAME_LANE)]
-        second_lanes = tuple(zip(d[there].tolist(), width[there].tolist(), direction[there].tolist()))
-        found.append(Reading(max(float(of_place[second] - least), 0.0), second_lanes))
-    return found
+        overlapping = candidates[(slot[candidates] == second)
+                                 & (np.abs(d[candidates] - lanes.d[row]) < (width[candidates] + lanes.width[row]) / 2 - SAME_LANE)]
+        second_lanes = tuple(zip(d[overlapping].tolist(), width[overlapping].tolist(), direction[overlapping].tolist()))
+        readings.append(Reading(max(float(of_place[second] - best_nats), 0.0), second_lanes))
+    return readings
 
 
 def _second_places(estimate, lanes, strips, own, way):
@@ -345,23 +346,23 @@ def _second_places(estimate, lanes, strips, own, way):
 
     What the width of a lane says is laid out once, so it counts as one observation however long the road is, and so does where one drove.
     """
-    c, w, at, strip = estimate.candidates, estimate.weights, lanes.interval[own], lanes.strip[own]
+    c, w, intervals, strip = estimate.candidates, estimate.weights, lanes.interval[own], lanes.strip[own]
     left, right = strips.left[strip], strips.right[strip]
-    made_left, made_right = c.made_of[at, left], c.made_of[at, right]
-    begin, number = c.right[at, left], strips.number[strip]
-    shared = (begin - c.left[at, right]) / number
-    place = np.arange(len(own)) - np.searchsorted(strip, strip)
-    d = begin - shared * (place + 0.5)
+    made_left, made_right = c.made_of[intervals, left], c.made_of[intervals, right]
+    begin, number = c.right[intervals, left], strips.number[strip]
+    shared = (begin - c.left[intervals, right]) / number
+    index = np.arange(len(own)) - np.searchsorted(strip, strip)
+    d = begin - shared * (index + 0.5)
     open_room = (UNPAINTED[made_left] ^ UNPAINTED[made_right]) & ~beside_surface_end(made_left, made_right) & (shared > lanes.width[own]) \
         & (np.abs(d - lanes.d[own]) > SAME_LANE)
     widths = np.stack([shared, lanes.width[own]])
     nats = width_cost(widths, estimate.lane_width, w)
-    driven = estimate.evidence.driven[:, at]
+    driven = estimate.evidence.driven[:, intervals]
     with np.errstate(invalid="ignore"):
         inside = np.abs(driven - d) < shared / 2
-        off = [np.where(inside, np.minimum(0.5 * ((driven - middle) / w.driven_sigma) ** 2, w.driven_astride), 0.0).sum(0)
-               for middle in (d, lanes.d[own])]
-    behind = nats[0] - nats[1] + off[0] - off[1]
+        misfit = [np.where(inside, np.minimum(0.5 * ((driven - middle) / w.driven_sigma) ** 2, w.driven_astride), 0.0).sum(0)
+                  for middle in (d, lanes.d[own])]
+    behind = nats[0] - nats[1] + misfit[0] - misfit[1]
     return [Reading(max(float(behind[k]), 0.0), ((float(d[k]), float(shared[k]), int(way[k])),)) if open_room[k] and np.isfinite(behind[k]) else None
             for k in range(len(own))]
 

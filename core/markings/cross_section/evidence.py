@@ -65,29 +65,29 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
     d = np.full((len(passes), len(s)), np.nan)
     for row, p in zip(d, passes):
         first, last = p.span
-        there = (s >= first) & (s <= last)
-        row[there] = p.at_station(s[there])[0]
+        on_pass = (s >= first) & (s <= last)
+        row[on_pass] = p.at_station(s[on_pass])[0]
     return d, np.array([p.direction if frame.way_known else 0 for p in passes], int)
 
 
 def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
     """(K,) bool, whether another road of the survey was driven the other way beside this one, at (K,) stations: both are carriageways of one road."""
-    found = np.zeros(len(s), bool)
+    result = np.zeros(len(s), bool)
     ways = {p.direction for p in frame.passes_of(road)}
     if len(ways) != 1 or not frame.way_known:
-        return found
+        return result
     of_road = frame.road(road)
     for p in frame.passes:
         if p.road == road or _apart(p, of_road) > EVIDENCE.carriageway_distance:
             continue
         station, d = of_road.locate(p.x, p.y, corridor=EVIDENCE.carriageway_distance)
         against = np.gradient(np.nan_to_num(station)) * next(iter(ways)) < 0
-        beside = np.isfinite(station) & against & (np.abs(d) > EVIDENCE.own_road)
-        at = np.rint((station[beside] - s[0]) / STATION_STEP)
-        at = at[(at >= 0) & (at < len(s))].astype(int)
-        found[at] = True
+        alongside = np.isfinite(station) & against & (np.abs(d) > EVIDENCE.own_road)
+        indices = np.rint((station[alongside] - s[0]) / STATION_STEP)
+        indices = indices[(indices >= 0) & (indices < len(s))].astype(int)
+        result[indices] = True
     # the places of a pass are sparser than the stations
-    return binary_closing(found, np.ones(2 * EVIDENCE.pass_spacing + 1, bool)) if len(found) else found
+    return binary_closing(result, np.ones(2 * EVIDENCE.pass_spacing + 1, bool)) if len(result) else result
 
 
 def _apart(p, road):
@@ -108,12 +108,12 @@ def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.n
     ends : (2, K) metres, offsets of the left and the right end of the surface, NaN where unknown; read-only
     """
     count, first = len(s), int(np.floor(s[0] / STATION_STEP + 0.5))
-    known, key = _known.setdefault(points.store, {}), (road, first, count, points.store.count)
-    if key not in known:
-        known[key] = _surface_coverage(points, road, first, count)
-        for found in known[key]:
-            found.flags.writeable = False
-    return known[key]
+    coverages, key = _known.setdefault(points.store, {}), (road, first, count, points.store.count)
+    if key not in coverages:
+        coverages[key] = _surface_coverage(points, road, first, count)
+        for array in coverages[key]:
+            array.flags.writeable = False
+    return coverages[key]
 
 
 def _surface_coverage(points, road, first, count):
@@ -122,13 +122,13 @@ def _surface_coverage(points, road, first, count):
     total, number = np.zeros((2, count, 2))
     executor, length = points.executor, points.store.section_length
     phase = Phase(seen_in_stretch, points, (first, count), lambda item: points.survey.stretch(road, item[1] * length, item[2] * length))
-    numbers = [one for one in points.roads() if one == road]
+    numbers = [entry for entry in points.roads() if entry == road]
     stretches = points.store.stretches(STRETCH_POINTS if executor.folder else 0, numbers)
-    for begin, *seen in (one for some in executor.run(phase, stretches) for one in some):
-        own = slice(begin, begin + len(seen[0]))
-        covered[own] |= seen[0]
-        total[own] += seen[1]
-        number[own] += seen[2]
+    for begin, *sums in (entry for batch in executor.run(phase, stretches) for entry in batch):
+        window = slice(begin, begin + len(sums[0]))
+        covered[window] |= sums[0]
+        total[window] += sums[1]
+        number[window] += sums[2]
     with np.errstate(invalid="ignore", divide="ignore"):
         ends = (1e-3 * total / number).T * np.array([[1.0], [-1.0]])
     return covered, ends
@@ -138,11 +138,11 @@ def point_spacing(road_points: RoadPoints, road: int, s: np.ndarray) -> np.ndarr
     """(K,) m, the side of the square of surface that holds one road point, at (K,) stations; NaN where it is not known."""
     numbers, length = np.array(road_points.sections(road)), road_points.store.section_length
     left, right = surface_coverage(road_points, road, s)[1]
-    known = np.isfinite(left - right)
-    if not len(numbers) or not known.any():
+    finite = np.isfinite(left - right)
+    if not len(numbers) or not finite.any():
         return np.full(len(s), np.nan)
     middles = (numbers + 0.5) * length
-    width = np.maximum(np.interp(middles, s[known], (left - right)[known]), 1.0)
+    width = np.maximum(np.interp(middles, s[finite], (left - right)[finite]), 1.0)
     count = np.array([road_points.store.size(road, number) for number in numbers.tolist()])
     side = np.sqrt(width * length / np.maximum(count, 1))
     return np.interp(s, middles, median_filter(side, EVIDENCE.sections_alike, mode="mirror"))
@@ -159,9 +159,9 @@ def seen_in_stretch(points: RoadPoints, stretch: Stretch, first: int, count: int
 
 def _seen_in_section(records, first, count):
     """What `seen_in_stretch` gives of one section."""
-    step, wide, far = (int(round(length / COORDINATE_SCALE)) for length in (STATION_STEP, BIN, FAR))
+    step, wide, reach = (int(round(length / COORDINATE_SCALE)) for length in (STATION_STEP, BIN, FAR))
     k, d = (records["s"] + step // 2) // step - first, records["d"]
-    inside = (k >= 0) & (k < count) & (np.abs(d) < far)
+    inside = (k >= 0) & (k < count) & (np.abs(d) < reach)
     if not inside.any():
         return 0, np.zeros((0, BINS), bool), np.zeros((0, 2)), np.zeros((0, 2))
     half_width = records["half_width"]
@@ -171,7 +171,7 @@ def _seen_in_section(records, first, count):
     k -= begin
     stations = int(k.max()) + 1
     covered = np.zeros((stations, BINS), bool)
-    covered.reshape(-1)[k * BINS + (d + far) // wide] = True
+    covered.reshape(-1)[k * BINS + (d + reach) // wide] = True
     side = 2 * k + (d < 0)
     total, number = (np.bincount(side, weights, 2 * stations).reshape(-1, 2) for weights in (half_width, None))
     return begin, covered, total, number
@@ -186,9 +186,9 @@ def between_ends(ends: np.ndarray, likely: np.ndarray) -> tuple[np.ndarray, np.n
     rows = np.arange(ends.shape[1])
     filled = np.full(ends.shape, np.nan)
     for side, values in enumerate(ends):
-        known = np.flatnonzero(np.isfinite(values))
-        if len(known):
-            filled[side] = np.interp(rows, known, values[known])
+        finite = np.flatnonzero(np.isfinite(values))
+        if len(finite):
+            filled[side] = np.interp(rows, finite, values[finite])
     left, right = np.where(np.isnan(filled), likely, filled)
     offsets = (np.arange(BINS) + 0.5) * BIN - FAR
     return (offsets < left[:, None]) & (offsets > right[:, None]), filled
@@ -209,18 +209,18 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     def share(values):
         return None if values is None else np.add.reduceat(values.astype(np.float32), candidates.first, axis=0) / size[:, None]
 
-    known = np.isfinite(driven)
-    count = np.add.reduceat(known, candidates.first, axis=1)
+    driven_there = np.isfinite(driven)
+    count = np.add.reduceat(driven_there, candidates.first, axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        where = np.where(2 * count >= size, np.add.reduceat(np.where(known, driven, 0.0), candidates.first, axis=1) / count, np.nan)
+        offsets = np.where(2 * count >= size, np.add.reduceat(np.where(driven_there, driven, 0.0), candidates.first, axis=1) / count, np.nan)
     stops = np.empty((0, 3)) if markings is None else _stop_lines(candidates, s, markings, road)
-    return Evidence(where, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops,
+    return Evidence(offsets, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops,
                     np.zeros(len(size), bool) if divided is None else np.add.reduceat(divided, candidates.first) * 2 > size)
 
 
 def _extents(markings, road, kind):
-    found = markings.extent[(markings.road == road) & (markings.kind == kind)]
-    return found[np.isfinite(found[:, 0])]
+    extents = markings.extent[(markings.road == road) & (markings.kind == kind)]
+    return extents[np.isfinite(extents[:, 0])]
 
 
 def _of_interval(candidates, s, arrows):
@@ -235,9 +235,9 @@ def _of_interval(candidates, s, arrows):
 def _stop_lines(candidates, s, markings, road):
     """(S, 3) interval, least and greatest offset of the stop lines on or near it."""
     begin, end = s[candidates.first], s[candidates.last]
-    found = [(k, low, high) for first, last, low, high in _extents(markings, road, "stop")
+    stops = [(k, low, high) for first, last, low, high in _extents(markings, road, "stop")
              for k in np.flatnonzero((begin <= last + EVIDENCE.stop_reach) & (end >= first - EVIDENCE.stop_reach)).tolist()]
-    return np.array(found).reshape(-1, 3)
+    return np.array(stops).reshape(-1, 3)
 
 
 # Hatched areas and parking bays: where nobody drives, and the borders that bound the lanes beside.
@@ -253,17 +253,17 @@ def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.
     shape = shapely.union_all(shapely.force_2d(markings.outlines.polygons()[rows]))
     shapely.prepare(shape)
     first, last, low, high = (markings.extent[rows, k] for k in range(4))
-    near = np.zeros(len(s), bool)
+    near_bars = np.zeros(len(s), bool)
     for a, b in zip(np.searchsorted(s, first), np.searchsorted(s, last, side="right")):
-        near[a:b] = True
+        near_bars[a:b] = True
     offsets = (np.arange(BINS) + 0.5) * BIN - FAR
-    across = np.flatnonzero((offsets >= low.min() - BIN) & (offsets <= high.max() + BIN))
-    found, along = np.zeros((len(s), BINS), bool), np.flatnonzero(near)
-    if len(along) and len(across):
-        at_s, at_d = np.repeat(s[along], len(across)), np.tile(offsets[across], len(along))
+    columns = np.flatnonzero((offsets >= low.min() - BIN) & (offsets <= high.max() + BIN))
+    result, rows_near = np.zeros((len(s), BINS), bool), np.flatnonzero(near_bars)
+    if len(rows_near) and len(columns):
+        at_s, at_d = np.repeat(s[rows_near], len(columns)), np.tile(offsets[columns], len(rows_near))
         inside = shapely.contains_xy(shape, *frame.road(road).to_map(at_s, at_d))
-        found[np.ix_(along, across)] = inside.reshape(len(along), len(across))
-    return found
+        result[np.ix_(rows_near, columns)] = inside.reshape(len(rows_near), len(columns))
+    return result
 
 
 def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> RowTable:
@@ -272,16 +272,16 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
     Nobody drives between them, and they bound the lanes beside. A border is the middle of the line that is painted along the ends of the bars; where
     there is none, the ends themselves. Where the area narrows to a tip, too narrow for bars, the borders go on along their lines to where these meet.
     """
-    here = markings.road == road
-    bars, lines = ([shape for shape in shapely.force_2d(markings.outlines.polygons()[here & kind]) if not shape.is_empty]
+    on_road = markings.road == road
+    bars, lines = ([shape for shape in shapely.force_2d(markings.outlines.polygons()[on_road & kind]) if not shape.is_empty]
                    for kind in (markings.kind == "hatch", np.isin(markings.kind.astype(str), LINE_KINDS)))
     areas = shapely.get_parts(shapely.union_all(shapely.buffer(bars, EVIDENCE.bar_reach))) if bars else np.empty(0, object)
     bars_of, lines_of = _meeting(areas, bars), _meeting(shapely.buffer(areas, EVIDENCE.max_tip), lines)
-    found = []
+    borders_found = []
     for k in range(len(areas)):
         first, reach = _reach([bars[j] for j in bars_of[k]], frame, road, s)
-        known = np.flatnonzero(np.isfinite(reach[0]))
-        if not len(known) or np.ptp(known) * STATION_STEP < EVIDENCE.shortest_area:
+        finite = np.flatnonzero(np.isfinite(reach[0]))
+        if not len(finite) or np.ptp(finite) * STATION_STEP < EVIDENCE.shortest_area:
             continue
         borders = np.empty(reach.shape)
         for side, sign in enumerate((1.0, -1.0)):
@@ -289,16 +289,16 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
             outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR),
                                  size=int(2 * EVIDENCE.bar_reach / STATION_STEP) + 1, mode="nearest")
             borders[side] = sign * (outer - OUTSIDE_PAINT - EVIDENCE.half_border)
-        beside = [(begin, along.mean(axis=0)) for begin, along in (_reach([lines[j]], frame, road, s) for j in lines_of[k])]
-        for begin, middle in beside:
+        courses = [(begin, reached.mean(axis=0)) for begin, reached in (_reach([lines[j]], frame, road, s) for j in lines_of[k])]
+        for begin, middle in courses:
             low, high = max(begin, first), min(begin + len(middle), first + reach.shape[1])
             if low < high:
                 _follow(borders[:, low - first:high - first], middle[low - begin:high - begin])
-        before, behind = _tip(borders[:, ::-1], first, -1, beside), _tip(borders, first + reach.shape[1] - 1, 1, beside)
+        before, behind = _tip(borders[:, ::-1], first, -1, courses), _tip(borders, first + reach.shape[1] - 1, 1, courses)
         for begin, rows in ((first - before.shape[1], before[:, ::-1]), (first, borders), (first + reach.shape[1], behind)):
             if rows.size:
-                found += [(begin, border) for border in rows]
-    return RowTable.of_rows(found, len(s))
+                borders_found += [(begin, border) for border in rows]
+    return RowTable.of_rows(borders_found, len(s))
 
 
 def _tip(borders, last, step, lines):
@@ -310,37 +310,37 @@ def _tip(borders, last, step, lines):
     course, count = int(EVIDENCE.tip_course / STATION_STEP), int(EVIDENCE.max_tip / STATION_STEP)
     table = np.full((len(lines), course + count), np.nan)
     for row, (begin, middle) in zip(table, lines):
-        at = (begin + np.arange(len(middle)) - last) * step + course - 1
-        inside = (at >= 0) & (at < len(row))
-        row[at[inside]] = middle[inside]
-    found = np.full((2, course + count), np.nan)
-    found[:, max(course - borders.shape[1], 0):course] = borders[:, -course:]
-    for border in found:
-        known = course
+        indices = (begin + np.arange(len(middle)) - last) * step + course - 1
+        inside = (indices >= 0) & (indices < len(row))
+        row[indices[inside]] = middle[inside]
+    result = np.full((2, course + count), np.nan)
+    result[:, max(course - borders.shape[1], 0):course] = borders[:, -course:]
+    for border in result:
+        last_known = course
         for k in range(course, course + count):
-            before = np.arange(known - course, known)
+            before = np.arange(last_known - course, last_known)
             before = before[np.isfinite(border[before])]
-            if k - known > EVIDENCE.max_tip_gap / STATION_STEP or len(before) < 2:
+            if k - last_known > EVIDENCE.max_tip_gap / STATION_STEP or len(before) < 2:
                 break
             slope, level = np.polyfit(before - k, border[before], 1)
-            off = np.abs(table[:, k] - level)
-            if np.isfinite(off).any() and np.nanmin(off) <= EVIDENCE.border_line_reach:
-                border[k] = table[np.nanargmin(off), k]
-                border[known:k] = np.interp(np.arange(known, k), [known - 1, k], border[[known - 1, k]])
-                known = k + 1
-    width = found[0] - found[1]
+            distances = np.abs(table[:, k] - level)
+            if np.isfinite(distances).any() and np.nanmin(distances) <= EVIDENCE.border_line_reach:
+                border[k] = table[np.nanargmin(distances), k]
+                border[last_known:k] = np.interp(np.arange(last_known, k), [last_known - 1, k], border[[last_known - 1, k]])
+                last_known = k + 1
+    width = result[0] - result[1]
     narrowing = (width[course:] > 0) & (np.diff(width[course - 1:]) <= 0)
     end = course + (len(narrowing) if narrowing.all() else int(np.argmin(narrowing)))
-    return found[:, course:end]
+    return result[:, course:end]
 
 
 def _meeting(areas, shapes):
     """For each area the numbers of the shapes that meet it, ascending."""
-    found: list[list[int]] = [[] for _ in areas]
+    numbers: list[list[int]] = [[] for _ in areas]
     if len(areas) and shapes:
         for shape, area in sorted(zip(*shapely.STRtree(areas).query(shapes, predicate="intersects").tolist())):
-            found[area].append(shape)
-    return found
+            numbers[area].append(shape)
+    return numbers
 
 
 def places_of_bays(rows: list[np.ndarray], s: np.ndarray, driven: np.ndarray) -> tuple[np.ndarray, RowTable]:
@@ -348,11 +348,11 @@ def places_of_bays(rows: list[np.ndarray], s: np.ndarray, driven: np.ndarray) ->
     places, ends = np.zeros((len(s), BINS), bool), []
     offsets = (np.arange(BINS) + 0.5) * BIN - FAR
     for row in rows:
-        within = slice(*np.searchsorted(s, [row[0, 0], row[-1, 0]]))
-        low, high = (np.interp(s[within], row[:, 0], row[:, k]) for k in (1, 2))
-        places[within] |= (offsets > low[:, None]) & (offsets < high[:, None])
-        track = driven[:, within][np.isfinite(driven[:, within])]
-        ends.append((within.start, high if np.median(row[:, 1:].sum(axis=1)) < 2 * (track.mean() if len(track) else 0.0) else low))
+        window = slice(*np.searchsorted(s, [row[0, 0], row[-1, 0]]))
+        low, high = (np.interp(s[window], row[:, 0], row[:, k]) for k in (1, 2))
+        places[window] |= (offsets > low[:, None]) & (offsets < high[:, None])
+        track = driven[:, window][np.isfinite(driven[:, window])]
+        ends.append((window.start, high if np.median(row[:, 1:].sum(axis=1)) < 2 * (track.mean() if len(track) else 0.0) else low))
     return places, RowTable.of_rows(ends, len(s))
 
 
@@ -360,24 +360,24 @@ def _reach(shapes, frame, road, s):
     """Greatest and least offset of outlines, (2, N) m, from a first station on that is given; NaN at stations where there are none."""
     x, y = shapely.get_coordinates(shapely.segmentize(shapes, EVIDENCE.outline_spacing)).T
     station, d = located(frame, np.full(len(x), road), x, y)
-    at = np.rint((station - s[0]) / STATION_STEP)
-    inside = np.isfinite(at) & (at >= 0) & (at < len(s))
+    indices = np.rint((station - s[0]) / STATION_STEP)
+    inside = np.isfinite(indices) & (indices >= 0) & (indices < len(s))
     if not inside.any():
         return 0, np.empty((2, 0))
-    at, d = at[inside].astype(int), d[inside]
-    first = int(at.min())
-    found = np.repeat([[-np.inf], [np.inf]], int(at.max()) - first + 1, axis=1)
-    np.maximum.at(found[0], at - first, d)
-    np.minimum.at(found[1], at - first, d)
-    return first, np.where(np.isfinite(found), found, np.nan)
+    indices, d = indices[inside].astype(int), d[inside]
+    first = int(indices.min())
+    result = np.repeat([[-np.inf], [np.inf]], int(indices.max()) - first + 1, axis=1)
+    np.maximum.at(result[0], indices - first, d)
+    np.minimum.at(result[1], indices - first, d)
+    return first, np.where(np.isfinite(result), result, np.nan)
 
 
 def _follow(borders, middle):
     """Put borders on the middle of a line that runs along them, (N,) m at the same stations."""
     with np.errstate(invalid="ignore"):
-        along = np.abs(borders - middle) < EVIDENCE.border_line_reach
-    for border, near in zip(borders, along):
-        border[near] = middle[near]
+        close = np.abs(borders - middle) < EVIDENCE.border_line_reach
+    for border, follows in zip(borders, close):
+        border[follows] = middle[follows]
 
 
 # Rows of parking bays: the lines between bays are as narrow as other lines and run across or obliquely, from the lane to the edge of the road (RMS
@@ -394,26 +394,26 @@ def rows_of_bays(markings: MarkingObjects, road: int, s: np.ndarray, driven: np.
     rows = _rows(_lines_across(markings, road))
     crossed = [_driven_over(row, s, driven) for row in rows]
     return [row for row, over in zip(rows, crossed) if not over
-            and not any(_beside(row, other) for other, driven_over in zip(rows, crossed) if driven_over)]
+            and not any(_beside(row, crossed_row) for crossed_row, driven_over in zip(rows, crossed) if driven_over)]
 
 
 def _lines_across(markings, road):
     """(N, 3) station of the middle, least and greatest offset of narrow lines across the road; the parts of one marking are one."""
-    here = np.flatnonzero((markings.road == road) & ~markings.keep & (markings.width <= WIDEST_BAY_LINE) & np.isfinite(markings.extent[:, 0]))
-    if not len(here):
+    rows = np.flatnonzero((markings.road == road) & ~markings.keep & (markings.width <= WIDEST_BAY_LINE) & np.isfinite(markings.extent[:, 0]))
+    if not len(rows):
         return np.empty((0, 3))
-    cluster = markings.cluster[here]
-    _, of = np.unique(np.where(cluster >= 0, cluster, -2 - np.arange(len(here))), return_inverse=True)
-    first, last, low, high = (pick(markings.extent[here, k], of) for k, pick in enumerate((_least, _greatest, _least, _greatest)))
-    across = (high - low >= EVIDENCE.least_reach) & (last - first <= EVIDENCE.max_skew * (high - low) + WIDEST_BAY_LINE)
-    lines = np.column_stack([(first + last) / 2, low, high])[across]
+    cluster = markings.cluster[rows]
+    _, of = np.unique(np.where(cluster >= 0, cluster, -2 - np.arange(len(rows))), return_inverse=True)
+    first, last, low, high = (pick(markings.extent[rows, k], of) for k, pick in enumerate((_least, _greatest, _least, _greatest)))
+    crosswise = (high - low >= EVIDENCE.least_reach) & (last - first <= EVIDENCE.max_skew * (high - low) + WIDEST_BAY_LINE)
+    lines = np.column_stack([(first + last) / 2, low, high])[crosswise]
     return lines[np.argsort(lines[:, 0], kind="stable")]
 
 
 def _least(values, of):
-    found = np.full(of.max() + 1, np.inf)
-    np.minimum.at(found, of, values)
-    return found
+    result = np.full(of.max() + 1, np.inf)
+    np.minimum.at(result, of, values)
+    return result
 
 
 def _greatest(values, of):
@@ -429,8 +429,8 @@ def _rows(lines):
     shared = np.minimum(lines[a, 2], lines[b, 2]) - np.maximum(lines[a, 1], lines[b, 1])
     linked = shared >= EVIDENCE.shared_reach * np.minimum(lines[a, 2] - lines[a, 1], lines[b, 2] - lines[b, 1])
     group = linked_groups(a[linked], b[linked], len(lines))
-    found = [_whole(lines[group == number]) for number in np.flatnonzero(np.bincount(group) >= EVIDENCE.min_bay_lines)]
-    return [row for row in found if _even(row)]
+    groups = [_whole(lines[group == number]) for number in np.flatnonzero(np.bincount(group) >= EVIDENCE.min_bay_lines)]
+    return [row for row in groups if _even(row)]
 
 
 def _whole(row):
@@ -451,9 +451,9 @@ def _even(row):
 
 def _driven_over(row, s, driven):
     """Whether a pass drove across the lines of a row."""
-    at = np.clip(np.searchsorted(s, row[:, 0]), 0, len(s) - 1)
+    stations = np.clip(np.searchsorted(s, row[:, 0]), 0, len(s) - 1)
     with np.errstate(invalid="ignore"):
-        return bool((((driven[:, at] > row[:, 1]) & (driven[:, at] < row[:, 2])).mean(axis=1) > 0.5).any())
+        return bool((((driven[:, stations] > row[:, 1]) & (driven[:, stations] < row[:, 2])).mean(axis=1) > 0.5).any())
 
 
 def _beside(row, other):

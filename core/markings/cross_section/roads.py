@@ -78,28 +78,29 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         weights = replace(weights, width_sigma=weights.width_sigma_asked, other_width=0.0, odd_width=weights.odd_width_asked)
     if side != "automatic":
         weights = replace(weights, driven_against=weights.driven_against_asked)
-    known = {}
+    evidence = {}
     for k, (number, of_road) in enumerate(lines.items()):
         edges = [(sections or {}).get(number) for sections in (curbs, pavement)]
-        known[number] = _evidence_of_road(of_road, number, frame, edges, (road_points, paint), markings, arrows.get(number), drives[number],
-                                          usual_width, weights, taken)
+        evidence[number] = _evidence_of_road(of_road, number, frame, edges, (road_points, paint), markings, arrows.get(number), drives[number],
+                                             usual_width, weights, taken)
         progress.report(0.4 * (k + 1) / len(lines))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
-    estimates = _estimates(known, sides, usual_width, weights, progress.part(0.4, 0.7))
+    estimates = _estimates(evidence, sides, usual_width, weights, progress.part(0.4, 0.7))
     best, named, behind, opposite = _best_side(estimates, weights)
     used = tuple(first for first in sides if first == best or behind < ROADS.sure_side or opposite < weights.doubt)
-    width = usual_width if width_asked else _usual_width(known, estimates[best], usual_width)
+    width = usual_width if width_asked else _usual_width(evidence, estimates[best], usual_width)
     # the road's own width tells lanes better than that of a country
     if width != usual_width:
-        estimates = _estimates(known, used, width, weights, progress.part(0.7, 1.0))
+        estimates = _estimates(evidence, used, width, weights, progress.part(0.7, 1.0))
     roads = {}
     for number, estimate in estimates[best].items():
         if named:
             estimate = replace(estimate, unnamed=np.full(len(estimate.choice), -1))
         elif len(used) > 1:
-            other = estimates[-best][number]
-            estimate = replace(estimate, other=other if behind < ROADS.sure_side else None, behind=behind, opposite=other, opposite_behind=opposite)
-        roads[number] = EstimatedRoad(lines[number], known[number][0], estimate)
+            other_side = estimates[-best][number]
+            estimate = replace(estimate, other=other_side if behind < ROADS.sure_side else None, behind=behind, opposite=other_side,
+                               opposite_behind=opposite)
+        roads[number] = EstimatedRoad(lines[number], evidence[number][0], estimate)
     return RoadEstimates(roads, "right" if best < 0 else "left", behind >= ROADS.sure_side, width, against)
 
 
@@ -143,13 +144,13 @@ def _best_side(estimates, weights):
 def _taken_on(taken, number, candidates, s):
     """`Evidence.taken` of a road: each reading in the intervals whose middle it reaches over."""
     middle = (s[candidates.first] + s[candidates.last]) / 2
-    found = []
-    for one in taken:
-        if one.road == number:
-            inside = np.flatnonzero((middle >= one.s[0]) & (middle <= one.s[-1]))
-            for interval, d in zip(inside.tolist(), np.interp(middle[inside], one.s, one.d).tolist()):
-                found.append((interval, d, tuple((d + across, width, way) for across, width, way in one.lanes)))
-    return tuple(found)
+    result = []
+    for reading in taken:
+        if reading.road == number:
+            inside = np.flatnonzero((middle >= reading.s[0]) & (middle <= reading.s[-1]))
+            for interval, d in zip(inside.tolist(), np.interp(middle[inside], reading.s, reading.d).tolist()):
+                result.append((interval, d, tuple((d + offset, width, way) for offset, width, way in reading.lanes)))
+    return tuple(result)
 
 
 def _closed_areas(markings, frame, number, s, driven):
@@ -175,11 +176,11 @@ def _surface(road_points, paint, number, s, likely):
 
 def _likely_ends(lines, width):
     """(2, K) metres, where the road would end beyond the outermost lines if it had one more lane there."""
-    found = np.full((2, len(lines.s)), np.nan)
+    ends = np.full((2, len(lines.s)), np.nan)
     for row, (first, end) in enumerate(zip(lines.d.spans.first, lines.d.spans.end)):
-        own, d = slice(first, end), lines.d.row(row)
-        found[0, own], found[1, own] = np.fmax(found[0, own], d), np.fmin(found[1, own], d)
-    return found + np.array([[width], [-width]])
+        window, d = slice(first, end), lines.d.row(row)
+        ends[0, window], ends[1, window] = np.fmax(ends[0, window], d), np.fmin(ends[1, window], d)
+    return ends + np.array([[width], [-width]])
 
 
 def _estimates(known, sides, width, weights, progress):
@@ -236,8 +237,8 @@ def arrows_of(markings: MarkingObjects, frame: RoadFrame, road: int) -> np.ndarr
     parts = shapely.transform(parts, lambda places: np.column_stack(located(frame, np.full(len(places), road), *places.T)))
     places, owner = shapely.get_coordinates(parts, return_index=True)
     # some may lie beyond what the road reaches
-    known = np.bincount(owner, ~np.isfinite(places).all(axis=1), minlength=len(rows)) == 0
-    arrows = np.array([shapely.union_all(shapely.make_valid(parts[known & (of == k)])) for k in np.unique(of[known])], object)
+    complete = np.bincount(owner, ~np.isfinite(places).all(axis=1), minlength=len(rows)) == 0
+    arrows = np.array([shapely.union_all(shapely.make_valid(parts[complete & (of == k)])) for k in np.unique(of[complete])], object)
     first, low, last, high = shapely.bounds(arrows).T
     arrows, first, low, last, high = (values[last - first >= SHORTEST_ARROW - ROADS.worn_ends] for values in (arrows, first, low, last, high))
     begin, finish = stems(arrows)
@@ -252,17 +253,17 @@ def driven_against(arrows: np.ndarray, s: np.ndarray, driven: np.ndarray, direct
     """
     if not len(arrows) or not len(s):
         return 0.0
-    at = np.searchsorted(s, arrows[:, 0]).clip(0, len(s) - 1)
+    stations = np.searchsorted(s, arrows[:, 0]).clip(0, len(s) - 1)
     with np.errstate(invalid="ignore"):
-        over = np.abs(driven[:, at] - arrows[:, 1]) < NEUTRAL.narrowest_lane / 2
+        over = np.abs(driven[:, stations] - arrows[:, 1]) < NEUTRAL.narrowest_lane / 2
     return -float((over * directions[:, None] * arrows[:, 2]).sum())
 
 
 def stems(shapes: np.ndarray) -> np.ndarray:
     """(2, A) shares of the length of polygons in (s, d) that are a single stroke: from the first station on, and from the last one back."""
     first, low, last, high = shapely.bounds(shapes).T
-    at = first[:, None] + (last - first)[:, None] * (np.arange(SLICES) + 0.5) / SLICES
-    ends = np.stack([np.stack([at, np.broadcast_to(side[:, None], at.shape)], axis=-1) for side in (low - 1, high + 1)], axis=-2)
+    stations = first[:, None] + (last - first)[:, None] * (np.arange(SLICES) + 0.5) / SLICES
+    ends = np.stack([np.stack([stations, np.broadcast_to(side[:, None], stations.shape)], axis=-1) for side in (low - 1, high + 1)], axis=-2)
     slices = shapely.intersection(shapely.linestrings(ends), shapes[:, None])
     _, right, _, left = np.moveaxis(shapely.bounds(slices), -1, 0)
     broad = np.nan_to_num(left - right) > ROADS.shaft_breadth
@@ -278,9 +279,9 @@ def dash_lengths(lines: CrossSections, markings: MarkingObjects | None, road: in
 
     It is NaN where a line is not dashed, or has too few dashes to tell.
     """
-    found = RowTable.full(lines.d.spans, np.nan)
+    result = RowTable.full(lines.d.spans, np.nan)
     if markings is None:
-        return found
+        return result
     dashed = np.array([name == "dashed" for name in lines.names] + [False])[lines.drawn.values] & np.isfinite(lines.d.values)
     rows = (markings.road == road) & markings.keep & np.isin(markings.kind.astype(str), LINE_KINDS) & np.isfinite(markings.extent[:, 0])
     first, last, low, high = markings.extent[rows].T
@@ -290,13 +291,13 @@ def dash_lengths(lines: CrossSections, markings: MarkingObjects | None, road: in
     order = order[np.argsort(station[order], kind="stable")]
     station, length, middle = station[order], (last - first)[order], ((low + high) / 2)[order]
     # runs of dashed stations of one row
-    row, at = lines.d.spans.owner, lines.d.spans.station
+    row, index = lines.d.spans.owner, lines.d.spans.station
     edges = np.flatnonzero(np.diff(np.r_[-1, np.where(dashed, row, -1), -1]))
     for begin, end in zip(edges[:-1].tolist(), edges[1:].tolist()):
         if not dashed[begin]:
             continue
-        near = slice(*np.searchsorted(station, [at[begin], at[end - 1] + 1]))
-        own = length[near][np.abs(lines.d.values[begin:end][station[near] - at[begin]] - middle[near]) < ROADS.beside]
-        if len(own) >= ROADS.min_dashes:
-            found.values[begin:end] = np.percentile(own, ROADS.full_dash)
-    return found
+        window = slice(*np.searchsorted(station, [index[begin], index[end - 1] + 1]))
+        lengths = length[window][np.abs(lines.d.values[begin:end][station[window] - index[begin]] - middle[window]) < ROADS.beside]
+        if len(lengths) >= ROADS.min_dashes:
+            result.values[begin:end] = np.percentile(lengths, ROADS.full_dash)
+    return result

@@ -60,7 +60,7 @@ def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, patt
                        np.nan if width is None else float(width[k]))
         if piece is not None:
             pieces.setdefault(road, {}).setdefault(int(number[k]), []).append(piece)
-    return {road: _on_grid(found) for road, found in sorted(pieces.items())}
+    return {road: _on_grid(of_road) for road, of_road in sorted(pieces.items())}
 
 
 def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
@@ -88,40 +88,40 @@ def _named_by_chain(edges, rows):
     # a number of its own for every side
     count = int(edges.edge.max(initial=-1)) + 1
     key = np.where(edges.edge[rows] < 0, -1, edges.edge[rows] + count * (np.arange(len(of)) - np.searchsorted(of, of)))
-    found = cross_sections(course, key, edges.kind[rows], np.full(len(rows), "", object), edges.status[rows] != "bridged")
+    result = cross_sections(course, key, edges.kind[rows], np.full(len(rows), "", object), edges.status[rows] != "bridged")
     chain = np.full(count + 1, -1)
-    known = edges.edge >= 0
-    chain[edges.edge[known]] = edges.chain[known]
-    for sections in found.values():
+    numbered = edges.edge >= 0
+    chain[edges.edge[numbered]] = edges.chain[numbered]
+    for sections in result.values():
         number = sections.number.values
         sections.number = sections.number.like(chain[np.where(number < 0, -1, number % max(count, 1))], -1)
-    return found
+    return result
 
 
 def _sides_of_islands(course, island):
     """Lines as FrameLines whose stations rise or fall throughout, islands side by side, and the line that each comes from."""
     rows, of = [], []
     for k in range(len(course)):
-        places = np.arange(course.start[k], course.start[k + 1])
-        sides = [places]
-        if island[k] and (known := np.isfinite(course.s[places])).sum() > 1:
-            places = places[known]
-            first, last = places[[0, -1]]
+        ring = np.arange(course.start[k], course.start[k + 1])
+        sides = [ring]
+        if island[k] and (finite := np.isfinite(course.s[ring])).sum() > 1:
+            ring = ring[finite]
+            first, last = ring[[0, -1]]
             if np.hypot(course.x[first] - course.x[last], course.y[first] - course.y[last]) < SECTIONS.closed_island:
-                places = np.roll(places, -int(np.argmin(course.s[places])))
-            turns = sorted({0, int(np.argmin(course.s[places])), int(np.argmax(course.s[places])), len(places) - 1})
-            sides = [places[a:b + 1] for a, b in zip(turns[:-1], turns[1:])]
+                ring = np.roll(ring, -int(np.argmin(course.s[ring])))
+            turns = sorted({0, int(np.argmin(course.s[ring])), int(np.argmax(course.s[ring])), len(ring) - 1})
+            sides = [ring[a:b + 1] for a, b in zip(turns[:-1], turns[1:])]
         rows += sides
         of += [k] * len(sides)
-    start, at = np.append(0, np.cumsum([len(side) for side in rows], dtype=int)), np.concatenate([np.empty(0, int), *rows])
-    return FrameLines(course.road[of], start, *(values[at] for values in (course.x, course.y, course.z, course.s, course.d))), np.array(of, int)
+    start, vertices = np.append(0, np.cumsum([len(side) for side in rows], dtype=int)), np.concatenate([np.empty(0, int), *rows])
+    return FrameLines(course.road[of], start, *(values[vertices] for values in (course.x, course.y, course.z, course.s, course.d))), np.array(of, int)
 
 
 def _piece(s, d, z, kind, pattern, seen, width):
     """A _PieceOfLine of the vertices of a line, None where it bounds no lane."""
-    good = np.isfinite(s)
-    if not good.all():
-        s, d, z = s[good], d[good], z[good]
+    finite = np.isfinite(s)
+    if not finite.all():
+        s, d, z = s[finite], d[finite], z[finite]
     if len(s) < 2:
         return None
     if s[-1] < s[0]:
@@ -136,10 +136,10 @@ def _piece(s, d, z, kind, pattern, seen, width):
 
 def _on_grid(pieces: dict[int, list[_PieceOfLine]]) -> CrossSections:
     """CrossSections of the lines of one road, which go on over short gaps."""
-    found, gaps = joined(_lines_on_grid(pieces))
-    even_doubles(found, lead_over(found, gaps))
-    lengthen_dashed(found)
-    return _sections(found)
+    grid, gaps = joined(_lines_on_grid(pieces))
+    even_doubles(grid, lead_over(grid, gaps))
+    lengthen_dashed(grid)
+    return _sections(grid)
 
 
 def _sections(lines: _GridLines) -> CrossSections:
@@ -174,8 +174,8 @@ class _GridRow:
 
     def __init__(self, kind: str, pattern: str, first: int, columns: dict[str, np.ndarray]) -> None:
         self.kind, self.pattern, self.first, self.columns = kind, pattern, first, columns
-        known = np.flatnonzero(np.isfinite(columns["d"]))
-        self.begin, self.end = (first + int(known[0]), first + int(known[-1])) if len(known) else (first, first - 1)
+        finite = np.flatnonzero(np.isfinite(columns["d"]))
+        self.begin, self.end = (first + int(finite[0]), first + int(finite[-1])) if len(finite) else (first, first - 1)
 
     @classmethod
     def empty(cls, kind: str, pattern: str, first: int, size: int) -> _GridRow:
@@ -184,9 +184,9 @@ class _GridRow:
     def at(self, name: str, stations: np.ndarray) -> np.ndarray:
         """(N,) values of a column."""
         values = self.columns[name]
-        place = np.asarray(stations) - self.first
-        there = (place >= 0) & (place < len(values))
-        return np.where(there, values[np.where(there, place, 0)], MISSING[name]) if len(values) else np.full(place.shape, MISSING[name])
+        index = np.asarray(stations) - self.first
+        inside = (index >= 0) & (index < len(values))
+        return np.where(inside, values[np.where(inside, index, 0)], MISSING[name]) if len(values) else np.full(index.shape, MISSING[name])
 
     def put(self, name: str, stations: np.ndarray, values: np.ndarray | bool) -> None:
         """Set values of a column at some stations, which the row is lengthened to."""
@@ -194,8 +194,8 @@ class _GridRow:
             return
         self._reach(int(stations.min()), int(stations.max()))
         self.columns[name][stations - self.first] = values
-        if name == "d" and (known := stations[np.isfinite(values)]).size:
-            self.begin, self.end = min(self.begin, int(known.min())), max(self.end, int(known.max()))
+        if name == "d" and (measured := stations[np.isfinite(values)]).size:
+            self.begin, self.end = min(self.begin, int(measured.min())), max(self.end, int(measured.max()))
 
     def _reach(self, low, high):
         before, behind = max(self.first - low, 0), max(high + 1 - self.first - len(self.columns["d"]), 0)
@@ -223,10 +223,10 @@ class _GridLines:
     def tables(self) -> dict[str, RowTable]:
         """{name: (L, K)} of the columns, each row from where the line begins to where it ends."""
         spans = RowSpans(np.array([row.begin for row in self.rows], int), np.array([row.end + 1 - row.begin for row in self.rows], int), len(self.s))
-        found = {name: np.concatenate([np.empty(0, missing.dtype), *(
+        columns = {name: np.concatenate([np.empty(0, missing.dtype), *(
             row.columns[name][row.begin - row.first:row.end + 1 - row.first] for row in self.rows)]) for name, missing in MISSING.items()}
-        found["seen"] &= np.isfinite(found["d"])
-        return {name: RowTable(spans, values, MISSING[name]) for name, values in found.items()}
+        columns["seen"] &= np.isfinite(columns["d"])
+        return {name: RowTable(spans, values, MISSING[name]) for name, values in columns.items()}
 
 
 def _lines_on_grid(lines: dict[int, list[_PieceOfLine]]) -> _GridLines:
@@ -251,8 +251,8 @@ def _row_of(number, pieces, s, names, longest):
     first, end = int(bounds[:, 0].min()), int(bounds[:, 1].max())
     row = _GridRow.empty(longest.kind, longest.pattern, first, max(end - first, 0))
     for p, (a, b) in zip(pieces, bounds.tolist()):
-        inside, at = slice(a - first, b - first), s[a:b]
-        for name, value in (("d", np.interp(at, p.s, p.d)), ("z", np.interp(at, p.s, p.z)), ("drawn", names.index(p.pattern)), ("number", number),
+        inside, grid = slice(a - first, b - first), s[a:b]
+        for name, value in (("d", np.interp(grid, p.s, p.d)), ("z", np.interp(grid, p.s, p.z)), ("drawn", names.index(p.pattern)), ("number", number),
                             ("width", p.width)):
             row.columns[name][inside] = value
         row.columns["seen"][inside] |= p.seen
@@ -265,21 +265,21 @@ def joined(lines: _GridLines) -> tuple[_GridLines, list[tuple[int, int, int, boo
     Returns the lines, and of each gap that was closed the row, the stations on both its sides and whether the line is double there.
     """
     rows = lines.rows
-    kept = [k for k, row in enumerate(rows) if row.end >= row.begin]
-    chains = {k: [k] for k in kept}     # the lines that a row is made of, by the number of its first one
+    present = [k for k, row in enumerate(rows) if row.end >= row.begin]
+    chains = {k: [k] for k in present}     # the lines that a row is made of, by the number of its first one
     ending = defaultdict(set)           # rows by the station that they end at
-    for k in kept:
+    for k in present:
         ending[rows[k].end].add(k)
     gaps: list[tuple[int, int, int, bool, bool]] = []
-    for k in sorted(kept, key=lambda k: (rows[k].begin, k)):
+    for k in sorted(present, key=lambda k: (rows[k].begin, k)):
         check_cancelled()
         last, d = rows[k].begin, rows[k].columns["d"][rows[k].begin - rows[k].first]
         behind = np.array(sorted(j for end in range(last - GAP_REACH, last) for j in ending.get(end, ())), int)
-        away = np.array([abs(d - rows[chains[j][-1]].at("d", np.array([rows[chains[j][-1]].end]))[0]) for j in behind.tolist()])
-        behind, away = behind[away <= SECTIONS.max_line_jump], away[away <= SECTIONS.max_line_jump]
+        steps = np.array([abs(d - rows[chains[j][-1]].at("d", np.array([rows[chains[j][-1]].end]))[0]) for j in behind.tolist()])
+        behind, steps = behind[steps <= SECTIONS.max_line_jump], steps[steps <= SECTIONS.max_line_jump]
         if not len(behind):
             continue
-        j = int(behind[np.argmin(away)])
+        j = int(behind[np.argmin(steps)])
         before = rows[chains[j][-1]]
         gaps.append((j, before.end, last, "double" in before.pattern, "double" in rows[k].pattern))
         ending[before.end].remove(j)
@@ -287,8 +287,8 @@ def joined(lines: _GridLines) -> tuple[_GridLines, list[tuple[int, int, int, boo
         ending[rows[k].end].add(j)
         chains[j] += chains.pop(k)
     number = {j: k for k, j in enumerate(sorted(chains))}
-    found = [_chained([rows[k] for k in chains[j]]) for j in sorted(chains)]
-    return _GridLines(lines.s, found, lines.names), [(number[j], first, last, before, behind) for j, first, last, before, behind in gaps]
+    rows_joined = [_chained([rows[k] for k in chains[j]]) for j in sorted(chains)]
+    return _GridLines(lines.s, rows_joined, lines.names), [(number[j], first, last, before, behind) for j, first, last, before, behind in gaps]
 
 
 def _chained(rows):
@@ -296,19 +296,19 @@ def _chained(rows):
     head = rows[0]
     if len(rows) == 1:
         return head
-    found = _GridRow.empty(head.kind, head.pattern, head.begin, rows[-1].end + 1 - head.begin)
+    result = _GridRow.empty(head.kind, head.pattern, head.begin, rows[-1].end + 1 - head.begin)
     for k, row in enumerate(rows):
-        own = slice(row.begin - head.begin, row.end + 1 - head.begin)
-        for name, values in found.columns.items():
-            values[own] = row.columns[name][row.begin - row.first:row.end + 1 - row.first]
+        window = slice(row.begin - head.begin, row.end + 1 - head.begin)
+        for name, values in result.columns.items():
+            values[window] = row.columns[name][row.begin - row.first:row.end + 1 - row.first]
         if k:
-            first, last = rows[k - 1].end - head.begin, own.start
+            first, last = rows[k - 1].end - head.begin, window.start
             gap = np.arange(first + 1, last)
             for name in ("d", "z"):
-                found.columns[name][gap] = np.interp(gap, [first, last], found.columns[name][[first, last]])
+                result.columns[name][gap] = np.interp(gap, [first, last], result.columns[name][[first, last]])
             # a gap of a dashed line is no gap
-            found.columns["seen"][gap] = head.pattern.startswith("dash") or row.pattern.startswith("dash")
-    return _GridRow(head.kind, head.pattern, head.begin, found.columns)
+            result.columns["seen"][gap] = head.pattern.startswith("dash") or row.pattern.startswith("dash")
+    return _GridRow(head.kind, head.pattern, head.begin, result.columns)
 
 
 def lead_over(lines: _GridLines, gaps: list[tuple[int, int, int, bool, bool]]) -> set[tuple[int, int]]:
@@ -322,22 +322,22 @@ def lead_over(lines: _GridLines, gaps: list[tuple[int, int, int, bool, bool]]) -
             continue
         single = lines.rows[j]
         # from the double line's own end to where the single one begins, in whichever direction
-        own, other, step = (last, first, 1) if before else (first, last, -1)
+        double_end, single_end, step = (last, first, 1) if before else (first, last, -1)
         # a line that was continued before reaches farther than it did
-        near = sorted({*lines.near(own, GAP_REACH), *(k for k, _ in led)})
-        for k in near:
+        nearby = sorted({*lines.near(double_end, GAP_REACH), *(k for k, _ in led)})
+        for k in nearby:
             row = lines.rows[k]
             end = row.end if step > 0 else row.begin
-            if k == j or "double" not in row.pattern or not 0 <= (own - end) * step <= GAP_REACH:
+            if k == j or "double" not in row.pattern or not 0 <= (double_end - end) * step <= GAP_REACH:
                 continue
             apart = _step_between(row, single, end)
             if abs(apart["d"]) >= SECTIONS.min_boundary_spacing:
                 continue
-            beside, gap = np.arange(end + step, own + step, step), np.arange(own + step, other, step)
+            shared, gap = np.arange(end + step, double_end + step, step), np.arange(double_end + step, single_end, step)
             for name in ("d", "z"):
-                row.put(name, beside, single.at(name, beside) + apart[name])
-                row.put(name, gap, single.at(name, gap) + apart[name] * (other - gap) / (other - own))
-            for columns in (beside, gap):
+                row.put(name, shared, single.at(name, shared) + apart[name])
+                row.put(name, gap, single.at(name, gap) + apart[name] * (single_end - gap) / (single_end - double_end))
+            for columns in (shared, gap):
                 row.put("seen", columns, single.at("seen", columns))
             led.add((k, step))
     return led
@@ -345,8 +345,8 @@ def lead_over(lines: _GridLines, gaps: list[tuple[int, int, int, bool, bool]]) -
 
 def _step_between(row, other, station):
     """By how much, of d and z, a row lies beside another one at a station."""
-    at = np.array([station])
-    return {name: row.at(name, at)[0] - other.at(name, at)[0] for name in ("d", "z")}
+    stations = np.array([station])
+    return {name: row.at(name, stations)[0] - other.at(name, stations)[0] for name in ("d", "z")}
 
 
 def even_doubles(lines: _GridLines, led: set[tuple[int, int]]) -> None:
@@ -355,33 +355,33 @@ def even_doubles(lines: _GridLines, led: set[tuple[int, int]]) -> None:
     Else a lane would reach for the farther of the two where the nearer is worn away.
     """
     lines = _GridLines(lines.s, lines.rows, lines.names)
-    known = [(row.begin, row.end) for row in lines.rows]
+    extents = [(row.begin, row.end) for row in lines.rows]
     for k, row in enumerate(lines.rows):
         if "double" not in row.pattern:
             continue
-        for end, step in ((known[k][1], 1), (known[k][0], -1)):
+        for end, step in ((extents[k][1], 1), (extents[k][0], -1)):
             if (k, step) in led:
                 continue
-            others, offsets = _beside(lines, known, k, end)
+            numbers, offsets = _beside(lines, extents, k, end)
             twin = _nearest(np.abs(offsets) < SECTIONS.min_boundary_spacing, np.abs(offsets))
             if twin is None:
                 continue
-            other = lines.rows[others[twin]]
+            longer = lines.rows[numbers[twin]]
             ahead = _ahead(lines, end, step)
-            go = _present(other, known[others[twin]], ahead)
+            go = _present(longer, extents[numbers[twin]], ahead)
             ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
-            apart = _step_between(row, other, end)
+            apart = _step_between(row, longer, end)
             for name in ("d", "z"):
-                row.put(name, ahead, other.at(name, ahead) + apart[name])
-            row.put("seen", ahead, other.at("seen", ahead))
+                row.put(name, ahead, longer.at(name, ahead) + apart[name])
+            row.put("seen", ahead, longer.at("seen", ahead))
 
 
 def _beside(lines, known, k, station):
     """Numbers of the other lines that are at a station, and how far left of line k they lie there."""
-    at = np.array([station])
-    others = [j for j in lines.near(station) if j != k and _present(lines.rows[j], known[j], at)[0]]
-    own = lines.rows[k].at("d", at)[0]
-    return others, np.array([lines.rows[j].at("d", at)[0] - own for j in others], float)
+    stations = np.array([station])
+    numbers = [j for j in lines.near(station) if j != k and _present(lines.rows[j], known[j], stations)[0]]
+    offset = lines.rows[k].at("d", stations)[0]
+    return numbers, np.array([lines.rows[j].at("d", stations)[0] - offset for j in numbers], float)
 
 
 def _present(row, known, stations):
@@ -398,26 +398,26 @@ def _ahead(lines, end, step):
 def lengthen_dashed(lines: _GridLines) -> None:
     """A dashed line goes on by up to one gap where lines on both its sides do: the next dash is only missed after a gap's length."""
     lines = _GridLines(lines.s, lines.rows, lines.names)
-    known = [(row.begin, row.end) for row in lines.rows]
+    extents = [(row.begin, row.end) for row in lines.rows]
     for k, row in enumerate(lines.rows):
         if not row.pattern.startswith("dash") or row.end == row.begin:
             continue
-        for end, step in ((known[k][1], 1), (known[k][0], -1)):
-            others, offsets = _beside(lines, known, k, end)
+        for end, step in ((extents[k][1], 1), (extents[k][0], -1)):
+            neighbours, offsets = _beside(lines, extents, k, end)
             sides = [_nearest(side * offsets > SECTIONS.min_boundary_spacing, np.abs(offsets)) for side in (1, -1)]
             if None in sides:
                 continue
-            numbers = [others[side] for side in sides]
+            numbers = [neighbours[side] for side in sides]
             left, right = (lines.rows[j] for j in numbers)
             ahead = _ahead(lines, end, step)
-            go = np.all([_present(lines.rows[j], known[j], ahead) & lines.rows[j].at("seen", ahead) for j in numbers], axis=0)
+            go = np.all([_present(lines.rows[j], extents[j], ahead) & lines.rows[j].at("seen", ahead) for j in numbers], axis=0)
             ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
             inner = end - step * np.arange(GAP_REACH + 1)
             share = _share_across(row, left, right, inner[(inner >= 0) & (inner < len(lines.s))])
             for name in ("d", "z"):
-                own, (beside, begin) = row.at(name, np.array([end]))[0], (
-                    left.at(name, at) * share + right.at(name, at) * (1 - share) for at in (ahead, np.array([end])))
-                row.put(name, ahead, beside + own - begin[0])
+                level, (course, begin) = row.at(name, np.array([end]))[0], (
+                    left.at(name, stations) * share + right.at(name, stations) * (1 - share) for stations in (ahead, np.array([end])))
+                row.put(name, ahead, course + level - begin[0])
             row.put("seen", ahead, True)
 
 
@@ -428,9 +428,9 @@ def _share_across(row, left, right, inner):
     """
     apart = np.abs(np.stack([left.at("d", inner), right.at("d", inner)]) - row.at("d", inner))
     apart = apart[:, np.isfinite(apart).all(axis=0)]
-    away = np.ptp(apart, axis=1)
-    if abs(away[0] - away[1]) > SECTIONS.parting:
-        return float(away[0] < away[1])
+    changes = np.ptp(apart, axis=1)
+    if abs(changes[0] - changes[1]) > SECTIONS.parting:
+        return float(changes[0] < changes[1])
     return apart[1, 0] / (apart[0, 0] + apart[1, 0])
 
 

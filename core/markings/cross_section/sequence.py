@@ -56,13 +56,14 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     """
     open_left, open_right = UNPAINTED[made_left], UNPAINTED[made_right]
     loose = open_left ^ open_right
-    each = (left - right) / number
-    widened = bend & (each > LANES.likely_share[0] * usual) & (each < LANES.likely_share[1] * usual)
+    each_width = (left - right) / number
+    widened = bend & (each_width > LANES.likely_share[0] * usual) & (each_width < LANES.likely_share[1] * usual)
     hidden = loose & beside_surface_end(made_left, made_right)
-    least = np.where(widened & ((made_left == PAVEMENT) | (made_right == PAVEMENT)), each, np.minimum(each, usual))
-    likely = beside_island(made_left, made_right) & (each > LANES.likely_share[0] * usual) & (each < LANES.likely_share[1] * usual)
-    each = np.where(hidden, np.where(widened, each, usual), np.where(loose, np.where(likely, np.maximum(each, usual), least), each))
-    return np.where(loose & open_left, right + number * each, left), each
+    narrow = np.where(widened & ((made_left == PAVEMENT) | (made_right == PAVEMENT)), each_width, np.minimum(each_width, usual))
+    likely = beside_island(made_left, made_right) & (each_width > LANES.likely_share[0] * usual) & (each_width < LANES.likely_share[1] * usual)
+    each_width = np.where(hidden, np.where(widened, each_width, usual),
+                          np.where(loose, np.where(likely, np.maximum(each_width, usual), narrow), each_width))
+    return np.where(loose & open_left, right + number * each_width, left), each_width
 
 
 def beside_island(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
@@ -103,7 +104,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     width = d_left - d_right
     ordered = c.valid[:, :, None] & c.valid[:, None, :] & (np.arange(size)[:, None] < np.arange(size))
     outside = (c.made_of == OUTSIDE)[:, :, None] | (c.made_of == OUTSIDE)[:, None, :]
-    through, rest = _passed_over(c, w)
+    through, rest_cost = _passed_over(c, w)
     hatched = _share_between(evidence.hatched, c, width) > LANES.hatched_share if evidence.hatched is not None else np.zeros(width.shape, bool)
     paint = c.painted | (c.made_of == HATCHING)
     both_paint, any_paint = paint[:, :, None] & paint[:, None, :], paint[:, :, None] | paint[:, None, :]
@@ -118,35 +119,35 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     lined = both_paint & ~(opened[:, :, None] | opened[:, None, :])
     unused = np.where(lined, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, w.unused_asphalt[1]))
     inside = _inside(evidence.driven, c)
-    idle = scale * (np.where(hatched, 0.0, unused) + rest) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
+    idle = scale * (np.where(hatched, 0.0, unused) + rest_cost) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
     cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)
 
     made_left, made_right = c.made_of[:, :, None], c.made_of[:, None, :]
     # strips with paint on one side only, and of those the ones whose other side may be hidden
     loose = any_paint & ~both_paint
     hidden = loose & beside_surface_end(made_left, made_right)
-    off = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
+    uncovered = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
     possible = ordered & ~outside & any_paint & (width < LANES.max_lanes * NEUTRAL.widest_lane)
-    base = scale * (through + hatched * w.hatched_lane + off * w.off_asphalt)
+    base = scale * (through + hatched * w.hatched_lane + uncovered * w.off_asphalt)
     driven_there = inside.any(0)
     for number in range(1, LANES.max_lanes + 1):
-        begin, each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, c.bend[:, None, None])
-        fits = width_cost(each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
+        begin, width_each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, c.bend[:, None, None])
+        fits = width_cost(width_each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
         # what lies beyond the end of the surface
-        beyond = np.clip(1 - width / np.maximum(number * each, 0.1), 0, 1) * hidden
+        beyond = np.clip(1 - width / np.maximum(number * width_each, 0.1), 0, 1) * hidden
         total = base + scale * (fits + beyond * w.off_asphalt)
         scanned = ~hidden | (width > LANES.min_scanned_share * number * lane_width)
         # only where somebody drove is a lane known to be wider than lanes are built: elsewhere nothing tells its place in the strip
-        built = (each >= NEUTRAL.narrowest_lane) & ((each <= NEUTRAL.widest_lane) | driven_there)
+        built = (width_each >= NEUTRAL.narrowest_lane) & ((width_each <= NEUTRAL.widest_lane) | driven_there)
         total = np.where(possible & scanned & built, total, np.inf)
         for split in range(number + 1):
             kind = SECOND if split == 0 else FIRST if split == number else TWO_WAY[1 + int(np.sign(number - 2 * split))]
             alike = max(split - 1, 0) + max(number - split - 1, 0)
             unpainted = (0 < split < number) * w.unpainted_divider + alike * w.unpainted_lane_line
-            driven = total + scale * (unpainted + _driven_cost(evidence, inside, begin, each, number, split, first_direction, w)) \
-                + _arrow_cost(arrows, each, number, split, first_direction, begin, w)
+            driven = total + scale * (unpainted + _driven_cost(evidence, inside, begin, width_each, number, split, first_direction, w)) \
+                + _arrow_cost(arrows, width_each, number, split, first_direction, begin, w)
             if kind in TWO_WAY:
-                driven += w.split_stop * _stops_across(evidence.stops, begin - split * each)
+                driven += w.split_stop * _stops_across(evidence.stops, begin - split * width_each)
             better = driven < cost[kind]
             cost[kind][better], lanes[kind][better], first_lanes[kind][better] = driven[better], number, split
     return _StripCosts(cost, lanes, first_lanes, lane_width)
@@ -159,26 +160,26 @@ def _unused(asphalt, cost, enough=LANES.asphalt_of_a_lane[1]):
 
 def width_cost(width: np.ndarray, usual: float, w: EstimateWeights) -> np.ndarray:
     """Nats of a lane of some width, m, against one of the usual width: most lanes of a road are alike, some as on other roads, few are odd."""
-    own = np.exp(-0.5 * ((width - usual) / w.width_sigma) ** 2)
-    other = np.exp(-0.5 * ((width - NEUTRAL.usual_lane) / LANES.other_sigma) ** 2)
-    share = (1 - w.other_width - w.odd_width) * own + w.other_width * other + w.odd_width
+    as_usual = np.exp(-0.5 * ((width - usual) / w.width_sigma) ** 2)
+    as_elsewhere = np.exp(-0.5 * ((width - NEUTRAL.usual_lane) / LANES.other_sigma) ** 2)
+    share = (1 - w.other_width - w.odd_width) * as_usual + w.other_width * as_elsewhere + w.odd_width
     return np.where((width >= NEUTRAL.narrowest_lane) & (width <= w.widest_odd), -np.log(share), np.inf)
 
 
 def _passed_over(c, w):
     """(I, M, M) costs of the boundaries that lie between two others, inside a lane and where nobody drives; per observation."""
     paint = c.painted
-    there = c.valid & (c.made_of != OUTSIDE)
+    counted = c.valid & (c.made_of != OUTSIDE)
     shown = 0.5 + 0.5 * c.seen
     lane = np.where(paint, w.lane_through_paint * c.trust * shown,
                     np.select([np.isin(c.made_of, (CURB, ISLAND)), np.isin(c.made_of, (SURFACE, PAVEMENT)), c.made_of == HATCHING],
-                              [w.lane_through_curb * c.seen, w.lane_through_surface, w.lane_through_hatching], 0.0)) * there
-    rest = np.where(paint, w.paint_in_rest * c.trust * shown, 0.0) * there
-    found = []
-    for values in (lane, rest):
+                              [w.lane_through_curb * c.seen, w.lane_through_surface, w.lane_through_hatching], 0.0)) * counted
+    rest_cost = np.where(paint, w.paint_in_rest * c.trust * shown, 0.0) * counted
+    costs = []
+    for values in (lane, rest_cost):
         total = np.cumsum(values, axis=1)
-        found.append(np.maximum(total[:, None, :] - values[:, None, :] - total[:, :, None], 0.0))
-    return found
+        costs.append(np.maximum(total[:, None, :] - values[:, None, :] - total[:, :, None], 0.0))
+    return costs
 
 
 def _share_between(shares, c, width):
@@ -186,10 +187,10 @@ def _share_between(shares, c, width):
     total = np.concatenate([np.zeros((len(shares), 1)), np.cumsum(shares, axis=1)], axis=1) * BIN
 
     def up_to(d):
-        at = np.clip((d + FAR) / BIN, 0, shares.shape[1] - 1e-6)
-        k = at.astype(int)
+        cells = np.clip((d + FAR) / BIN, 0, shares.shape[1] - 1e-6)
+        k = cells.astype(int)
         row = np.arange(len(shares))[:, None]
-        return total[row, k] + (at - k) * (total[row, k + 1] - total[row, k])
+        return total[row, k] + (cells - k) * (total[row, k + 1] - total[row, k])
 
     return np.clip(up_to(c.right)[:, :, None] - up_to(c.left)[:, None, :], 0, None) / np.maximum(width, 0.1)
 
@@ -208,34 +209,34 @@ def _driven_cost(evidence, inside, d_left, each, number, split, first_direction,
         if not inside[p].any():
             continue
         with np.errstate(invalid="ignore", divide="ignore"):
-            place = (d_left - evidence.driven[p][:, None, None]) / np.maximum(each, 0.1)
-        lane = np.clip(np.floor(np.nan_to_num(place)), 0, number - 1)
-        off = (np.nan_to_num(place) - lane - 0.5) * each
+            position = (d_left - evidence.driven[p][:, None, None]) / np.maximum(each, 0.1)
+        lane = np.clip(np.floor(np.nan_to_num(position)), 0, number - 1)
+        offset = (np.nan_to_num(position) - lane - 0.5) * each
         way = np.where(lane < split, first_direction, -first_direction)
-        cost += inside[p] * (np.minimum(0.5 * (off / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == -direction, w.driven_against, 0.0))
+        cost += inside[p] * (np.minimum(0.5 * (offset / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == -direction, w.driven_against, 0.0))
     return cost
 
 
 def _arrows(c, arrows):
     """(I, M, M) number of arrows between two boundaries, and a list of (interval, offset, way, which boundaries it lies between)."""
     number = np.zeros((*c.left.shape, c.left.shape[1]))
-    found = []
+    placed = []
     for interval, d, way in arrows:
         k = int(interval)
         inside = (d < c.right[k][:, None]) & (d > c.left[k][None, :])
         number[k] += inside
-        found.append((k, float(d), float(way), inside))
-    return number, found
+        placed.append((k, float(d), float(way), inside))
+    return number, placed
 
 
 def _arrow_cost(arrows, each, count, split, first_direction, d_left, w):
     """(I, M, M) nats of arrows beside the middle of their lanes, and of arrows that point against them."""
     cost = np.zeros(each.shape)
     for k, d, way, inside in arrows:
-        place = (d_left[k] - d) / np.maximum(each[k], 0.1)
-        lane = np.clip(np.floor(place), 0, count - 1)
+        position = (d_left[k] - d) / np.maximum(each[k], 0.1)
+        lane = np.clip(np.floor(position), 0, count - 1)
         against = np.maximum(-way * np.where(lane < split, first_direction, -first_direction), 0.0)
-        cost[k] += inside * (np.minimum(0.5 * ((place - lane - 0.5) * each[k] / w.arrow_sigma) ** 2, w.arrow_outside) + against * w.arrow_against)
+        cost[k] += inside * (np.minimum(0.5 * ((position - lane - 0.5) * each[k] / w.arrow_sigma) ** 2, w.arrow_outside) + against * w.arrow_against)
     return cost
 
 
@@ -318,8 +319,8 @@ def separated_kinds(sections: Sections) -> np.ndarray:
 
 def misnamed_costs(candidates: Candidates, sections: Sections, weights: EstimateWeights) -> np.ndarray:
     """(I, K) nats of lines that separate something else than their layer says."""
-    what, named = separated_kinds(sections), candidates.named[:, None, :]
-    return weights.named * _misnamed(what, named).sum(2) * candidates.observations(weights)[:, None]
+    separated, named = separated_kinds(sections), candidates.named[:, None, :]
+    return weights.named * _misnamed(separated, named).sum(2) * candidates.observations(weights)[:, None]
 
 
 def _misnamed(what, named):
@@ -354,10 +355,10 @@ def _lowest(values, kept):
     """(I, kept) places, in the flattened rows, and values of the lowest of each of I rows; inf where there are fewer."""
     flat = values.reshape(len(values), -1)
     flat = np.pad(flat, ((0, 0), (0, max(kept - flat.shape[1], 0))), constant_values=np.inf)
-    place = np.argpartition(flat, kept - 1, axis=1)[:, :kept]
-    lowest = np.take_along_axis(flat, place, axis=1)
+    indices = np.argpartition(flat, kept - 1, axis=1)[:, :kept]
+    lowest = np.take_along_axis(flat, indices, axis=1)
     order = np.argsort(lowest, axis=1, kind="stable")
-    return np.take_along_axis(place, order, axis=1), np.take_along_axis(lowest, order, axis=1)
+    return np.take_along_axis(indices, order, axis=1), np.take_along_axis(lowest, order, axis=1)
 
 
 def _boundary_costs(c, stops, w):
@@ -371,12 +372,12 @@ def _boundary_costs(c, stops, w):
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
     for left in STRIPS:
         for right in STRIPS:
-            what = SEPARATES[left, right]
-            if what >= 0:
-                misnamed = w.named * _misnamed(what, c.named)
+            use = SEPARATES[left, right]
+            if use >= 0:
+                misnamed = w.named * _misnamed(use, c.named)
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
-                cost[:, :, left, right] = scale * (table[:, :, what] + wrong + misnamed) \
-                    + w.split_stop * stopped * (what == CENTRE_LINE)
+                cost[:, :, left, right] = scale * (table[:, :, use] + wrong + misnamed) \
+                    + w.split_stop * stopped * (use == CENTRE_LINE)
     return cost
 
 
@@ -386,17 +387,17 @@ def _traced(back, ends, costs):
     chosen, value = ends
     strip, right, lanes, first_lanes = np.full((4, *chosen.shape, size), -1, np.int8)
     row = np.arange(count)[:, None]
-    at, place = np.full(chosen.shape, size - 1), np.where(np.isfinite(value), chosen, -1)
-    while (alive := place >= 0).any():
-        boundary, rest = np.divmod(place, kinds * kept)
-        kind, rank = np.divmod(rest, kept)
+    end_boundary, pointer = np.full(chosen.shape, size - 1), np.where(np.isfinite(value), chosen, -1)
+    while (alive := pointer >= 0).any():
+        boundary, remainder = np.divmod(pointer, kinds * kept)
+        kind, rank = np.divmod(remainder, kept)
         r, k = np.nonzero(alive)
         strip[r, k, boundary[alive]] = kind[alive]
-        right[r, k, boundary[alive]] = at[alive]
+        right[r, k, boundary[alive]] = end_boundary[alive]
         for values, of_strip in ((lanes, costs.lanes), (first_lanes, costs.first_lanes)):
-            values[r, k, boundary[alive]] = of_strip[kind[alive], r, boundary[alive], at[alive]]
-        at = np.where(alive, boundary, at)
-        place = np.where(alive & (boundary > 0), back[row, boundary.clip(0), kind, rank], -1)
+            values[r, k, boundary[alive]] = of_strip[kind[alive], r, boundary[alive], end_boundary[alive]]
+        end_boundary = np.where(alive, boundary, end_boundary)
+        pointer = np.where(alive & (boundary > 0), back[row, boundary.clip(0), kind, rank], -1)
     return Sections(value, strip, right, lanes, first_lanes)
 
 
@@ -417,15 +418,15 @@ def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, l
     left : of what was known of lanes, and of directions, what is left after the way to the next one, (N - 1,) 0 to 1 each
     """
     kept = sections.cost.shape[1]
-    found = np.empty((max(len(known) - 1, 0), kept, kept))
+    result = np.empty((max(len(known) - 1, 0), kept, kept))
     # what is compared is larger than the costs
-    for first in range(0, len(found), INTERVALS_AT_ONCE):
+    for first in range(0, len(result), INTERVALS_AT_ONCE):
         check_cancelled()
-        some = known[first:first + INTERVALS_AT_ONCE + 1]
-        own = slice(first, first + len(some) - 1)
-        costs = _transition_costs(*_occupancy(candidates.take(some), sections.take(some), lane_width), weights)
-        found[own] = sum(cost * share[own, None, None] for cost, share in zip(costs, left))
-    return found
+        intervals = known[first:first + INTERVALS_AT_ONCE + 1]
+        window = slice(first, first + len(intervals) - 1)
+        costs = _transition_costs(*_occupancy(candidates.take(intervals), sections.take(intervals), lane_width), weights)
+        result[window] = sum(cost * share[window, None, None] for cost, share in zip(costs, left))
+    return result
 
 
 def _occupancy(candidates: Candidates, sections: Sections, lane_width: float) -> tuple[np.ndarray, np.ndarray]:
@@ -435,20 +436,20 @@ def _occupancy(candidates: Candidates, sections: Sections, lane_width: float) ->
     area, divider = np.zeros((2, count, kept, bins + 1)), np.zeros((count, kept, bins), bool)
     strips = lane_strips(sections)
     i, k, m, end, number = strips.interval, strips.section, strips.left, strips.right, strips.number
-    d_left, each = lane_places(candidates.right[i, m], candidates.left[i, end], candidates.made_of[i, m], candidates.made_of[i, end], number,
-                               lane_width, candidates.bend[i])
-    d_right = d_left - number * each
-    split = d_left - each * strips.first
-    for which, (high, low) in enumerate(((d_left, split), (split, d_right))):
-        some = high - low > 1e-6
-        a, b = (np.clip(np.rint((v[some] + FAR) / PLACE).astype(int), 0, bins) for v in (low, high))
-        np.add.at(area[which], (i[some], k[some], a), 1.0)
-        np.add.at(area[which], (i[some], k[some], b), -1.0)
+    d_left, width_each = lane_places(candidates.right[i, m], candidates.left[i, end], candidates.made_of[i, m], candidates.made_of[i, end], number,
+                                     lane_width, candidates.bend[i])
+    d_right = d_left - number * width_each
+    split = d_left - width_each * strips.first
+    for direction, (high, low) in enumerate(((d_left, split), (split, d_right))):
+        rows = high - low > 1e-6
+        a, b = (np.clip(np.rint((v[rows] + FAR) / PLACE).astype(int), 0, bins) for v in (low, high))
+        np.add.at(area[direction], (i[rows], k[rows], a), 1.0)
+        np.add.at(area[direction], (i[rows], k[rows], b), -1.0)
     area = np.cumsum(area, axis=-1)[..., :-1]
-    for place in range(1, int(number.max(initial=1))):
-        some = number > place
-        d = d_left[some] - each[some] * place
-        divider[i[some], k[some], np.clip(np.rint((d + FAR) / PLACE).astype(int), 0, bins - 1)] = True
+    for inner in range(1, int(number.max(initial=1))):
+        rows = number > inner
+        d = d_left[rows] - width_each[rows] * inner
+        divider[i[rows], k[rows], np.clip(np.rint((d + FAR) / PLACE).astype(int), 0, bins - 1)] = True
     # painted borders with a lane on both sides
     lane = (sections.strip >= FIRST) & (sections.strip <= SECOND)
     ends = np.zeros(sections.strip.shape, bool)

@@ -61,21 +61,21 @@ def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[flo
     shift = np.asarray(origin, float)
     local = shapely.transform(np.asarray(lines, object), lambda xyz: xyz - shift, include_z=True)
     segments = SegmentIndex(local)
-    which = _spread(len(points), MAX_CANDIDATES)
-    some = points[which]
-    nearest = segments.nearest(np.c_[some.x, some.y])
-    beside = np.flatnonzero((nearest.distance <= STRANDS.max_paint_distance) & np.isfinite(nearest.z))
-    if len(beside) < MIN_KERNEL_POINTS:
+    rows = _spread(len(points), MAX_CANDIDATES)
+    candidates = points[rows]
+    nearest = segments.nearest(np.c_[candidates.x, candidates.y])
+    on_lines = np.flatnonzero((nearest.distance <= STRANDS.max_paint_distance) & np.isfinite(nearest.z))
+    if len(on_lines) < MIN_KERNEL_POINTS:
         return None
-    beside = beside[_spread(len(beside), MAX_CURVATURE_POINTS)]
-    near = _near(points, which[beside])
-    around = points[near]
+    on_lines = on_lines[_spread(len(on_lines), MAX_CURVATURE_POINTS)]
+    kernel_rows = _near(points, rows[on_lines])
+    around = points[kernel_rows]
     xyz = np.c_[around.x, around.y, around.z]
-    before, after = _before_and_after(xyz, np.searchsorted(near, which[beside]), nearest[beside], segments)
-    known = np.isfinite(before) & np.isfinite(after)
-    if not known.any():
+    before, after = _before_and_after(xyz, np.searchsorted(kernel_rows, rows[on_lines]), nearest[on_lines], segments)
+    finite = np.isfinite(before) & np.isfinite(after)
+    if not finite.any():
         return None
-    return MarkingCurvature(float(np.abs(before[known]).mean()), float(np.abs(after[known]).mean()), int(known.sum()))
+    return MarkingCurvature(float(np.abs(before[finite]).mean()), float(np.abs(after[finite]).mean()), int(finite.sum()))
 
 
 def _spread(count, most):
@@ -90,10 +90,10 @@ def _near(points, which):
     for right in (-1, 0, 1):
         for up in (-1, 0, 1):
             marked[_cell(column + np.int32(right), row + np.int32(up))] = True
-    found = [np.empty(0, np.intp)]
+    rows = [np.empty(0, np.intp)]
     for first in range(0, len(points), POINTS_LOOKED_AT):
-        found.append(first + np.flatnonzero(marked.take(_cell(*_cells(points[first:first + POINTS_LOOKED_AT])))))
-    return np.concatenate(found)
+        rows.append(first + np.flatnonzero(marked.take(_cell(*_cells(points[first:first + POINTS_LOOKED_AT])))))
+    return np.concatenate(rows)
 
 
 def _cells(points):
@@ -112,23 +112,23 @@ def _before_and_after(xyz, which, nearest, segments):
     Points in the kernel are brought to the line that is nearest to the middle of the kernel, which on
     0.2 m is as good as the line nearest to each.
     """
-    tree, found = _tree(xyz), np.full((2, len(which)), np.nan)
+    tree, result = _tree(xyz), np.full((2, len(which)), np.nan)
     heading = segments.heading_at(nearest.line, nearest.station)
     ahead = np.stack([np.cos(heading), np.sin(heading)], axis=1)
     for first in range(0, len(which), KERNELS_PER_BATCH):
         check_cancelled()
         rows = np.arange(first, min(first + KERNELS_PER_BATCH, len(which)))
         owner, member = _around(tree, xyz, which[rows], CURVATURE_KERNEL)
-        own = rows[owner]
-        step = xyz[member, :2] - nearest.xy[own]
-        beside = np.abs(step[:, 1] * ahead[own, 0] - step[:, 0] * ahead[own, 1]) <= STRANDS.max_paint_distance
-        owner, member, own, step = owner[beside], member[beside], own[beside], step[beside]
+        centre = rows[owner]
+        step = xyz[member, :2] - nearest.xy[centre]
+        along_line = np.abs(step[:, 1] * ahead[centre, 0] - step[:, 0] * ahead[centre, 1]) <= STRANDS.max_paint_distance
+        owner, member, centre, step = owner[along_line], member[along_line], centre[along_line], step[along_line]
         count = np.bincount(owner, minlength=len(rows))
-        off = xyz[member] - xyz[which[own]]
-        found[0, rows] = _quadrics(off, count, CURVATURE_KERNEL)
-        _, height = segments.at(nearest.line[own], nearest.station[own] + (step * ahead[own]).sum(axis=1))
-        found[1, rows] = _quadrics(np.c_[off[:, :2], height - nearest.z[own]], count, CURVATURE_KERNEL)
-    return found
+        offsets = xyz[member] - xyz[which[centre]]
+        result[0, rows] = _quadrics(offsets, count, CURVATURE_KERNEL)
+        _, height = segments.at(nearest.line[centre], nearest.station[centre] + (step * ahead[centre]).sum(axis=1))
+        result[1, rows] = _quadrics(np.c_[offsets[:, :2], height - nearest.z[centre]], count, CURVATURE_KERNEL)
+    return result
 
 
 def mean_curvature(xyz: np.ndarray, which: np.ndarray, radius: float = CURVATURE_KERNEL) -> np.ndarray:
@@ -150,12 +150,12 @@ def mean_curvature(xyz: np.ndarray, which: np.ndarray, radius: float = CURVATURE
     -------
     (K,) 1/m; NaN with fewer than 12 neighbours, or if these lie in one or two lines
     """
-    tree, found = _tree(xyz), np.full(len(which), np.nan)
+    tree, result = _tree(xyz), np.full(len(which), np.nan)
     for first in range(0, len(which), KERNELS_PER_BATCH):
-        some = which[first:first + KERNELS_PER_BATCH]
-        owner, member = _around(tree, xyz, some, radius)
-        found[first:first + KERNELS_PER_BATCH] = _quadrics(xyz[member] - xyz[some][owner], np.bincount(owner, minlength=len(some)), radius)
-    return found
+        centres = which[first:first + KERNELS_PER_BATCH]
+        owner, member = _around(tree, xyz, centres, radius)
+        result[first:first + KERNELS_PER_BATCH] = _quadrics(xyz[member] - xyz[centres][owner], np.bincount(owner, minlength=len(centres)), radius)
+    return result
 
 
 def _tree(xyz):
@@ -174,17 +174,17 @@ def _quadrics(off, count, radius):
     terms, scale = np.ones((7, int(count.max()))), np.array([[radius], [radius], [1.0]])
     # hundreds of neighbours each: a matrix product of a neighbourhood is faster than sums over all of them
     for k, (first, number) in enumerate(zip(np.cumsum(count) - count, count)):
-        own = off[first:first + number]
-        centred = own - own.mean(axis=0)
+        neighbours = off[first:first + number]
+        centred = neighbours - neighbours.mean(axis=0)
         values[k], frame = np.linalg.eigh(centred.T @ centred)
-        some = terms[:, :number]
+        design = terms[:, :number]
         # in units of the kernel, so that the six columns weigh alike
-        u, v, w = (frame.T[::-1] / scale) @ own.T
-        some[1], some[2], some[6] = u, v, w
-        np.multiply(u, u, out=some[3])
-        np.multiply(u, v, out=some[4])
-        np.multiply(v, v, out=some[5])
-        product = some @ some.T
+        u, v, w = (frame.T[::-1] / scale) @ neighbours.T
+        design[1], design[2], design[6] = u, v, w
+        np.multiply(u, u, out=design[3])
+        np.multiply(u, v, out=design[4])
+        np.multiply(v, v, out=design[5])
+        product = design @ design.T
         normal[k], right[k] = product[:6, :6], product[:6, 6]
     normal += 1e-9 * np.eye(6)
     _, b, c, d, e, g = np.linalg.solve(normal, right[:, :, None])[:, :, 0].T

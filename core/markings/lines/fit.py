@@ -114,7 +114,7 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
     for line, span in zip(lines, spans):
         courses.append(_course(line, trend, edges, span))
         progress.report(0.2 * len(courses) / len(lines))
-    s, d, own = (np.concatenate(parts) for parts in zip(*((course.s, course.d, course.own) for course in courses)))
+    s, d, measured_place = (np.concatenate(parts) for parts in zip(*((course.s, course.d, course.own) for course in courses)))
     bounds = np.cumsum([len(course.s) for course in courses])[:-1]
     x, y = (np.split(values, bounds) for values in road.to_map(s, d))
     measured = [(x[k][course.own], y[k][course.own]) for k, course in enumerate(courses)]
@@ -122,22 +122,22 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
     progress.report(0.6)
     # splines once more with the guides, which are no measurements and count in no choice
     curved = [k for k, fit in enumerate(fits) if fit.curve.kind == "b-spline"]
-    along = [_along(road, courses[k].s, courses[k].d) for k in curved]
-    near = [None] * len(courses)
-    for k, t, guided in zip(curved, along, fit_splines([(x[k], y[k]) for k in curved], along)):
-        fits[k], near[k] = guided, guided.curve.u_of(t)
-    track = np.split(track_height(s[own]), np.cumsum([len(course.z) for course in courses])[:-1])
+    parameters = [_along(road, courses[k].s, courses[k].d) for k in curved]
+    guesses = [None] * len(courses)
+    for k, t, guided in zip(curved, parameters, fit_splines([(x[k], y[k]) for k in curved], parameters)):
+        fits[k], guesses[k] = guided, guided.curve.u_of(t)
+    track = np.split(track_height(s[measured_place]), np.cumsum([len(course.z) for course in courses])[:-1])
     heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], STRANDS.line_height_smoothing)
-    found = []
+    shapes = []
     for k, (course, fit, height) in enumerate(zip(courses, fits, heights)):
         progress.report(0.9 + 0.1 * k / len(courses))
-        u, e = fit.curve.project(x[k], y[k], near[k])
-        if near[k] is not None:
+        u, e = fit.curve.project(x[k], y[k], guesses[k])
+        if guesses[k] is not None:
             fit = CurveFit(fit.curve, e[course.own], fit.parameters)
         rising = np.maximum.accumulate(u)
         keep = np.append(True, np.diff(rising) > 1e-6)
-        found.append(_LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]), height, track_height))
-    return found, replaced
+        shapes.append(_LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]), height, track_height))
+    return shapes, replaced
 
 
 @dataclass
@@ -166,14 +166,14 @@ def _fitted(places, settings):
     """Fits to a list of (x, y), and how many of them are not the wanted curve."""
     if settings.curve == "automatic":
         return fit_curves(places), 0
-    found, replaced = [], 0
+    fits, replaced = [], 0
     for x, y in places:
         try:
-            found.append(fit_curve(x, y, settings.curve, settings.degree))
+            fits.append(fit_curve(x, y, settings.curve, settings.degree))
         except RoadExtractionError:
-            found.append(fit_curve(x, y, "automatic"))
+            fits.append(fit_curve(x, y, "automatic"))
             replaced += 1
-    return found, replaced
+    return fits, replaced
 
 
 def _guides(s, d, trend, edges, span):
@@ -182,20 +182,20 @@ def _guides(s, d, trend, edges, span):
     stations, offsets = [], []
     for k in wide.tolist():
         a, b = s[[k, k + 1]].tolist()
-        at = np.linspace(a, b, int(np.ceil((b - a) / STRANDS.guide_spacing)) + 1)[1:-1]
-        near = [slice(np.searchsorted(s, a - STRANDS.level_reach), k + 1), slice(k + 1, np.searchsorted(s, b + STRANDS.level_reach, "right"))]
+        steps = np.linspace(a, b, int(np.ceil((b - a) / STRANDS.guide_spacing)) + 1)[1:-1]
+        close = [slice(np.searchsorted(s, a - STRANDS.level_reach), k + 1), slice(k + 1, np.searchsorted(s, b + STRANDS.level_reach, "right"))]
         edge = edges.between((a, d[k]), (b, d[k + 1]))
         courses = [trend.at] if edge is None else [trend.at, edge, np.zeros_like]
-        levels = np.array([[median(d[side] - course(s[side])) for side in near] for course in courses])
-        stations.append(at)
-        offsets.append(_common_course(np.array([np.interp(at, [a, b], ends) + course(at) for ends, course in zip(levels, courses)]),
+        levels = np.array([[median(d[side] - course(s[side])) for side in close] for course in courses])
+        stations.append(steps)
+        offsets.append(_common_course(np.array([np.interp(steps, [a, b], ends) + course(steps) for ends, course in zip(levels, courses)]),
                                       levels[:, 1] - levels[:, 0]))
     for tip, end in ((s[0], span[0]), (s[-1], span[1])):
         if abs(end - tip) > STRANDS.guide_spacing / 4:
-            at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / STRANDS.guide_spacing)) + 1)[1:]
-            stations.append(at)
-            near = np.abs(s - tip) <= STRANDS.level_reach
-            offsets.append(median(d[near] - trend.at(s[near])) + trend.at(at))
+            steps = np.linspace(tip, end, int(np.ceil(abs(end - tip) / STRANDS.guide_spacing)) + 1)[1:]
+            stations.append(steps)
+            close = np.abs(s - tip) <= STRANDS.level_reach
+            offsets.append(median(d[close] - trend.at(s[close])) + trend.at(steps))
     if not stations:
         return np.empty(0), np.empty(0)
     return np.concatenate(stations), np.concatenate(offsets)
@@ -243,16 +243,16 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
         return lines
     curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, None)
     estimates = estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
-                                      paint=paint, pavement=pavement, progress=progress, taken=taken)
-    found, second = _line_kinds(estimates), _second_kinds(estimates)
+                               paint=paint, pavement=pavement, progress=progress, taken=taken)
+    kinds, second = _line_kinds(estimates), _second_kinds(estimates)
     drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
                      np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
-    kind = np.array([found.get(number, own) for number, own in zip(lines.line.tolist(), drawn)], object)
+    kind = np.array([kinds.get(number, drawn_kind) for number, drawn_kind in zip(lines.line.tolist(), drawn)], object)
     # what an analyst confirmed keeps its name
     confirmed = lines.status == CONFIRMED
     kind[confirmed] = lines.kind[confirmed]
-    other = np.array(["" if done else second.get(number, "") for number, done in zip(lines.line.tolist(), confirmed.tolist())], object)
-    return replace(lines, kind=kind, other=other)
+    second_kind = np.array(["" if fixed else second.get(number, "") for number, fixed in zip(lines.line.tolist(), confirmed.tolist())], object)
+    return replace(lines, kind=kind, other=second_kind)
 
 
 def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObjects:
@@ -260,11 +260,11 @@ def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObje
     rows = np.flatnonzero(markings.keep & np.isin(markings.kind.astype(str), LINE_KINDS))
     if not len(rows) or not len(lines):
         return markings
-    places = shapely.point_on_surface(markings.outlines.polygons()[rows])
-    found, line = shapely.STRtree(lines.course.linestrings()).query_nearest(places, max_distance=STRANDS.max_distance_to_line, all_matches=False)
-    same_road = markings.road[rows[found]] == lines.course.road[line]
+    inner = shapely.point_on_surface(markings.outlines.polygons()[rows])
+    marking, line = shapely.STRtree(lines.course.linestrings()).query_nearest(inner, max_distance=STRANDS.max_distance_to_line, all_matches=False)
+    same_road = markings.road[rows[marking]] == lines.course.road[line]
     kind = markings.kind.copy()
-    kind[rows[found][same_road]] = lines.kind[line[same_road]]
+    kind[rows[marking][same_road]] = lines.kind[line[same_road]]
     return with_paint_between_tracks(markings.with_kinds(kind), lines)
 
 
@@ -280,7 +280,7 @@ def _line_kinds(estimates):
                 numbers = road.lines.number[row, c.first[i]:c.last[i] + 1]
                 for number, count in zip(*np.unique(numbers[numbers >= 0], return_counts=True)):
                     votes.setdefault(int(number), np.zeros(len(KINDS)))[uses[i, m]] += count
-    return {number: KINDS[int(np.argmax(found))] for number, found in votes.items()}
+    return {number: KINDS[int(np.argmax(counts))] for number, counts in votes.items()}
 
 
 def _second_kinds(estimates):
@@ -291,21 +291,21 @@ def _second_kinds(estimates):
         uses, kinds = boundary_uses(estimate), separated_kinds(estimate.sections)
         nats = np.stack([np.where(kinds == use, estimate.second[:, :, None], np.inf).min(axis=1) for use in KINDS])
         for i, m in zip(*np.nonzero(np.isin(uses, list(KINDS)) & c.painted)):
-            own = list(KINDS).index(uses[i, m])
-            others = np.where(np.arange(len(KINDS)) == own, np.inf, nats[:, i, m] - nats[own, i, m])
+            current = list(KINDS).index(uses[i, m])
+            gaps = np.where(np.arange(len(KINDS)) == current, np.inf, nats[:, i, m] - nats[current, i, m])
             for row in set(c.rows[i, m].tolist()) - {-1}:
                 numbers = road.lines.number[row, c.first[i]:c.last[i] + 1]
                 for number, count in zip(*np.unique(numbers[numbers >= 0], return_counts=True)):
-                    behind.setdefault(int(number), []).append((float(count), others))
-    found, doubt = {}, EstimateWeights().doubt
+                    behind.setdefault(int(number), []).append((float(count), gaps))
+    result, doubt = {}, EstimateWeights().doubt
     for number, parts in behind.items():
-        count, others = (np.array(values) for values in zip(*parts))
-        share = (count[:, None] * (others < doubt)).sum(axis=0) / count.sum()
+        count, gaps = (np.array(values) for values in zip(*parts))
+        share = (count[:, None] * (gaps < doubt)).sum(axis=0) / count.sum()
         second = int(np.argmax(share))
         if share[second] > 0.5:
-            near = others[:, second][others[:, second] < doubt]
-            found[number] = json.dumps({"nats": round(max(float(np.median(near)), 0.0), 2), "kind": list(KINDS.values())[second]})
-    return found
+            close = gaps[:, second][gaps[:, second] < doubt]
+            result[number] = json.dumps({"nats": round(max(float(np.median(close)), 0.0), 2), "kind": list(KINDS.values())[second]})
+    return result
 
 
 LINES_SHARE = 0.65   # derived: of the work; the rest is the estimate that names the lines
@@ -338,7 +338,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     rows: list[dict[str, Any]] = []
     number, replaced, dropped = 0, 0, 0
     roads = clustered_points.roads()
-    beside = edges_beside(edges, roads)
+    edge_lines = edges_beside(edges, roads)
     for k, road in enumerate(roads):
         part = progress.part(LINES_SHARE * k / len(roads), LINES_SHARE * (k + 1) / len(roads))
         records, rank = line_paint(columns_of_roads(clustered_points.store, [road]), markings, road)
@@ -346,23 +346,23 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         strands = painted_strands(records, rank)
         part.report(0.2)
         hatched = hatching_bars(markings, road)
-        lines, trend = _linked(strands, beside[road], settings)
+        lines, trend = _linked(strands, edge_lines[road], settings)
         # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
         framing: list[Strand] = []
         while borders := hatching_borders(lines, hatched, framing):
             framing += borders
-            known = set(map(id, borders))
-            strands = [strand for strand in strands if id(strand) not in known]
-            lines, trend = _linked(strands, beside[road], settings)
+            border_ids = set(map(id, borders))
+            strands = [strand for strand in strands if id(strand) not in border_ids]
+            lines, trend = _linked(strands, edge_lines[road], settings)
         part.report(0.4)
         selected = select_lines(lines, trend, crossings(markings, road), settings.min_paint, hatched, country(settings.country).longest_dash)
         dropped += len(lines) - len(selected)
-        shapes, unwanted = fit_line_shapes([one.line for one in selected], [one.span for one in selected], frame.road(road), trend, beside[road],
-                                     partial(frame.track_height, road), settings, part.part(0.45, 0.9))
+        shapes, unwanted = fit_line_shapes([chosen.line for chosen in selected], [chosen.span for chosen in selected], frame.road(road), trend,
+                                           edge_lines[road], partial(frame.track_height, road), settings, part.part(0.45, 0.9))
         replaced += unwanted
-        for j, (one, shape) in enumerate(zip(selected, shapes)):
+        for j, (chosen, shape) in enumerate(zip(selected, shapes)):
             number += 1
-            rows += [dict(row, line=number, road=int(road)) for row in _drawn_pieces(one, shape, frame.origin)]
+            rows += [dict(row, line=number, road=int(road)) for row in _drawn_pieces(chosen, shape, frame.origin)]
             part.report(0.9 + 0.1 * (j + 1) / len(selected))
     progress.info(f"Marking lines: {number}; {dropped} fragments were left out.")
     if replaced:
@@ -380,21 +380,21 @@ def _linked(strands, edges, settings):
     trend = CommonTrend(strands)
     lines = link_lines([LinkedLine([strand]) for strand in strands], trend, edges, settings.max_gap)
     lines = link_over_long_gaps(lines, trend, edges, settings.max_gap, settings.max_bridge,
-                                 partial(same_dash_pattern, longest_dash=country(settings.country).longest_dash))
+                                partial(same_dash_pattern, longest_dash=country(settings.country).longest_dash))
     return [without_strays(line, trend, edges) for line in lines], trend
 
 
 def _drawn_pieces(one: SelectedLine, shape: _LineShape, origin: np.ndarray) -> Iterator[dict[str, Any]]:
     """The pieces of one line that have a length on the map."""
     for piece in one.pieces:
-        places = shape.draw(piece.first, piece.last)
-        if not np.ptp(places[:, :2] + origin[:2], axis=0).any():
+        vertices = shape.draw(piece.first, piece.last)
+        if not np.ptp(vertices[:, :2] + origin[:2], axis=0).any():
             continue
         residuals = shape.fit.residuals[slice(np.searchsorted(shape.s, piece.first), np.searchsorted(shape.s, piece.last, side="right"))]
         measured = piece.status == "measured" and len(residuals)
-        _, near = one.line.near(piece.first - STRANDS.paint_beside_piece, piece.last + STRANDS.paint_beside_piece)
+        _, paint_offsets = one.line.near(piece.first - STRANDS.paint_beside_piece, piece.last + STRANDS.paint_beside_piece)
         yield dict(
             kind="", pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
-            curve=shape.fit.curve, arc=shape.u(np.array([piece.first, piece.last])), places=places,
-            station=piece.first, end=piece.last, offset=np.median(near) if len(near) else np.nan, width=one.width(piece),
+            curve=shape.fit.curve, arc=shape.u(np.array([piece.first, piece.last])), places=vertices,
+            station=piece.first, end=piece.last, offset=np.median(paint_offsets) if len(paint_offsets) else np.nan, width=one.width(piece),
             rmse=np.sqrt(np.mean(residuals**2)) if measured else np.nan)

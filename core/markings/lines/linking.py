@@ -48,18 +48,18 @@ def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reac
     s, d, weight = (np.concatenate([columns[k] for columns in places]) for k in (0, 1, 3))
     tips = np.array([line.first if at_start else line.last for line in lines])
     # every line has a place near its tip
-    near = np.flatnonzero(np.abs(s - tips[owner]) <= reach)
-    owner, s, weight = owner[near], s[near], np.minimum(weight[near], 10.0)
-    d = d[near] - trend.at(s)
+    close = np.flatnonzero(np.abs(s - tips[owner]) <= reach)
+    owner, s, weight = owner[close], s[close], np.minimum(weight[close], 10.0)
+    d = d[close] - trend.at(s)
     starts = np.flatnonzero(np.diff(owner, prepend=-1))
     count = np.diff(np.append(starts, len(owner)))
     middle, offset = (np.add.reduceat(v * weight, starts) / np.add.reduceat(weight, starts) for v in (s, d))
     span = np.maximum.reduceat(s, starts) - np.minimum.reduceat(s, starts)
     order = np.lexsort((d, owner))
     level = weighted_medians(d[order], weight[order], starts)
-    away = s - np.repeat(middle, count)
-    squares = np.where(span < 1.0, 1.0, np.add.reduceat(weight * away**2, starts))
-    slope = np.add.reduceat(weight * away * (d - np.repeat(offset, count)), starts) / squares
+    lever = s - np.repeat(middle, count)
+    squares = np.where(span < 1.0, 1.0, np.add.reduceat(weight * lever**2, starts))
+    slope = np.add.reduceat(weight * lever * (d - np.repeat(offset, count)), starts) / squares
     slope = np.where(span < 1.0, 0.0, np.clip(slope, -TREND.max_line_slope, TREND.max_line_slope))
     return [_End(*end) for end in np.column_stack([tips, level + slope * (tips - middle), slope, span]).tolist()]
 
@@ -87,8 +87,8 @@ def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, end
     miss = min(miss, float(np.ptp(d - edge(s))))
     if after.s - before.s <= LINKS.max_strand_overlap:
         return miss
-    beside = [median(own_d - edge(own_s)) for own_s, own_d in (ends.end_places(False), begins.end_places(True))]
-    return min(miss, abs(beside[1] - beside[0]))
+    clearances = [median(own_d - edge(own_s)) for own_s, own_d in (ends.end_places(False), begins.end_places(True))]
+    return min(miss, abs(clearances[1] - clearances[0]))
 
 
 def _trust(before, after):
@@ -127,17 +127,17 @@ def twin_offsets(lines: list[LinkedLine], trend: CommonTrend, tips: list[_End], 
     """(N,) signed distance across to the other line of a double line at each start (or end), of which `tips` tell; 0 where there is none."""
     spans = np.array([(line.first, line.last) for line in lines]).reshape(-1, 2)
     inner = np.array([tip.s for tip in tips]) + (1.0 if at_start else -1.0) * np.minimum(2.0, (spans[:, 1] - spans[:, 0]) / 2)
-    beside = lines_beside(lines)
+    neighbours = lines_beside(lines)
     result = np.zeros(len(lines))
     for k, tip in enumerate(tips):
-        for j in beside.between(inner[k], inner[k]).tolist():
+        for j in neighbours.between(inner[k], inner[k]).tolist():
             if j == k:
                 continue
             s, d = lines[j].near(inner[k] - LINKS.twin_reach, inner[k] + LINKS.twin_reach)
             if len(s):
-                away = median(d - trend.at(s)) - tip.d
-                if LINKS.double_line_spacing[0] <= abs(away) <= LINKS.double_line_spacing[1]:
-                    result[k] = away
+                offset = median(d - trend.at(s)) - tip.d
+                if LINKS.double_line_spacing[0] <= abs(offset) <= LINKS.double_line_spacing[1]:
+                    result[k] = offset
     return result
 
 
@@ -177,7 +177,7 @@ def assigned_links(pairs: list[tuple[float, int, int]]) -> dict[int, int]:
 
 
 def _joined(lines, follows):
-    found, preceded = [], set(follows.values())
+    joined, preceded = [], set(follows.values())
     for k in range(len(lines)):
         if k in preceded:
             continue
@@ -185,8 +185,8 @@ def _joined(lines, follows):
         while k in follows:
             k = follows[k]
             strands += lines[k].strands
-        found.append(LinkedLine(sorted(strands, key=lambda strand: strand.first)))
-    return sorted(found, key=lambda line: (line.first, line.strands[0].d[0]))
+        joined.append(LinkedLine(sorted(strands, key=lambda strand: strand.first)))
+    return sorted(joined, key=lambda line: (line.first, line.strands[0].d[0]))
 
 
 def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, max_bridge: float,
@@ -201,7 +201,7 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
         by_start = np.argsort([e.s for e in starts], kind="stable")
         stations = np.array([starts[k].s for k in by_start])
         pairs = []
-        beside = lines_beside(lines)
+        neighbours = lines_beside(lines)
         for a, before in enumerate(ends):
             check_cancelled()
             low, high = np.searchsorted(stations, [before.s + max_gap - LINKS.max_strand_overlap, before.s + max_bridge])
@@ -211,7 +211,7 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
                     continue
                 if (miss := _miss(before, after, trend, edges, lines[a], lines[b])) > allowed:
                     continue
-                if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, beside, (a, b), before, after, trend):
+                if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, neighbours, (a, b), before, after, trend):
                     score = (miss / allowed) ** 2 + (after.s - before.s) / max_bridge
                     pairs.append((score, a, int(b)))
         if not pairs:
@@ -232,15 +232,15 @@ def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside) -> 
     for k, strand in enumerate(line.strands):
         middle = (strand.first + strand.last) / 2
         window = np.arange(*np.searchsorted(s, [middle - LINKS.stray_window, middle + LINKS.stray_window]))
-        others, own = window[owner[window] != k], window[owner[window] == k]
-        both = (s[others] < middle).any() and (s[others] > middle).any()
-        if strand.length > LINKS.max_stray_length and strand.length > 0.1 * line.painted or not both:
+        other_rows, strand_rows = window[owner[window] != k], window[owner[window] == k]
+        on_both_sides = (s[other_rows] < middle).any() and (s[other_rows] > middle).any()
+        if strand.length > LINKS.max_stray_length and strand.length > 0.1 * line.painted or not on_both_sides:
             kept.append(strand)
             continue
         edge = edges.between(*((float(s[j]), float(d[j])) for j in window[[0, -1]]))
         for course in [trend.at] + ([] if edge is None else [edge]):
-            expected = _robust_level(s[others] - middle, d[others] - course(s[others]), np.minimum(weight[others], 10.0))
-            if abs(median(d[own] - course(s[own])) - expected) <= LINKS.max_stray_offset:
+            expected = _robust_level(s[other_rows] - middle, d[other_rows] - course(s[other_rows]), np.minimum(weight[other_rows], 10.0))
+            if abs(median(d[strand_rows] - course(s[strand_rows])) - expected) <= LINKS.max_stray_offset:
                 kept.append(strand)
                 break
     return LinkedLine(kept)
@@ -252,9 +252,9 @@ def _robust_level(s, level, weight):
     design = np.c_[np.ones(len(s)), s / LINKS.stray_window]
     for _ in range(6):
         root = np.sqrt(weight)
-        found = np.linalg.lstsq(design * root[:, None], level * root, rcond=None)[0]
-        weight = base / np.sqrt(1.0 + ((level - design @ found) / 0.03) ** 2)
-    return found[0]
+        coefficients = np.linalg.lstsq(design * root[:, None], level * root, rcond=None)[0]
+        weight = base / np.sqrt(1.0 + ((level - design @ coefficients) / 0.03) ** 2)
+    return coefficients[0]
 
 
 def _runs_beside(lines, beside, pair, before, after, trend):
@@ -263,8 +263,8 @@ def _runs_beside(lines, beside, pair, before, after, trend):
         if k in pair:
             continue
         s, d = lines[k].near(before.s - 5, after.s + 5)
-        there = (s > before.s - 5) & (s < after.s + 5)
-        if not there.any() or np.abs(median(d[there]) - trend.at(before.s) - before.d) > 8.0:
+        in_gap = (s > before.s - 5) & (s < after.s + 5)
+        if not in_gap.any() or np.abs(median(d[in_gap]) - trend.at(before.s) - before.d) > 8.0:
             continue
         covered = np.r_[before.s, s[(s > before.s) & (s < after.s)], after.s]
         if np.diff(covered).max() <= 5.0:
@@ -298,16 +298,16 @@ class CommonTrend:
         weight = weight / (1.0 + (oblique[strand] / TREND.gentle_taper) ** 2)
         middle = np.full(len(nodes), np.nan)
         middle[bins[order[starts]] - first] = weighted_medians(slope[order], weight[order], starts)
-        known = np.isfinite(middle)
-        at = (nodes + 0.5) * TREND.trend_step
+        finite = np.isfinite(middle)
+        stations = (nodes + 0.5) * TREND.trend_step
         # where nothing is painted for long the lines are taken to follow the reference
-        middle = np.interp(at, at[known], middle[known])
-        away = np.abs(at - at[known][np.clip(np.searchsorted(at[known], at), 0, known.sum() - 1)])
-        behind = np.abs(at - at[known][np.clip(np.searchsorted(at[known], at) - 1, 0, known.sum() - 1)])
-        middle *= np.exp(-np.minimum(away, behind) / 10.0)
+        middle = np.interp(stations, stations[finite], middle[finite])
+        ahead = np.abs(stations - stations[finite][np.clip(np.searchsorted(stations[finite], stations), 0, finite.sum() - 1)])
+        behind = np.abs(stations - stations[finite][np.clip(np.searchsorted(stations[finite], stations) - 1, 0, finite.sum() - 1)])
+        middle *= np.exp(-np.minimum(ahead, behind) / 10.0)
         reach = int(TREND.slope_window / TREND.trend_step / 2)
         middle = np.convolve(np.pad(middle, reach, mode="edge"), np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
-        self.s = np.r_[at[0] - TREND.trend_step / 2, at + TREND.trend_step / 2]
+        self.s = np.r_[stations[0] - TREND.trend_step / 2, stations + TREND.trend_step / 2]
         self.value = np.r_[0.0, np.cumsum(middle * TREND.trend_step)]
 
     def at(self, s: np.ndarray) -> np.ndarray:
@@ -321,23 +321,23 @@ def _slopes(strands):
     starts = np.cumsum(counts) - counts
     owner = np.repeat(np.arange(len(strands)), counts)
     own_s, own_d = (np.concatenate([getattr(strand, name) for strand in strands]) for name in ("s", "d"))
-    at = [np.arange(strand.first + TREND.trend_step / 2, strand.last, TREND.trend_step) for strand in strands]
-    of = np.repeat(np.arange(len(strands)), [len(some) for some in at])
-    at = np.concatenate(at)
+    stations = [np.arange(strand.first + TREND.trend_step / 2, strand.last, TREND.trend_step) for strand in strands]
+    strand_of_step = np.repeat(np.arange(len(strands)), [len(steps) for steps in stations])
+    stations = np.concatenate(stations)
     # strands one after the other, so far apart that none reaches into the next
-    far = owner * (float(max(strand.last for strand in strands) - min(strand.first for strand in strands)) + 4 * TREND.slope_window)
-    shift = far[starts]
-    low, high = (np.searchsorted(own_s + far, at + shift[of] + side * TREND.slope_window / 2) for side in (-1, 1))
+    separation = owner * (float(max(strand.last for strand in strands) - min(strand.first for strand in strands)) + 4 * TREND.slope_window)
+    shift = separation[starts]
+    low, high = (np.searchsorted(own_s + separation, stations + shift[strand_of_step] + side * TREND.slope_window / 2) for side in (-1, 1))
     # from the strand's own start, so that sums keep their digits
     s, d = own_s - own_s[starts][owner], own_d - own_d[starts][owner]
     n = high - low
     ms, md, mss, msd = (sums[high] - sums[low] for sums in (np.append(0.0, np.cumsum(v)) for v in (s, d, s * s, s * d)))
     spread = n * mss - ms * ms
-    good = (n >= 5) & (spread > 0.2 * n * n)
-    slope = np.where(good, (n * msd - ms * md) / np.where(good, spread, 1.0), 0.0)
+    valid = (n >= 5) & (spread > 0.2 * n * n)
+    slope = np.where(valid, (n * msd - ms * md) / np.where(valid, spread, 1.0), 0.0)
     # a slope beyond any lane change is a false strand's
-    good &= np.abs(slope) < TREND.max_line_slope
-    return at[good], slope[good], (spread / np.maximum(n, 1))[good], of[good]
+    valid &= np.abs(slope) < TREND.max_line_slope
+    return stations[valid], slope[valid], (spread / np.maximum(n, 1))[valid], strand_of_step[valid]
 
 
 def weighted_medians(values: np.ndarray, weight: np.ndarray, starts: np.ndarray) -> np.ndarray:
@@ -372,8 +372,8 @@ class StretchLookup:
 
     def between(self, first: float, last: float) -> np.ndarray:
         """Numbers of those that reach into the road between two stations, ascending."""
-        near = self._spans.near(int(self._cell(np.float64(first))), int(self._cell(np.float64(last))))
-        return near[(self.first[near] <= last) & (self.last[near] >= first)]
+        candidates = self._spans.near(int(self._cell(np.float64(first))), int(self._cell(np.float64(last))))
+        return candidates[(self.first[candidates] <= last) & (self.last[candidates] >= first)]
 
 
 def lines_beside(lines: Sequence[LinkedLine]) -> StretchLookup:
@@ -406,21 +406,21 @@ def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: Road
     marked = _MarkedLines(lines, markings)
     for k in np.flatnonzero((lines.status == "bridged") & (lines.pattern == "solid")).tolist():
         check_cancelled()
-        road, (whole, own) = int(lines.course.road[k]), marked.of_piece(k)
+        road, (whole_course, members) = int(lines.course.road[k]), marked.of_piece(k)
         piece = lines.course.s[lines.course.line(k)]
         first, last = float(np.nanmin(piece)), float(np.nanmax(piece))
-        course = _between(whole, first - 2 * TREND.beside_gap, last + 2 * TREND.beside_gap)
-        seen = _paint_beside(paint, road, course, first, last, _full_width(markings, own))
-        if seen is None or seen.spacing < TRACKS.min_track_gap:
+        course = _between(whole_course, first - 2 * TREND.beside_gap, last + 2 * TREND.beside_gap)
+        line_paint = _paint_beside(paint, road, course, first, last, _full_width(markings, members))
+        if line_paint is None or line_paint.spacing < TRACKS.min_track_gap:
             continue
-        near = own[(markings.extent[own, 0] <= last) & (markings.extent[own, 1] >= first)]
-        gaps = _less(first, last, markings.extent[near, :2])
+        near_gap = members[(markings.extent[members, 0] <= last) & (markings.extent[members, 1] >= first)]
+        gaps = _less(first, last, markings.extent[near_gap, :2])
         steps = [np.linspace(a, b, int(np.ceil((b - a) / TREND.step)) + 1) for a, b in gaps]
-        states = [_states(road_points, road, course, some, seen) for some in steps]
-        known = np.concatenate([*states, np.empty(0, int)])
-        if np.count_nonzero(known == BARE) <= TREND.max_bare_share * np.count_nonzero(known != UNKNOWN):
-            found = [(some[a], some[b]) for some, state in zip(steps, states) for a, b in mask_runs(state == FREE)]
-            unseen[k] = np.array([(a, b, seen.width) for a, b in found if b - a >= TREND.shortest_unseen]).reshape(-1, 3)
+        states = [_states(road_points, road, course, stations, line_paint) for stations in steps]
+        state_of_steps = np.concatenate([*states, np.empty(0, int)])
+        if np.count_nonzero(state_of_steps == BARE) <= TREND.max_bare_share * np.count_nonzero(state_of_steps != UNKNOWN):
+            free = [(stations[a], stations[b]) for stations, state in zip(steps, states) for a, b in mask_runs(state == FREE)]
+            unseen[k] = np.array([(a, b, line_paint.width) for a, b in free if b - a >= TREND.shortest_unseen]).reshape(-1, 3)
     return replace(lines, unseen=unseen)
 
 
@@ -452,10 +452,10 @@ class _MarkedLines:
         return course.s[rows], course.d[rows]
 
     def _own_markings(self, road, course):
-        near = self.markings_of[road][self.lookup[road].between(course[0][0], course[0][-1])]
-        first, last, *_ = self.markings.extent[near].T
-        away = np.abs(self.markings.offset[near] - np.interp((first + last) / 2, *course))
-        return near[(away <= TREND.on_line) & (last > course[0][0]) & (first < course[0][-1])]
+        candidates = self.markings_of[road][self.lookup[road].between(course[0][0], course[0][-1])]
+        first, last, *_ = self.markings.extent[candidates].T
+        distance = np.abs(self.markings.offset[candidates] - np.interp((first + last) / 2, *course))
+        return candidates[(distance <= TREND.on_line) & (last > course[0][0]) & (first < course[0][-1])]
 
 
 def _between(course, first, last):
@@ -472,46 +472,46 @@ def _full_width(markings, own):
 
 def _paint_beside(paint, road, course, first, last, width):
     """_SeenPaint of a line about a gap; None where there is none."""
-    near = paint.window(road, first - TREND.beside_gap, last + TREND.beside_gap)
-    on = (near.cluster > 0) & (np.abs(near.d - np.interp(near.s, *course)) <= max(width / 2, TRACKS.min_track_gap / 2))
-    if not on.any() or not width:
+    points = paint.window(road, first - TREND.beside_gap, last + TREND.beside_gap)
+    on_line = (points.cluster > 0) & (np.abs(points.d - np.interp(points.s, *course)) <= max(width / 2, TRACKS.min_track_gap / 2))
+    if not on_line.any() or not width:
         return None
-    return _SeenPaint(median(near.spacing[on].astype(float)), median(near.value[on].astype(float)), width)
+    return _SeenPaint(median(points.spacing[on_line].astype(float)), median(points.value[on_line].astype(float)), width)
 
 
 def _less(first, last, spans):
     """[(first, last)] of what is left of an interval without some others."""
-    left, at = [], first
+    left, position = [], first
     for begin, end in sorted(spans.tolist()):
-        if begin > at:
-            left.append((at, min(begin, last)))
-        at = max(at, end)
-        if at >= last:
+        if begin > position:
+            left.append((position, min(begin, last)))
+        position = max(position, end)
+        if position >= last:
             break
-    left.append((at, last))
+    left.append((position, last))
     return [(a, b) for a, b in left if b - a >= TREND.shortest_unseen]
 
 
 def _states(road_points, road, course, steps, seen):
     """(N,) FREE, BARE or UNKNOWN of each of the N steps of a gap, whose N + 1 stations are given."""
-    near = road_points.window(road, steps[0] - TREND.step_reach, steps[-1] + TREND.step_reach)
-    s, away, value = near.s, near.d - np.interp(near.s, *course), near.value
-    close = np.abs(away) <= TRACKS.max_track_gap
-    s, away, value = s[close], away[close], value[close]
-    beside = np.abs(away) > seen.width / 2 + TRACKS.min_track_gap
-    if not beside.any():
+    points = road_points.window(road, steps[0] - TREND.step_reach, steps[-1] + TREND.step_reach)
+    s, offset, value = points.s, points.d - np.interp(points.s, *course), points.value
+    close = np.abs(offset) <= TRACKS.max_track_gap
+    s, offset, value = s[close], offset[close], value[close]
+    clear = np.abs(offset) > seen.width / 2 + TRACKS.min_track_gap
+    if not clear.any():
         return np.full(len(steps) - 1, UNKNOWN)
-    dark = value < (median(value[beside].astype(float)) + seen.brightness) / 2
+    dark = value < (median(value[clear].astype(float)) + seen.brightness) / 2
     count = len(steps) - 1
     low, high, painted = np.full(count, -np.inf), np.full(count, np.inf), np.zeros(count, bool)
     # a point counts for the step that it lies in and for those that it lies near
     for reach in (-TREND.step_reach, 0.0, TREND.step_reach):
         step = np.searchsorted(steps, s + reach, side="right") - 1
         inside = (step >= 0) & (step < count)
-        below, above, on = inside & dark & (away <= 0), inside & dark & (away >= 0), inside & ~dark & (np.abs(away) <= seen.width / 2)
-        np.maximum.at(low, step[below], away[below])
-        np.minimum.at(high, step[above], away[above])
-        painted[step[on]] = True
+        below, above, on_paint = inside & dark & (offset <= 0), inside & dark & (offset >= 0), inside & ~dark & (np.abs(offset) <= seen.width / 2)
+        np.maximum.at(low, step[below], offset[below])
+        np.minimum.at(high, step[above], offset[above])
+        painted[step[on_paint]] = True
     room, nearest = high - low, np.minimum(high, -low)
     bare = (room < TREND.min_free_share * seen.width) | (nearest < TREND.core_share * seen.width)
     return np.where(bare, BARE, np.where(painted | (room <= TRACKS.max_track_gap), FREE, UNKNOWN))
@@ -522,23 +522,23 @@ def with_paint_between_tracks(markings: MarkingObjects, lines: PaintedLines) -> 
 
     Each stretch has the number and the class of the piece of the line that is nearest along it, and no points.
     """
-    like, spans, polygons = [], [], []
-    known = _MarkedLines(lines, markings)
+    templates, spans, polygons = [], [], []
+    marked = _MarkedLines(lines, markings)
     for k, stretches in enumerate(lines.unseen or ()):
         if not len(stretches):
             continue
-        own = known.of_piece(k)[1]
-        for first, last, width in stretches.tolist() if len(own) else ():
-            away = np.maximum(markings.extent[own, 0] - last, first - markings.extent[own, 1])
-            like.append(own[np.argmin(away)])
+        members = marked.of_piece(k)[1]
+        for first, last, width in stretches.tolist() if len(members) else ():
+            gap = np.maximum(markings.extent[members, 0] - last, first - markings.extent[members, 1])
+            templates.append(members[np.argmin(gap)])
             polygon, offsets = _strip(lines, k, first, last, width)
             polygons.append(polygon)
             spans.append((first, last, offsets.min() - width / 2, offsets.max() + width / 2, median(offsets), width))
     if not polygons:
         return markings
     first, last, _, _, offset, width = np.array(spans).T
-    more = replace(markings[np.array(like)], outlines=Outlines.of(polygons), station=first, offset=offset, length=last - first, width=width,
-                   elongation=(last - first) / width, points=np.zeros(len(like)), extent=np.array(spans)[:, :4])
+    more = replace(markings[np.array(templates)], outlines=Outlines.of(polygons), station=first, offset=offset, length=last - first, width=width,
+                   elongation=(last - first) / width, points=np.zeros(len(templates)), extent=np.array(spans)[:, :4])
     return _together(markings, more)
 
 
@@ -548,11 +548,11 @@ def _strip(lines, k, first, last, width):
     rows = course.line(k)
     order = np.argsort(course.s[rows], kind="stable")
     s, *columns = (values[rows][order] for values in (course.s, course.x, course.y, course.z, course.d))
-    at = np.r_[first, s[(s > first) & (s < last)], last]
-    x, y, z, d = (np.interp(at, s, values) for values in columns)
-    along = np.gradient(np.column_stack([x, y]), axis=0)
-    along /= np.hypot(*along.T)[:, None]
-    aside = np.column_stack([-along[:, 1], along[:, 0]]) * width / 2
+    stations = np.r_[first, s[(s > first) & (s < last)], last]
+    x, y, z, d = (np.interp(stations, s, values) for values in columns)
+    direction = np.gradient(np.column_stack([x, y]), axis=0)
+    direction /= np.hypot(*direction.T)[:, None]
+    aside = np.column_stack([-direction[:, 1], direction[:, 0]]) * width / 2
     sides = [np.column_stack([x, y, z]) + np.column_stack([sign * aside, np.zeros(len(x))]) for sign in (1.0, -1.0)]
     return shapely.Polygon(np.concatenate([sides[0], sides[1][::-1]])), d
 

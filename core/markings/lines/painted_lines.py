@@ -35,8 +35,8 @@ class _FittedPieces:
     def linestrings(self, frame: RoadFrame) -> np.ndarray:
         """(P,) shapely lines with Z in map coordinates."""
         owner = np.repeat(np.arange(len(self.curve)), np.diff(self.start))
-        found = np.full(len(self.curve), None, object)
-        return shapely.linestrings(self.vertices + frame.origin, indices=owner, out=found) if len(owner) else found
+        result = np.full(len(self.curve), None, object)
+        return shapely.linestrings(self.vertices + frame.origin, indices=owner, out=result) if len(owner) else result
 
 
 @dataclass(frozen=True)
@@ -68,9 +68,10 @@ class PaintedLines(LayerRows):
         if self.rmse is None or not len(self):
             return {}
         length = np.diff(self.course.start).astype(float)   # in vertices, which are as far apart on every line
-        known = np.isfinite(self.rmse)
-        number, row = np.unique(self.line[known], return_inverse=True)
-        square = np.bincount(row, length[known] * self.rmse[known] ** 2, len(number)) / np.maximum(np.bincount(row, length[known], len(number)), 1.0)
+        has_rmse = np.isfinite(self.rmse)
+        number, row = np.unique(self.line[has_rmse], return_inverse=True)
+        square = np.bincount(row, length[has_rmse] * self.rmse[has_rmse] ** 2, len(number)) \
+            / np.maximum(np.bincount(row, length[has_rmse], len(number)), 1.0)
         return dict(zip(number.tolist(), np.sqrt(square).tolist()))
 
 
@@ -113,8 +114,8 @@ class PaintedLines(LayerRows):
         rows = [features.rows[k] for k in row_of]
         columns = PaintedLines.read_columns(rows)
         # rows without a number are lines of their own, numbered behind the others
-        free, line = np.array([row.get("line") is None for row in rows], bool), columns["line"]
-        columns["line"] = np.where(free, line[~free].max(initial=0) + 1 + np.array(row_of, int), line)
+        unnumbered, line = np.array([row.get("line") is None for row in rows], bool), columns["line"]
+        columns["line"] = np.where(unnumbered, line[~unnumbered].max(initial=0) + 1 + np.array(row_of, int), line)
         road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
         rmse, width = (np.array([np.nan if row.get(name) is None else float(row[name]) for row in rows]) for name in ("rmse_m", "width_m"))
         return PaintedLines(**columns, course=lines_in_frame(parts, road, frame), crs=features.crs, rmse=rmse, width=width)
@@ -132,8 +133,8 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
 
     places = [row["places"] for row in rows]
     fitted = _FittedPieces([row["curve"] for row in rows], column("arc", float).reshape(-1, 2), np.concatenate([*places, np.empty((0, 3))]),
-                          np.append(0, np.cumsum([len(some) for some in places], dtype=int)),
-                          *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
+                           np.append(0, np.cumsum([len(vertices) for vertices in places], dtype=int)),
+                           *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
     course = lines_in_frame(fitted.linestrings(frame), column("road", int), frame)
     return PaintedLines(column("line", int), column("kind", object), column("pattern", object), column("status", object), course, fitted, crs,
                         fitted.rmse, fitted.width, [row.get("unseen", np.empty((0, 3))) for row in rows])

@@ -28,8 +28,8 @@ class SelectedLine:
     def width(self, piece: _LinePiece) -> float:
         """Metres of paint across, of its own strands, or of those of the whole line where it has none."""
         strands = self.line.strands_between(piece.first, piece.last)
-        own = [max(min(strand.last, piece.last) - max(strand.first, piece.first), 0.0) for strand in strands]
-        return float(np.average([strand.width for strand in strands], weights=own)) if sum(own) > 0 else self.line.mean_width
+        overlaps = [max(min(strand.last, piece.last) - max(strand.first, piece.first), 0.0) for strand in strands]
+        return float(np.average([strand.width for strand in strands], weights=overlaps)) if sum(overlaps) > 0 else self.line.mean_width
 
     @property
     def span(self) -> tuple[float, float]:
@@ -43,14 +43,14 @@ def crossings(markings: MarkingObjects, road: int) -> np.ndarray:
 
 def hatching_bars(markings: MarkingObjects, road: int) -> np.ndarray:
     """(K, 4) the same of the bars of hatched areas."""
-    found = _extents(markings, road, ("hatch",))
-    return found[found[:, 1] - found[:, 0] < SELECTION.max_bar_length]
+    bars = _extents(markings, road, ("hatch",))
+    return bars[bars[:, 1] - bars[:, 0] < SELECTION.max_bar_length]
 
 
 def _extents(markings, road, kinds):
     shown = (markings.road == road) & np.isin(markings.kind.astype(str), kinds)
-    found = markings.extent[shown]
-    return found[np.isfinite(found[:, 0])]
+    extents = markings.extent[shown]
+    return extents[np.isfinite(extents[:, 0])]
 
 
 def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarray, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),
@@ -67,15 +67,15 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     """
     if not lines:
         return []
-    bars, beside, strands = _Bars(hatched), lines_beside(lines), _StrandsBeside(lines)
+    bars, neighbours, strands = _Bars(hatched), lines_beside(lines), _StrandsBeside(lines)
     crossings_there = StretchLookup(crossed[:, 0], crossed[:, 1])
     parts = [_without_pairs_at_crossings(stretches(line, longest_dash), line, crossed, crossings_there) for line in lines]
     level = np.array([_level(line, trend) for line in lines])
     painted_to = max(line.last for line in lines)
     painted_from = min(line.first for line in lines)
-    ragged, double = _beside(lines, beside, trend, longest_dash)
-    outside = _beyond_the_edge(lines, beside, level)
-    found = []
+    ragged, double = _beside(lines, neighbours, trend, longest_dash)
+    outside = _beyond_the_edge(lines, neighbours, level)
+    selected = []
     for k, line in enumerate(lines):
         check_cancelled()
         dashed = any(stretch.dashes for stretch in parts[k])
@@ -83,27 +83,27 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
             continue
         drawn = _extended(_line_pieces(parts[k]), parts[k], (painted_from, painted_to),
                           partial(_crossed_there, crossed, crossings_there, line.middle), partial(strands.near, level, k), line)
-        found.append(SelectedLine(line, bool(double[k]), drawn))
-    return found
+        selected.append(SelectedLine(line, bool(double[k]), drawn))
+    return selected
 
 
 def _without_pairs_at_crossings(parts, line, crossed, crossings_there):
     """Stretches, of which two pieces alone are no dashes where a crossing lies between them: that is why there is a gap."""
-    found = []
+    result = []
     for part in parts:
         if part.dashes and len(part.intervals) == 2:
             (_, before), (after, _) = part.intervals
-            there = _crossed_there(crossed, crossings_there, median(line.near(part.first, part.last)[1]), before, after)
-            between = (there[:, 0] < after) & (there[:, 1] > before)
+            crossings = _crossed_there(crossed, crossings_there, median(line.near(part.first, part.last)[1]), before, after)
+            between = (crossings[:, 0] < after) & (crossings[:, 1] > before)
             part = replace(part, dashes=None) if between.any() else part
-        found.append(part)
-    return found
+        result.append(part)
+    return result
 
 
 def _crossed_there(crossed, crossings_there, d, first, last):
     """(M, 4) crossings that reach over an offset or near it, between two stations."""
-    near = crossed[crossings_there.between(first, last)]
-    return near[(near[:, 2] <= d + SELECTION.at_crossing) & (near[:, 3] >= d - SELECTION.at_crossing)]
+    crossings = crossed[crossings_there.between(first, last)]
+    return crossings[(crossings[:, 2] <= d + SELECTION.at_crossing) & (crossings[:, 3] >= d - SELECTION.at_crossing)]
 
 
 class _StrandsBeside:
@@ -116,9 +116,9 @@ class _StrandsBeside:
 
     def near(self, level, k, first, last):
         """(M, 2) stations between which the lines beside line k are painted, of what is painted between two stations."""
-        near = self.lookup.between(first, last)
-        of = self.owner[near]
-        return self.spans[near[(of != k) & (np.abs(level[of] - level[k]) <= SELECTION.max_neighbour_offset)]]
+        strands = self.lookup.between(first, last)
+        owners = self.owner[strands]
+        return self.spans[strands[(owners != k) & (np.abs(level[owners] - level[k]) <= SELECTION.max_neighbour_offset)]]
 
 
 def _level(line, trend):
@@ -143,15 +143,15 @@ def _beside(lines, beside, trend, longest_dash):
             a, b = _shared(tracks[k][0], tracks[j][0])
             if len(a) < 3:
                 continue
-            away = median(np.abs(tracks[k][1][a] - tracks[j][1][b]))
+            spacing = median(np.abs(tracks[k][1][a] - tracks[j][1][b]))
             share = len(a) / len(tracks[k][0])
-            if away <= LINKS.double_line_spacing[1] and share > SELECTION.min_shared_paint:
+            if spacing <= LINKS.double_line_spacing[1] and share > SELECTION.min_shared_paint:
                 # between two junctions both lines of a double are short, and one of them may go on farther beyond
-                least = max(SELECTION.min_twin_paint, SELECTION.min_shared_paint * _painted_there(lines[j], lines[k]))
-                twin = away >= LINKS.double_line_spacing[0] and lines[k].painted >= least
+                min_paint = max(SELECTION.min_twin_paint, SELECTION.min_shared_paint * _painted_there(lines[j], lines[k]))
+                twin = spacing >= LINKS.double_line_spacing[0] and lines[k].painted >= min_paint
                 if not twin and lines[k].painted < SELECTION.max_ragged_share * lines[j].painted and lines[k].painted < longest_dash:
                     ragged[k] = True
-                elif away >= LINKS.double_line_spacing[0]:
+                elif spacing >= LINKS.double_line_spacing[0]:
                     double[k] = True
                     double[j] |= len(a) / len(tracks[j][0]) > SELECTION.max_ragged_share
     return ragged, double
@@ -185,9 +185,9 @@ def _beyond_the_edge(lines, beside, level):
             # the vehicle drove between the edge lines
             farther = np.sign(lines[j].middle) * (level[k] - level[j])
             shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
-            least = SELECTION.max_ragged_share * lines[j].painted if farther < CLASSES.lane_clearance else 0.0
+            min_paint = SELECTION.max_ragged_share * lines[j].painted if farther < CLASSES.lane_clearance else 0.0
             if j != k and farther > LINKS.double_line_spacing[0] and shared > 0.5 * (line.last - line.first) \
-                    and line.painted < max(least, SELECTION.min_bounding_paint):
+                    and line.painted < max(min_paint, SELECTION.min_bounding_paint):
                 result[k] = True
     return result
 
@@ -201,16 +201,16 @@ def hatching_borders(lines: list[LinkedLine], hatched: np.ndarray, known: list[S
     bars = _Bars(hatched)
     framing, within = [_frames_hatching(line, bars) for line in lines], _areas(hatched)
     borders = known + [strand for line, frames in zip(lines, framing) if frames for strand in line.strands]
-    found = [strand for line, frames in zip(lines, framing) if len(line.strands) > 1
-             for k, strand in enumerate(line.strands)
-             if frames and _frames_hatching(LinkedLine([strand]), bars, SELECTION.min_bars_of_strand)
-             or _aside(line.strands[k - 1:k + 2]) > SELECTION.least_turn_aside
-             and (_frames_hatching(LinkedLine([strand]), bars, SELECTION.min_bars_of_strand) or _lies_within(strand, within))]
-    if found:
-        return found
+    strands = [strand for line, frames in zip(lines, framing) if len(line.strands) > 1
+               for k, strand in enumerate(line.strands)
+               if frames and _frames_hatching(LinkedLine([strand]), bars, SELECTION.min_bars_of_strand)
+               or _aside(line.strands[k - 1:k + 2]) > SELECTION.least_turn_aside
+               and (_frames_hatching(LinkedLine([strand]), bars, SELECTION.min_bars_of_strand) or _lies_within(strand, within))]
+    if strands:
+        return strands
     aside = [strand for line in lines for k, strand in enumerate(line.strands) if _aside(line.strands[k - 1:k + 2]) > LINKS.max_stray_offset]
-    there = StretchLookup(np.array([border.first for border in borders]), np.array([border.last for border in borders]))
-    return [strand for strand in aside if any(_meet(strand, borders[k]) for k in there.between(
+    lookup = StretchLookup(np.array([border.first for border in borders]), np.array([border.last for border in borders]))
+    return [strand for strand in aside if any(_meet(strand, borders[k]) for k in lookup.between(
         strand.first - SELECTION.max_border_gap, strand.last + SELECTION.max_border_gap) if borders[k] is not strand)]
 
 
@@ -234,9 +234,9 @@ def _areas(hatched):
     if not len(hatched):
         return np.empty((0, 4))
     first, last, low, high = hatched.T
-    a, b = (np.concatenate(found) for found in zip(*overlapping_pairs(first, last, first, last, SELECTION.max_bar_pitch)))
-    beside = (low[a] <= high[b]) & (low[b] <= high[a])
-    rows = [hatched[own] for _, own in members_of(linked_groups(a[beside], b[beside], len(hatched))) if len(own) >= SELECTION.min_bars]
+    a, b = (np.concatenate(parts) for parts in zip(*overlapping_pairs(first, last, first, last, SELECTION.max_bar_pitch)))
+    overlapping = (low[a] <= high[b]) & (low[b] <= high[a])
+    rows = [hatched[bars] for _, bars in members_of(linked_groups(a[overlapping], b[overlapping], len(hatched))) if len(bars) >= SELECTION.min_bars]
     pitch = SELECTION.max_bar_pitch
     return np.array([[*row[:, [0, 2]].min(0), *row[:, [1, 3]].max(0)] for row in rows]).reshape(-1, 4) + [-pitch, 0, pitch, 0]
 
@@ -264,12 +264,12 @@ def _frames_hatching(line, bars, fewest=SELECTION.min_bars):
     if len(middle) < fewest:
         return False
     s, d, *_ = line.places()
-    at = np.interp(middle, s, d)
-    ends = np.minimum(np.abs(bars.low[inside] - at), np.abs(bars.high[inside] - at)) < SELECTION.max_bar_end_offset
-    near = middle[ends & (middle > line.first) & (middle < line.last)]
-    if len(near) < fewest:
+    offsets = np.interp(middle, s, d)
+    ends = np.minimum(np.abs(bars.low[inside] - offsets), np.abs(bars.high[inside] - offsets)) < SELECTION.max_bar_end_offset
+    touching = middle[ends & (middle > line.first) & (middle < line.last)]
+    if len(touching) < fewest:
         return False
-    steps = np.diff(np.sort(near))
+    steps = np.diff(np.sort(touching))
     return steps[steps < SELECTION.max_bar_pitch].sum() + SELECTION.max_bar_pitch > SELECTION.min_shared_paint * (line.last - line.first)
 
 
@@ -291,18 +291,18 @@ def _extended(drawn, parts, painted, crossed, painted_beside, line):
     before, after = parts[0].dashes, parts[-1].dashes
     if before:
         limit = line.first - before.gap
-        beside, neighbours = crossed(limit - 1.0, line.first + 1.0), painted_beside(limit - 1.0, line.first + 1.0)
+        crossings, neighbours = crossed(limit - 1.0, line.first + 1.0), painted_beside(limit - 1.0, line.first + 1.0)
         begun = neighbours[(neighbours[:, 0] > limit) & (neighbours[:, 0] <= line.first), 0]
         running = ((neighbours[:, 0] <= limit) & (neighbours[:, 1] > limit + 1.0)).any()
-        start = max(limit, painted[0], *beside[beside[:, 1] < line.first + 0.5, 1],
+        start = max(limit, painted[0], *crossings[crossings[:, 1] < line.first + 0.5, 1],
                     *(begun[:0] if running else begun[np.argsort(begun)[:1]]))
         drawn.insert(0, _LinePiece(min(start, line.first), line.first, "measured", "dashed"))
     if after:
         limit = line.last + after.gap
-        beside, neighbours = crossed(line.last - 1.0, limit + 1.0), painted_beside(line.last - 1.0, limit + 1.0)
+        crossings, neighbours = crossed(line.last - 1.0, limit + 1.0), painted_beside(line.last - 1.0, limit + 1.0)
         ended = neighbours[(neighbours[:, 1] < limit) & (neighbours[:, 1] >= line.last), 1]
         running = ((neighbours[:, 1] >= limit) & (neighbours[:, 0] < limit - 1.0)).any()
-        end = min(limit, painted[1], *beside[beside[:, 0] > line.last - 0.5, 0],
+        end = min(limit, painted[1], *crossings[crossings[:, 0] > line.last - 0.5, 0],
                   *(ended[:0] if running else ended[np.argsort(-ended)[:1]]))
         drawn.append(_LinePiece(line.last, max(end, line.last), "measured", "dashed"))
     return merged_pieces(drawn)
@@ -340,13 +340,13 @@ class Stretch:
 def _painted_intervals(line: LinkedLine) -> np.ndarray:
     """(K, 2) stations between which a line is painted, holes of wear closed."""
     spans = [span for strand in line.strands for span in _painted(strand)]
-    found = [list(spans[0])]
+    intervals = [list(spans[0])]
     for first, last in spans[1:]:
-        if first - found[-1][1] < SELECTION.max_worn_hole:
-            found[-1][1] = max(found[-1][1], last)
+        if first - intervals[-1][1] < SELECTION.max_worn_hole:
+            intervals[-1][1] = max(intervals[-1][1], last)
         else:
-            found.append([first, last])
-    return np.array(found)
+            intervals.append([first, last])
+    return np.array(intervals)
 
 
 def _painted(strand):
@@ -367,17 +367,17 @@ def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> l
     spans = _painted_intervals(line)
     long = np.diff(spans, axis=1)[:, 0] > longest_dash
     cuts = np.flatnonzero(np.r_[True, np.diff(long.astype(int)) != 0, True])
-    found: list[tuple[np.ndarray, _DashPattern | None]] = []
+    groups: list[tuple[np.ndarray, _DashPattern | None]] = []
     for a, b in zip(cuts[:-1], cuts[1:]):
         group = spans[a:b]
         # beside solid stretches a few worn pieces look like dashes by chance
         dashes = None if long[a] or long.any() and len(group) < 3 else find_dash_pattern(group, beside_solid=bool(long.any()))
-        if found and found[-1][1] is None and dashes is None:
-            found[-1] = (np.vstack([found[-1][0], group]), None)
+        if groups and groups[-1][1] is None and dashes is None:
+            groups[-1] = (np.vstack([groups[-1][0], group]), None)
         else:
-            found.append((group, dashes))
+            groups.append((group, dashes))
     return [Stretch(float(group[0, 0]), float(group[-1, 1]), dashes, tuple(map(tuple, group.tolist())))
-            for group, dashes in found]
+            for group, dashes in groups]
 
 
 def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> _DashPattern | None:
@@ -417,13 +417,13 @@ def _period(steps):
         if start < 2 * SELECTION.max_worn_hole:
             continue
         times = np.maximum(np.round(steps / start), 1.0)
-        good = (np.abs(steps / start - times) <= SELECTION.period_tolerance) & (times <= 4)
-        share, single = good.mean(), (times[good] == 1).sum()
+        matching = (np.abs(steps / start - times) <= SELECTION.period_tolerance) & (times <= 4)
+        share, single = matching.mean(), (times[matching] == 1).sum()
         # many steps over missing dashes are believed where nearly all fit
         if single < 0.4 * len(steps) and not (single >= 2 and len(steps) >= 5 and share >= 0.85):
             continue
         if share > best_share + 1e-9:
-            best, best_share = float(np.sum(steps[good]) / np.sum(times[good])), share
+            best, best_share = float(np.sum(steps[matching]) / np.sum(times[matching])), share
     return best if best_share >= 0.65 else None
 
 
@@ -455,34 +455,34 @@ def _line_pieces(parts: list[Stretch]) -> list[_LinePiece]:
 
     A hole longer than the line's own gap, or in a solid line longer than 2.5 m, is bridged.
     """
-    found = []
+    pieces = []
     for k, part in enumerate(parts):
         gap = part.dashes.gap * 1.25 + 0.8 if part.dashes else SELECTION.max_solid_gap
         if k:
             # between two patterns: the dashed one's gap, if there is one
-            other = parts[k - 1]
-            between = max(gap, other.dashes.gap * 1.25 + 0.8 if other.dashes else SELECTION.max_solid_gap)
-            measured = part.first - other.last <= between
-            found.append(_LinePiece(other.last, part.first, "measured" if measured else "bridged",
-                               other.pattern if other.dashes else part.pattern))
+            previous = parts[k - 1]
+            between = max(gap, previous.dashes.gap * 1.25 + 0.8 if previous.dashes else SELECTION.max_solid_gap)
+            measured = part.first - previous.last <= between
+            pieces.append(_LinePiece(previous.last, part.first, "measured" if measured else "bridged",
+                                     previous.pattern if previous.dashes else part.pattern))
         spans = part.intervals
         for j, (first, last) in enumerate(spans):
             if j and first - spans[j - 1][1] > gap:
-                found.append(_LinePiece(spans[j - 1][1], first, "bridged", part.pattern))
+                pieces.append(_LinePiece(spans[j - 1][1], first, "bridged", part.pattern))
             elif j:
-                found.append(_LinePiece(spans[j - 1][1], first, "measured", part.pattern))
-            found.append(_LinePiece(first, last, "measured", part.pattern))
-    return merged_pieces(found)
+                pieces.append(_LinePiece(spans[j - 1][1], first, "measured", part.pattern))
+            pieces.append(_LinePiece(first, last, "measured", part.pattern))
+    return merged_pieces(pieces)
 
 
 def merged_pieces(parts: list[_LinePiece]) -> list[_LinePiece]:
     """Pieces with equal neighbours put together; empty ones dropped."""
-    found: list[_LinePiece] = []
+    merged: list[_LinePiece] = []
     for part in parts:
         if part.last - part.first <= 1e-9:
             continue
-        if found and (found[-1].status, found[-1].pattern) == (part.status, part.pattern):
-            found[-1] = _LinePiece(found[-1].first, part.last, part.status, part.pattern)
+        if merged and (merged[-1].status, merged[-1].pattern) == (part.status, part.pattern):
+            merged[-1] = _LinePiece(merged[-1].first, part.last, part.status, part.pattern)
         else:
-            found.append(part)
-    return found
+            merged.append(part)
+    return merged

@@ -103,8 +103,8 @@ class LinkedLine:
     @cached_property
     def _end_places(self):
         s, d, *_ = self._places
-        away = s.max() - s, s - s.min()
-        return [(s[near], d[near]) for near in (a <= STRANDS.level_reach for a in away)]
+        distances = s.max() - s, s - s.min()
+        return [(s[at_end], d[at_end]) for at_end in (a <= STRANDS.level_reach for a in distances)]
 
     @cached_property
     def _places(self):
@@ -118,21 +118,21 @@ def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[C
     Those of markings of use keep; of other long markings (a line that touches a stop line or a hatched area is clustered with it) those places
     where the marking is no wider across than a double line. `records` : points of one road with `cluster`.
     """
-    here = np.flatnonzero(markings.road == road)
-    if not len(here) or not len(records):
+    rows = np.flatnonzero(markings.road == road)
+    if not len(rows) or not len(records):
         return records[:0], np.empty(0, np.int64)
     # of a marking of several parts the last one counts
-    known, last = np.unique(markings.cluster[here][::-1], return_index=True)
-    here = here[::-1][last]
-    ranks = np.full(len(known), len(LINE_KINDS), np.int8)
+    clusters, last = np.unique(markings.cluster[rows][::-1], return_index=True)
+    rows = rows[::-1][last]
+    ranks = np.full(len(clusters), len(LINE_KINDS), np.int8)
     for k, name in enumerate(LINE_KINDS):
-        ranks[markings.keep[here] & (markings.kind[here] == name)] = k
-    mixed_ones = (ranks == len(LINE_KINDS)) & (markings.length[here] > STRANDS.min_mixed_marking)
+        ranks[markings.keep[rows] & (markings.kind[rows] == name)] = k
+    mixed_ones = (ranks == len(LINE_KINDS)) & (markings.length[rows] > STRANDS.min_mixed_marking)
     number = records["cluster"]
-    place = np.clip(np.searchsorted(known, number), 0, len(known) - 1)
-    listed, rank = known[place] == number, ranks[place]
+    index = np.clip(np.searchsorted(clusters, number), 0, len(clusters) - 1)
+    listed, rank = clusters[index] == number, ranks[index]
     is_line = listed & (rank < len(LINE_KINDS))
-    mixed = listed & mixed_ones[place]
+    mixed = listed & mixed_ones[index]
     keep = is_line | (mixed & _narrow_there(records, number, mixed))
     return records[keep], rank[keep]
 
@@ -147,16 +147,16 @@ def _narrow_there(records, number, mixed):
     order = order_by(bins, number[rows])
     rows, bins = rows[order], bins[order]
     starts = np.flatnonzero(np.r_[True, (np.diff(bins) != 0) | (np.diff(number[rows]) != 0)])
-    across = records["d"][rows].astype(np.int64)
-    narrow = np.maximum.reduceat(across, starts) - np.minimum.reduceat(across, starts) <= STRANDS.max_mixed_width_units
-    owner, at = number[rows][starts], bins[starts]
+    d = records["d"][rows].astype(np.int64)
+    narrow = np.maximum.reduceat(d, starts) - np.minimum.reduceat(d, starts) <= STRANDS.max_mixed_width_units
+    owner, station_bin = number[rows][starts], bins[starts]
     # the tip of a hatched area is narrow too: keep a metre away from what is wide
-    beside = np.zeros(len(starts), bool)
+    beside_wide = np.zeros(len(starts), bool)
     for shift in (-2, -1, 1, 2):
-        same = np.roll(owner, shift) == owner
-        beside |= same & (np.abs(np.roll(at, shift) - at) <= 2) & ~np.roll(narrow, shift)
+        same_marking = np.roll(owner, shift) == owner
+        beside_wide |= same_marking & (np.abs(np.roll(station_bin, shift) - station_bin) <= 2) & ~np.roll(narrow, shift)
     group = np.cumsum(np.r_[False, np.diff(bins) != 0] | np.r_[False, np.diff(number[rows]) != 0])
-    result[rows] = (narrow & ~beside)[group]
+    result[rows] = (narrow & ~beside_wide)[group]
     return result
 
 
@@ -164,9 +164,9 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     """Strands of painted line among the N points of one road, by station; `rank` : (N,) class of each as `line_paint` gives it."""
     if not len(records):
         return []
-    across, bins = records["d"], records["s"] // STRANDS.run_bin_units
-    order = order_by(across, bins)
-    run = _runs(bins[order], across[order])
+    d, bins = records["d"], records["s"] // STRANDS.run_bin_units
+    order = order_by(d, bins)
+    run = _runs(bins[order], d[order])
     run = np.where((np.bincount(run) >= STRANDS.min_points_per_run)[run], run, np.int32(-1))   # runs of too few points are none
     inside = np.flatnonzero(run >= 0)
     check_cancelled()
@@ -175,19 +175,19 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     run, order = run[inside], order[inside]
     del inside
     starts = np.flatnonzero(np.append(True, run[1:] != run[:-1]))
-    node_d, width = _middle_and_width(across[order], starts)
+    node_d, width = _middle_and_width(d[order], starts)
     label = _chains(bins[order[starts]], node_d, width <= STRANDS.max_line_width_units)
     check_cancelled()
     of_point = np.repeat(label, np.diff(np.append(starts, len(run))))
     del run
     used = np.flatnonzero(of_point >= 0)
     order, of_point = order[used], of_point[used]
-    place = records["s"][order] // STRANDS.place_step_units
-    # within a place points keep their order, which is across
-    by_place = order_by(place, of_point)
-    order, of_point, place = order[by_place], of_point[by_place], place[by_place]
-    del used, by_place
-    return _strands(place, [rank[order], *(records[name][order] for name in ("s", "d", "z"))], of_point)
+    step = records["s"][order] // STRANDS.place_step_units
+    # within a step points keep their order, which is across
+    by_step = order_by(step, of_point)
+    order, of_point, step = order[by_step], of_point[by_step], step[by_step]
+    del used, by_step
+    return _strands(step, [rank[order], *(records[name][order] for name in ("s", "d", "z"))], of_point)
 
 
 def _runs(bins, across):
@@ -252,9 +252,9 @@ def _chains(node_bin, node_d, good):
         if not len(open_end) or not len(open_start):
             break
         a, b = _mutual(node_bin, node_d, open_end, open_start, leap, span)
-        near = np.abs(node_d[a] - node_d[b]) <= STRANDS.lateral_step_units + STRANDS.lateral_step_per_bin_units * leap
-        follows[a[near]] = b[near]
-        preceded[b[near]] = True
+        close = np.abs(node_d[a] - node_d[b]) <= STRANDS.lateral_step_units + STRANDS.lateral_step_per_bin_units * leap
+        follows[a[close]] = b[close]
+        preceded[b[close]] = True
     linked = np.flatnonzero(follows >= 0)
     return np.where(good, linked_groups(linked, follows[linked], count), -1)
 
@@ -268,29 +268,29 @@ def _mutual(node_bin, node_d, ends, starts, leap, span):
         best, gap = np.full(len(a), -1), np.full(len(a), np.inf)
         for side in (-1, 0):
             j = np.clip(spot + side, 0, len(b) - 1)
-            away = np.abs(key_b[order][j] - key_a)
-            closer = away < gap
-            best[closer], gap[closer] = order[j][closer], away[closer]
+            distance = np.abs(key_b[order][j] - key_a)
+            closer = distance < gap
+            best[closer], gap[closer] = order[j][closer], distance[closer]
         best[gap > 4 * STRANDS.lateral_step_units] = -1
         return best
 
-    there, back = nearest(ends, starts, leap), nearest(starts, ends, -leap)
-    rows = np.flatnonzero(there >= 0)
-    rows = rows[back[there[rows]] == rows]
-    return ends[rows], starts[there[rows]]
+    onward, back = nearest(ends, starts, leap), nearest(starts, ends, -leap)
+    rows = np.flatnonzero(onward >= 0)
+    rows = rows[back[onward[rows]] == rows]
+    return ends[rows], starts[onward[rows]]
 
 
 def _strands(place, columns, label):
     """Strands of points that lie by chain, place and across: their place, columns rank, s, d and z, and the chain of each point, (N,) each."""
     bounds = np.flatnonzero(np.r_[True, np.diff(label) != 0, True]) if len(label) else np.zeros(1, int)
-    found = []
+    strands = []
     for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
         check_cancelled()
         strand = _strand(place[a:b], *(column[a:b] for column in columns))
         mixed = strand.classes.get("mixed", 0.0) > 0.5 * strand.length
         if strand.length >= (STRANDS.min_mixed_strand if mixed else STRANDS.min_strand_length):
-            found.append(strand)
-    return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
+            strands.append(strand)
+    return sorted(strands, key=lambda strand: (strand.first, strand.d[0]))
 
 
 def _strand(place, rank, along, across, height):
@@ -299,9 +299,9 @@ def _strand(place, rank, along, across, height):
     count = np.diff(np.append(starts, len(place)))
     middle, outer = _middle_and_width(across, starts)
     # where a line runs into other paint it is wider than itself, and its middle is not its own
-    own = outer <= 1.5 * median(outer) + 400
-    if not own.all():
-        inside = np.repeat(own, count)
+    narrow = outer <= 1.5 * median(outer) + 400
+    if not narrow.all():
+        inside = np.repeat(narrow, count)
         return _strand(*(column[inside] for column in (place, rank, along, across, height)))
     first, last = float(along.min() * COORDINATE_SCALE), float(along.max() * COORDINATE_SCALE)
     s, z = (np.add.reduceat(values, starts, dtype=np.int64) / count * COORDINATE_SCALE for values in (along, height))
@@ -335,9 +335,9 @@ class EdgesBeside:
         for s, d in self._by_stretch.get(int(min(s0, s1) // LOOKUP_STRETCH), ()):
             if not s[0] <= min(s0, s1) <= max(s0, s1) <= s[-1]:
                 continue
-            far = float(np.abs(np.interp([s0, s1], s, d) - (d0, d1)).max())
-            if far <= LINE_TO_EDGE and (best is None or far < best[0]):
-                best = far, s, d
+            farthest = float(np.abs(np.interp([s0, s1], s, d) - (d0, d1)).max())
+            if farthest <= LINE_TO_EDGE and (best is None or farthest < best[0]):
+                best = farthest, s, d
         return None if best is None else partial(np.interp, xp=best[1], fp=best[2])
 
 
@@ -345,8 +345,8 @@ def _edges(sections):
     """(stations, offsets) of the edges of CrossSections; where one is interrupted another begins."""
     for k, first in enumerate(sections.d.spans.first.tolist()):
         d = sections.d.row(k)
-        known = np.flatnonzero(np.isfinite(d))
-        for part in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
+        finite = np.flatnonzero(np.isfinite(d))
+        for part in np.split(finite, np.flatnonzero(np.diff(finite) > 1) + 1):
             if len(part) > 1:
                 yield sections.s[first + part], d[part]
 
@@ -354,7 +354,7 @@ def _edges(sections):
 def edges_beside(edges: RoadEdges | None, roads: list[int]) -> dict[int, EdgesBeside]:
     """EdgesBeside of every road; those of a road without edges, or where none are known, are empty."""
     kinds = [sections_of_edges(edges), sections_of_pavement(edges)] if edges is not None else []
-    return {road: EdgesBeside([found[road] for found in kinds if road in found]) for road in roads}
+    return {road: EdgesBeside([sections[road] for sections in kinds if road in sections]) for road in roads}
 
 
 # Lines that few tracks of the scan met: each track shows such a line at one place of its width.
@@ -369,23 +369,23 @@ def painted_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     """
     if not len(records):
         return []
-    of = records["cluster"]
+    cluster = records["cluster"]
     # most points of the marking, which is a line
     apart = (records["spacing"] >= STRANDS.few_tracks * 1e3) & (rank < len(LINE_KINDS))
-    sparse = (2 * np.bincount(of[apart], minlength=int(of.max()) + 1) > np.bincount(of))[of]
+    sparse = (2 * np.bincount(cluster[apart], minlength=int(cluster.max()) + 1) > np.bincount(cluster))[cluster]
     few = np.flatnonzero(sparse)
     check_cancelled()
-    few = few[np.lexsort((records["s"][few], of[few]))]
-    found = trace_strands(records[~sparse], rank[~sparse]) if len(few) else trace_strands(records, rank)
-    along = records["s"][few]
-    new = np.r_[True, (np.diff(of[few]) != 0) | (np.diff(along) > LONGEST_HOLE_UNITS)] if len(few) else np.empty(0, bool)
+    few = few[np.lexsort((records["s"][few], cluster[few]))]
+    strands = trace_strands(records[~sparse], rank[~sparse]) if len(few) else trace_strands(records, rank)
+    s_of_few = records["s"][few]
+    new = np.r_[True, (np.diff(cluster[few]) != 0) | (np.diff(s_of_few) > LONGEST_HOLE_UNITS)] if len(few) else np.empty(0, bool)
     bounds = np.append(np.flatnonzero(new), len(few))
     columns = [records[name][few] for name in ("s", "d", "z", "spacing")]
     for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
-        if (along[b - 1] - along[a]) * COORDINATE_SCALE >= STRANDS.min_strand_length:
+        if (s_of_few[b - 1] - s_of_few[a]) * COORDINATE_SCALE >= STRANDS.min_strand_length:
             s, d, z, spacing = (values[a:b] for values in columns)
-            found.append(_strand_of_marking(s, d, z, spacing, LINE_KINDS[int(rank[few[a]])]))
-    return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
+            strands.append(_strand_of_marking(s, d, z, spacing, LINE_KINDS[int(rank[few[a]])]))
+    return sorted(strands, key=lambda strand: (strand.first, strand.d[0]))
 
 
 def _strand_of_marking(along, across, height, spacing, kind):

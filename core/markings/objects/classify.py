@@ -58,11 +58,11 @@ def relative_contrast(value: np.ndarray, s: np.ndarray, starts: np.ndarray) -> n
     ends = np.array([percentiles(value[order[a:b]], [CLASSES.faint_percentile, CLASSES.bright_percentile]) if b > a else (0.0, 1.0)
                      for a, b in zip(bounds[:-3], bounds[3:])])
     del order
-    found = []
+    contrasts = []
     for a, b in zip(starts[:-1].tolist(), starts[1:].tolist()):
         low, high = ends[stretch[a:b] - first].T
-        found += percentiles((value[a:b] - low) / np.maximum(high - low, 1e-6), [CLASSES.contrast_percentile])
-    return np.array(found)
+        contrasts += percentiles((value[a:b] - low) / np.maximum(high - low, 1e-6), [CLASSES.contrast_percentile])
+    return np.array(contrasts)
 
 
 def classify_markings(shapes: list[Shape], half_widths: Sequence[float], settings: ClassSettings = ClassSettings(),
@@ -90,13 +90,13 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     refused = outside | covered_feet | curb
     kinds = [_kind(*of_one) for of_one in zip(shapes, clearance, line, zigzag, np.broadcast_to(blocks, len(shapes)), doubles, covered_feet, refused,
                                               repeat(settings.margin))]
-    found = [(kind, "keep" if kind in LINE_KINDS else "other") for kind in kinds]
-    for k in _outlines(column, [kind for kind, _ in found]):
-        found[k] = "hatch", "other"
-    for k in _single_bars(column, [kind for kind, _ in found]):
+    classes = [(kind, "keep" if kind in LINE_KINDS else "other") for kind in kinds]
+    for k in _outlines(column, [kind for kind, _ in classes]):
+        classes[k] = "hatch", "other"
+    for k in _single_bars(column, [kind for kind, _ in classes]):
         corner = clearance[k] < CLASSES.curb_corner_clearance and shapes[k].length < CLASSES.max_curb_corner_length
-        found[k] = NOT_PAINT if corner else "symbol", "other"
-    return found
+        classes[k] = NOT_PAINT if corner else "symbol", "other"
+    return classes
 
 
 def _kind(shape, clearance, line, zigzag, block, double, covered_feet, refused, margin):
@@ -127,8 +127,8 @@ def _is_line(column, settings):
 
 def _dashes_in_rows(shapes, column, clearance, settings):
     """Short dashes one after the other along the road, away from its rim, where the stones of a curb stand in rows, too."""
-    least, most = CLASSES.short_dash_length
-    short = column["along"] & (column["length"] >= least) & (column["length"] <= most) & (clearance > CLASSES.rim_clearance) \
+    shortest, longest = CLASSES.short_dash_length
+    short = column["along"] & (column["length"] >= shortest) & (column["length"] <= longest) & (clearance > CLASSES.rim_clearance) \
         & (column["width"] >= settings.min_width) & (column["width"] <= settings.max_width) & (column["elongation"] >= CLASSES.min_dash_elongation)
     result, rows = np.zeros(len(shapes), bool), np.flatnonzero(short)
     for row in rows_of_dashes([shapes[k] for k in rows]):
@@ -185,11 +185,11 @@ def _single_bars(column, kinds):
     first, last = column["s0"][rows], column["s1"][rows]
     single = last - first < CLASSES.min_hatching_length
     for a, b in overlapping_pairs(first, last, first, last, CLASSES.max_hatching_pitch):
-        away = np.zeros(len(a))
+        gap = np.zeros(len(a))
         for low, high in (("s0", "s1"), ("d0", "d1")):
             low, high = column[low][rows], column[high][rows]
-            away = np.maximum(away, np.maximum(low[a], low[b]) - np.minimum(high[a], high[b]))
-        single[a[(a != b) & (away < CLASSES.max_hatching_pitch)]] = False
+            gap = np.maximum(gap, np.maximum(low[a], low[b]) - np.minimum(high[a], high[b]))
+        single[a[(a != b) & (gap < CLASSES.max_hatching_pitch)]] = False
     return rows[single]
 
 

@@ -70,20 +70,20 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     connected = [connected_points(marking_points, road, settings.distance, part, executor) for road, part in zip(roads, first)]
     counts = [len(records) for records, _ in connected]
     works = [ApartWork(executor, line.number) for line in lines]
-    known = [_stripes_of_crossings(records, line, work, part.part(0.0, 0.5))
-             for (records, _), line, work, part in zip(connected, lines, works, second)]
-    others = [(records.take(rest), labels[rest]) for (records, labels), (_, rest) in zip(connected, known)]
+    stripes_by_road = [_stripes_of_crossings(records, line, work, part.part(0.0, 0.5))
+                       for (records, _), line, work, part in zip(connected, lines, works, second)]
+    unstriped = [(records.take(other_rows), labels[other_rows]) for (records, labels), (_, other_rows) in zip(connected, stripes_by_road)]
     # what is not used any more is let go, since the paint of a whole road is in memory
     del connected
-    paint = told_by_one_road(others, lines, settings.distance)
-    del others
-    found = [_pieces(of_road, work, settings, part.part(0.5, 1.0)) for of_road, work, part in zip(paint, works, second)]
+    paint = told_by_one_road(unstriped, lines, settings.distance)
+    del unstriped
+    pieces_by_road = [_pieces(of_road, work, settings, part.part(0.5, 1.0)) for of_road, work, part in zip(paint, works, second)]
     del paint
-    blocks = _blocks_of_all(found)
+    blocks = _blocks_of_all(pieces_by_road)
     rows, polygons, refused = [], [], 0
     cluster = [np.zeros(count, np.int32) for count in counts]
     number = 0
-    for k, ((stripes, _), pieces, line, block, part) in enumerate(zip(known, found, lines, blocks, last)):
+    for k, ((stripes, _), pieces, line, block, part) in enumerate(zip(stripes_by_road, pieces_by_road, lines, blocks, last)):
         painted, without = _markings(pieces, block, settings, marking_points.has_corrected, part.part(0.0, 0.5))
         refused += without
         markings = sorted([*stripes, *painted], key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
@@ -94,9 +94,9 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
                 cluster[k][marking.rows] = number
             else:
                 owner, row = pieces.paint.home[marking.rows].T
-                for one in np.unique(owner).tolist():
-                    rest = known[one][1]
-                    cluster[one][rest[row[owner == one]]] = number
+                for road_index in np.unique(owner).tolist():
+                    other_rows = stripes_by_road[road_index][1]
+                    cluster[road_index][other_rows[row[owner == road_index]]] = number
             polygons += drawn
             rows += [_row(marking, number, line, frame)] * len(drawn)
     for road, numbers in zip(roads, cluster):
@@ -128,10 +128,10 @@ def _pieces(paint, work, settings, progress):
     again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
     records, order = records.take(again), order[again]
     bounds = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
-    alone = _alone(pieces, joins)
-    some, ends = _some_clusters(records, [span for label, span in zip(labels.tolist(), bounds) if label not in alone])
-    joined = iter(work.shapes(some, ends, progress.part(0.9, 1.0)))
-    return _Pieces(paint, records, order, bounds, [alone[label] if label in alone else next(joined) for label in labels.tolist()], work)
+    unjoined = _alone(pieces, joins)
+    joined_records, ends = _some_clusters(records, [span for label, span in zip(labels.tolist(), bounds) if label not in unjoined])
+    joined = iter(work.shapes(joined_records, ends, progress.part(0.9, 1.0)))
+    return _Pieces(paint, records, order, bounds, [unjoined[label] if label in unjoined else next(joined) for label in labels.tolist()], work)
 
 
 def _blocks_of_all(found):
@@ -148,7 +148,7 @@ def _rectangle(records, bounds):
     """Sides of the smallest rectangle about a cluster in local coordinates, and the middle of its extent there, m."""
     x, y = (records[name][slice(*bounds)] for name in "xy")
     cells, _ = occupied(x // CELL_UNITS, y // CELL_UNITS)
-    middle = [(int(places.min()) + int(places.max())) / 2 * COORDINATE_SCALE for places in (x, y)]
+    middle = [(int(values.min()) + int(values.max())) / 2 * COORDINATE_SCALE for values in (x, y)]
     return *smallest_rectangle(cells), *middle
 
 
@@ -163,10 +163,10 @@ def _with_rows_divided(records, labels):
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
     for k in np.flatnonzero((along >= ROWS.row_of_blocks[0]) & (along <= ROWS.row_of_blocks[1]) & (across >= ROWS.block_size[0])
                             & (across <= ROWS.block_size[1] + ROWS.max_row_slope * along)).tolist():
-        own = order[starts[k]:starts[k + 1] if k + 1 < len(starts) else None]
-        cells, member = occupied(*(records[name].take(own) // CELL_UNITS for name in "xy"))
+        members = order[starts[k]:starts[k + 1] if k + 1 < len(starts) else None]
+        cells, member = occupied(*(records[name].take(members) // CELL_UNITS for name in "xy"))
         if (blocks := blocks_of_strip(cells)) is not None:
-            labels[own] = following + blocks[member]
+            labels[members] = following + blocks[member]
             following += int(blocks.max()) + 1
     return labels
 
@@ -185,21 +185,21 @@ def _markings(pieces, blocks, settings, has_corrected, progress):
         pale = [too_pale(share, kind) for share, (kind, _) in zip(bright.tolist(), kinds)]
         possible &= ~np.array(pale, bool)
         kinds = [(NOT_PAINT, "other") if faint else kind for faint, kind in zip(pale, kinds)]
-    whole: list[tuple[tuple[int, ...], str, str]] = [((k,), *kind) for k, kind in enumerate(kinds)]
-    for members, kind in painted_figures(shapes, [kind for kind, _ in kinds], possible, lambda some: _cells_together(records, bounds, some),
+    classes: list[tuple[tuple[int, ...], str, str]] = [((k,), *kind) for k, kind in enumerate(kinds)]
+    for members, kind in painted_figures(shapes, [kind for kind, _ in kinds], possible, lambda group: _cells_together(records, bounds, group),
                                          partial(pieces.work.figures, progress=progress)):
         for k in members:
-            whole[k] = ((), NOT_PAINT, "other")
-        whole[members[0]] = (members, kind, "other")
+            classes[k] = ((), NOT_PAINT, "other")
+        classes[members[0]] = (members, kind, "other")
     # the columns that told kinds of markings are not used any more
-    found, records = [], records.unread()
-    for members, kind, use in whole:
+    markings, records = [], records.unread()
+    for members, kind, use in classes:
         if kind != NOT_PAINT:
             check_cancelled()
             of_it = _rows_of(bounds, members)
             shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
-            found.append(_Marking(records[of_it], pieces.order[of_it], shape, kind, use))
-    return found, sum(kind == NOT_PAINT for members, kind, _ in whole if members)
+            markings.append(_Marking(records[of_it], pieces.order[of_it], shape, kind, use))
+    return markings, sum(kind == NOT_PAINT for members, kind, _ in classes if members)
 
 
 class _Marking(NamedTuple):
@@ -229,18 +229,18 @@ def _stripes_of_crossings(records, road, work, progress):
     del cells, station
     stripes = zebra_stripes(places, way, lambda windows: work.combs(places, windows, progress.part(0.0, 0.7)),
                             lambda crossings: work.stripes(places, way, crossings, progress.part(0.7, 0.9)))
-    stripe_of, found = np.full(len(places), -1, np.int32), []
+    stripe_of, markings = np.full(len(places), -1, np.int32), []
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
     of_point = stripe_of[member]
     rows = list(members_of(of_point))
-    painted = records.take(np.concatenate([np.empty(0, np.intp), *(own for _, own in rows)])).load_all()
-    bounds = np.cumsum([0, *(len(own) for _, own in rows)])
-    for (k, own), first, end, shape in zip(rows, bounds[:-1], bounds[1:], work.shapes(painted, bounds, progress.part(0.9, 1.0))):
+    painted = records.take(np.concatenate([np.empty(0, np.intp), *(members for _, members in rows)])).load_all()
+    bounds = np.cumsum([0, *(len(members) for _, members in rows)])
+    for (k, members), first, end, shape in zip(rows, bounds[:-1], bounds[1:], work.shapes(painted, bounds, progress.part(0.9, 1.0))):
         corners = stripes[k].corners
         length, width = (float(np.hypot(*(corners[j] - corners[j - 1]))) for j in (1, 2))
-        found.append(_Marking(painted[first:end], own, replace(shape, length=length, width=width), "zebra", "other", shapely.Polygon(corners)))
-    return found, np.flatnonzero(of_point < 0)
+        markings.append(_Marking(painted[first:end], members, replace(shape, length=length, width=width), "zebra", "other", shapely.Polygon(corners)))
+    return markings, np.flatnonzero(of_point < 0)
 
 
 def _put(store, road, cluster, points):
@@ -259,10 +259,10 @@ def _rows_of(bounds, members):
 
 def _cells_together(records, bounds, members):
     """(K, 2) different cells of some clusters together, and (K,) m that the tracks of the scan lie apart there."""
-    own = records[_rows_of(bounds, members)]
-    cells, member = occupied(own["s"] // CELL_UNITS, own["d"] // CELL_UNITS)
+    points = records[_rows_of(bounds, members)]
+    cells, member = occupied(points["s"] // CELL_UNITS, points["d"] // CELL_UNITS)
     reach = np.zeros(len(cells))
-    reach[member] = track_reach(own["spacing"])
+    reach[member] = track_reach(points["spacing"])
     return cells, reach
 
 
@@ -275,8 +275,8 @@ def _alone(pieces, joins):
 def _relabelled(records, starts, number):
     """Label of every record after joining; records of no cluster get labels of their own."""
     labels = np.repeat(number, np.diff(starts))
-    rest = len(records) - len(labels)
-    return np.r_[labels, len(number) + np.arange(rest)]
+    extra = len(records) - len(labels)
+    return np.r_[labels, len(number) + np.arange(extra)]
 
 
 def _by_cluster(labels, fewest):
@@ -314,15 +314,15 @@ def _row(marking, number, line, frame):
 def _scanning_distance(records, line, frame):
     """Median distance across the road from the track that scanned the marking."""
     numbers, along, across = (records[name] for name in ("pass_number", "s", "d"))
-    away = np.empty(len(records))
+    distance = np.empty(len(records))
     for number in numbers[:1] if (numbers == numbers[0]).all() else np.unique(numbers):
         rows, driven = np.flatnonzero(numbers == number), frame.passes[number]
         s, d = along[rows] * COORDINATE_SCALE, across[rows] * COORDINATE_SCALE
         if driven.road != line.number:
             # what another road's pass scanned lies in the frame of that road, too
             s, d = frame.road(driven.road).locate(*(records[name][rows] * COORDINATE_SCALE for name in "xy"))
-        away[rows] = np.abs(d - driven.at_station(s)[0])
-    return median(away)
+        distance[rows] = np.abs(d - driven.at_station(s)[0])
+    return median(distance)
 
 
 # The phases: what is computed of some clusters or windows apart from all others; their items hold the columns that they need.
@@ -334,12 +334,12 @@ PHASE_POINTS = 500_000   # derived: of paint, whose columns are held for tasks a
 def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> list[tuple[Any, ...] | None]:
     """The phase that looks for stripes of crossings; item : (N, 2) m spots of windows one after the other, and the bounds of the windows."""
     places, bounds = item
-    found = []
+    combs = []
     for first, end in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
         check_cancelled()
         comb = comb_of_window(places[first:end])
-        found.append(None if comb is None else tuple(comb))
-    return found
+        combs.append(None if comb is None else tuple(comb))
+    return combs
 
 
 def _zebra_stripes(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, list[tuple[Any, ...]]]) -> list[list[tuple[Any, ...]]]:
@@ -348,11 +348,11 @@ def _zebra_stripes(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndar
     `item` : (N, 2) m spots about crossings one after the other, (N,) radians of the road there, the bounds of the crossings, and the Comb of each.
     """
     places, way, bounds, combs = item
-    found = []
+    stripes = []
     for first, end, comb in zip(bounds[:-1].tolist(), bounds[1:].tolist(), combs):
         check_cancelled()
-        found.append([tuple(stripe) for stripe in stripes_of_crossing(places[first:end], way[first:end], Comb(*comb))])
-    return found
+        stripes.append([tuple(stripe) for stripe in stripes_of_crossing(places[first:end], way[first:end], Comb(*comb))])
+    return stripes
 
 
 def _parts_of_compounds(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]) -> list[tuple[np.ndarray, int]]:
@@ -372,10 +372,10 @@ def outlines_of_markings(source: NoSource, item: tuple[Any, ...], road: Road) ->
     (V, 3) local m, first vertex of each ring, first ring of each polygon, each with the end, and the number of polygons of each marking.
     """
     *columns, looks = item
-    drawn = [drawn_outline(own, shape, strip, road) for own, (shape, strip) in zip(_clusters(columns), looks)]
-    polygons = [polygon for some in drawn for polygon in some]
+    drawn = [drawn_outline(cluster, shape, strip, road) for cluster, (shape, strip) in zip(_clusters(columns), looks)]
+    polygons = [polygon for outline in drawn for polygon in outline]
     _, vertices, starts = shapely.to_ragged_array(polygons, include_z=True) if polygons else (None, np.empty((0, 3)), (np.zeros(1, int),) * 2)
-    return vertices, *starts, np.array([len(some) for some in drawn])
+    return vertices, *starts, np.array([len(outline) for outline in drawn])
 
 
 def _clusters(item):
@@ -396,16 +396,16 @@ class ApartWork:
         """The Comb of each window, None where it has no stripes; places : (N, 2) m, windows : rows of the spots of each."""
         bounds = np.cumsum([0, *map(len, windows)])
         rows = np.concatenate([np.empty(0, np.int32), *windows])
-        found = self._run(combs_of_windows, lambda a, b: (places[rows[bounds[a]:bounds[b]]],), bounds, progress)
-        return [None if comb is None else Comb(*comb) for comb in found]
+        combs = self._run(combs_of_windows, lambda a, b: (places[rows[bounds[a]:bounds[b]]],), bounds, progress)
+        return [None if comb is None else Comb(*comb) for comb in combs]
 
     def stripes(self, places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], progress: Progress) -> list[list[Stripe]]:
         """The stripes of each crossing, their spots by number among those of the crossing; places, way : as of `zebra_stripes`."""
-        bounds = np.cumsum([0, *(len(own) for own, _ in crossings)])
-        rows = np.concatenate([np.empty(0, np.intp), *(own for own, _ in crossings)])
-        found = self._run(_zebra_stripes, lambda a, b: tuple(values[rows[bounds[a]:bounds[b]]] for values in (places, way)), bounds, progress,
-                          alone=True, looks=[tuple(comb) for _, comb in crossings])
-        return [[Stripe(*stripe) for stripe in some] for some in found]
+        bounds = np.cumsum([0, *(len(spots) for spots, _ in crossings)])
+        rows = np.concatenate([np.empty(0, np.intp), *(spots for spots, _ in crossings)])
+        stripes = self._run(_zebra_stripes, lambda a, b: tuple(values[rows[bounds[a]:bounds[b]]] for values in (places, way)), bounds, progress,
+                            alone=True, looks=[tuple(comb) for _, comb in crossings])
+        return [[Stripe(*stripe) for stripe in crossing_stripes] for crossing_stripes in stripes]
 
     def parts(self, s: np.ndarray, d: np.ndarray, spacing: np.ndarray, spans: Sequence[tuple[int, int]],
               progress: Progress) -> list[tuple[np.ndarray, int]]:
@@ -443,19 +443,19 @@ class ApartWork:
         `columns` gives those of the clusters from a number to before another, one after the other: PHASE_POINTS are there at a time.
         """
         phase = Phase(function, NoSource(), arguments, lambda item: f"markings of road {self.road}")
-        whole, found = _cuts(bounds, PHASE_POINTS), []
-        for begin, end in zip(whole[:-1].tolist(), whole[1:].tolist()):
-            own = bounds[begin:end + 1]
+        batches, results = _cuts(bounds, PHASE_POINTS), []
+        for begin, end in zip(batches[:-1].tolist(), batches[1:].tolist()):
+            batch_bounds = bounds[begin:end + 1]
             if self.executor.folder is not None:
-                cuts = _cuts(own, TASK_POINTS)
+                cuts = _cuts(batch_bounds, TASK_POINTS)
             else:
-                cuts = np.arange(len(own)) if alone else np.array([0, len(own) - 1])
-            here = columns(begin, end)
-            items = [_item(here, own[a:b + 1] - own[0], None if looks is None else list(looks[begin + a:begin + b]))
+                cuts = np.arange(len(batch_bounds)) if alone else np.array([0, len(batch_bounds) - 1])
+            batch_columns = columns(begin, end)
+            items = [_item(batch_columns, batch_bounds[a:b + 1] - batch_bounds[0], None if looks is None else list(looks[begin + a:begin + b]))
                      for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist())]
-            part = progress.part(begin / whole[-1], end / whole[-1])
-            found += [one for some in self.executor.run(phase, items, part) for one in read(some)]
-        return found
+            part = progress.part(begin / batches[-1], end / batches[-1])
+            results += [result for chunk in self.executor.run(phase, items, part) for result in read(chunk)]
+        return results
 
 
 def _cuts(bounds, points):
@@ -466,8 +466,8 @@ def _cuts(bounds, points):
 
 def _columns_at(records, rows, names):
     """Some columns of some rows."""
-    some = records.take(rows)
-    return tuple(some[name] for name in names)
+    selected = records.take(rows)
+    return tuple(selected[name] for name in names)
 
 
 def _item(columns, bounds, looks):
@@ -480,4 +480,4 @@ def _polygons(found):
     vertices, ring_start, polygon_start, count = found
     ends = np.cumsum(count).tolist()
     polygons = shapely.from_ragged_array(shapely.GeometryType.POLYGON, vertices, (ring_start, polygon_start)).tolist()
-    return [polygons[end - some:end] for end, some in zip(ends, count.tolist())]
+    return [polygons[end - number:end] for end, number in zip(ends, count.tolist())]

@@ -50,25 +50,25 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
     look : gives what `figures_of_group` finds in each of some groups, which are all groups from one fraction to another
     """
     parts = np.flatnonzero(possible & np.isin(np.array(kinds, object), FIGURE_PARTS))
-    found: list[_RecognisedFigure] = []
+    result: list[_RecognisedFigure] = []
     groups = list(_candidates(shapes, kinds, parts))
     for first in range(0, len(groups), GROUPS_AT_ONCE):
-        some = [[(members, *cells_of(members)) for members in group] for group in groups[first:first + GROUPS_AT_ONCE]]
-        for group, figures in zip(some, look(some, first / len(groups), (first + len(some)) / len(groups))):
-            found += [_RecognisedFigure(group[k][0], kind) for k, kind in figures]
-    return found
+        batch = [[(members, *cells_of(members)) for members in group] for group in groups[first:first + GROUPS_AT_ONCE]]
+        for group, figures in zip(batch, look(batch, first / len(groups), (first + len(batch)) / len(groups))):
+            result += [_RecognisedFigure(group[k][0], kind) for k, kind in figures]
+    return result
 
 
 def figures_of_group(source: NoSource, group: list[Candidate]) -> list[tuple[int, str]]:
     """The phase that compares markings that lie together with figures: which candidates are one, and its class; no marking is in two."""
-    found: list[tuple[int, str]] = []
-    taken: set[int] = set()
+    figures: list[tuple[int, str]] = []
+    used: set[int] = set()
     for k, (members, cells, reach) in enumerate(group):
         check_cancelled()
-        if taken.isdisjoint(members) and (kind := _figure(cells, reach)):
-            found.append((k, kind))
-            taken.update(members)
-    return found
+        if used.isdisjoint(members) and (kind := _figure(cells, reach)):
+            figures.append((k, kind))
+            used.update(members)
+    return figures
 
 
 def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray) -> Iterator[list[tuple[int, ...]]]:
@@ -76,19 +76,19 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
     box = np.array([(shape.s0, shape.s1, shape.d0, shape.d1) for shape in shapes]).reshape(-1, 4)[parts]
     links = [np.empty((0, 2), np.int64)]
     for a, b in overlapping_pairs(box[:, 0], box[:, 1], box[:, 0], box[:, 1], FIGURES.letter_gap):
-        across = np.maximum(box[a, 2], box[b, 2]) - np.minimum(box[a, 3], box[b, 3])
-        links.append(np.column_stack([a, b])[across <= FIGURES.letter_gap])
+        gap = np.maximum(box[a, 2], box[b, 2]) - np.minimum(box[a, 3], box[b, 3])
+        links.append(np.column_stack([a, b])[gap <= FIGURES.letter_gap])
     pairs = np.concatenate(links)
     group = linked_groups(pairs[:, 0], pairs[:, 1], len(parts))
     for _, together in members_of(group):
         painted = together[[kinds[k] != NOT_PAINT for k in parts[together]]]
         tried, large = set(), []
-        for some in (together, painted, *(one[None] for one in together)):
-            members = tuple(parts[some].tolist())
-            if members in tried or not 0 < len(some) <= FIGURES.most_parts:
+        for subset in (together, painted, *(single[None] for single in together)):
+            members = tuple(parts[subset].tolist())
+            if members in tried or not 0 < len(subset) <= FIGURES.most_parts:
                 continue
             tried.add(members)
-            size = box[some][:, [1, 3]].max(axis=0) - box[some][:, [0, 2]].min(axis=0)
+            size = box[subset][:, [1, 3]].max(axis=0) - box[subset][:, [0, 2]].min(axis=0)
             if size.min() >= FIGURES.figure_size[0] and size.max() <= FIGURES.figure_size[1]:
                 large.append(members)
         if large:
@@ -106,9 +106,9 @@ def _figure(cells, reach):
     image = _PaintImage.of(mask, first * CELL_SIZE, CELL_SIZE)
     best, kind = 0.0, ""
     for symbol in SYMBOLS:
-        found, (whole, third) = agreement(image, symbol), getattr(FIGURES, f"least_of_{symbol.kind}")
-        if found is not None and found.whole >= whole and found.worst_third >= third and found.whole > best:
-            best, kind = found.whole, symbol.kind
+        match, (min_whole, third) = agreement(image, symbol), getattr(FIGURES, f"least_of_{symbol.kind}")
+        if match is not None and match.whole >= min_whole and match.worst_third >= third and match.whole > best:
+            best, kind = match.whole, symbol.kind
     return kind
 
 
@@ -180,11 +180,11 @@ def _drawn(symbol, hand):
     columns, rows = (np.ceil(size * scale).astype(int) + 2 * FIGURES.figure_margin).tolist()
     image = np.zeros((rows, columns), np.uint8)
     for stroke in strokes:
-        places = (stroke - low) * scale
-        places = np.column_stack([places[:, 0] + FIGURES.figure_margin, FIGURES.figure_height + FIGURES.figure_margin - places[:, 1]])
+        pixels = (stroke - low) * scale
+        pixels = np.column_stack([pixels[:, 0] + FIGURES.figure_margin, FIGURES.figure_height + FIGURES.figure_margin - pixels[:, 1]])
         # OpenCV has the middle of the first pixel at 0, and takes places in sixteenths
         thickness = max(int(round(symbol.stroke_width * scale)), 1)
-        cv2.polylines(image, [np.rint(16 * (places - 0.5)).astype(np.int32)], False, 1, thickness, cv2.LINE_8, 4)
+        cv2.polylines(image, [np.rint(16 * (pixels - 0.5)).astype(np.int32)], False, 1, thickness, cv2.LINE_8, 4)
     row, column = np.nonzero(image)
     paint = np.stack([column + 0.5 - FIGURES.figure_margin, FIGURES.figure_height + FIGURES.figure_margin - row - 0.5]) / scale
     return _Figure(_normed(cv2.GaussianBlur(image.astype(np.float32), (0, 0), FIGURES.figure_blur)), paint.std(axis=1), paint.mean(axis=1), size)
@@ -205,15 +205,15 @@ def agreement(cells: _PaintImage, symbol: PaintedSymbol) -> Agreement | None:
         for k in np.lexsort((np.arange(len(poses)), correlations))[::-1][:FIGURES.closest].tolist():
             if correlations[k] < FIGURES.least_at_first:
                 break
-            found = _closer(cells, figure, symbol, correlations[k], poses[k])
-            if best is None or found[0] > best[0]:
-                best = (*found, figure)
+            refined = _closer(cells, figure, symbol, correlations[k], poses[k])
+            if best is None or refined[0] > best[0]:
+                best = (*refined, figure)
     if best is None:
         return None
     whole, pose, figure = best
-    seen = _seen(cells, figure, pose[None])[0]
+    paint = _seen(cells, figure, pose[None])[0]
     columns = np.array_split(np.arange(figure.image.shape[1]), 3)
-    return Agreement(float(whole), min(float((_normed(figure.image[:, some]) * _normed(seen[:, some])).sum()) for some in columns),
+    return Agreement(float(whole), min(float((_normed(figure.image[:, third]) * _normed(paint[:, third])).sum()) for third in columns),
                      _Pose(*pose.tolist()))
 
 
@@ -221,8 +221,8 @@ def _poses(cells: _PaintImage, figure: _Figure) -> np.ndarray:
     """(P, 5) as _Pose, in every direction, in which the paint is spread as the figure's is."""
     right, up = _axes(TURNS)
     scale = np.stack([cells.spread_right, cells.spread_up]) / figure.spread[:, None]
-    off = (figure.middle - figure.size / 2)[:, None] * scale
-    middle = cells.places.mean(axis=0)[:, None] - off[0] * right - off[1] * up
+    shift = (figure.middle - figure.size / 2)[:, None] * scale
+    middle = cells.places.mean(axis=0)[:, None] - shift[0] * right - shift[1] * up
     return np.column_stack([TURNS, *middle, *scale])
 
 
@@ -250,21 +250,21 @@ def _seen(cells, figure, poses):
     corner = np.stack([x, y]) - across * (columns - 1) / 2 - down * (rows - 1) / 2
     to_cells = np.stack([across, down, corner - cells.corner[:, None]], axis=1) / cells.size
     to_cells[:, 2] -= 0.5
-    found = np.empty((len(poses), rows, columns), np.float32)
+    images = np.empty((len(poses), rows, columns), np.float32)
     # OpenCV has the second axis first
-    for one, seen in zip(np.ascontiguousarray(to_cells.transpose(2, 0, 1)[:, ::-1]), found):
-        cv2.warpAffine(cells.image, one, (columns, rows), seen, cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP)
-    return found
+    for transform, image in zip(np.ascontiguousarray(to_cells.transpose(2, 0, 1)[:, ::-1]), images):
+        cv2.warpAffine(cells.image, transform, (columns, rows), image, cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP)
+    return images
 
 
 def _correlations(cells, figure, poses):
     """(P,) correlation of the figure with the paint in each pose."""
     unit = figure.size[1] / FIGURES.figure_height
-    seen = _seen(cells, figure, poses).reshape(len(poses), figure.image.size)
-    total, square, both = (values.sum(axis=1).astype(float) for values in (seen, seen * seen, figure.image.ravel() * seen))
+    paint = _seen(cells, figure, poses).reshape(len(poses), figure.image.size)
+    total, square, product = (values.sum(axis=1).astype(float) for values in (paint, paint * paint, figure.image.ravel() * paint))
     # paint beyond the figure is none of it: it counts as well
     beyond = np.maximum(cells.total_square * cells.size**2 / (poses[:, 3] * poses[:, 4] * unit * unit) - square, 0.0)
-    return both / np.sqrt(np.maximum(square - total**2 / seen.shape[1] + beyond, 1e-12))
+    return product / np.sqrt(np.maximum(square - total**2 / paint.shape[1] + beyond, 1e-12))
 
 
 def _closer(cells, figure, symbol, correlation, pose):
@@ -273,21 +273,21 @@ def _closer(cells, figure, symbol, correlation, pose):
         better = True
         while better:
             better = False
-            beside = _allowed(_beside(pose, figure, step), figure, symbol)
-            for other, one in zip(_correlations(cells, figure, beside).tolist(), beside):
-                if other > correlation + 1e-4:
-                    correlation, pose, better = other, one, True
+            neighbours = _allowed(_beside(pose, figure, step), figure, symbol)
+            for value, neighbour in zip(_correlations(cells, figure, neighbours).tolist(), neighbours):
+                if value > correlation + 1e-4:
+                    correlation, pose, better = value, neighbour, True
     return correlation, pose
 
 
 def _beside(pose, figure, step):
     """(10, 5) poses that are turned, stretched and moved by a step either way."""
     right, up = _axes(pose[0])
-    found = np.repeat(pose[None], 10, axis=0)
+    poses = np.repeat(pose[None], 10, axis=0)
     for k, sign in ((0, step), (5, -step)):
-        found[k, 0] += sign
-        found[k + 1, 3] *= 1 + sign
-        found[k + 2, 4] *= 1 + sign
-        found[k + 3, 1:3] += right * (pose[3] * figure.size[0]) * sign / 2
-        found[k + 4, 1:3] += up * (pose[4] * figure.size[1]) * sign / 2
-    return found
+        poses[k, 0] += sign
+        poses[k + 1, 3] *= 1 + sign
+        poses[k + 2, 4] *= 1 + sign
+        poses[k + 3, 1:3] += right * (pose[3] * figure.size[0]) * sign / 2
+        poses[k + 4, 1:3] += up * (pose[4] * figure.size[1]) * sign / 2
+    return poses

@@ -58,37 +58,37 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
         return records, np.empty(0, np.int32)
     pairs = np.concatenate(links)
     merged = linked_groups(pairs[:, 0], pairs[:, 1], count).astype(np.int32, copy=False)
-    return records, np.concatenate([merged[some] for some in labels])
+    return records, np.concatenate([merged[window_labels] for window_labels in labels])
 
 
 def _linked_windows(marking_points, road, distance, progress, executor):
     """What `links_of_windows` finds in each window of a road, in their order."""
     phase = Phase(links_of_windows, NoSource(), (distance,), lambda item: f"markings of road {road}")
     first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in marking_points.store.span(road))
-    least = 0 if executor.folder is None else LINKED_POINTS
-    items, size, held, begin = [], least, 0, first
+    min_points = 0 if executor.folder is None else LINKED_POINTS
+    items, size, total, begin = [], min_points, 0, first
     for number in range(first, last + 1):
         check_cancelled()
         window = _points_to_link(marking_points, road, distance, number)
-        if size >= least:
+        if size >= min_points:
             items.append([])
             size = 0
         items[-1].append(window)
-        size, held = size + len(window[0]), held + len(window[0])
-        if held >= PHASE_POINTS or number == last:
+        size, total = size + len(window[0]), total + len(window[0])
+        if total >= PHASE_POINTS or number == last:
             part = progress.part((begin - first) / (last + 1 - first), (number + 1 - first) / (last + 1 - first))
-            yield from (one for some in executor.run(phase, items, part) for one in some)
-            items, size, held, begin = [], least, 0, number + 1
+            yield from (links for batch in executor.run(phase, items, part) for links in batch)
+            items, size, total, begin = [], min_points, 0, number + 1
 
 
 def _points_to_link(marking_points, road, distance, number):
     """LINKING_COLUMNS of the points of a window and of those beyond its end that they may reach, and the cell along the road at which it ends."""
     reach = int(np.ceil(distance * GROUPS.reach_along_factor / (CELL_UNITS * COORDINATE_SCALE))) + 1
     first, end = number * LINKING_WINDOW_CELLS, (number + 1) * LINKING_WINDOW_CELLS
-    found = marking_points.window(road, *(row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, end + reach + 1))).records
-    column = found["s"] // CELL_UNITS
-    found = found[(column >= first) & (column < end + reach)]
-    return *(found[name] for name in LINKING_COLUMNS), end
+    records = marking_points.window(road, *(row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, end + reach + 1))).records
+    column = records["s"] // CELL_UNITS
+    records = records[(column >= first) & (column < end + reach)]
+    return *(records[name] for name in LINKING_COLUMNS), end
 
 
 def links_of_windows(source: NoSource, item: list[tuple[Any, ...]], distance: float) -> list[tuple[np.ndarray, ...]]:
@@ -97,11 +97,11 @@ def links_of_windows(source: NoSource, item: list[tuple[Any, ...]], distance: fl
     `item` : of each window LINKING_COLUMNS of its N points, one after the other, and the cell along the road at which it ends. Returns of each
     (K, 2) int occupied cells, (K,) int their component, (K,) bool whether they lie beyond the end, and (M,) int the cell of each point that does not.
     """
-    found: list[tuple[np.ndarray, ...]] = []
+    links: list[tuple[np.ndarray, ...]] = []
     for *columns, end in item:
         cells, member, component = _components_of_points(dict(zip(LINKING_COLUMNS, columns)), distance)
-        found.append((cells, component, cells[:, 0] >= end, member[columns[0] // CELL_UNITS < end]))
-    return found
+        links.append((cells, component, cells[:, 0] >= end, member[columns[0] // CELL_UNITS < end]))
+    return links
 
 
 def _components_of_points(records: Columns | Mapping[str, np.ndarray], distance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -112,15 +112,15 @@ def _components_of_points(records: Columns | Mapping[str, np.ndarray], distance:
     s, d = (np.bincount(member, records[name], len(cells)) for name in ("s", "d"))
     places = np.stack([s / size / GROUPS.reach_along_factor, d / size * GROUPS.reach_across_divisor], axis=1) * COORDINATE_SCALE
     size_of_cell = CELL_UNITS * COORDINATE_SCALE / GROUPS.reach_along_factor, CELL_UNITS * COORDINATE_SCALE * GROUPS.reach_across_divisor
-    found = components(cells, places, size_of_cell, distance)
+    labels = components(cells, places, size_of_cell, distance)
     reach = np.zeros(len(cells))
     reach[member] = track_reach(records["spacing"])
     at_rim = np.zeros(len(cells), bool)
     at_rim[member[records["half_width"] * 1e-3 - np.abs(records["d"]) * COORDINATE_SCALE < GROUPS.road_edge_clearance]] = True
     pairs = _across_tracks(places / [distance, GROUPS.reach_across_divisor], reach, at_rim)
     if len(pairs):
-        found = linked_groups(found[pairs[:, 0]], found[pairs[:, 1]], int(found.max()) + 1)[found]
-    return cells, member, found
+        labels = linked_groups(labels[pairs[:, 0]], labels[pairs[:, 1]], int(labels.max()) + 1)[labels]
+    return cells, member, labels
 
 
 def _across_tracks(places, reach, at_rim):
@@ -135,8 +135,8 @@ def _across_tracks(places, reach, at_rim):
     widest = reach[rows].max()
     pairs = rows[cKDTree(places[rows] / [1.0, widest]).query_pairs(1.0, output_type="ndarray").reshape(-1, 2)]
     along, across = (places[pairs[:, 0]] - places[pairs[:, 1]]).T
-    near = along**2 + (across / reach[pairs].min(axis=1)) ** 2 <= 1.0
-    return pairs[near & (at_rim[pairs[:, 0]] == at_rim[pairs[:, 1]])]
+    reachable = along**2 + (across / reach[pairs].min(axis=1)) ** 2 <= 1.0
+    return pairs[reachable & (at_rim[pairs[:, 0]] == at_rim[pairs[:, 1]])]
 
 
 def _shared_labels(cells, labels, others, other_labels):
@@ -184,14 +184,14 @@ def told_by_one_road(found: Sequence[tuple[Columns, np.ndarray]], roads: Sequenc
     following = [int(labels.max(initial=-1)) + 1 for _, labels in found]
     for rows in _shared_points(found):
         home = max(rows, key=lambda k: len(rows[k]))
-        records = _told_by(roads[home], [(found[k][0].take(own), k == home) for k, own in rows.items()])
+        records = _told_by(roads[home], [(found[k][0].take(members), k == home) for k, members in rows.items()])
         if records is not None:
             labels = _clusters(records, distance) + following[home]
             following[home] = int(labels.max()) + 1
-            came[home].append(RoadPaint(records, labels, np.concatenate([paint[k].home[own] for k, own in rows.items()])))
-            for k, own in rows.items():
-                gone[k][own] = True
-    return [_with(one, ~lost, more) if lost.any() or more else one for one, lost, more in zip(paint, gone, came)]
+            came[home].append(RoadPaint(records, labels, np.concatenate([paint[k].home[members] for k, members in rows.items()])))
+            for k, members in rows.items():
+                gone[k][members] = True
+    return [_with(road_paint, ~lost, more) if lost.any() or more else road_paint for road_paint, lost, more in zip(paint, gone, came)]
 
 
 def _shared_points(found):
@@ -203,7 +203,7 @@ def _shared_points(found):
         orders.append(order)
         starts.append(np.r_[begins, len(order)])
         parts.append(_compact_parts(records, order, begins))
-    before = np.cumsum([0, *(len(one) - 1 for one in starts)])
+    before = np.cumsum([0, *(len(road_starts) - 1 for road_starts in starts)])
     spots = np.concatenate([spots for spots, _ in parts])
     part = np.concatenate([number + first for (_, number), first in zip(parts, before)])
     road = np.repeat(np.arange(len(found)), [len(number) for _, number in parts])
@@ -212,13 +212,13 @@ def _shared_points(found):
     group = linked_groups(pairs[:, 0], pairs[:, 1], int(before[-1]))
     members = np.unique(pairs)
     members = members[order_by(members, group[members])]
-    for some in np.split(members, np.flatnonzero(np.diff(group[members])) + 1) if len(members) else ():
+    for linked_parts in np.split(members, np.flatnonzero(np.diff(group[members])) + 1) if len(members) else ():
         rows: dict[int, list[np.ndarray]] = {}
-        for k, number in zip(np.searchsorted(before, some, side="right") - 1, some):
+        for k, number in zip(np.searchsorted(before, linked_parts, side="right") - 1, linked_parts):
             first = number - before[k]
             rows.setdefault(int(k), []).append(orders[k][starts[k][first]:starts[k][first + 1]])
-        joined = {k: np.concatenate(own) for k, own in rows.items()}
-        if _is_figure(np.concatenate([np.column_stack([found[k][0][name].take(own) for name in "xy"]) for k, own in joined.items()])):
+        joined = {k: np.concatenate(indices) for k, indices in rows.items()}
+        if _is_figure(np.concatenate([np.column_stack([found[k][0][name].take(indices) for name in "xy"]) for k, indices in joined.items()])):
             yield joined
 
 
@@ -226,11 +226,11 @@ def _compact_parts(records, order, begins):
     """Different squares (K, 2) that the points of clusters no larger than a figure lie in, and the number of the cluster of each."""
     if not len(begins):
         return np.empty((0, 2), np.int64), np.empty(0, np.int64)
-    places = [records[name].take(order).astype(np.int64) for name in "xy"]
-    size = np.max([np.maximum.reduceat(values, begins) - np.minimum.reduceat(values, begins) for values in places], axis=0)
+    coordinates = [records[name].take(order).astype(np.int64) for name in "xy"]
+    size = np.max([np.maximum.reduceat(values, begins) - np.minimum.reduceat(values, begins) for values in coordinates], axis=0)
     number = np.repeat(np.arange(len(begins)), np.diff(np.r_[begins, len(order)]))
     small = np.flatnonzero(size[number] * COORDINATE_SCALE <= GROUPS.largest_figure)
-    different = np.unique(np.column_stack([number[small], *(values[small] // GROUPS.spot_units for values in places)]), axis=0)
+    different = np.unique(np.column_stack([number[small], *(values[small] // GROUPS.spot_units for values in coordinates)]), axis=0)
     return different[:, 1:], different[:, 0]
 
 
@@ -244,9 +244,9 @@ def _is_figure(places):
 
 def _told_by(road, parts):
     """Points, each part with whether it is the road's own, in the frame of a road; None where it does not reach there."""
-    told = []
-    for records, own in parts:
-        if not own:
+    result = []
+    for records, is_own in parts:
+        if not is_own:
             s, d = road.locate(records["x"] * COORDINATE_SCALE, records["y"] * COORDINATE_SCALE)
             if not np.isfinite(s).all():
                 return None
@@ -254,8 +254,8 @@ def _told_by(road, parts):
             clearance = records["half_width"] * 1e-3 - np.abs(records["d"]) * COORDINATE_SCALE
             half_width = np.clip(np.rint((np.abs(d) + clearance) * 1e3), 0, np.iinfo(np.uint16).max).astype(np.uint16)
             records = records.with_columns(s=to_units(s), d=to_units(d), half_width=half_width)
-        told.append(records)
-    return join_columns(told, told[0].dtype)
+        result.append(records)
+    return join_columns(result, result[0].dtype)
 
 
 def _clusters(records, distance):

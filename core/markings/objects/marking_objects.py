@@ -120,13 +120,13 @@ def _extents(outlines: Outlines, road: np.ndarray, frame: RoadFrame) -> np.ndarr
     """(M, 4) first and last station, least and greatest offset of each outline."""
     owner = outlines.owner
     s, d = located(frame, road[owner], outlines.vertices[:, 0], outlines.vertices[:, 1])
-    known = np.isfinite(s)
-    s, d, owner = s[known], d[known], owner[known]
-    found = np.full((len(outlines), 4), np.nan)
+    finite = np.isfinite(s)
+    s, d, owner = s[finite], d[finite], owner[finite]
+    extents = np.full((len(outlines), 4), np.nan)
     if len(owner):
         starts = np.flatnonzero(np.r_[True, np.diff(owner) != 0])
-        found[owner[starts]] = np.stack([end.reduceat(values, starts) for values in (s, d) for end in (np.minimum, np.maximum)], axis=1)
-    return found
+        extents[owner[starts]] = np.stack([end.reduceat(values, starts) for values in (s, d) for end in (np.minimum, np.maximum)], axis=1)
+    return extents
 
 
 def with_kinds_of(features: Features, markings: MarkingObjects, frame: RoadFrame) -> Features:

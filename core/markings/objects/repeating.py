@@ -70,39 +70,39 @@ def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Seque
         return []
     spots = PlaceIndex(places, STRIPES.comb_window / 2)
     windows = spots.windows(STRIPES.least_spots)
-    known = combs_of(windows) if combs_of else [comb_of_window(places[own]) for own in windows]
-    combs = [comb for comb in known if comb is not None]
-    rows = [own for own, comb in zip(windows, known) if comb is not None]
+    window_combs = combs_of(windows) if combs_of else [comb_of_window(places[members]) for members in windows]
+    combs = [comb for comb in window_combs if comb is not None]
+    rows = [members for members, comb in zip(windows, window_combs) if comb is not None]
     del windows
     crossings: list[Crossing] = []
     for group in _alike(combs):
         check_cancelled()
         best = max((combs[k] for k in group), key=lambda comb: comb.coherence)
         crossings.append((_about(spots, np.unique(np.concatenate([rows[k] for k in group])), best.heading), best))
-    each = stripes_of(crossings) if stripes_of else [stripes_of_crossing(places[own], way[own], best) for own, best in crossings]
-    found, free = [], np.ones(len(places), bool)
-    for (own, best), stripes in zip(crossings, each):
-        if not free[own].all():
+    stripe_lists = stripes_of(crossings) if stripes_of else [stripes_of_crossing(places[members], way[members], best) for members, best in crossings]
+    result, unused = [], np.ones(len(places), bool)
+    for (members, best), stripes in zip(crossings, stripe_lists):
+        if not unused[members].all():
             # one before it has taken some of its spots
             check_cancelled()
-            own = own[free[own]]
-            stripes = stripes_of_crossing(places[own], way[own], best)
-        stripes = [stripe._replace(spots=own[stripe.spots]) for stripe in stripes]
-        free[np.concatenate([np.empty(0, np.int64), *(stripe.spots for stripe in stripes)])] = False
-        found += stripes
-    return found
+            members = members[unused[members]]
+            stripes = stripes_of_crossing(places[members], way[members], best)
+        stripes = [stripe._replace(spots=members[stripe.spots]) for stripe in stripes]
+        unused[np.concatenate([np.empty(0, np.int64), *(stripe.spots for stripe in stripes)])] = False
+        result += stripes
+    return result
 
 
 def _about(spots, rows, heading):
     """Rows of the spots in the box about some spots, along a heading and across it, and `REACH_OF_CROSSING` beyond it."""
     places = spots.places
     turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
-    own = places[rows] @ turn
-    low, high = own.min(axis=0) - STRIPES.reach_of_crossing, own.max(axis=0) + STRIPES.reach_of_crossing
+    turned_spots = places[rows] @ turn
+    low, high = turned_spots.min(axis=0) - STRIPES.reach_of_crossing, turned_spots.max(axis=0) + STRIPES.reach_of_crossing
     corners = np.array([low, (low[0], high[1]), high, (high[0], low[1])]) @ turn.T
-    near = spots.within(corners.min(axis=0) - 1.0, corners.max(axis=0) + 1.0)
-    turned = places[near] @ turn
-    return near[((turned >= low) & (turned <= high)).all(axis=1)]
+    in_box = spots.within(corners.min(axis=0) - 1.0, corners.max(axis=0) + 1.0)
+    turned = places[in_box] @ turn
+    return in_box[((turned >= low) & (turned <= high)).all(axis=1)]
 
 
 def comb_of_window(spots: np.ndarray) -> Comb | None:
@@ -112,8 +112,8 @@ def comb_of_window(spots: np.ndarray) -> Comb | None:
 
 def _least_spread(places):
     """Standard deviation of places in the direction where it is least, m."""
-    off = places - places.sum(axis=0) / len(places)
-    (xx, xy), (_, yy) = (off.T @ off / (len(places) - 1)).tolist()
+    deviations = places - places.sum(axis=0) / len(places)
+    (xx, xy), (_, yy) = (deviations.T @ deviations / (len(places) - 1)).tolist()
     return float(np.sqrt(max((xx + yy) / 2 - np.hypot((xx - yy) / 2, xy), 0.0)))
 
 
@@ -126,14 +126,14 @@ def _mean_phase(across, pitches):
 def find_comb(places: np.ndarray) -> Comb | None:
     """The direction and pitch in which spots, (N, 2) m, repeat as stripes side by side do; None where they are no three stripes side by side."""
     middle = places.mean(axis=0)
-    own = (places - middle)[::max(len(places) // STRIPES.most_spots, 1)]
-    phase = _phases(own)
+    centred = (places - middle)[::max(len(places) // STRIPES.most_spots, 1)]
+    phase = _phases(centred)
     length = np.abs(phase)
     peaks = np.argwhere((length >= 0.8 * STRIPES.min_comb_coherence) & (length >= cv2.dilate(length, np.ones((3, 3), np.uint8))))
     # one line, and spots in a corner of the window, repeat at every pitch: stripes must lie side by side, each as long as one
     for a, b in peaks[np.argsort(-length[tuple(peaks.T)], kind="stable")][:STRIPES.most_peaks].tolist():
-        comb = _refined(own, middle, COMB_HEADINGS[a], COMB_PITCHES[b])
-        if comb.coherence >= STRIPES.min_comb_coherence and _has_stripes(own, comb):
+        comb = _refined(centred, middle, COMB_HEADINGS[a], COMB_PITCHES[b])
+        if comb.coherence >= STRIPES.min_comb_coherence and _has_stripes(centred, comb):
             return comb
     return None
 
@@ -179,8 +179,8 @@ def _has_stripes(own, comb):
     number, _, along = _numbered(own, comb)
     number -= number.min()
     enough = np.bincount(number) >= STRIPES.min_share_of_stripe * len(own)
-    beside = np.convolve(enough, np.ones(STRIPES.min_stripes, int)) == STRIPES.min_stripes   # the last of so many side by side
-    if not beside.any():
+    side_by_side = np.convolve(enough, np.ones(STRIPES.min_stripes, int)) == STRIPES.min_stripes   # the last of so many side by side
+    if not side_by_side.any():
         return False
     spans = {}
     for k in np.flatnonzero(enough).tolist():
@@ -204,8 +204,8 @@ def _alike(combs):
     heading, pitch, middle = (np.array([getattr(comb, name) for comb in combs]) for name in ("heading", "pitch", "middle"))
     a, b = cKDTree(middle).query_pairs(STRIPES.comb_window, output_type="ndarray").reshape(-1, 2).T
     turn = np.abs((heading[a] - heading[b] + np.pi / 2) % np.pi - np.pi / 2)
-    same = (turn <= STRIPES.same_heading) & (np.abs(pitch[a] - pitch[b]) <= STRIPES.same_pitch * np.maximum(pitch[a], pitch[b]))
-    return [members.tolist() for _, members in members_of(linked_groups(a[same], b[same], len(combs)))]
+    alike = (turn <= STRIPES.same_heading) & (np.abs(pitch[a] - pitch[b]) <= STRIPES.same_pitch * np.maximum(pitch[a], pitch[b]))
+    return [members.tolist() for _, members in members_of(linked_groups(a[alike], b[alike], len(combs)))]
 
 
 def stripes_of_crossing(places: np.ndarray, way: np.ndarray, comb: Comb) -> list[Stripe]:
@@ -213,46 +213,46 @@ def stripes_of_crossing(places: np.ndarray, way: np.ndarray, comb: Comb) -> list
     if len(places) < STRIPES.least_spots:
         return []
     rows, middle = np.arange(len(places)), places.mean(axis=0)
-    own = places - middle
-    best, some = comb, own[::max(len(own) // (8 * STRIPES.most_spots), 1)]
+    centred = places - middle
+    best, sample = comb, centred[::max(len(centred) // (8 * STRIPES.most_spots), 1)]
     # a window tells the pitch of three stripes less well than all of them do
     for steps in STRIPES.steps_of_crossing:
-        best = _refined(some, middle, best.heading, best.pitch, steps)
+        best = _refined(sample, middle, best.heading, best.pitch, steps)
     if best.coherence < STRIPES.min_comb_coherence:
         return []
-    number, off, along = _numbered(own, best)
-    striped = _striped(number, off / best.pitch, along)
-    rows, own, number, off, along = (values[striped] for values in (rows, own, number, off, along))
+    number, offset, along = _numbered(centred, best)
+    striped = _striped(number, offset / best.pitch, along)
+    rows, centred, number, offset, along = (values[striped] for values in (rows, centred, number, offset, along))
     if len(rows) < STRIPES.least_spots:
         return []
     # spots of lines that end at the crossing turned the comb: its stripes alone tell their direction and pitch
-    row = _row_of_stripes(number, off, along, best)
+    row = _row_of_stripes(number, offset, along, best)
     if row is None:
         return []
-    best = _fitted(number, off, along, best, row)
-    number, off, along = _numbered(own, best)
-    row = _row_of_stripes(number, off, along, best)
+    best = _fitted(number, offset, along, best, row)
+    number, offset, along = _numbered(centred, best)
+    row = _row_of_stripes(number, offset, along, best)
     if row is None:
         return []
-    kept, width, ends = row.numbers, row.width, row.ends
+    stripe_numbers, width, ends = row.numbers, row.width, row.ends
     if (lengths := np.median(ends[:, 1] - ends[:, 0])) > STRIPES.stripe_length[1] or lengths < STRIPES.min_stripe_span:
         return []
     # the ends of all stripes lie on a line
-    lines = [_line_of_ends(np.array(kept), end, outward) for end, outward in zip(ends.T, (-1, 1))]
+    lines = [_line_of_ends(np.array(stripe_numbers), end, outward) for end, outward in zip(ends.T, (-1, 1))]
     turn = np.abs((best.heading - way[rows] + np.pi / 2) % np.pi - np.pi / 2)
     skew = STRIPES.max_row_skew_along if np.median(turn) <= STRIPES.along_road else STRIPES.max_row_skew
     if np.mean([abs(slope) for _, slope in lines]) > np.tan(skew) * best.pitch:
         return []
     ends = np.stack([line for line, _ in lines], axis=1)
     c, n = np.cos(best.heading), np.sin(best.heading)
-    found = []
-    for k, (first, last) in zip(kept, ends):
+    stripes = []
+    for k, (first, last) in zip(stripe_numbers, ends):
         side = best.phase + k * best.pitch + np.array([-width / 2, width / 2])
         corners = np.array([(first, side[0]), (last, side[0]), (last, side[1]), (first, side[1])]) @ np.array([[c, n], [-n, c]]) + middle
-        near = (along >= first - STRIPES.max_stray_end) & (along <= last + STRIPES.max_stray_end)
-        inside = (np.abs(off) <= width / 2 + STRIPES.ragged) & (number == k) & near
-        found.append(Stripe(rows[inside], corners))
-    return found
+        along_stripe = (along >= first - STRIPES.max_stray_end) & (along <= last + STRIPES.max_stray_end)
+        inside = (np.abs(offset) <= width / 2 + STRIPES.ragged) & (number == k) & along_stripe
+        stripes.append(Stripe(rows[inside], corners))
+    return stripes
 
 
 class _Row(NamedTuple):
@@ -265,35 +265,35 @@ class _Row(NamedTuple):
 
 def _row_of_stripes(number, off, along, comb):
     """The stripes that are broad and long enough, from spots by the stripe nearest to each; None where they are no crossing's."""
-    on = np.abs(off) < STRIPES.max_width_of_pitch / 2 * comb.pitch
+    on_stripe = np.abs(off) < STRIPES.max_width_of_pitch / 2 * comb.pitch
     # half of what is spread evenly over a stripe lies within a quarter of its width
-    width = 4 * float(np.median(np.abs(off[on])))
+    width = 4 * float(np.median(np.abs(off[on_stripe])))
     if width < max(STRIPES.stripe_width[0], STRIPES.min_width_of_pitch * comb.pitch):
         return None
     width = min(width, STRIPES.stripe_width[1], STRIPES.max_width_of_pitch * comb.pitch)
-    on = np.abs(off) <= width / 2
-    kept, ends = [], []
-    numbers, counts = _without_strays(*np.unique(number[on], return_counts=True))
+    on_stripe = np.abs(off) <= width / 2
+    kept_numbers, ends = [], []
+    numbers, counts = _without_strays(*np.unique(number[on_stripe], return_counts=True))
     usual = np.median(counts)
     for k, count in zip(numbers, counts):
-        span = _span(along[on & (number == k)])
-        own_width, aside = _width(along[on & (number == k)], off[on & (number == k)])
+        span = _span(along[on_stripe & (number == k)])
+        own_width, aside = _width(along[on_stripe & (number == k)], off[on_stripe & (number == k)])
         # a curb or a line that happens to lie there is narrower, or on one side; few spots tell their middle to two standard errors
         full = aside <= max(STRIPES.max_aside, 1 / np.sqrt(count)) * width and own_width >= STRIPES.min_of_width * width
         if full and count >= STRIPES.min_of_usual * usual and span[1] - span[0] >= STRIPES.min_stripe_span / 2:
-            kept.append(int(k))
+            kept_numbers.append(int(k))
             ends.append(span)
-    if max(map(len, np.split(kept, np.flatnonzero(np.diff(kept) != 1) + 1))) < STRIPES.min_stripes:
+    if max(map(len, np.split(kept_numbers, np.flatnonzero(np.diff(kept_numbers) != 1) + 1))) < STRIPES.min_stripes:
         return None
-    return _Row(kept, width, np.array(ends))
+    return _Row(kept_numbers, width, np.array(ends))
 
 
 def _fitted(number, off, along, comb, row):
     """The comb turned, shifted and stretched onto the spots of a row of its stripes, by least squares."""
-    on = np.isin(number, row.numbers) & (np.abs(off) <= row.width / 2 + STRIPES.ragged)
+    on_stripes = np.isin(number, row.numbers) & (np.abs(off) <= row.width / 2 + STRIPES.ragged)
     # a spot lies across at phase + number * pitch + turn * along, and anywhere over the width of its stripe
-    design = np.column_stack([np.ones(on.sum()), number[on], along[on]])
-    shift, stretch, turn = np.linalg.lstsq(design, off[on], rcond=None)[0].tolist()
+    design = np.column_stack([np.ones(on_stripes.sum()), number[on_stripes], along[on_stripes]])
+    shift, stretch, turn = np.linalg.lstsq(design, off[on_stripes], rcond=None)[0].tolist()
     # across the turned stripes the distances shorten by the cosine of the turn
     heading, c = comb.heading + np.arctan(turn), np.cos(np.arctan(turn))
     return comb._replace(heading=float(heading), pitch=(comb.pitch + stretch) * c, phase=(comb.phase + shift) * c)
@@ -311,10 +311,10 @@ def _striped(number, phase, along):
     runs = np.cumsum(np.diff(np.r_[False, full].astype(int)) == 1) * full
     spots = np.bincount(runs, count * full)
     best = int(spots[1:].argmax()) + 1 if len(spots) > 1 else -1
-    own = runs == best
+    best_run = runs == best
     # the stripes may end a little way into the next step
-    ends = (mean >= STRIPES.least_phase) & (stripes > 1) & (np.r_[own[1:], False] | np.r_[False, own[:-1]])
-    return (own | ends)[step]
+    ends = (mean >= STRIPES.least_phase) & (stripes > 1) & (np.r_[best_run[1:], False] | np.r_[False, best_run[:-1]])
+    return (best_run | ends)[step]
 
 
 def _span(along):
@@ -349,8 +349,8 @@ def _line_of_ends(number, end, outward):
     """
     a, b = np.triu_indices(len(number), 1)
     slope = float(np.median((end[b] - end[a]) / (number[b] - number[a])))
-    off = np.sort(outward * (end - slope * number))
-    line = outward * off[int(STRIPES.ends_seen / 100 * (len(off) - 1))] + slope * number
+    residuals = np.sort(outward * (end - slope * number))
+    line = outward * residuals[int(STRIPES.ends_seen / 100 * (len(residuals) - 1))] + slope * number
     return np.where(outward * (line - end) <= STRIPES.max_stray_end, line, line - outward * STRIPES.max_stray_end), slope
 
 
@@ -383,28 +383,28 @@ def dashes_beyond(row: Sequence[Shape], others: Sequence[Shape]) -> list[int]:
     """
     if not others:
         return []
-    middle, place = (np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes]) for shapes in (row, others))
+    middle, other_middle = (np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes]) for shapes in (row, others))
     length, width, turn = (np.array([getattr(shape, name) for shape in others]) for name in ("length", "width", "direction"))
     usual = np.median([shape.length for shape in row])
     alike = np.maximum(length, usual) <= ROWS.max_dash_length_ratio * np.minimum(length, usual)
     along = np.argsort((middle - middle.mean(axis=0)) @ _way(middle))
     pace = float(np.median(np.hypot(*np.diff(middle[along], axis=0).T)))
-    found: list[int] = []
+    result: list[int] = []
     for outwards in (along, along[::-1]):
-        known = list(middle[outwards])
+        chain = list(middle[outwards])
         while True:
-            last = np.array(known[-ROWS.min_dashes_in_row:])
+            last = np.array(chain[-ROWS.min_dashes_in_row:])
             way = _way(last)
-            ahead, off = (place - last[-1]) @ way, np.abs((place - last.mean(axis=0)) @ (-way[1], way[0]))
+            ahead, offset = (other_middle - last[-1]) @ way, np.abs((other_middle - last.mean(axis=0)) @ (-way[1], way[0]))
             oblique = turn - np.arctan2(way[1], way[0])
             narrow = length * np.abs(np.sin(oblique)) + width * np.abs(np.cos(oblique)) <= ROWS.max_dash_breadth
-            follows = np.flatnonzero(alike & narrow & (off <= ROWS.max_dash_offset) & (ahead >= max(ROWS.min_next_step * pace, ROWS.min_dash_spacing))
-                                     & (ahead <= ROWS.max_step_ratio * pace))
+            follows = np.flatnonzero(alike & narrow & (offset <= ROWS.max_dash_offset)
+                                     & (ahead >= max(ROWS.min_next_step * pace, ROWS.min_dash_spacing)) & (ahead <= ROWS.max_step_ratio * pace))
             if not len(follows):
                 break
-            found.append(int(follows[np.argmin(ahead[follows])]))
-            known.append(place[found[-1]])
-    return found
+            result.append(int(follows[np.argmin(ahead[follows])]))
+            chain.append(other_middle[result[-1]])
+    return result
 
 
 def _way(places):
@@ -431,8 +431,8 @@ def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -
     if not rows:
         return result
     sure = np.unique(np.concatenate(rows))
-    rest = np.setdiff1d(squares, sure)
-    pairs, size, apart = _pairs_of_squares(sides[rest], middle[rest])
+    unsure = np.setdiff1d(squares, sure)
+    pairs, size, apart = _pairs_of_squares(sides[unsure], middle[unsure])
     at_pace = np.zeros(len(pairs), bool)
     for row in rows:
         usual, pace = sides[row].mean(), _pace(middle[row])
@@ -441,13 +441,13 @@ def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -
     larger = sides.max(axis=1)
     small = np.flatnonzero(larger > 0)
     tree = cKDTree(middle[small])
-    for row in [*rows, *rest[pairs[at_pace]]]:
+    for row in [*rows, *unsure[pairs[at_pace]]]:
         result[row] = True
         usual = sides[row].mean()
 
         def likely(place, reach, usual=usual):
-            near = small[sorted(tree.query_ball_point(place, reach))]
-            return near[(larger[near] >= usual / ROWS.max_end_ratio) & (larger[near] <= ROWS.max_end_ratio * usual)]
+            candidates = small[sorted(tree.query_ball_point(place, reach))]
+            return candidates[(larger[candidates] >= usual / ROWS.max_end_ratio) & (larger[candidates] <= ROWS.max_end_ratio * usual)]
 
         result[_led_on(middle[row], middle, likely)] = True
     return result
@@ -455,16 +455,16 @@ def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -
 
 def _led_on(row, middle, likely):
     """Pieces at the pace of a row of (K, 2) places beyond its ends; `likely` gives those that may be, within a distance of a place."""
-    way, pace, found = _way(row), _pace(row), []
+    way, pace, numbers = _way(row), _pace(row), []
     along = (row - row.mean(axis=0)) @ way
     for sign, place in ((1.0, row[np.argmax(along)]), (-1.0, row[np.argmin(along)])):
         while True:
             place = place + sign * pace * way
-            near = likely(place, ROWS.max_end_offset * pace)
-            if not len(near):
+            candidates = likely(place, ROWS.max_end_offset * pace)
+            if not len(candidates):
                 break
-            found.append(int(near[np.argmin(np.hypot(*(middle[near] - place).T))]))
-    return found
+            numbers.append(int(candidates[np.argmin(np.hypot(*(middle[candidates] - place).T))]))
+    return numbers
 
 
 def _pace(middle):
@@ -478,10 +478,10 @@ def blocks_of_strip(cells: np.ndarray) -> np.ndarray | None:
     `cells` : (K, 2) int, different ones, of a frame in which the line is straight. None where they are no row of blocks.
     """
     direction = np.linalg.eigh(np.cov(cells.T))[1][:, 1]
-    places = cells @ np.array([[direction[0], -direction[1]], [direction[1], direction[0]]])
-    if np.ptp(places[:, 0]) * CELL_SIZE < ROWS.least_strip or not ROWS.block_size[0] <= np.ptp(places[:, 1]) * CELL_SIZE <= ROWS.block_size[1]:
+    turned = cells @ np.array([[direction[0], -direction[1]], [direction[1], direction[0]]])
+    if np.ptp(turned[:, 0]) * CELL_SIZE < ROWS.least_strip or not ROWS.block_size[0] <= np.ptp(turned[:, 1]) * CELL_SIZE <= ROWS.block_size[1]:
         return None
-    step = np.floor(places[:, 0] - places[:, 0].min()).astype(np.int64)
+    step = np.floor(turned[:, 0] - turned[:, 0].min()).astype(np.int64)
     count = np.bincount(step)
     painted = np.flatnonzero(count >= ROWS.painted_share * np.percentile(count[count > 0], 75))
     gaps = np.diff(painted)
@@ -492,11 +492,11 @@ def blocks_of_strip(cells: np.ndarray) -> np.ndarray | None:
     low, high = np.full((2, len(apart) + 1), np.inf), np.full((2, len(apart) + 1), -np.inf)
     rows = np.flatnonzero(np.isin(step, painted))
     for k in range(2):
-        np.minimum.at(low[k], number[rows], places[rows, k])
-        np.maximum.at(high[k], number[rows], places[rows, k])
-    found = _rows_of_blocks((high - low + 1).T * CELL_SIZE, (low + high).T / 2 * CELL_SIZE)
+        np.minimum.at(low[k], number[rows], turned[rows, k])
+        np.maximum.at(high[k], number[rows], turned[rows, k])
+    block_rows = _rows_of_blocks((high - low + 1).T * CELL_SIZE, (low + high).T / 2 * CELL_SIZE)
     # those at the ends may be cut off
-    return number if sum(map(len, found)) >= max(len(apart) - 1, ROWS.min_blocks_in_row) else None
+    return number if sum(map(len, block_rows)) >= max(len(apart) - 1, ROWS.min_blocks_in_row) else None
 
 
 def _rows_of_blocks(sides: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:
@@ -528,8 +528,8 @@ def _narrow(length, width, turn, pairs, ways):
     heading = np.arctan2(ways[:, 1], ways[:, 0])
     narrow = np.ones(len(pairs), bool)
     for k in pairs.T:
-        off = turn[k] - heading
-        narrow &= length[k] * np.abs(np.sin(off)) + width[k] * np.abs(np.cos(off)) <= ROWS.max_dash_breadth
+        oblique = turn[k] - heading
+        narrow &= length[k] * np.abs(np.sin(oblique)) + width[k] * np.abs(np.cos(oblique)) <= ROWS.max_dash_breadth
     return narrow
 
 
@@ -543,9 +543,9 @@ def _chains(pairs, apart, ways, fewest=ROWS.min_dashes_in_row, max_step_ratio=RO
     after = order[np.arange(len(before)) - np.repeat(np.cumsum(count) - count - first, count)]
     even = np.maximum(apart[before], apart[after]) <= max_step_ratio * np.minimum(apart[before], apart[after])
     straight = (ways[before] * ways[after]).sum(axis=1) >= ROWS.min_step_cosine
-    off = apart[after] * np.abs(ways[before, 0] * ways[after, 1] - ways[before, 1] * ways[after, 0])
-    joined = even & straight & (off <= max_offset)
+    offset = apart[after] * np.abs(ways[before, 0] * ways[after, 1] - ways[before, 1] * ways[after, 0])
+    joined = even & straight & (offset <= max_offset)
     row = linked_groups(before[joined], after[joined], len(pairs))
     # a row is found twice, forwards and backwards
-    found = {tuple(np.unique(pairs[steps]).tolist()) for _, steps in members_of(row) if len(steps) >= fewest - 1}
-    return [np.array(members) for members in sorted(found) if len(members) >= fewest]
+    chains = {tuple(np.unique(pairs[steps]).tolist()) for _, steps in members_of(row) if len(steps) >= fewest - 1}
+    return [np.array(members) for members in sorted(chains) if len(members) >= fewest]

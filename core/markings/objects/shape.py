@@ -130,12 +130,12 @@ def _stems(cells):
 
 def _oblique(s, d):
     """How fast the tracks cross a cluster at its begin and at its end, from the points there."""
-    found = []
+    slopes = []
     for end in (s - s.min() <= SHAPES.end_units, s.max() - s <= SHAPES.end_units):
         along, across = s[end] - s[end].mean(), d[end] - d[end].mean()
         clear = len(along) >= SHAPES.min_end_points and np.ptp(along) >= SHAPES.min_end_units
-        found.append(abs(float((along * across).sum() / (along * along).sum())) if clear else 0.0)
-    return found[0], found[1]
+        slopes.append(abs(float((along * across).sum() / (along * along).sum())) if clear else 0.0)
+    return slopes[0], slopes[1]
 
 
 def _full_width(across: np.ndarray) -> float:
@@ -203,14 +203,14 @@ def zigzag_legs(cells: np.ndarray) -> int:
     if not (ZIGZAG.zigzag_length[0] <= length <= ZIGZAG.zigzag_length[1] and ZIGZAG.zigzag_breadth[0] <= breadth <= ZIGZAG.zigzag_breadth[1]):
         return 0
     count = np.bincount(step)
-    seen = count > 0
-    if seen.mean() < ZIGZAG.min_steps_seen:
+    painted = count > 0
+    if painted.mean() < ZIGZAG.min_steps_seen:
         return 0
     low, high = np.full(len(count), np.inf), np.full(len(count), -np.inf)
     np.minimum.at(low, step, cells[:, 1])
     np.maximum.at(high, step, cells[:, 1])
-    thin = seen & (high - low < ZIGZAG.max_stroke / CELL_SIZE)
-    if np.count_nonzero(thin) < ZIGZAG.min_thin * np.count_nonzero(seen):
+    thin = painted & (high - low < ZIGZAG.max_stroke / CELL_SIZE)
+    if np.count_nonzero(thin) < ZIGZAG.min_thin * np.count_nonzero(painted):
         return 0
     rows = np.flatnonzero(thin)
     along, across = (rows + 0.5) * ZIGZAG.step_cells * CELL_SIZE, (low[rows] + high[rows]) / 2 * CELL_SIZE
@@ -221,7 +221,7 @@ def _legs(along, across):
     ends = _turns(across)
     if len(ends) <= ZIGZAG.min_legs:
         return 0
-    runs, rises, off = [], [], []
+    runs, rises, scatter = [], [], []
     for first, last in zip(ends[:-1], ends[1:]):
         u, v = along[first:last + 1], across[first:last + 1]
         if len(u) < 3:
@@ -229,23 +229,23 @@ def _legs(along, across):
         slope, middle = np.polyfit(u - u.mean(), v, 1)
         runs.append(u[-1] - u[0])
         rises.append(slope)
-        off.append(np.sqrt(np.mean((v - middle - slope * (u - u.mean())) ** 2)))
-    runs, rises, off = np.array(runs), np.array(rises), np.array(off)
+        scatter.append(np.sqrt(np.mean((v - middle - slope * (u - u.mean())) ** 2)))
+    runs, rises, scatter = np.array(runs), np.array(rises), np.array(scatter)
     # what is left of a leg at either end may be short
-    whole = np.r_[runs[0] >= ZIGZAG.leg_along[0], np.ones(max(len(runs) - 2, 0), bool), runs[-1] >= ZIGZAG.leg_along[0]]
-    if np.count_nonzero(whole) < ZIGZAG.min_legs or (np.sign(rises[:-1]) == np.sign(rises[1:])).any():
+    complete = np.r_[runs[0] >= ZIGZAG.leg_along[0], np.ones(max(len(runs) - 2, 0), bool), runs[-1] >= ZIGZAG.leg_along[0]]
+    if np.count_nonzero(complete) < ZIGZAG.min_legs or (np.sign(rises[:-1]) == np.sign(rises[1:])).any():
         return 0
-    inner, slopes = runs[1:-1], np.abs(rises[whole])
+    inner, slopes = runs[1:-1], np.abs(rises[complete])
     even = inner.min() >= ZIGZAG.leg_along[0] and runs.max() <= ZIGZAG.leg_along[1] and inner.max() <= ZIGZAG.max_length_ratio * inner.min() \
         and runs.max() <= ZIGZAG.max_length_ratio * inner.max()
     steep = ZIGZAG.leg_slope[0] <= slopes.min() and slopes.max() <= ZIGZAG.leg_slope[1] and slopes.max() <= ZIGZAG.max_slope_ratio * slopes.min()
-    straight = (off[whole] <= np.maximum(ZIGZAG.max_off_straight * slopes * runs[whole], ZIGZAG.least_off_straight)).all()
-    return int(np.count_nonzero(whole)) if even and steep and straight else 0
+    straight = (scatter[complete] <= np.maximum(ZIGZAG.max_off_straight * slopes * runs[complete], ZIGZAG.least_off_straight)).all()
+    return int(np.count_nonzero(complete)) if even and steep and straight else 0
 
 
 def _turns(across):
     """Places where a run turns back by at least `LEAST_TURN`, and its extremes before the first turn and after the last."""
-    found, best, way = [], 0, 0
+    turns, best, way = [], 0, 0
     lowest = highest = 0
     for k, value in enumerate(across.tolist()):
         if way == 0:
@@ -253,13 +253,13 @@ def _turns(across):
             highest = k if value > across[highest] else highest
             if across[highest] - across[lowest] >= ZIGZAG.least_turn:
                 way, best = (1, k) if highest > lowest else (-1, k)
-                found.append(lowest if way > 0 else highest)
+                turns.append(lowest if way > 0 else highest)
         elif way * (value - across[best]) >= 0:
             best = k
         elif way * (across[best] - value) >= ZIGZAG.least_turn:
-            found.append(best)
+            turns.append(best)
             best, way = k, -way
-    return [*found, best]
+    return [*turns, best]
 
 
 # Outlines: the cells that a cluster's points lie in, closed along the road, where scan lines lie apart, and much less across it, where the next
@@ -343,8 +343,8 @@ def drawn_outline(columns: Sequence[np.ndarray], shape: Shape, strip: bool, road
     """
     s, d, x, y, z, spacing = columns
     drawn = band(s, d, shape) if strip else _cell_outline(*painted_cells(s * COORDINATE_SCALE, d * COORDINATE_SCALE, spacing))
-    places = np.stack([x, y, z], axis=1) * COORDINATE_SCALE
-    return [to_local(part, road, places) for part in parts(drawn)]
+    points = np.stack([x, y, z], axis=1) * COORDINATE_SCALE
+    return [to_local(part, road, points) for part in parts(drawn)]
 
 
 def to_local(shape: shapely.Polygon, road: Road, places: np.ndarray) -> shapely.Polygon:

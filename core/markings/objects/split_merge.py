@@ -42,10 +42,10 @@ def split_compounds(records: Columns, labels: np.ndarray, parts_of: Callable[...
 
     bounds = list(zip(starts[large].tolist(), np.r_[starts[1:], len(order)][large].tolist()))
     if parts_of is None:
-        found = [parts_of_compound(along[a:b], across[a:b], apart[a:b]) for a, b in bounds]
+        divided = [parts_of_compound(along[a:b], across[a:b], apart[a:b]) for a, b in bounds]
     else:
-        found = parts_of(along, across, apart, bounds)
-    for (a, b), (parts, count) in zip(bounds, found):
+        divided = parts_of(along, across, apart, bounds)
+    for (a, b), (parts, count) in zip(bounds, divided):
         if count > 1:
             labels[order[a:b]] = following + parts
             following += count
@@ -76,10 +76,10 @@ def _parts(cells, spacing):
     if not reach.any():
         return _parts_of_filled(cells)
     mask, first = filled_between_tracks(cells, reach)
-    place = np.flatnonzero(mask)
-    parts, _ = _parts_of_filled(np.column_stack(np.divmod(place, mask.shape[1])) + first)
-    own = np.ravel_multi_index(tuple((cells - first).T), mask.shape)
-    _, parts = np.unique(parts[np.searchsorted(place, own)], return_inverse=True)
+    filled = np.flatnonzero(mask)
+    parts, _ = _parts_of_filled(np.column_stack(np.divmod(filled, mask.shape[1])) + first)
+    cell_index = np.ravel_multi_index(tuple((cells - first).T), mask.shape)
+    _, parts = np.unique(parts[np.searchsorted(filled, cell_index)], return_inverse=True)
     return parts, int(parts.max()) + 1
 
 
@@ -92,10 +92,10 @@ def _parts_of_filled(cells):
     if not _of_several(*(np.ptp(cells, axis=0) * size).tolist()):
         return bar_with_lines(cells)
     parts, count = np.full(len(cells), -1), 0
-    for window, least in COMPOUNDS.strip_windows:
+    for window, min_length in COMPOUNDS.strip_windows:
         rest = np.flatnonzero(parts < 0)
         strip = rest[_in_lines(cells[rest], COMPOUNDS.max_scan_gap, window)]
-        before, count = count, _number_strips(parts, count, cells, strip, COMPOUNDS.max_scan_gap, size, least)
+        before, count = count, _number_strips(parts, count, cells, strip, COMPOUNDS.max_scan_gap, size, min_length)
         for _, inside in members_of(np.where(parts >= before, parts, -1)):
             parts[inside[~even_strip(cells[inside])[0]]] = -1
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
@@ -110,19 +110,19 @@ def _parts_of_filled(cells):
     rest = np.flatnonzero(parts < 0)
     pieces = _linked(cells[rest], COMPOUNDS.max_scan_gap / size, 3.0)
     number = int(pieces.max(initial=-1))
-    for _, own in members_of(pieces):
-        inner, _ = bar_with_lines(cells[rest[own]])
-        pieces[own[inner > 0]] = number + inner[inner > 0]
+    for _, members in members_of(pieces):
+        inner, _ = bar_with_lines(cells[rest[members]])
+        pieces[members[inner > 0]] = number + inner[inner > 0]
         number += int(inner.max())
     areas = np.bincount(pieces) * size**2 if len(pieces) else np.empty(0)
-    kept = areas >= COMPOUNDS.min_leftover_area
-    later = np.where(kept, count + np.cumsum(kept) - 1, -1)
+    large = areas >= COMPOUNDS.min_leftover_area
+    later = np.where(large, count + np.cumsum(large) - 1, -1)
     parts[rest] = later[pieces]
     lost = parts < 0
     if lost.any():
         owned = np.flatnonzero(~lost)
         parts[lost] = parts[owned[cKDTree(cells[owned]).query(cells[lost])[1]]]
-    return parts, int(count + kept.sum())
+    return parts, int(count + large.sum())
 
 
 def _in_lines(cells, longest_gap, window):
@@ -143,15 +143,15 @@ def _in_lines(cells, longest_gap, window):
         rows = stretch_of(along, first, (number + 1) * chunk + 2 * length - 1)
         column, across = along[rows] - first, cells[rows, 1]
         # most lines run along the road: fewer and fewer cells are looked for, and none that lie too far from them to matter
-        wanted, near = np.flatnonzero(along[rows] // chunk == number), np.arange(len(column))
+        sought, nearby = np.flatnonzero(along[rows] // chunk == number), np.arange(len(column))
         for slope in sorted(range(-steps, steps + 1), key=abs):
             painted = np.zeros(len(column), bool)
-            painted[near] = _painted_along(column[near], across[near], slope * (COMPOUNDS.max_border_drift / window), gap, length)
-            result[rows.start + wanted[painted[wanted]]] = True
-            wanted = wanted[~painted[wanted]]
-            if not len(wanted):
+            painted[nearby] = _painted_along(column[nearby], across[nearby], slope * (COMPOUNDS.max_border_drift / window), gap, length)
+            result[rows.start + sought[painted[sought]]] = True
+            sought = sought[~painted[sought]]
+            if not len(sought):
                 break
-            near = np.flatnonzero(_within(column, column[wanted], length + gap))
+            nearby = np.flatnonzero(_within(column, column[sought], length + gap))
     return result
 
 
@@ -218,8 +218,8 @@ def _in_runs(cells, longest_gap, shortest_run):
         # a line may leave its row of cells by one: the road's frame is not the paint's
         joined = cv2.dilate(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((1, gap + 1), np.uint8)), np.ones((3, 1), np.uint8))
         runs = cv2.morphologyEx(joined, cv2.MORPH_OPEN, np.ones((1, run), np.uint8))
-        own = np.flatnonzero(along[rows] // chunk == number)
-        result[rows.start + own] = runs[row[own], column[own]] > 0
+        inner = np.flatnonzero(along[rows] // chunk == number)
+        result[rows.start + inner] = runs[row[inner], column[inner]] > 0
     return result
 
 
@@ -256,9 +256,9 @@ def _along(shapes, max_width):
     longest = np.clip(COMPOUNDS.tracks_per_gap * spacing, COMPOUNDS.max_worn_gap, COMPOUNDS.max_gap_between_tracks)
     # a box of -0.2 to 2 m along and 8 cm either way across about each end
     scale = np.array([(COMPOUNDS.max_gap_between_tracks + COMPOUNDS.max_fragment_overlap) / 2, COMPOUNDS.max_fragment_offset])
-    about = (ends + np.array([(COMPOUNDS.max_gap_between_tracks - COMPOUNDS.max_fragment_overlap) / 2, 0.0])) / scale
-    near = cKDTree(begins / scale).query_ball_point(about, 1.0, p=np.inf)
-    pairs = np.array([(a, b) for a, found in enumerate(near) for b in found if a != b], np.int64).reshape(-1, 2)
+    boxes = (ends + np.array([(COMPOUNDS.max_gap_between_tracks - COMPOUNDS.max_fragment_overlap) / 2, 0.0])) / scale
+    neighbours = cKDTree(begins / scale).query_ball_point(boxes, 1.0, p=np.inf)
+    pairs = np.array([(a, b) for a, beginnings in enumerate(neighbours) for b in beginnings if a != b], np.int64).reshape(-1, 2)
     gap = begins[pairs[:, 1], 0] - ends[pairs[:, 0], 0]
     return np.concatenate([narrow[pairs[gap <= longest[pairs].min(axis=1)]], _unseen_gaps(shapes, narrow)])
 
@@ -270,7 +270,7 @@ def _unseen_gaps(shapes, narrow):
         return np.empty((0, 2), np.int64)
     first, last, offset = (np.array([getattr(shapes[k], name) for k in sparse]) for name in ("s0", "s1", "offset"))
     sideways = np.array([shapes[k].oblique for k in sparse]) >= COMPOUNDS.min_oblique
-    a, b = (np.concatenate(found) for found in zip(*overlapping_pairs(first, last, first, last, COMPOUNDS.max_unseen_gap)))
+    a, b = (np.concatenate(parts) for parts in zip(*overlapping_pairs(first, last, first, last, COMPOUNDS.max_unseen_gap)))
     gap = first[b] - last[a]
     unseen = (a != b) & (gap >= 0) & (gap <= COMPOUNDS.max_unseen_gap) & (sideways[a, 1] | sideways[b, 0])
     return sparse[np.column_stack([a, b])[unseen & (np.abs(offset[a] - offset[b]) <= COMPOUNDS.max_unseen_offset)]]
@@ -301,9 +301,9 @@ def even_strip(cells: np.ndarray) -> tuple[np.ndarray, float]:
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.minimum.at(low, step, cells[:, 1])
     np.maximum.at(high, step, cells[:, 1])
-    seen = np.isfinite(low)
-    usual = np.median((high - low)[seen])
-    even = np.flatnonzero(seen & (high - low <= usual + COMPOUNDS.width_tolerance))
+    painted = np.isfinite(low)
+    usual = np.median((high - low)[painted])
+    even = np.flatnonzero(painted & (high - low <= usual + COMPOUNDS.width_tolerance))
     middle = np.interp(step, even, (low[even] + high[even]) / 2)
     return np.abs(cells[:, 1] - middle) <= (usual + COMPOUNDS.width_tolerance) / 2, usual
 
@@ -316,13 +316,13 @@ def complete_bar(parts: np.ndarray, bar: np.ndarray, turned: np.ndarray, along: 
     parts : (K,) int, the part of every cell, below 0 for what is left over; bar : (N,) the numbers of the bar's cells, ascending
     turned : (K, 2) int cells, across the road first, sorted along it; along : (K,) its second column
     """
-    own = turned[bar]
-    (left, front), (right, rear) = own.min(axis=0), own.max(axis=0)
-    about = stretch_of(along, front, rear)
-    near = about.start + np.flatnonzero((parts[about] < 0) & (turned[about, 0] >= left) & (turned[about, 0] <= right))
-    some = np.sort(np.concatenate([bar, near]))
-    inside, _ = even_strip(turned[some])
-    parts[some[inside & (parts[some] < 0)]] = parts[bar[0]]
+    bar_cells = turned[bar]
+    (left, front), (right, rear) = bar_cells.min(axis=0), bar_cells.max(axis=0)
+    window = stretch_of(along, front, rear)
+    leftover = window.start + np.flatnonzero((parts[window] < 0) & (turned[window, 0] >= left) & (turned[window, 0] <= right))
+    rows = np.sort(np.concatenate([bar, leftover]))
+    inside, _ = even_strip(turned[rows])
+    parts[rows[inside & (parts[rows] < 0)]] = parts[bar[0]]
 
 
 def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
@@ -330,9 +330,9 @@ def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
 
     `cells` : (K, 2) int, along the road and across it, different ones. Returns (K,) int, the part of every cell from 0 on, and how many there are.
     """
-    whole = np.zeros(len(cells), np.int64), 1
+    undivided = np.zeros(len(cells), np.int64), 1
     if not len(cells):
-        return whole
+        return undivided
     first = cells.min(axis=0)
     mask = np.zeros(cells.max(axis=0) - first + 1, bool)
     mask[tuple((cells - first).T)] = True
@@ -341,18 +341,18 @@ def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
     reach = np.where(mask.any(axis=1), mask.shape[1] - mask[:, ::-1].argmax(axis=1) - mask.argmax(axis=1), 0)
     broad = np.flatnonzero(reach * CELL_SIZE > COMPOUNDS.max_width_alone)
     if not len(broad):
-        return whole
+        return undivided
     front, rear = broad[0], broad[-1] + 1
     across = np.flatnonzero(mask[front:rear].any(axis=0))
     box = mask[front:rear, across[0]:across[-1] + 1]
     thin, thick = CLASSES.stop_line_width
     short = box.shape[1] * CELL_SIZE < COMPOUNDS.min_stop_line_piece
     if not thin <= len(box) * CELL_SIZE <= thick or short or box.mean() < CLASSES.min_stop_line_fill:
-        return whole
+        return undivided
     row, parts, count = cells[:, 0] - first[0], np.zeros(len(cells), np.int64), 1
     for side, length in ((row < front, front * CELL_SIZE), (row >= rear, (len(mask) - rear) * CELL_SIZE)):
         if COMPOUNDS.ragged_rim < length < COMPOUNDS.min_length_beside_bar:
-            return whole
+            return undivided
         if length > COMPOUNDS.ragged_rim:
             parts[side], count = count, count + 1
     return parts, count

@@ -68,13 +68,13 @@ class AsphaltLevels:
 
     def _thresholds(self, w):
         """Threshold in z of each bin: Otsu's where there is paint, else the neighbours', else the highest."""
-        near = [split for n in (w - 1, w, w + 1) for _, split in self.windows.get(n, ()) if split.accepted]
+        accepted = [split for n in (w - 1, w, w + 1) for _, split in self.windows.get(n, ()) if split.accepted]
         limits = []
         for _, split in self.windows[w]:
             value = split.threshold
             if not split.accepted:
-                beside = [other.threshold for other in near if abs(other.middle - split.middle) < ASPHALT.max_bin_width]
-                value = float(np.median(beside)) if beside else self.settings.alone
+                thresholds = [neighbour.threshold for neighbour in accepted if abs(neighbour.middle - split.middle) < ASPHALT.max_bin_width]
+                value = float(np.median(thresholds)) if thresholds else self.settings.alone
             limits.append(float(np.clip(value, self.settings.lowest, self.settings.highest)))
         return limits
 
@@ -127,24 +127,24 @@ def patch_level(z: np.ndarray, bright: float) -> np.ndarray:
     cell is not asphalt of the surroundings.
     """
     level = np.zeros(z.shape, np.float32)
-    seen = np.isfinite(z)
+    finite = np.isfinite(z)
     with np.errstate(invalid="ignore"):
         above = z > bright
     if np.count_nonzero(above) < ASPHALT.patch_side**2 // 2:
         return level
     size = ASPHALT.patch_neighbourhood, ASPHALT.patch_neighbourhood
-    share, known = (cv2.boxFilter(a.view(np.uint8), -1, size, normalize=False, borderType=cv2.BORDER_CONSTANT) for a in (above, seen))
-    filled = (share > known // 2) & (known > 0.1 * ASPHALT.patch_neighbourhood**2)
+    share, scanned = (cv2.boxFilter(a.view(np.uint8), -1, size, normalize=False, borderType=cv2.BORDER_CONSTANT) for a in (above, finite))
+    filled = (share > scanned // 2) & (scanned > 0.1 * ASPHALT.patch_neighbourhood**2)
     if np.count_nonzero(filled) < ASPHALT.patch_side**2:
         return level
     core = _morphed(cv2.erode, filled, ASPHALT.patch_side)
     if not core.any():
         return level
-    whole = _morphed(cv2.dilate, core, ASPHALT.patch_side + 2 * ASPHALT.patch_rim) & (filled | above)
-    labels, count = ndimage.label(whole)
+    patches = _morphed(cv2.dilate, core, ASPHALT.patch_side + 2 * ASPHALT.patch_rim) & (filled | above)
+    labels, count = ndimage.label(patches)
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
         piece = labels[box] == number
-        values = z[box][piece & seen[box]]
+        values = z[box][piece & finite[box]]
         if len(values) and not _letters(values, bright):
             median, spread = asphalt_statistics(values)
             level[box][piece] = median + ASPHALT.patch_tail * max(spread - 1.0, 0.0)
@@ -262,10 +262,10 @@ def _bins(values, counted, offsets, edges):
     before = np.append(0, np.cumsum(cells))
     bins = []
     for first, last in _joined(np.diff(before[bounds])):
-        own = slice(bounds[first], bounds[last])
-        count = int(cells[own].sum())
+        span = slice(bounds[first], bounds[last])
+        count = int(cells[span].sum())
         if count:
-            bins.append(AsphaltBin(float(offsets[own] @ cells[own]) / count, count, *asphalt_statistics(values[:, own][counted[:, own]])))
+            bins.append(AsphaltBin(float(offsets[span] @ cells[span]) / count, count, *asphalt_statistics(values[:, span][counted[:, span]])))
     return bins
 
 

@@ -88,24 +88,24 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
     """Paint by multi-thresholds on the image, and from averages where points are noisy."""
     source = PaintSource(road_points, image, frame)
     executor: Executor = road_points.executor if isinstance(image, TiledImage) and image.folder is not None else THREADS
-    alone = executor.folder is None   # the threads of this process share what neighbouring windows need
+    in_process = executor.folder is None   # the threads of this process share what neighbouring windows need
     paint = replace(RoadPoints.empty_like(road_points), has_spacing=True)
     windows = [(road, windows_of(road_points, road)) for road in road_points.roads()]
-    scatter = ScannerScatter.of(road_points, [(road, window) for road, some in windows for window in some], executor, progress.part(0.0, 0.1))
+    scatter = ScannerScatter.of(road_points, [(road, window) for road, numbers in windows for window in numbers], executor, progress.part(0.0, 0.1))
     progress.info(scatter.summary(THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE))
     noisy = {road: sorted(scatter.noisy_windows(road)) for road, _ in windows}
-    masked, size = burn is not None, 1 if alone else WINDOWS_PER_TASK
-    stretches = [(road, first, min(first + size, some[-1] + 1)) for road, some in windows for first in some[::size]]
-    known: dict[int, dict[int, Bins]] = {road: {} for road, _ in windows}
-    if alone:
-        source.kept = {road: WindowExtractor(source, (road, some[0], some[-1] + 1), settings, noisy[road], masked) for road, some in windows}
+    masked, size = burn is not None, 1 if in_process else WINDOWS_PER_TASK
+    stretches = [(road, first, min(first + size, numbers[-1] + 1)) for road, numbers in windows for first in numbers[::size]]
+    bins_of: dict[int, dict[int, Bins]] = {road: {} for road, _ in windows}
+    if in_process:
+        source.kept = {road: WindowExtractor(source, (road, numbers[0], numbers[-1] + 1), settings, noisy[road], masked) for road, numbers in windows}
     else:
         phase = Phase(levels_of_windows, source, (settings, noisy), lambda item: place_of(road_points, item))
-        for (road, first, _), found in zip(stretches, executor.run(phase, stretches, progress.part(0.1, 0.4))):
-            known[road].update(enumerate(found, first))
+        for (road, first, _), levels in zip(stretches, executor.run(phase, stretches, progress.part(0.1, 0.4))):
+            bins_of[road].update(enumerate(levels, first))
     phase = Phase(paint_of_windows, source, (settings, noisy, masked), lambda item: place_of(road_points, item[0]))
-    items = [(stretch, {} if alone else bins_about(stretch, known[stretch[0]])) for stretch in stretches]
-    for (road, *_), painted in zip(stretches, executor.run(phase, items, progress.part(0.1 if alone else 0.4, 1.0))):
+    items = [(stretch, {} if in_process else bins_about(stretch, bins_of[stretch[0]])) for stretch in stretches]
+    for (road, *_), painted in zip(stretches, executor.run(phase, items, progress.part(0.1 if in_process else 0.4, 1.0))):
         for columns, x, y in painted:
             paint.store.append(road, Columns(columns, paint.store.dtype))
             if burn is not None:
@@ -145,15 +145,15 @@ class ScannerScatter:
 
         def run(items, part):
             tasks = [items[k:k + together] for k in range(0, len(items), together)]
-            return [found for some in executor.run(phase, tasks, part) for found in some]
+            return [measured for entry in executor.run(phase, tasks, part) for measured in entry]
 
-        found = run([(*key, key in sampled) for key in windows], progress)
-        counts = {key: count for key, (count, _) in zip(windows, found)}
-        squares = [some for _, some in found if some is not None]
+        measured = run([(*key, key in sampled) for key in windows], progress)
+        counts = {key: count for key, (count, _) in zip(windows, measured)}
+        squares = [entry for _, entry in measured if entry is not None]
         shares = _shares(squares)
         missing = {scanner for count in counts.values() for scanner in np.flatnonzero(count).tolist()} - set(shares)
-        rest = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
-        squares += [some for _, some in run(rest, Progress())] if rest else []
+        missed = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
+        squares += [entry for _, entry in run(missed, Progress())] if missed else []
         return cls({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts)
 
     @property
@@ -170,16 +170,16 @@ class ScannerScatter:
         """A sentence for a log; `length` is that of a window, metres."""
         if not self.shares:
             return "The scatter of intensities on asphalt is not known, there are too few road points: paint is searched for in the image."
-        each = ", ".join(f"{100 * share:.0f} % (scanner {scanner})" for scanner, share in sorted(self.shares.items()))
-        text = f"Intensities on asphalt scatter by {each}; more than {100 * ASPHALT.noisy_scatter:.0f} % is noisy."
+        listed = ", ".join(f"{100 * share:.0f} % (scanner {scanner})" for scanner, share in sorted(self.shares.items()))
+        text = f"Intensities on asphalt scatter by {listed}; more than {100 * ASPHALT.noisy_scatter:.0f} % is noisy."
         windows = sum(len(self.noisy_windows(road)) for road in {road for road, _ in self.points})
-        every = sum(bool(count.sum()) for count in self.points.values())
+        filled = sum(bool(count.sum()) for count in self.points.values())
         if not windows:
             return text + " Paint is searched for in the image."
-        if windows == every:
+        if windows == filled:
             return text + (" Paint is searched for in averages over a decimetre, as elongated pieces and rows of dashes; other markings are not "
                            "found.")
-        return text + (f" Along {windows * length:.0f} of {every * length:.0f} m most points are of noisy scanners, and paint is searched for there "
+        return text + (f" Along {windows * length:.0f} of {filled * length:.0f} m most points are of noisy scanners, and paint is searched for there "
                        "in averages over a decimetre, as elongated pieces and rows of dashes; other markings are not found there.")
 
 
@@ -189,11 +189,11 @@ def scatter_of_windows(road_points: RoadPoints,
 
     Returns (scanners,) points of each scanner in a window, and what `_scatter_in_squares` gives, None where it is not asked for.
     """
-    found = []
+    result = []
     for road, window, sampled in windows:
         points = points_of_rows(road_points, road, window * THRESHOLD_WINDOW, (window + 1) * THRESHOLD_WINDOW)
-        found.append((np.bincount(points.scanner), _scatter_in_squares(points) if sampled else None))
-    return found
+        result.append((np.bincount(points.scanner), _scatter_in_squares(points) if sampled else None))
+    return result
 
 
 def _scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

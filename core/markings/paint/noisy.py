@@ -54,7 +54,7 @@ class CellAverages:
         around = np.where(np.isfinite(asphalt), asphalt, around)
         contrast = (spot - around).astype(np.float32)
         tilts = [np.gradient(_gaussian_mean(count, risen, sigma), CELL_SIZE) for sigma in (NOISY.slope_sigma, NOISY.ground_slope_sigma)]
-        slope = np.stack([near - about for near, about in zip(*tilts)]).astype(np.float32)
+        slope = np.stack([tilt - ground_tilt for tilt, ground_tilt in zip(*tilts)]).astype(np.float32)
         return cls(contrast, around, _local_scatter(contrast), slope)
 
     @property
@@ -65,9 +65,9 @@ class CellAverages:
 
 def _gaussian_mean(count, total, sigma):
     """Gaussian average, NaN where there are too few points."""
-    near, near_total = (ndimage.gaussian_filter(a, sigma, mode="constant", truncate=3.0) for a in (count, total))
+    weight, weighted = (ndimage.gaussian_filter(a, sigma, mode="constant", truncate=3.0) for a in (count, total))
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(near > NOISY.min_density, near_total / near, np.nan)
+        return np.where(weight > NOISY.min_density, weighted / weight, np.nan)
 
 
 def _local_scatter(contrast: np.ndarray) -> np.ndarray:
@@ -83,17 +83,17 @@ def _local_scatter(contrast: np.ndarray) -> np.ndarray:
     low, median = (np.take_along_axis(blocks, (share * np.maximum(count - 1, 0)).astype(np.int64), 2)[..., 0]
                    for share in (NOISY.scatter_quantile, 0.5))
     spread = np.where(count[..., 0] >= NOISY.min_block_cells, (median - low) / SCATTER_SIGMAS, np.nan)
-    known = spread[np.isfinite(spread)]
-    if not len(known):
+    finite = spread[np.isfinite(spread)]
+    if not len(finite):
         return np.full(contrast.shape, np.nan, np.float32)
     reach = NOISY.scatter_blocks // 2
     around = np.lib.stride_tricks.sliding_window_view(np.pad(spread, reach, constant_values=np.nan), (NOISY.scatter_blocks, NOISY.scatter_blocks))
     ordered = np.sort(around.reshape(rows, columns, -1), axis=2)
     count = np.isfinite(ordered).sum(axis=2, keepdims=True)
     middle = np.take_along_axis(ordered, np.maximum(count - 1, 0) // 2, 2)[..., 0]
-    middle = np.where(count[..., 0] > 0, middle, np.median(known))
-    places = [np.clip((np.arange(n) + 0.5) / NOISY.scatter_block - 0.5, 0, m - 1) for n, m in zip(contrast.shape, middle.shape)]
-    return ndimage.map_coordinates(middle, np.meshgrid(*places, indexing="ij"), order=1).astype(np.float32)
+    middle = np.where(count[..., 0] > 0, middle, np.median(finite))
+    positions = [np.clip((np.arange(n) + 0.5) / NOISY.scatter_block - 0.5, 0, m - 1) for n, m in zip(contrast.shape, middle.shape)]
+    return ndimage.map_coordinates(middle, np.meshgrid(*positions, indexing="ij"), order=1).astype(np.float32)
 
 
 @dataclass(frozen=True)
@@ -139,11 +139,11 @@ def views(points: Points, frame: RoadFrame) -> np.ndarray | None:
     """(N,) numbers of the half metre of the vehicle's way from which each of N road points was measured; None where times are not known."""
     if not frame.has_time:
         return None
-    found = np.zeros(len(points), np.int64)
+    result = np.zeros(len(points), np.int64)
     for number in np.unique(points.pass_number):
         rows = np.flatnonzero(points.pass_number == number)
-        found[rows] = np.floor(frame.passes[number].station_at(points.time[rows]) / NOISY.view_length) + (int(number) << 32)
-    return found
+        result[rows] = np.floor(frame.passes[number].station_at(points.time[rows]) / NOISY.view_length) + (int(number) << 32)
+    return result
 
 
 def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamples, threshold: float) -> np.ndarray:
@@ -165,8 +165,9 @@ def _stroke_cells(averages, rim, samples, threshold):
                and (piece.z >= NOISY.clear_brightness * threshold or piece.shape.length >= NOISY.clear_length)]
     lines = [piece for piece in _bright_pieces(faint, averages, rim, NOISY.faint_line * threshold) if piece.is_line]
     # a stroke may be the clear part of a line
-    for piece in (piece for some in (strokes, lines)
-                  for piece in _without_artefacts([one for one in some if np.hypot(*one.slope) < NOISY.max_slope], samples, rim.shape)):
+    for piece in (piece for group in (strokes, lines)
+                  for piece in _without_artefacts([candidate for candidate in group if np.hypot(*candidate.slope) < NOISY.max_slope],
+                                                  samples, rim.shape)):
         row, column = piece.cells
         # beside a broad stroke the average is darker than asphalt
         inner = contrast[row, column] > NOISY.half_maximum * piece.top * (1.0 + min(piece.fading, 0.0))
@@ -197,17 +198,17 @@ def _dashes(averages, rim, samples, bright, threshold):
     tops = ndimage.maximum_filter(np.where(bright, contrast, 0.0), 2 * NOISY.half_maximum_reach + 1)
     with np.errstate(invalid="ignore"):
         cut = bright & (contrast > NOISY.half_maximum * tops)
-    found = [piece for piece in _bright_pieces(cut, averages, rim, threshold)
-             if piece.shape.length >= NOISY.dash_length and piece.shape.width <= NOISY.dash_width
-             and np.hypot(*piece.slope) < NOISY.dash_slope_factor * NOISY.max_slope]
-    return _without_artefacts(found, samples, rim.shape)
+    pieces = [piece for piece in _bright_pieces(cut, averages, rim, threshold)
+              if piece.shape.length >= NOISY.dash_length and piece.shape.width <= NOISY.dash_width
+              and np.hypot(*piece.slope) < NOISY.dash_slope_factor * NOISY.max_slope]
+    return _without_artefacts(pieces, samples, rim.shape)
 
 
 def _bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, threshold: float) -> list[_BrightPiece]:
     """Connected pieces whose brightest tenth reaches the threshold, spreads above asphalt, away from the road's rim; the smallest are left out."""
     labels, count = ndimage.label(mask, np.ones((3, 3), bool))
     large = np.bincount(labels.ravel(), minlength=count + 1) * CELL_SIZE**2 >= NOISY.dash_area
-    z, found = averages.z, []
+    z, pieces = averages.z, []
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
         if not large[number]:
             continue
@@ -220,17 +221,18 @@ def _bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, th
             continue
         contrast = averages.contrast[row, column]
         top, highest = np.percentile(contrast, [NOISY.usual_percentile, NOISY.top_percentile]).tolist()
-        found.append(_BrightPiece((row, column), measure(row * CELL_UNITS, column * CELL_UNITS),
-                           2.0 * CELL_SIZE * ndimage.distance_transform_edt(np.pad(inside, 1)).max(), tilt.mean(axis=1),
-                           float(np.median(rim[row, column])), top,
-                           _beside(inside & (averages.contrast[box] > NOISY.half_maximum * highest), box, averages.contrast) / highest, reached))
-    return found
+        pieces.append(_BrightPiece((row, column), measure(row * CELL_UNITS, column * CELL_UNITS),
+                                   2.0 * CELL_SIZE * ndimage.distance_transform_edt(np.pad(inside, 1)).max(), tilt.mean(axis=1),
+                                   float(np.median(rim[row, column])), top,
+                                   _beside(inside & (averages.contrast[box] > NOISY.half_maximum * highest), box, averages.contrast) / highest,
+                                   reached))
+    return pieces
 
 
 def _beside(inside, box, contrast):
     """Mean contrast about a decimetre beside the bright half of a piece."""
-    far = NOISY.fading_ring[1] + 1
-    window = tuple(slice(max(side.start - far, 0), side.stop + far) for side in box)
+    margin = NOISY.fading_ring[1] + 1
+    window = tuple(slice(max(side.start - margin, 0), side.stop + margin) for side in box)
     piece = np.zeros(contrast[window].shape, bool)
     piece[tuple(slice(side.start - w.start, side.stop - w.start) for side, w in zip(box, window))] = inside
     apart = ndimage.distance_transform_edt(~piece)
@@ -250,12 +252,12 @@ def _without_artefacts(found: list[_BrightPiece], samples: ViewSamples, shape: t
     for k, piece in enumerate(found):
         number[piece.cells] = k
     of = number.ravel()[samples.cell]
-    on = of >= 0
-    points = np.bincount(of[on], minlength=len(found))
-    good = np.bincount(of[on], samples.covered[on], len(found)) <= NOISY.max_covered * points
+    on_piece = of >= 0
+    points = np.bincount(of[on_piece], minlength=len(found))
+    genuine = np.bincount(of[on_piece], samples.covered[on_piece], len(found)) <= NOISY.max_covered * points
     if samples.view is not None:
-        good &= _bright_in_all_views(number, samples, len(found))
-    return [piece for piece, kept in zip(found, good) if kept]
+        genuine &= _bright_in_all_views(number, samples, len(found))
+    return [piece for piece, is_genuine in zip(found, genuine) if is_genuine]
 
 
 def _bright_in_all_views(number, samples, count):
@@ -264,8 +266,8 @@ def _bright_in_all_views(number, samples, count):
     used = inner | (apart >= NOISY.view_ring[0]) & (apart <= NOISY.view_ring[1])
     rows = np.flatnonzero(used.ravel()[samples.cell])
     cell, value = samples.cell[rows], np.rint(samples.value[rows].astype(float) * BRIGHTNESS_STEPS)
-    view, at = np.unique(samples.view[rows], return_inverse=True)
-    key = number[tuple(nearest)].ravel()[cell] * len(view) + at
+    view, view_index = np.unique(samples.view[rows], return_inverse=True)
+    key = number[tuple(nearest)].ravel()[cell] * len(view) + view_index
     inside = inner.ravel()[cell]
     (n, total), (around, around_total) = (
         (np.bincount(key[side], minlength=count * len(view)), np.bincount(key[side], value[side], count * len(view)) / BRIGHTNESS_STEPS)
@@ -273,7 +275,7 @@ def _bright_in_all_views(number, samples, count):
     with np.errstate(invalid="ignore", divide="ignore"):
         weight = np.where((n > 1) & (around > 1), n * around / (n + around), 0.0).reshape(count, -1)
         above = np.where(weight > 0, (total / n - around_total / around).reshape(count, -1), 0.0)
-        views, whole = (weight > 0).sum(axis=1), weight.sum(axis=1)
-        mean = (weight * above).sum(axis=1) / whole
-        error = np.sqrt(((weight * (above - mean[:, None])) ** 2).sum(axis=1) * views / (views - 1)) / whole
+        views, total_weight = (weight > 0).sum(axis=1), weight.sum(axis=1)
+        mean = (weight * above).sum(axis=1) / total_weight
+        error = np.sqrt(((weight * (above - mean[:, None])) ** 2).sum(axis=1) * views / (views - 1)) / total_weight
         return (views >= NOISY.min_views) & (mean > NOISY.min_view_sigmas * error)

@@ -22,13 +22,13 @@ def track_spacing(occupied: np.ndarray) -> np.ndarray:
     """
     tracks = cv2.dilate(occupied.astype(np.uint8), np.ones((2 * TRACKS.along_reach + 1, 1), np.uint8), borderValue=0).astype(bool)
     columns = np.arange(tracks.shape[1], dtype=np.int16)
-    far = np.int16(2 * tracks.shape[1])
+    beyond = np.int16(2 * tracks.shape[1])
     # beyond the outermost tracks they are far away; a product is quicker than a choice between a column and that
-    before = tracks * (columns + far)
+    before = tracks * (columns + beyond)
     before = np.maximum.accumulate(before, axis=1, out=before)
-    before -= far
-    after = (tracks * (columns - 2 * far))[:, ::-1]
-    after = np.minimum.accumulate(after, axis=1)[:, ::-1] + 2 * far
+    before -= beyond
+    after = (tracks * (columns - 2 * beyond))[:, ::-1]
+    after = np.minimum.accumulate(after, axis=1)[:, ::-1] + 2 * beyond
     gap = after - before
     gap[gap > int(TRACKS.max_track_gap / CELL_SIZE)] = 0
     return cv2.dilate(gap.astype(np.float32), np.ones((1, 2 * TRACKS.across_reach + 1), np.uint8), borderValue=0) * np.float32(CELL_SIZE)
@@ -60,8 +60,8 @@ def _unseen_gaps(mask, seen, limit, axis):
 
 def _between(ends, specks):
     """Cells of runs along the road that connect two ends by specks without long gaps; a column either way, as paint is not quite parallel to it."""
-    beside, result = np.ones((1, 3), np.uint8), np.zeros(specks.shape, bool)
-    ends, specks = (cv2.dilate(mask.view(np.uint8), beside, borderValue=0).view(bool) for mask in (ends, specks))
+    kernel, result = np.ones((1, 3), np.uint8), np.zeros(specks.shape, bool)
+    ends, specks = (cv2.dilate(mask.view(np.uint8), kernel, borderValue=0).view(bool) for mask in (ends, specks))
     columns = np.flatnonzero(ends.any(axis=0))
     ends, specks = np.ascontiguousarray(ends[:, columns]), np.ascontiguousarray(specks[:, columns])
     run = fill_gaps(specks, int(round(RIMS.worn_gap / CELL_SIZE)), 0)
@@ -73,11 +73,11 @@ def _met_since(ends, breaks):
     """Cells from which an end is reached before a break, going back along the first axis."""
     # what was met last: twice its row, and 1 more where it is an end and no break
     twice = np.arange(2, 2 * len(ends) + 2, 2, dtype=np.int16)[:, None]
-    met = (ends | breaks) * twice
-    met += ends > breaks
-    met = np.maximum.accumulate(met, axis=0, out=met)
-    met &= np.int16(1)
-    return met.astype(bool)
+    last_met = (ends | breaks) * twice
+    last_met += ends > breaks
+    last_met = np.maximum.accumulate(last_met, axis=0, out=last_met)
+    last_met &= np.int16(1)
+    return last_met.astype(bool)
 
 
 def _long_runs(mask: np.ndarray, length: int, axis: int) -> np.ndarray:
@@ -85,10 +85,10 @@ def _long_runs(mask: np.ndarray, length: int, axis: int) -> np.ndarray:
     if length < 2:
         return mask.copy()
     size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
-    along = np.ones(size[::-1], np.uint8)
+    kernel = np.ones(size[::-1], np.uint8)
     # outside the window all cells are off
-    begun = cv2.erode(mask.astype(np.uint8), along, anchor=(0, 0), borderType=cv2.BORDER_CONSTANT, borderValue=0)
-    return cv2.dilate(begun, along, anchor=behind, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool)
+    begun = cv2.erode(mask.astype(np.uint8), kernel, anchor=(0, 0), borderType=cv2.BORDER_CONSTANT, borderValue=0)
+    return cv2.dilate(begun, kernel, anchor=behind, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool)
 
 
 # Concrete gutters begin at the very rim of the road and are two decimetres wide or more over metres of rim. An edge line stands off the rim, is
@@ -121,9 +121,9 @@ def edge_distance(half_width: np.ndarray, offsets: np.ndarray) -> np.ndarray:
     """
     distance = np.full((half_width.shape[1], len(offsets)), np.inf, np.float32)
     for side, widest in zip((1, -1), half_width):
-        columns, known = np.flatnonzero(offsets * side > 0), np.flatnonzero(widest)
-        if len(columns) and len(known):
-            edge = np.interp(np.arange(len(distance)), known, widest[known] * 1e-3)
+        columns, finite = np.flatnonzero(offsets * side > 0), np.flatnonzero(widest)
+        if len(columns) and len(finite):
+            edge = np.interp(np.arange(len(distance)), finite, widest[finite] * 1e-3)
             distance[:, columns[0]:columns[-1] + 1] = np.maximum(edge[:, None] - np.abs(offsets[columns]) + CELL_SIZE / 2, CELL_SIZE)
     return distance
 
@@ -142,17 +142,17 @@ class RimBands:
     @classmethod
     def of(cls, distance: np.ndarray, scanned: np.ndarray) -> RimBands:
         """The bands along a rim at a distance, (rows, columns) m, of the cells that were scanned, (rows, columns) bool."""
-        near = np.flatnonzero((distance > 0) & (distance < np.float32((RIMS.gutter_bands * RIMS.band_cells + 0.5) * CELL_SIZE)) & scanned)
-        band = ((distance.take(near) / np.float32(CELL_SIZE) - np.float32(0.5)) / np.float32(RIMS.band_cells)).astype(np.int32)
+        cells_near = np.flatnonzero((distance > 0) & (distance < np.float32((RIMS.gutter_bands * RIMS.band_cells + 0.5) * CELL_SIZE)) & scanned)
+        band = ((distance.take(cells_near) / np.float32(CELL_SIZE) - np.float32(0.5)) / np.float32(RIMS.band_cells)).astype(np.int32)
         band = np.minimum(band, RIMS.gutter_bands - 1)
         rows, columns = (-(-n // RIMS.coarse_cells) for n in distance.shape)
-        cell = near.astype(np.int32)
+        cell = cells_near.astype(np.int32)
         row = cell // np.int32(distance.shape[1])
         column = cell - row * np.int32(distance.shape[1])
         square = row // np.int32(RIMS.coarse_cells) * np.int32(columns) + column // np.int32(RIMS.coarse_cells)
-        place = (square * np.int32(RIMS.gutter_bands) + band).astype(np.intp)
-        counts = np.bincount(place, minlength=RIMS.gutter_bands * rows * columns).astype(float)
-        return cls(distance, near, band, square, place, _around(counts.reshape(rows, columns, RIMS.gutter_bands)))
+        bin_index = (square * np.int32(RIMS.gutter_bands) + band).astype(np.intp)
+        counts = np.bincount(bin_index, minlength=RIMS.gutter_bands * rows * columns).astype(float)
+        return cls(distance, cells_near, band, square, bin_index, _around(counts.reshape(rows, columns, RIMS.gutter_bands)))
 
     def sums(self, values: np.ndarray) -> np.ndarray:
         """(bands, squares along, squares across) sums of (N,) values at the cells along RIM_REACH either way."""
@@ -168,19 +168,19 @@ def _around(counts):
 
 def gutter_cells(z: np.ndarray, rim: RimBands) -> np.ndarray:
     """(rows, columns) bool, cells of concrete gutters, by our own rule; `z` : (rows, columns) spreads above asphalt, NaN where not scanned."""
-    found = np.zeros(z.shape, bool)
+    result = np.zeros(z.shape, bool)
     if not len(rim.near):
-        return found
-    value, seen = z.take(rim.near), rim.seen
-    share = rim.sums(value > RIMS.gutter_brightness) / np.maximum(seen, 1e-9)
+        return result
+    value, scanned = z.take(rim.near), rim.seen
+    share = rim.sums(value > RIMS.gutter_brightness) / np.maximum(scanned, 1e-9)
     # a cell at the rim is half curb: the first band is not tested on its own
-    full = (share >= RIMS.min_bright_share) & (seen > RIMS.min_cells_seen)
+    full = (share >= RIMS.min_bright_share) & (scanned > RIMS.min_cells_seen)
     full[0] |= full[1]
     if not full[:RIMS.min_gutter_bands].all(axis=0).any():
-        return found
+        return result
     # in whole 64ths: their sums are exact in any order
     height = np.rint(64 * np.clip(value, 0.0, 100.0))
-    level = rim.sums(height / 64) / np.maximum(seen, 1e-9)
+    level = rim.sums(height / 64) / np.maximum(scanned, 1e-9)
     inner = np.minimum.accumulate(level[1:], axis=0)
     painted = np.zeros(full.shape, bool)
     painted[2:] = level[2:] > RIMS.paint_to_gutter * inner[:-1]
@@ -188,8 +188,8 @@ def gutter_cells(z: np.ndarray, rim: RimBands) -> np.ndarray:
     # the band in which the gutter ends is half gutter, unless it is paint
     ends = np.take_along_axis(painted, np.minimum(width, RIMS.gutter_bands - 1)[None], axis=0)[0]
     width = np.where(width >= RIMS.min_gutter_bands, width + ~ends, 0)
-    found.ravel()[rim.near] = rim.band < width.ravel().take(rim.square)
-    return found
+    result.ravel()[rim.near] = rim.band < width.ravel().take(rim.square)
+    return result
 
 
 # Raised things, such as the ends of traffic islands and the feet of vehicles: a bright square is compared with the plane through the squares of
@@ -212,27 +212,27 @@ def raised_cells(heights: Sequence[tuple[np.ndarray, np.ndarray]], mask: np.ndar
     for cell, z in heights:
         row = cell // np.int32(mask.shape[1])
         column = cell - row * np.int32(mask.shape[1])
-        place = row // np.int32(RIMS.coarse_cells) * np.int32(columns) + column // np.int32(RIMS.coarse_cells) + np.int32(size) * bright.take(cell)
-        count += np.bincount(place, minlength=2 * size)
-        total += np.bincount(place, (z - low).astype(float), 2 * size)
+        square = row // np.int32(RIMS.coarse_cells) * np.int32(columns) + column // np.int32(RIMS.coarse_cells) + np.int32(size) * bright.take(cell)
+        count += np.bincount(square, minlength=2 * size)
+        total += np.bincount(square, (z - low).astype(float), 2 * size)
     with np.errstate(invalid="ignore", divide="ignore"):
         dark, light = (total / count * COORDINATE_SCALE).reshape(2, *shape)
-    off = dark - _planes(dark)
-    known = off[np.isfinite(off)]
-    if len(known) < RIMS.min_squares_of_spread:
+    deviation = dark - _planes(dark)
+    finite = deviation[np.isfinite(deviation)]
+    if len(finite) < RIMS.min_squares_of_spread:
         return np.zeros(mask.shape, bool)
-    limit = max(RIMS.least_rise, RIMS.rise_sigmas * SIGMAS_OF_MEDIAN * median(np.abs(known)))
+    limit = max(RIMS.least_rise, RIMS.rise_sigmas * SIGMAS_OF_MEDIAN * median(np.abs(finite)))
     with np.errstate(invalid="ignore"):
         # what is raised and not bright is no asphalt, either
-        raised = light - _planes(np.where(off <= limit / 2, dark, np.nan)) > limit
+        raised = light - _planes(np.where(deviation <= limit / 2, dark, np.nan)) > limit
     return np.repeat(np.repeat(raised, RIMS.coarse_cells, 0), RIMS.coarse_cells, 1)[:mask.shape[0], :mask.shape[1]] & mask
 
 
 def _planes(height):
     """(A, B) m in the middle of each square, of the plane through those about it; NaN where few are known. NaN heights are not known."""
-    known = np.isfinite(height)
-    z = np.where(known, height, 0.0)
-    weight = known.astype(float)
+    finite = np.isfinite(height)
+    z = np.where(finite, height, 0.0)
+    weight = finite.astype(float)
     u, v = np.meshgrid(*(np.arange(n) * RIMS.coarse_cells * CELL_SIZE for n in height.shape), indexing="ij")
 
     def about(values):

@@ -153,7 +153,7 @@ class WindowExtractor:
         """_WindowView of a window with its halo; None where it has no points of its own."""
         if not self._in_cells(window):
             return None
-        parts = [piece for beside in (window - 1, window, window + 1) for piece in self._in_cells(beside)]
+        parts = [piece for number in (window - 1, window, window + 1) for piece in self._in_cells(number)]
         cells = RoadCells.of(parts, window * THRESHOLD_WINDOW - WINDOW_HALO, (window + 1) * THRESHOLD_WINDOW + WINDOW_HALO)
         brightness = cells.grid.read(self.image, self.frame, self.road)
         distances, scanned = (rim_distance(cells.occupied), edge_distance(cells.half_width, cells.grid.offsets())), np.isfinite(brightness)
@@ -191,18 +191,18 @@ class WindowExtractor:
     def _levels(self, window):
         """AsphaltLevels of the windows around one; their bins are computed if they were not yet."""
         self.bins(min(window + 2, self.last))  # a different window for each thread
-        known = {window: self.bins(window)} if self.bins(window) else {}
+        bins = {window: self.bins(window)} if self.bins(window) else {}
         for step, end in ((-1, self.first), (1, self.last)):
-            beside = next((w for w in range(window + step, end + step, step) if self.bins(w)), None)
-            if beside is not None:
+            neighbour = next((w for w in range(window + step, end + step, step) if self.bins(w)), None)
+            if neighbour is not None:
                 # the thresholds of a window depend on its neighbours
-                known.update((w, self.bins(w)) for w in (beside, beside + step) if self.first <= w <= self.last and self.bins(w))
-        return AsphaltLevels(known, THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE, self.settings)
+                bins.update((w, self.bins(w)) for w in (neighbour, neighbour + step) if self.first <= w <= self.last and self.bins(w))
+        return AsphaltLevels(bins, THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE, self.settings)
 
     def _pixels(self, mask, grid):
         """Local x, y of the centres of the image's pixels that lie in painted cells of the window itself."""
-        own = mask[WINDOW_HALO:WINDOW_HALO + THRESHOLD_WINDOW]
-        return _painted_pixels(own, (grid.first + WINDOW_HALO, grid.low), self.image, self.frame.origin, self.frame.road(self.road))
+        inner = mask[WINDOW_HALO:WINDOW_HALO + THRESHOLD_WINDOW]
+        return _painted_pixels(inner, (grid.first + WINDOW_HALO, grid.low), self.image, self.frame.origin, self.frame.road(self.road))
 
     def _from_thresholds(self, window: int) -> Paint:
         """Paint by thresholds on the image."""
@@ -218,9 +218,9 @@ class WindowExtractor:
         with np.errstate(invalid="ignore"):
             mask = morphology((z > threshold * scale) & ~gutter, np.isfinite(brightness), self.settings)
         # the background that was subtracted from the cell is subtracted from the point as well
-        least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
+        min_brightness = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
         mask &= ~raised_cells([self._heights(part, grid) for part in parts], mask)
-        return self._paint_in(parts, grid, view.occupied, mask, least)
+        return self._paint_in(parts, grid, view.occupied, mask, min_brightness)
 
     def _heights(self, part: PieceOfRoad, grid: RoadGrid) -> tuple[np.ndarray, np.ndarray]:
         """Flat numbers in the grid of the cells of an even share of the points of a part, and the heights of these."""
@@ -253,8 +253,8 @@ class WindowExtractor:
             return self._nothing()
         rows, cells, before = [], [], 0
         for part in parts:
-            own, cell = part.points_on(mask[part.within(grid)])
-            rows.append(own + before)
+            row, cell = part.points_on(mask[part.within(grid)])
+            rows.append(row + before)
             cells.append(part.numbers_in(grid, cell))
             before += len(part.cell)
         # the columns of all parts are read together
@@ -267,12 +267,12 @@ class WindowExtractor:
         records = records.with_columns(spacing=spacing)
         if not self.masked:
             return _arrays(records), np.empty(0), np.empty(0)
-        on = np.zeros(grid.shape, bool)
-        on.ravel()[cell] = True
+        with_points = np.zeros(grid.shape, bool)
+        with_points.ravel()[cell] = True
         # the image spreads a point over neighbouring cells: a cell whose own points are dark is no marking
         for part in parts:
-            place = part.within(grid)
-            mask[place][part.occupied] = on[place][part.occupied]
+            box = part.within(grid)
+            mask[box][part.occupied] = with_points[box][part.occupied]
         return _arrays(records), *self._pixels(mask, grid)
 
 
@@ -338,10 +338,10 @@ def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityI
     s = ((first[0] + row + 0.5)[:, None] * CELL_SIZE + quarter[:, 0]).ravel()
     d = ((first[1] + column + 0.5)[:, None] * CELL_SIZE + quarter[:, 1]).ravel()
     x, y = road.to_map(s, d)
-    x, y, near = _pixel_centres(image, x, y, origin)
-    s, d = road.locate(x, y, s[near], np.inf)
-    known = np.isfinite(s)
-    x, y, s, d = x[known], y[known], s[known], d[known]
+    x, y, nearest = _pixel_centres(image, x, y, origin)
+    s, d = road.locate(x, y, s[nearest], np.inf)
+    finite = np.isfinite(s)
+    x, y, s, d = x[finite], y[finite], s[finite], d[finite]
     row, column = (np.floor(c / CELL_SIZE).astype(np.int64) - f for c, f in ((s, first[0]), (d, first[1])))
     inside = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
     inside[inside] = cells[row[inside], column[inside]]
@@ -355,9 +355,9 @@ def burn_points(burn: Burn, points: RoadPoints, image: IntensityImage, frame: Ro
         start, end = points.store.span(road)
         for window in range(int(np.floor(start / CELL_SIZE / BURN_WINDOW)), int(np.ceil(end / CELL_SIZE / BURN_WINDOW))):
             first, last = window * BURN_WINDOW, (window + 1) * BURN_WINDOW
-            found = points.window(road, (first - halo) * CELL_SIZE, (last + halo) * CELL_SIZE).records
-            if not len(found):
+            records = points.window(road, (first - halo) * CELL_SIZE, (last + halo) * CELL_SIZE).records
+            if not len(records):
                 continue
-            cells, corner = painted_cells(found["s"] * COORDINATE_SCALE, found["d"] * COORDINATE_SCALE)
+            cells, corner = painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE)
             top, bottom = max(first - corner[0], 0), max(last - corner[0], 0)
             burn(*_painted_pixels(cells[top:bottom], (corner[0] + top, corner[1]), image, frame.origin, frame.road(road)))

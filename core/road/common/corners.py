@@ -79,18 +79,18 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
     ahead = lines.along.take(lines.point.take(index)) > 0
     ahead_of, count = np.bincount(owner, ahead, len(rows)), np.bincount(owner, minlength=len(rows))
     mixed = np.minimum(ahead_of, count - ahead_of) >= CURBS.min_view_points
-    again = np.flatnonzero(best["likely"] & ~best["good"] & mixed)
-    if len(again):
+    remeasured = np.flatnonzero(best["likely"] & ~best["good"] & mixed)
+    if len(remeasured):
         number = np.full(len(rows), -1)
-        number[again] = np.arange(len(again))
-        own = np.flatnonzero(number.take(owner) >= 0)
-        owner, index, ahead = number.take(owner.take(own)), index.take(own), ahead.take(own)
-        views = [_measure(lines, rows[again], cells[again], owner[view], index[view], min_height, max_height) for view in (~ahead, ahead)]
+        number[remeasured] = np.arange(len(remeasured))
+        members = np.flatnonzero(number.take(owner) >= 0)
+        owner, index, ahead = number.take(owner.take(members)), index.take(members), ahead.take(members)
+        views = [_measure(lines, rows[remeasured], cells[remeasured], owner[view], index[view], min_height, max_height) for view in (~ahead, ahead)]
         support = [np.where(view["good"], view["support"], 0) for view in views]
         for view, better in zip(views, (support[0] >= support[1], support[0] < support[1])):
             better &= view["good"]
             for name, values in view.items():
-                best[name][again[better]] = values[better]
+                best[name][remeasured[better]] = values[better]
     good = best["good"]
     return CurbSteps(profile=lines.first + rows[good], scanner_noise=lines.noise[rows[good]],
                      **{name: values[good] for name, values in best.items() if name not in ("good", "likely")})
@@ -102,16 +102,16 @@ def _measure(lines, rows, cells, owner, index, min_height, max_height):
     point = lines.point.take(index)
     patches = StepPatches(owner, lines.u.take(point) - edge.take(owner), lines.s.take(point) - middle.take(owner), lines.h.take(index),
                           lines.noise[rows], min_height, max_height)
-    found = patches.corners()
-    skewed = np.flatnonzero(np.abs(found["skew"]) > CURBS.remeasure_skew)
+    corners = patches.corners()
+    skewed = np.flatnonzero(np.abs(corners["skew"]) > CURBS.remeasure_skew)
     if len(skewed):
-        again = patches.straightened(skewed, found["skew"][skewed]).corners()
-        again["skew"] = again["skew"] + found["skew"][skewed]
-        for name, values in again.items():
-            found[name][skewed] = values
-    found["u"] = found["u"] + edge
-    found["s"] = found["s"] + middle
-    return found
+        remeasured = patches.straightened(skewed, corners["skew"][skewed]).corners()
+        remeasured["skew"] = remeasured["skew"] + corners["skew"][skewed]
+        for name, values in remeasured.items():
+            corners[name][skewed] = values
+    corners["u"] = corners["u"] + edge
+    corners["s"] = corners["s"] + middle
+    return corners
 
 
 class StepPatches:
@@ -135,9 +135,9 @@ class StepPatches:
         """The candidates `which`, (K,) indices, with the direction of each face, (K,) m outward per m along, taken out of the offsets."""
         number = np.full(self.count, -1)
         number[which] = np.arange(len(which))
-        own = np.flatnonzero(number[self.owner] >= 0)
-        owner = number[self.owner[own]]
-        return StepPatches(owner, self.u[own] - skew[owner] * self.s[own], self.s[own], self.h[own], self.scanner_noise[which],
+        members = np.flatnonzero(number[self.owner] >= 0)
+        owner = number[self.owner[members]]
+        return StepPatches(owner, self.u[members] - skew[owner] * self.s[members], self.s[members], self.h[members], self.scanner_noise[which],
                            self.min_height, self.max_height, skew, self.graded)
 
     def corners(self) -> dict[str, np.ndarray]:
@@ -160,23 +160,23 @@ class StepPatches:
         level, slope, noise, n_road = _line_per_owner(side[0].take(keep), side[1].take(keep), side[2].take(keep), count)
         rise = h - level.take(owner) - slope.take(owner) * u
         height, n_behind, stays = self._raised_ground(rise)
-        found = dict(level=level, slope=slope, grade=grade, noise=noise, n_road=n_road, height=height, n_behind=n_behind, stays=stays)
+        ground = dict(level=level, slope=slope, grade=grade, noise=noise, n_road=n_road, height=height, n_behind=n_behind, stays=stays)
         # most candidates are no step in any direction: their faces need no measurement
         likely = (n_road >= 4) & (height >= np.maximum(CURBS.candidate_height_share * self.min_height,
                                                        CURBS.candidate_sigma_share * CURBS.min_step_sigmas * noise)) \
             & (np.abs(slope) <= CURBS.max_road_slope / CURBS.candidate_height_share)
-        which = np.flatnonzero(likely)
+        candidates = np.flatnonzero(likely)
         number = np.full(count, -1)
-        number[which] = np.arange(len(which))
-        own = np.flatnonzero((np.abs(u) < CURBS.face_search_half_width) & (number.take(owner) >= 0))
-        skew = self.skew if isinstance(self.skew, float) else self.skew[which]
-        near = StepPatches(number.take(owner.take(own)), u.take(own), s.take(own), h.take(own), self.scanner_noise[which],
+        number[candidates] = np.arange(len(candidates))
+        members = np.flatnonzero((np.abs(u) < CURBS.face_search_half_width) & (number.take(owner) >= 0))
+        skew = self.skew if isinstance(self.skew, float) else self.skew[candidates]
+        near = StepPatches(number.take(owner.take(members)), u.take(members), s.take(members), h.take(members), self.scanner_noise[candidates],
                            self.min_height, self.max_height, skew, self.graded)
-        seen = dict(likely=likely)
-        for name, values in near._faces(rise.take(own), **{name: values[which] for name, values in found.items()}).items():
-            seen[name] = np.zeros(count, values.dtype)
-            seen[name][which] = values
-        return seen
+        result = dict(likely=likely)
+        for name, values in near._faces(rise.take(members), **{name: values[candidates] for name, values in ground.items()}).items():
+            result[name] = np.zeros(count, values.dtype)
+            result[name][candidates] = values
+        return result
 
     def _grade(self, road):
         """(M,) m per m along the curb, of the plane through the points `road` of each candidate; 0 where that is not wanted.
@@ -212,7 +212,7 @@ class StepPatches:
         owner, u, s, rise = (v.take(near) for v in (owner, u, s, rise))
         skew, straight = _skew(owner, u, s, scatter, count)
         n_face = np.bincount(owner, minlength=count)
-        mid, up, at = (_mean(np.bincount(owner, v, count), n_face) for v in (straight, rise, s))
+        mid, up, station = (_mean(np.bincount(owner, v, count), n_face) for v in (straight, rise, s))
         off = rise - up.take(owner)
         var_up = np.bincount(owner, off ** 2, count)
         lean = np.bincount(owner, (straight - mid.take(owner)) * off, count) / (var_up + n_face * CURBS.face_prior + 1e-9)
@@ -224,16 +224,16 @@ class StepPatches:
         good = (np.isfinite(level) & (n_road >= 4) & (height >= self.min_height) & (height <= self.max_height)
                 & (height >= CURBS.min_step_sigmas * noise) & (np.abs(slope) <= CURBS.max_road_slope) & stays
                 & (n_face >= 1) & (run <= CURBS.max_face_width))
-        return dict(s=at, u=corner + self.skew * at, h=level + slope * corner + grade * at, skew=skew, height=height, run=run,
+        return dict(s=station, u=corner + self.skew * station, h=level + slope * corner + grade * station, skew=skew, height=height, run=run,
                     noise=noise, support=n_road + n_face, behind=n_behind, good=good)
 
     def _raised_ground(self, rise):
         """Height of the ground behind the face, how many points lie there, and whether it stays up and is level or a bed of plants."""
         count = self.count
         beyond = np.flatnonzero((self.u > 0.03) & (self.u < CURBS.behind_length))
-        owner, u, rise_there = self.owner.take(beyond), self.u.take(beyond), rise.take(beyond)
-        raised = np.flatnonzero((rise_there > 0.4 * self.min_height) & (rise_there < self.max_height + 0.1))
-        up, out, to = owner.take(raised), u.take(raised), rise_there.take(raised)
+        owner, u, rise_beyond = self.owner.take(beyond), self.u.take(beyond), rise.take(beyond)
+        raised = np.flatnonzero((rise_beyond > 0.4 * self.min_height) & (rise_beyond < self.max_height + 0.1))
+        up, out, to = owner.take(raised), u.take(raised), rise_beyond.take(raised)
         first = _mean(np.bincount(up, to, count), np.bincount(up, minlength=count))
         foot, bank, _, n_raised = _line_per_owner(up, out, to, count)
         alike = np.flatnonzero(np.abs(to - first.take(up)) < 0.05)
@@ -251,7 +251,7 @@ class StepPatches:
         bed = ~level & (n_raised >= CURBS.min_bed_points) & (bank > MIN_BED_SLOPE) & (bank <= CURBS.max_bed_slope) & (foot > 0.0)
         height, level = np.where(bed, foot, height), level | bed
         far = np.flatnonzero(u > 0.10)
-        low = np.flatnonzero(rise_there < 0.5 * height.take(owner))
+        low = np.flatnonzero(rise_beyond < 0.5 * height.take(owner))
         low = low[u.take(low) > 0.10]
         low, far = (np.bincount(owner.take(v), minlength=count) for v in (low, far))
         return height, n_behind, level & (low <= np.maximum(CURBS.max_low_share * far, 1))
@@ -264,8 +264,8 @@ def _skew(owner, u, s, scatter, count):
     short stretch, and (N,) m offsets moved along the face to its mean station.
     """
     n = np.bincount(owner, minlength=count)
-    at, out = (_mean(np.bincount(owner, v, count), n) for v in (s, u))
-    ds, du = s - at.take(owner), u - out.take(owner)
+    mean_s, mean_u = (_mean(np.bincount(owner, v, count), n) for v in (s, u))
+    ds, du = s - mean_s.take(owner), u - mean_u.take(owner)
     along = np.bincount(owner, ds ** 2, count)
     skew = np.bincount(owner, ds * du, count) / (along + CURBS.skew_prior + (5 * scatter) ** 2)
     skew = np.minimum(np.maximum(skew, -CURBS.max_face_skew), CURBS.max_face_skew)
@@ -280,10 +280,10 @@ def _median_and_spread(owner, values, count):
     first = np.cumsum(n) - n
 
     def quantile(q):
-        at = q * np.maximum(n - 1, 0)
-        k = np.floor(at).astype(np.int64)
+        rank = q * np.maximum(n - 1, 0)
+        k = np.floor(rank).astype(np.int64)
         low, high = values[first + k], values[np.minimum(first + k + 1, len(values) - 1)]
-        return np.where(n > 0, np.where(n > k + 1, low + (at - k) * (high - low), low), 0.0)
+        return np.where(n > 0, np.where(n > k + 1, low + (rank - k) * (high - low), low), 0.0)
 
     return quantile(0.5), quantile(0.75) - quantile(0.25)
 
@@ -322,12 +322,12 @@ class RunningSums:
 
     def add(self, value: np.ndarray) -> None:
         """Sum the heights of cells, (P, C), NaN where there is none."""
-        there = np.isfinite(value)
-        h, u = np.where(there, value, 0.0), there * self.u
-        own = slice(self.pad, self.pad + self.cells)
-        for total, v in zip(self.totals, (there * 1.0, h, h * h, u, u * u, u * h)):
-            np.cumsum(v, axis=1, out=total[:, own])
-            total[:, own.stop:] = total[:, own.stop - 1:own.stop]
+        measured = np.isfinite(value)
+        h, u = np.where(measured, value, 0.0), measured * self.u
+        columns = slice(self.pad, self.pad + self.cells)
+        for total, v in zip(self.totals, (measured * 1.0, h, h * h, u, u * u, u * h)):
+            np.cumsum(v, axis=1, out=total[:, columns])
+            total[:, columns.stop:] = total[:, columns.stop - 1:columns.stop]
 
     def window(self, which: int, first: int, last: int) -> np.ndarray:
         """Sum of the cells from `first` to `last` beside every cell."""

@@ -75,8 +75,8 @@ class CurbPoints(LayerRows):
         """The part of the uncertainty that all lines of a road share."""
         sigma = np.full(len(self), np.nan)
         for road in frame.pass_sigma:
-            here = self.road == road
-            sigma[here] = frame.passes_sigma(road, self.station[here], np.nan)
+            of_road = self.road == road
+            sigma[of_road] = frame.passes_sigma(road, self.station[of_road], np.nan)
         return {PASS_SIGMA.name: sigma}
 
     @staticmethod
@@ -97,8 +97,8 @@ def curb_points_at(frame: RoadFrame, road: int, places: Sequence[np.ndarray], ro
     Returns CurbPoints; places, stations and offsets to 0.1 mm, as the layer holds them
     """
     count = len(places[0])
-    given = {**(CurbPoints.gathered(rows) if len(rows) else {}), **columns, "road": road}
-    given.update({name: np.round(np.asarray(given[name], float), COORDINATE_DECIMALS) for name in ("station", "offset")})
-    given["nearest_pass"] = frame.nearest_pass(road, given["station"], given["offset"]) if count else -1
-    given.update(zip("xyz", as_written(frame, *places)))
-    return CurbPoints.filled(count, crs, **given)
+    values = {**(CurbPoints.gathered(rows) if len(rows) else {}), **columns, "road": road}
+    values.update({name: np.round(np.asarray(values[name], float), COORDINATE_DECIMALS) for name in ("station", "offset")})
+    values["nearest_pass"] = frame.nearest_pass(road, values["station"], values["offset"]) if count else -1
+    values.update(zip("xyz", as_written(frame, *places)))
+    return CurbPoints.filled(count, crs, **values)

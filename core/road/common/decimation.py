@@ -147,11 +147,11 @@ class PointDecimation:
         points = self._window(road, first, first + self._stretch)
         selected, done = {limit: np.ones(len(points), bool) for limit in LEVEL_CELL_LIMITS}, 0
         for block in _blocks_of_profiles(points, first * self.width, self.width):
-            for number, own, columns in _by_pass(block.records):
+            for number, rows, columns in _by_pass(block.records):
                 cells = _PointCells(*columns, self.width, self.spacing)
                 for limit, mask in cells.select().items():
-                    here = selected[limit][done:done + len(block)]
-                    here[slice(None) if own is None else own] = mask
+                    of_block = selected[limit][done:done + len(block)]
+                    of_block[slice(None) if rows is None else rows] = mask
                 if cells.complete and self.width <= CURBS.max_strip_profile_width:
                     strip = strips.setdefault(number, LevelStrip.empty(first, self._stretch, self.width))
                     self._fill_strip(strip, cells, self.survey.frame.passes[number])
@@ -161,10 +161,10 @@ class PointDecimation:
     def _fill_strip(self, strip: LevelStrip, cells: _PointCells, driven: Pass) -> None:
         """Fill in those profiles of a strip to which the cells belong."""
         middles = (cells.first + np.arange(cells.profiles) + 0.5) * self.width
-        found = _find_level_strip(np.floor(driven.at_station(middles)[0] / COORDINATE_SCALE), *cells.grids(), cells.size,
+        limits = _find_level_strip(np.floor(driven.at_station(middles)[0] / COORDINATE_SCALE), *cells.grids(), cells.size,
                                  self.min_step / COORDINATE_SCALE)
-        own = slice(cells.first - strip.first, cells.first - strip.first + cells.profiles)
-        strip.low[own], strip.high[own], strip.height[own] = found
+        profiles = slice(cells.first - strip.first, cells.first - strip.first + cells.profiles)
+        strip.low[profiles], strip.high[profiles], strip.height[profiles] = limits
 
     def _store_bits(self, bits):
         with self._locks[-1]:
@@ -221,8 +221,8 @@ def _by_pass(records):
     columns, numbers = [records[name] for name in ("s", "d", "z")], records["pass_number"]
     if numbers.min() == numbers.max():
         return [(int(numbers[0]), None, columns)]
-    owns = [(int(number), np.flatnonzero(numbers == number)) for number in np.flatnonzero(np.bincount(numbers))]
-    return [(number, own, [column.take(own) for column in columns]) for number, own in owns]
+    passes = [(int(number), np.flatnonzero(numbers == number)) for number in np.flatnonzero(np.bincount(numbers))]
+    return [(number, rows, [column.take(rows) for column in columns]) for number, rows in passes]
 
 
 class _PointCells:
@@ -270,20 +270,20 @@ class _PointCells:
             number = np.full(len(self.count), -1)
             number[dense] = np.arange(len(dense))
             cell = number.take(self.cell)
-            own = np.flatnonzero(cell >= 0)
-            s, d, cell = self.s.take(own), self.d.take(own), cell.take(own)
-            level = _is_level(_sums(cell, self.z.take(own), count)[1], count)
+            rows = np.flatnonzero(cell >= 0)
+            s, d, cell = self.s.take(rows), self.d.take(rows), cell.take(rows)
+            level = _is_level(_sums(cell, self.z.take(rows), count)[1], count)
         else:
-            own, s, d, cell, count, level = None, self.s, self.d, self.cell, self.count, self.is_level()
+            rows, s, d, cell, count, level = None, self.s, self.d, self.cell, self.count, self.is_level()
         rank, per_point = _hash_of_place(s, np.abs(d)), 65536.0 / np.maximum(count, 1)
-        found = {}
+        result = {}
         for limit in LEVEL_CELL_LIMITS:
             used = rank <= np.minimum(np.where(level, limit, CURBS.points_per_uneven_cell) * per_point, 65535.0).astype(np.uint16).take(cell)
-            if own is not None:
-                those, used = used, np.ones(len(self.s), bool)
-                used[own] = those
-            found[limit] = used
-        return found
+            if rows is not None:
+                used_of_dense, used = used, np.ones(len(self.s), bool)
+                used[rows] = used_of_dense
+            result[limit] = used
+        return result
 
     def is_level(self) -> np.ndarray:
         """(C,) bool: is the ground of each cell level?"""
@@ -313,8 +313,8 @@ def _mostly_uneven(records, width, spacing):
     if not len(records):
         return False
     cells = _PointCells(*(records[name] for name in ("s", "d", "z")), width, spacing)
-    known = np.where(cells.count >= CURBS.min_level_points, cells.count, 0)
-    return known[~cells.is_level()].sum() > CURBS.mostly_uneven_share * known.sum()
+    count = np.where(cells.count >= CURBS.min_level_points, cells.count, 0)
+    return count[~cells.is_level()].sum() > CURBS.mostly_uneven_share * count.sum()
 
 
 def _hash_of_place(s, out):
@@ -367,9 +367,9 @@ class LevelStrip:
         margin = int(round(across / COORDINATE_SCALE))
         low, high = widest(self.low) + margin, -widest(-self.high) - margin
         narrow = high - low < CURBS.min_strip_width / COORDINATE_SCALE
-        own = slice(around, len(self.height) - around)
+        inner = slice(around, len(self.height) - around)
         return LevelStrip(self.first + around, self.width, np.where(narrow, NO_OFFSET, low).astype(np.int32),
-                          np.where(narrow, -NO_OFFSET, high).astype(np.int32), self.height[own])
+                          np.where(narrow, -NO_OFFSET, high).astype(np.int32), self.height[inner])
 
     def contains(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) bool: does a point lie in the strip? s : (N,) stations, ascending; d : (N,) offsets; both in 0.1 mm."""
@@ -378,8 +378,8 @@ class LevelStrip:
         inside = np.empty(len(d), bool)
         # stations ascend, so a profile is a range of points
         for low, high, first, end in zip(self.low, self.high, cuts[:-1], cuts[1:]):
-            own = d[first:end]
-            np.logical_and(own > low, own < high, out=inside[first:end])
+            offsets = d[first:end]
+            np.logical_and(offsets > low, offsets < high, out=inside[first:end])
         return inside
 
     def at(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -405,21 +405,21 @@ def _find_level_strip(track: np.ndarray, count: np.ndarray, total: np.ndarray, s
     """
     half = min(int(CURBS.max_strip_offset / COORDINATE_SCALE) // size, count.shape[2])
     count, total, squares = (np.concatenate([v[:, 1, :half][:, ::-1], v[:, 0, :half]], axis=1) for v in (count, total, squares))
-    seen = count > 0
-    mean = np.where(seen, total / np.maximum(count, 1), np.nan)
-    uneven = seen & ((count < CURBS.min_level_points) | (squares > count * (CURBS.max_strip_std / COORDINATE_SCALE) ** 2))
-    apart = max(int(round(CURBS.max_step_width * 0.5 / COORDINATE_SCALE / size)), 1)
+    measured = count > 0
+    mean = np.where(measured, total / np.maximum(count, 1), np.nan)
+    uneven = measured & ((count < CURBS.min_level_points) | (squares > count * (CURBS.max_strip_std / COORDINATE_SCALE) ** 2))
+    half_step = max(int(round(CURBS.max_step_width * 0.5 / COORDINATE_SCALE / size)), 1)
     with np.errstate(invalid="ignore"):
-        uneven[:, apart:-apart] |= np.abs(mean[:, 2 * apart:] - mean[:, :-2 * apart]) > CURBS.level_step_share * min_height
+        uneven[:, half_step:-half_step] |= np.abs(mean[:, 2 * half_step:] - mean[:, :-2 * half_step]) > CURBS.level_step_share * min_height
     uneven &= _count_about(uneven) >= CURBS.min_uneven_neighbours
-    own = np.clip(track // size + half, 0, 2 * half - 1).astype(np.int64)
-    left, right = (_level_cells_from(own, sign, uneven, seen, size) for sign in (1, -1))
+    track_cell = np.clip(track // size + half, 0, 2 * half - 1).astype(np.int64)
+    left, right = (_level_cells_from(track_cell, sign, uneven, measured, size) for sign in (1, -1))
     column = np.arange(2 * half)
-    inside = (column > (own - right)[:, None]) & (column < (own + left)[:, None])
+    inside = (column > (track_cell - right)[:, None]) & (column < (track_cell + left)[:, None])
     points = (count * inside).sum(axis=1)
-    known = (left > 0) & (right > 0) & (points > 0)
-    low = np.where(known, (own - right + 1 - half) * size, NO_OFFSET)
-    high = np.where(known, (own + left - half) * size, -NO_OFFSET)
+    bounded = (left > 0) & (right > 0) & (points > 0)
+    low = np.where(bounded, (track_cell - right + 1 - half) * size, NO_OFFSET)
+    high = np.where(bounded, (track_cell + left - half) * size, -NO_OFFSET)
     return low, high, (total * inside).sum(axis=1) / np.maximum(points, 1) * COORDINATE_SCALE
 
 
@@ -433,11 +433,11 @@ def _count_about(mask):
 def _level_cells_from(own, sign, uneven, seen, size):
     """(P,) number of cells from the track's own up to the first in which the ground is not level or was not seen."""
     last = uneven.shape[1] - 1
-    away = np.arange(last + 1)
-    column = own[:, None] + sign * away
+    distance = np.arange(last + 1)
+    column = own[:, None] + sign * distance
     on = (column >= 0) & (column <= last)
     column = np.clip(column, 0, last)
-    there = np.take_along_axis(seen, column, axis=1)
+    measured = np.take_along_axis(seen, column, axis=1)
     ends = ~on | np.take_along_axis(uneven, column, axis=1) \
-        | ~there & (np.logical_or.accumulate(there, axis=1) | (away * size * COORDINATE_SCALE > CURBS.blind_half_width))
+        | ~measured & (np.logical_or.accumulate(measured, axis=1) | (distance * size * COORDINATE_SCALE > CURBS.blind_half_width))
     return np.argmax(ends, axis=1)

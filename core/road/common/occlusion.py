@@ -46,17 +46,17 @@ class OcclusionGrid:
         cell = np.floor(u / CURBS.occlusion_cell).astype(np.int64)
         tall = (h > CURBS.min_occluder_height) & (cell >= 0) & (cell < self.cells) & (row >= first) & (row < last)
         self.tall[row[tall], cell[tall]] = True
-        place = np.clip((lines.offset(np.arange(lines.shape[1])) / CURBS.occlusion_cell).astype(np.int64), 0, self.cells - 1)
-        starts = np.flatnonzero(np.r_[True, np.diff(place) > 0])
+        cells = np.clip((lines.offset(np.arange(lines.shape[1])) / CURBS.occlusion_cell).astype(np.int64), 0, self.cells - 1)
+        starts = np.flatnonzero(np.r_[True, np.diff(cells) > 0])
         lowest = np.fmin.reduceat(lines.low, starts, axis=1)
-        seen = self.ground[first:last]
-        seen[:, place[starts]] = np.fmin(seen[:, place[starts]], lowest)
+        ground = self.ground[first:last]
+        ground[:, cells[starts]] = np.fmin(ground[:, cells[starts]], lowest)
 
     def add(self, part: OcclusionGrid) -> None:
         """Add what a grid of some of these profiles holds."""
-        own = slice(part.first - self.first, part.first - self.first + len(part.tall))
-        self.tall[own] |= part.tall
-        self.ground[own] = np.fmin(self.ground[own], part.ground)
+        rows = slice(part.first - self.first, part.first - self.first + len(part.tall))
+        self.tall[rows] |= part.tall
+        self.ground[rows] = np.fmin(self.ground[rows], part.ground)
 
     @classmethod
     def join(cls, parts: Sequence[OcclusionGrid]) -> OcclusionGrid:
@@ -73,9 +73,9 @@ class OcclusionGrid:
         height : (P,) m above the expected road
         """
         cell = np.arange(self.cells) * CURBS.occlusion_cell
-        there = (cell >= nearest[:, None]) & (cell + CURBS.occlusion_cell <= farthest[:, None])
-        seen = self.ground[profiles[0] - self.first:profiles[1] - self.first]
-        seen[:] = np.where(there, np.fmin(seen, height[:, None]), seen)
+        inside = (cell >= nearest[:, None]) & (cell + CURBS.occlusion_cell <= farthest[:, None])
+        ground = self.ground[profiles[0] - self.first:profiles[1] - self.first]
+        ground[:] = np.where(inside, np.fmin(ground, height[:, None]), ground)
 
     def hidden(self, s: np.ndarray, u: np.ndarray, h: np.ndarray, near: np.ndarray) -> np.ndarray:
         """Is the curb that is expected at a place hidden from the scanner?
@@ -90,9 +90,9 @@ class OcclusionGrid:
         cell = np.floor(u / CURBS.occlusion_cell).astype(np.int64)
         offsets = cell[:, None] + np.arange(-1, 2)
         inside = (offsets >= 0) & (offsets < self.cells)
-        there = self.ground[row[:, None], np.clip(offsets, 0, self.cells - 1)]
+        heights = self.ground[row[:, None], np.clip(offsets, 0, self.cells - 1)]
         with np.errstate(invalid="ignore"):
-            seen = inside & (np.abs(there - h[:, None]) < CURBS.max_bottom_difference)
+            measured = inside & (np.abs(heights - h[:, None]) < CURBS.max_bottom_difference)
         # a summed-area table gives the tall cells of any rectangle in four look-ups
         sums = np.zeros((rows + 1, self.cells + 1), np.int32)
         np.cumsum(np.cumsum(self.tall, 0, np.int32), 1, np.int32, out=sums[1:, 1:])
@@ -101,7 +101,7 @@ class OcclusionGrid:
         c0 = np.clip(np.floor(near / CURBS.occlusion_cell).astype(np.int64) + 3, 0, self.cells)
         c1 = np.maximum(np.clip(cell + 1, 0, self.cells), c0)
         tall = sums[r1, c1] - sums[r0, c1] - sums[r1, c0] + sums[r0, c0]
-        return (seen.sum(1) < 2) & (tall > 0) | self._in_water(row, cell, h)
+        return (measured.sum(1) < 2) & (tall > 0) | self._in_water(row, cell, h)
 
     def rise(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
         """How much higher the ground behind a line is than before it.
@@ -117,19 +117,19 @@ class OcclusionGrid:
         rows -= self.first
         before = np.floor((line - CURBS.rise_face_half_width) / CURBS.occlusion_cell).astype(np.int64) - 1
         behind = np.ceil((line + CURBS.rise_face_half_width) / CURBS.occlusion_cell).astype(np.int64)
-        there = (rows >= 0) & (rows < len(self.ground)) & (before >= 0) & (behind < self.cells)
+        inside = (rows >= 0) & (rows < len(self.ground)) & (before >= 0) & (behind < self.cells)
         rows = np.clip(rows, 0, len(self.ground) - 1)
         low, high = (self.ground[rows, np.clip(cells, 0, self.cells - 1)] for cells in (before, behind))
-        rises = np.sort(np.where(there, high - low, np.nan), axis=1)
-        last, own = np.maximum(np.isfinite(rises).sum(1) - 1, 0), np.arange(len(rises))
-        return 0.5 * (rises[own, last // 2] + rises[own, last - last // 2])
+        rises = np.sort(np.where(inside, high - low, np.nan), axis=1)
+        last, index = np.maximum(np.isfinite(rises).sum(1) - 1, 0), np.arange(len(rises))
+        return 0.5 * (rises[index, last // 2] + rises[index, last - last // 2])
 
     def _in_water(self, row, cell, h):
         """(N,) bool, whether the road before a place returned nothing and the ground behind it is raised like the top of a curb."""
         offsets = cell[:, None] + np.arange(-CURBS.water_cells, CURBS.water_cells)
         rise = self.ground[row[:, None], np.clip(offsets, 0, self.cells - 1)] - h[:, None]
         with np.errstate(invalid="ignore"):
-            seen = np.abs(rise) < CURBS.max_bottom_difference
-            raised = seen & (rise > CURBS.least_water_step)
-        return ((offsets[:, 0] > 0) & ~seen[:, :CURBS.water_cells].any(1) & raised[:, CURBS.water_cells:].any(1)
-                & ~(seen & ~raised)[:, CURBS.water_cells:].any(1))
+            measured = np.abs(rise) < CURBS.max_bottom_difference
+            raised = measured & (rise > CURBS.least_water_step)
+        return ((offsets[:, 0] > 0) & ~measured[:, :CURBS.water_cells].any(1) & raised[:, CURBS.water_cells:].any(1)
+                & ~(measured & ~raised)[:, CURBS.water_cells:].any(1))

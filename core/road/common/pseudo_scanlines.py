@@ -58,9 +58,9 @@ def lowest_layers(place: np.ndarray, h: np.ndarray, layer_jump: float) -> tuple[
     real = layer_count >= CURBS.min_ground_layer_share * cell_count[layer_cell]
     lowest = np.flatnonzero(real)
     lowest = lowest[np.r_[True, np.diff(layer_cell[lowest]) > 0]]
-    other = np.ones(len(layer_start), bool)
-    other[lowest] = False
-    ground[expand_ranges(layer_start[other], layer_start[other] + layer_count[other])[1]] = False
+    upper = np.ones(len(layer_start), bool)
+    upper[lowest] = False
+    ground[expand_ranges(layer_start[upper], layer_start[upper] + layer_count[upper])[1]] = False
     return ground, layer_start[lowest], layer_count[lowest]
 
 
@@ -134,11 +134,12 @@ class PseudoScanLines:
 def seen_from(lines: PseudoScanLines, nearest: float, farthest: float, layer_jump: float) -> PseudoScanLines:
     """The same profiles from the points alone that lay `nearest` <= distance < `farthest` metres ahead when they were measured."""
     along = lines.along.take(lines.point)
-    own = np.flatnonzero((along >= nearest) & (along < farthest))
-    point, (rows, cells) = lines.point.take(own), lines.shape
-    seen = pseudo_scan_lines(lines.u.take(point), lines.s.take(point), lines.h.take(own), along.take(own), (lines.first, lines.first + rows),
-                             lines.width, lines.spacing, layer_jump, lines.origin, lines.origin + cells * lines.spacing)
-    return replace(seen, spread=lines.spread)
+    indices = np.flatnonzero((along >= nearest) & (along < farthest))
+    point, (rows, cells) = lines.point.take(indices), lines.shape
+    result = pseudo_scan_lines(lines.u.take(point), lines.s.take(point), lines.h.take(indices), along.take(indices),
+                               (lines.first, lines.first + rows), lines.width, lines.spacing, layer_jump, lines.origin,
+                               lines.origin + cells * lines.spacing)
+    return replace(result, spread=lines.spread)
 
 
 def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.ndarray, profiles: tuple[int, int], width: float,
@@ -203,10 +204,10 @@ def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: 
     middle = 0.5 * (h[first_of + (count - 1) // 2] + h[first_of + count // 2])
     top = h[first_of + np.rint(CURBS.top_quantile * (count - 1)).astype(np.int64)]
     low.flat[owner], high.flat[owner] = middle, top
-    many = np.flatnonzero(count >= CURBS.profile_noise_points)
-    noise = _profile_noise(owner.take(many) // cells, (top.take(many) - middle.take(many)) / TOP_QUANTILE_SIGMAS, rows)
-    held = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
-    return _ProfileRun(profiles, order, u, s, along, h, ground, held, low, high, noise, _smooth(h, held, low))
+    dense = np.flatnonzero(count >= CURBS.profile_noise_points)
+    noise = _profile_noise(owner.take(dense) // cells, (top.take(dense) - middle.take(dense)) / TOP_QUANTILE_SIGMAS, rows)
+    points_per_cell = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
+    return _ProfileRun(profiles, order, u, s, along, h, ground, points_per_cell, low, high, noise, _smooth(h, points_per_cell, low))
 
 
 def join_profile_runs(runs: Sequence[_ProfileRun], profiles: tuple[int, int], width: float, spacing: float,
@@ -214,15 +215,15 @@ def join_profile_runs(runs: Sequence[_ProfileRun], profiles: tuple[int, int], wi
     """PseudoScanLines of profiles (first, last + 1) from runs that follow one another; profiles of no run are empty."""
     rows, cells = profiles[1] - profiles[0], runs[0].low.shape[1]
     low, high = np.full((rows, cells), np.nan), np.full((rows, cells), np.nan)
-    held = np.zeros((rows, cells), np.int64)
+    points_per_cell = np.zeros((rows, cells), np.int64)
     noise, smooth = np.full(rows, CURBS.default_scanner_noise), np.full(rows, np.nan)
     for run in runs:
-        own = slice(run.profiles[0] - profiles[0], run.profiles[1] - profiles[0])
-        low[own], high[own], held[own], noise[own], smooth[own] = run.low, run.high, run.count, run.noise, run.smooth
+        of_run = slice(run.profiles[0] - profiles[0], run.profiles[1] - profiles[0])
+        low[of_run], high[of_run], points_per_cell[of_run], noise[of_run], smooth[of_run] = run.low, run.high, run.count, run.noise, run.smooth
     u, s, along, h, ground = (np.concatenate([getattr(run, name) for run in runs]) for name in ("u", "s", "along", "h", "ground"))
     before = np.cumsum([0] + [len(run.point) for run in runs[:-1]])
     point = np.concatenate([run.point + first for run, first in zip(runs, before)])
-    return PseudoScanLines(profiles[0], width, spacing, origin, point, u, s, along, h, ground, np.r_[0, np.cumsum(held)], low, high, noise,
+    return PseudoScanLines(profiles[0], width, spacing, origin, point, u, s, along, h, ground, np.r_[0, np.cumsum(points_per_cell)], low, high, noise,
                            _spread(smooth))
 
 
@@ -255,8 +256,8 @@ def cells_of_points(u: np.ndarray, s: np.ndarray, h: np.ndarray, rows: np.ndarra
 def _profile_noise(profile, spread, count):
     """(count,) median spread of each profile's cells; (M,) the profile, ascending, and the spread of cells."""
     ordered, n = _sorted_rows(profile, spread, count)
-    k, own = np.maximum(n - 1, 0), np.arange(count)
-    median = 0.5 * (ordered[own, k // 2] + ordered[own, (k + 1) // 2])
+    k, index = np.maximum(n - 1, 0), np.arange(count)
+    median = 0.5 * (ordered[index, k // 2] + ordered[index, (k + 1) // 2])
     return np.where(n >= CURBS.profile_noise_cells, np.fmax(median, CURBS.min_scanner_noise), CURBS.default_scanner_noise)
 
 
@@ -288,15 +289,15 @@ def _spread(smooth):
     # a single profile beside a bush is no measure of the scanner
     padded = np.pad(smooth, CURBS.spread_profiles, constant_values=np.nan)
     around = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * CURBS.spread_profiles + 1), axis=1)
-    known = np.isfinite(around).sum(1)
-    middle = around[np.arange(len(smooth)), np.maximum(known - 1, 0) // 2]
-    return np.where(known > 0, middle, CURBS.min_scanner_noise)
+    count = np.isfinite(around).sum(1)
+    middle = around[np.arange(len(smooth)), np.maximum(count - 1, 0) // 2]
+    return np.where(count > 0, middle, CURBS.min_scanner_noise)
 
 
 def _sorted_rows(row, values, rows):
     """The (M,) values of every row, (M,) ascending, sorted and padded with NaN to the longest; and the number of values of each."""
     count = np.bincount(row, minlength=rows)
-    found = np.full((rows, max(int(count.max(initial=0)), 1)), np.nan)
-    found[np.arange(found.shape[1]) < count[:, None]] = values
-    found.sort(axis=1)
-    return found, count
+    padded = np.full((rows, max(int(count.max(initial=0)), 1)), np.nan)
+    padded[np.arange(padded.shape[1]) < count[:, None]] = values
+    padded.sort(axis=1)
+    return padded, count

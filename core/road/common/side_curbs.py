@@ -37,12 +37,12 @@ def steps_of_road(function: Callable, source: Any, road: int, settings: Any, sec
     first, last = sections[0][0], sections[-1][1]
     occlusion = {side: OcclusionGrid(width, first, last - first, CURBS.max_curb_offset) for side in SIDE_SIGNS}
     parts: dict[str, list[CurbSteps]] = {side: [] for side in SIDE_SIGNS}
-    for found, beside in source.executor.run(phase_along(function, source, (road, settings), width, join_sections), sections, progress):
-        for side, steps in found.items():
+    for curb_steps, grids in source.executor.run(phase_along(function, source, (road, settings), width, join_sections), sections, progress):
+        for side, steps in curb_steps.items():
             parts[side].append(steps)
-        for side, seen in beside.items():
-            occlusion[side].add(seen)
-    return {side: type(found[0]).join(found) for side, found in parts.items() if found}, occlusion
+        for side, grid in grids.items():
+            occlusion[side].add(grid)
+    return {side: type(curb_steps[0]).join(curb_steps) for side, curb_steps in parts.items() if curb_steps}, occlusion
 
 
 def phase_along(function: Callable, source: Any, arguments: tuple[Any, ...], width: float, join: Callable) -> Phase:
@@ -65,8 +65,8 @@ def merged_passes(found: Sequence[AnySteps]) -> AnySteps:
     if len(found) < 2 or not len(steps):
         return steps
     steps = steps[np.lexsort((steps.u, steps.profile))]
-    apart = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > CURBS.pass_merge_across) | (np.abs(np.diff(steps.h)) > CURBS.pass_merge_height)
-    first, group = np.r_[True, apart], np.r_[0, np.cumsum(apart)]
+    separate = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > CURBS.pass_merge_across) | (np.abs(np.diff(steps.h)) > CURBS.pass_merge_height)
+    first, group = np.r_[True, separate], np.r_[0, np.cumsum(separate)]
     weight = np.sqrt(np.maximum(steps.support, 1))
     total = np.bincount(group, weight)
 
@@ -76,7 +76,7 @@ def merged_passes(found: Sequence[AnySteps]) -> AnySteps:
             return np.bincount(group, values).astype(np.int64)
         return values[first] if name in ("profile", "sloped") else np.bincount(group, weight * values) / total
 
-    return type(steps)(**{one.name: merged(one.name) for one in fields(steps)})
+    return type(steps)(**{field.name: merged(field.name) for field in fields(steps)})
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class SideChains:
             return []
         blocks, member = np.unique(_block_numbers(steps, self.bounds), return_inverse=True)
         n = np.bincount(member)
-        names = {"s", "u", "height", *(name for _, *place in steps.PARTS for name in place)}
+        names = {"s", "u", "height", *(name for _, *coordinates in steps.PARTS for name in coordinates)}
         mean = {name: np.bincount(member, getattr(steps, name)) / n for name in names}
         residual = np.sqrt(np.bincount(member, (steps.u - np.interp(steps.s, mean["s"], mean["u"])) ** 2) / n)
         support = np.bincount(member, steps.support)
@@ -130,10 +130,10 @@ class SideChains:
         """
         order = np.argsort(self.steps.s, kind="stable")
         by_station = self.steps.s[order]
-        place, row = expand_ranges(*(np.searchsorted(by_station, s + end) for end in (-0.5 * CURBS.max_link_length, 0.5 * CURBS.max_link_length)))
+        index, row = expand_ranges(*(np.searchsorted(by_station, s + end) for end in (-0.5 * CURBS.max_link_length, 0.5 * CURBS.max_link_length)))
         row = order[row]
-        near = np.abs(self.steps.u[row] - u[place] - skew[place] * (self.steps.s[row] - s[place])) <= 2 * CURBS.link_tolerance
-        return np.bincount(place[near], self.steps.support[row[near]], len(s)) / CURBS.max_link_length
+        near = np.abs(self.steps.u[row] - u[index] - skew[index] * (self.steps.s[row] - s[index])) <= 2 * CURBS.link_tolerance
+        return np.bincount(index[near], self.steps.support[row[near]], len(s)) / CURBS.max_link_length
 
 
 def points_of_side(source: Any, road: int, side: str, found: SideChains, occlusion: OcclusionGrid) -> CurbPoints:
@@ -172,14 +172,14 @@ def block_bounds(road: Road, start: float, end: float, block_length: float) -> n
     """
     if block_length:
         return np.arange(np.floor(start / block_length), np.ceil(end / block_length) + 1) * block_length
-    whole = CURBS.block_section_length
-    first, last = int(np.floor(start / whole)), int(np.ceil(end / whole))
+    section_length = CURBS.block_section_length
+    first, last = int(np.floor(start / section_length)), int(np.ceil(end / section_length))
     bounds = []
     for k in range(first, last):
-        bend = np.abs(road.curvature(np.arange(k * whole, (k + 1) * whole, 0.5))).max()
+        bend = np.abs(road.curvature(np.arange(k * section_length, (k + 1) * section_length, 0.5))).max()
         length = np.clip(CURBS.max_block_turn / max(bend, 1e-9), CURBS.min_block_length, CURBS.max_block_length)
-        bounds.append(np.linspace(k * whole, (k + 1) * whole, int(np.ceil(whole / length)) + 1)[:-1])
-    return np.r_[np.concatenate(bounds), last * whole] if bounds else np.array([start, end])
+        bounds.append(np.linspace(k * section_length, (k + 1) * section_length, int(np.ceil(section_length / length)) + 1)[:-1])
+    return np.r_[np.concatenate(bounds), last * section_length] if bounds else np.array([start, end])
 
 
 def _block_numbers(steps: CurbSteps, bounds: np.ndarray) -> np.ndarray:

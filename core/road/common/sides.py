@@ -37,8 +37,8 @@ class OutermostTrack:
         offsets = np.full(s.shape, -np.inf)
         for p in self.passes:
             first, last = p.span
-            there = (s >= first - 5.0) & (s <= last + 5.0)
-            offsets = np.where(there, np.maximum(offsets, self.sign * p.at_station(s)[0]), offsets)
+            inside = (s >= first - 5.0) & (s <= last + 5.0)
+            offsets = np.where(inside, np.maximum(offsets, self.sign * p.at_station(s)[0]), offsets)
         return np.where(np.isfinite(offsets), offsets, 0.0)
 
 
@@ -64,8 +64,9 @@ def fixed_sections(first: int, last: int, width: float) -> list[tuple[int, int]]
 
 def join_sections(parts: Sequence[tuple[Mapping[str, Any], Mapping[str, OcclusionGrid]]]) -> tuple[dict[str, Any], dict[str, OcclusionGrid]]:
     """What the phases of profiles and scanlines find in a section, from what they find in parts of it that follow each other."""
-    found, beside = ({side: [part[side] for part in column if side in part] for side in SIDE_SIGNS} for column in zip(*parts))
-    return {side: type(some[0]).join(some) for side, some in found.items() if some}, {side: OcclusionGrid.join(some) for side, some in beside.items()}
+    steps, grids = ({side: [part[side] for part in column if side in part] for side in SIDE_SIGNS} for column in zip(*parts))
+    return {side: type(of_side[0]).join(of_side) for side, of_side in steps.items() if of_side}, \
+        {side: OcclusionGrid.join(of_side) for side, of_side in grids.items()}
 
 
 def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, int], tracks: Mapping[str, OutermostTrack],
@@ -100,8 +101,8 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
                 key = side, number
                 inside, cell = cells_of_points(u, s, h, rows, profiles, cells, width, spacing, origins[side])
                 if points_per_cell is None:
-                    few = limit_points_per_cell(cell)
-                    inside, cell = inside[few], cell[few]
+                    selected = limit_points_per_cell(cell)
+                    inside, cell = inside[selected], cell[selected]
                 runs.setdefault(key, []).append(ground_of_profiles((u, s, h, along), inside, cell, profiles, cells, settings.layer_jump))
                 high = rows[h.take(rows) > CURBS.min_occluder_height]
                 tall.setdefault(key, []).append([v.take(high) for v in (u, s, h)])
@@ -112,13 +113,13 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
 
 def _rows_by_pass(numbers, mask):
     """[(pass number, indices)] of the points of a mask."""
-    own = np.flatnonzero(mask)
-    if not len(own):
+    rows = np.flatnonzero(mask)
+    if not len(rows):
         return []
     if numbers.min() == numbers.max():
-        return [(int(numbers[0]), own)]
-    numbers = numbers.take(own)
-    return [(int(number), own[numbers == number]) for number in np.flatnonzero(np.bincount(numbers))]
+        return [(int(numbers[0]), rows)]
+    numbers = numbers.take(rows)
+    return [(int(number), rows[numbers == number]) for number in np.flatnonzero(np.bincount(numbers))]
 
 
 def expected_height(survey: Any, road: int, s: np.ndarray) -> np.ndarray:
@@ -131,12 +132,12 @@ def expected_height(survey: Any, road: int, s: np.ndarray) -> np.ndarray:
     first = int(np.floor(np.min(s) / CURBS.height_node_spacing))
     last = int(np.floor(np.max(s) / CURBS.height_node_spacing)) + 1
     nodes = survey.road_height(road, np.arange(first, last + 1) * CURBS.height_node_spacing)
-    at = s * (1.0 / CURBS.height_node_spacing)
-    at -= first
-    k = at.astype(np.intp)
-    at -= k
+    position = s * (1.0 / CURBS.height_node_spacing)
+    position -= first
+    k = position.astype(np.intp)
+    position -= k
     h = nodes.take(k)
-    h += at * np.diff(nodes).take(k)
+    h += position * np.diff(nodes).take(k)
     return h
 
 
@@ -158,8 +159,8 @@ def ahead_of_vehicle(survey: Survey, points: Points, s: np.ndarray) -> np.ndarra
         return s - survey.frame.passes[int(numbers[0])].station_at(points.time)
     along, time = np.empty(len(points)), points.time
     for number in np.flatnonzero(np.bincount(numbers)):
-        own = np.flatnonzero(numbers == number)
-        along[own] = s[own] - survey.frame.passes[number].station_at(time.take(own))
+        rows = np.flatnonzero(numbers == number)
+        along[rows] = s[rows] - survey.frame.passes[number].station_at(time.take(rows))
     return along
 
 
@@ -200,22 +201,23 @@ def hidden_beside(pieces: CurbPoints, main: Mapping[str, np.ndarray], beside: Ma
 
     Returns CurbPoints of status occluded; none where a place is known to be hidden already
     """
-    found = [CurbPoints.filled(0, pieces.crs)]
+    result = [CurbPoints.filled(0, pieces.crs)]
     for side, sign in SIDE_SIGNS.items():
-        own = pieces[pieces.side == side]
-        if not len(own) or side not in beside:
+        of_side = pieces[pieces.side == side]
+        if not len(of_side) or side not in beside:
             continue
-        later = np.c_[own.station, sign * own.offset, own.z - expected_height(survey, road, own.station)]
-        known = main[side] * (1, sign, 1, 1)
-        measured = np.concatenate([later, known[known[:, 3] > 0, :3]])
-        order, reported = np.argsort(measured[:, 0], kind="stable"), np.r_[-np.inf, np.sort(known[known[:, 3] == 0, 0]), np.inf]
+        later = np.c_[of_side.station, sign * of_side.offset, of_side.z - expected_height(survey, road, of_side.station)]
+        main_curb = main[side] * (1, sign, 1, 1)
+        measured = np.concatenate([later, main_curb[main_curb[:, 3] > 0, :3]])
+        order, reported = np.argsort(measured[:, 0], kind="stable"), np.r_[-np.inf, np.sort(main_curb[main_curb[:, 3] == 0, 0]), np.inf]
         ends, rows = measured[order, 0], []
         for row in hidden_points(measured, beside[side], OutermostTrack(survey.frame, road, sign)):
             k = np.searchsorted(ends, row["s"])
-            at = np.searchsorted(reported, row["s"])
-            if (order[k - 1:k + 1] < len(later)).any() and np.abs(reported[at - 1:at + 1] - row["s"]).min() > 0.5 * CURBS.hidden_point_spacing:
+            position = np.searchsorted(reported, row["s"])
+            if (order[k - 1:k + 1] < len(later)).any() \
+                    and np.abs(reported[position - 1:position + 1] - row["s"]).min() > 0.5 * CURBS.hidden_point_spacing:
                 rows.append(row)
         s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))
         places = survey.frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))
-        found.append(curb_points_at(survey.frame, road, places, [row["fields"] for row in rows], side=side, station=s, offset=sign * u))
-    return CurbPoints.join(found, pieces.crs)
+        result.append(curb_points_at(survey.frame, road, places, [row["fields"] for row in rows], side=side, station=s, offset=sign * u))
+    return CurbPoints.join(result, pieces.crs)

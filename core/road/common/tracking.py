@@ -64,9 +64,9 @@ def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
     behind = _best_partner(sorted_steps, profile_width, -1)
     rows = np.flatnonzero(ahead >= 0)
     rows = rows[behind[ahead[rows]] == rows]
-    found = np.empty(count, np.int64)
-    found[order] = linked_groups(rows, ahead[rows], count)
-    return found
+    groups = np.empty(count, np.int64)
+    groups[order] = linked_groups(rows, ahead[rows], count)
+    return groups
 
 
 def _best_partner(steps, width, direction):
@@ -151,22 +151,23 @@ def is_clean(noise: float, scanner_noise: float, behind: np.ndarray, scatter: fl
 
 def _continuing(chains, weak, steps):
     """Those of the weak chains that continue a chain, or another such one: how much a short chain scatters depends on where profiles are cut."""
-    found: list[StepChain] = []
+    continuing: list[StepChain] = []
     for sign in (1, -1):
-        numbered = [*chains, *found]
+        numbered = [*chains, *continuing]
         # by the end that another chain may continue, so that those near a chain are looked up
         tips = sorted((_along(chain, sign)[1], k) for k, chain in enumerate(numbered))
         for chain in sorted(weak, key=lambda chain: _along(chain, sign)[0]):
             begin, end = _along(chain, sign)
-            first, last = (bisect_left(tips, (place, -1)) for place in (begin - CURBS.max_chain_gap - ROUNDING_TOLERANCE, begin + ROUNDING_TOLERANCE))
+            first, last = (bisect_left(tips, (station, -1))
+                           for station in (begin - CURBS.max_chain_gap - ROUNDING_TOLERANCE, begin + ROUNDING_TOLERANCE))
             if any(0 < begin - tip <= CURBS.max_chain_gap and _in_line(steps, *(numbered[k].steps, chain.steps)[::sign])[0]
                    for tip, k in tips[first:last]):
                 insort(tips, (end, len(numbered)))
                 numbered.append(chain)
-                found.append(chain)
-        taken = set(map(id, found))
+                continuing.append(chain)
+        taken = set(map(id, continuing))
         weak = [chain for chain in weak if id(chain) not in taken]
-    return found
+    return continuing
 
 
 def _along(chain, sign):
@@ -227,14 +228,14 @@ class _Paths:
         while self.waiting and self.starts[self.waiting[-1]] <= a:
             insort(self.active, self.waiting.pop())
         self.active = [c for c in self.active if self.ends[c] >= b]
-        known = np.array(self.continued, np.int64)
-        at = np.array([[np.interp(a, self.places[k][0], v) for v in self.places[k][1:]] for k in known]).reshape(-1, 2)
+        members = np.array(self.continued, np.int64)
+        positions = np.array([[np.interp(a, self.places[k][0], v) for v in self.places[k][1:]] for k in members]).reshape(-1, 2)
         middle = 0.5 * (a + b)
         steps = []
         for c in self.active:
             farther = max(np.interp(middle, *self.places[c][:2]) - self.near(middle), 0.0)
             gain = (b - a) * max(1.0 - CURBS.distance_penalty * farther, 0.1) * (CURBS.faint_gain if self.chains[c].faint else 1.0)
-            best, before = self._before(c, a, known, at)
+            best, before = self._before(c, a, members, positions)
             steps.append((c, best + gain, (int(c), float(a), float(b), before)))
         for c, value, step in steps:
             self.value[c], self.path[c] = value, step
@@ -272,12 +273,12 @@ def _continued(selected, chains, steps):
     for sign in (1, -1):
         for number in free[::sign]:
             chain = chains[number]
-            at = bisect_left(selected, chain.start, key=lambda part: part[1])
-            if any(a < chain.end and b > chain.start for _, a, b in selected[max(at - 1, 0):at + 1]):
+            position = bisect_left(selected, chain.start, key=lambda part: part[1])
+            if any(a < chain.end and b > chain.start for _, a, b in selected[max(position - 1, 0):position + 1]):
                 continue
-            parts = selected[at - 1:at] if sign > 0 else selected[at:at + 1]
+            parts = selected[position - 1:position] if sign > 0 else selected[position:position + 1]
             if parts and _goes_on(steps, chains, parts[0], chain, sign):
-                selected.insert(at, (number, chain.start, chain.end))
+                selected.insert(position, (number, chain.start, chain.end))
     return selected
 
 
@@ -329,11 +330,11 @@ def _in_line(steps, before, after):
 
 def _end_directions(steps, members):
     """Directions in which a run of steps begins and ends, m outward per m along, of its CURBS.end_direction_steps outermost steps."""
-    found = []
+    directions = []
     for tip in (members[:CURBS.end_direction_steps], members[-CURBS.end_direction_steps:]):
         ds = steps.s[tip] - steps.s[tip].mean()
-        found.append(float(ds @ steps.u[tip] / (ds @ ds + 0.05)))
-    return found
+        directions.append(float(ds @ steps.u[tip] / (ds @ ds + 0.05)))
+    return directions
 
 
 def _chain_scatter(s, u):
@@ -385,17 +386,17 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
 
     Returns a list of (K,) indices into the steps, by station, one for every interval and piece, in order along the road
     """
-    found = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
-    if not found:
+    pieces = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
+    if not pieces:
         return []
-    chosen, others = StepsByStation(steps[np.concatenate(found)]), StepsByStation(steps)
+    chosen, all_steps = StepsByStation(steps[np.concatenate(pieces)]), StepsByStation(steps)
     for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]):
         if not CURBS.max_joined_gap < b - a <= CURBS.max_line_gap:
             continue
         check_cancelled()
         before, after = (chosen.steps[chosen.rows(*ends)] for ends in ((a - CURBS.line_fit_length, a + 1e-9), (b - 1e-9, b + CURBS.line_fit_length)))
-        found += [piece.steps for piece in pieces_between(before, after, others, to_plan)]
-    return sorted(found, key=lambda members: float(steps.s[members[0]]))
+        pieces += [piece.steps for piece in pieces_between(before, after, all_steps, to_plan)]
+    return sorted(pieces, key=lambda members: float(steps.s[members[0]]))
 
 
 def _between(steps, members, start, end):
@@ -484,16 +485,16 @@ class GapLine:
     def __init__(self, before: np.ndarray, after: np.ndarray, max_degree: int = 3):
         ends, weights = [], []
         for part, tip in ((before, before[:, -1:]), (after, after[:, :1])):
-            away = np.hypot(*(part - tip))
-            near = away <= CURBS.line_fit_length
+            distance = np.hypot(*(part - tip))
+            near = distance <= CURBS.line_fit_length
             ends.append(part[:, near])
             # both ends count alike, however many points each has, and near places more than far ones
-            weight = 1.0 / (1.0 + (away[near] / CURBS.weight_length) ** 2)
+            weight = 1.0 / (1.0 + (distance[near] / CURBS.weight_length) ** 2)
             weights.append(weight / weight.sum())
-        known, (first, last) = np.concatenate(ends, axis=1), (end.mean(1) for end in ends)
+        points, (first, last) = np.concatenate(ends, axis=1), (end.mean(1) for end in ends)
         self.origin, self.along = first, (last - first) / max(np.hypot(*(last - first)), 1e-9)
         degree = 1 + sum(np.hypot(*(end[:, -1] - end[:, 0])) >= CURBS.min_bend_length for end in ends)
-        t, v = self.place(*known)
+        t, v = self.place(*points)
         self.ends = np.c_[before[:, -1], after[:, 0]]
         self.line = Polynomial.fit(t, v, min(degree, max_degree), w=np.sqrt(np.concatenate(weights)))
         self.miss = float(np.abs(v - self.line(t)).max())

@@ -54,17 +54,17 @@ def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarr
     steps : M PlanSteps to which it refers
     scanner_noise : (M,) m
     """
-    own = steps[chain.steps]
-    length = _length(own.x, own.y)
-    if length < RETURN.min_return_length or len(own) < RETURN.min_return_steps or length > RETURN.max_step_spacing * len(own):
+    line_steps = steps[chain.steps]
+    length = _length(line_steps.x, line_steps.y)
+    if length < RETURN.min_return_length or len(line_steps) < RETURN.min_return_steps or length > RETURN.max_step_spacing * len(line_steps):
         return False
-    height, noise = np.median(own.height), np.median(scanner_noise[chain.steps])
-    sharp = max(np.quantile(own.run, 0.3) - 2 * noise, 0.0)
-    limits, slope, rough, scatter = settings.limits, np.arctan2(height, sharp), np.median(own.noise), _chain_scatter(own)
+    height, noise = np.median(line_steps.height), np.median(scanner_noise[chain.steps])
+    sharp = max(np.quantile(line_steps.run, 0.3) - 2 * noise, 0.0)
+    limits, slope, rough, scatter = settings.limits, np.arctan2(height, sharp), np.median(line_steps.noise), _chain_scatter(line_steps)
     if height < limits.clear_height or slope < limits.clear_slope \
-            and not (limits.automatic and length >= CURBS.min_faint_length and limits.faint(height, slope, rough, len(own), scatter)):
+            and not (limits.automatic and length >= CURBS.min_faint_length and limits.faint(height, slope, rough, len(line_steps), scatter)):
         return False
-    return is_clean(rough, noise, own.behind, scatter)
+    return is_clean(rough, noise, line_steps.behind, scatter)
 
 
 def _length(x, y):
@@ -94,25 +94,25 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     """
     if not chains:
         return []
-    others = CurbLines(elsewhere)
-    alone = {k: curb for k, chain in enumerate(chains) if (curb := _own_curb(chain, steps, falls, line, limits, passes, others)) is not None}
-    runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in alone.values())]
-    chains = [chain for k, chain in enumerate(chains) if k not in alone]
+    other_lines = CurbLines(elsewhere)
+    mains = {k: curb for k, chain in enumerate(chains) if (curb := _own_curb(chain, steps, falls, line, limits, passes, other_lines)) is not None}
+    runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in mains.values())]
+    chains = [chain for k, chain in enumerate(chains) if k not in mains]
     main_ends, lines = CurbLines([(x, y) for _, (x, y, _) in runs]), _LinesOfSteps([steps[chain.steps] for chain in chains])
-    found, apart = list(alone.values()), list[CurbReturn]()
+    result, separate = list(mains.values()), list[CurbReturn]()
     for side, chain in zip(_sides_continued(runs, chains, steps), chains):
-        own = steps[chain.steps]
+        line_steps = steps[chain.steps]
         if side:
-            found += classify_continuation(own, *line.locate(own.x, own.y), side, line, limits[side], main_ends)
+            result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, limits[side], main_ends)
         else:
-            curb = _curb_apart(own, falls[chain.steps], chain.closed, line, limits, passes, lines)
-            (found if curb.kind == "side_street" else apart).append(curb)
-    return found + _free_and_islands(apart, found, runs, elsewhere)
+            curb = _curb_apart(line_steps, falls[chain.steps], chain.closed, line, limits, passes, lines)
+            (result if curb.kind == "side_street" else separate).append(curb)
+    return result + _free_and_islands(separate, result, runs, elsewhere)
 
 
 def _sides_continued(runs, chains, steps):
     """Of each chain the side of the main curb that it continues, "" where there is none."""
-    group = group_lines([place for _, place in runs] + [(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in chains])
+    group = group_lines([coordinates for _, coordinates in runs] + [(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in chains])
     sides: dict[int, str] = {}
     for number, (side, _) in zip(group, runs):
         sides.setdefault(number, side)
@@ -135,23 +135,23 @@ def _curb_apart(own, falls, closed, line, limits, passes, lines):
 def _free_and_islands(apart, found, runs, elsewhere):
     """Of lines apart the corners that other curbs confirm, and the outlines of islands."""
     own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in found]
-    before, beside = CurbLines(own_curbs), CurbLines([*own_curbs, *elsewhere])
+    before, confirming = CurbLines(own_curbs), CurbLines([*own_curbs, *elsewhere])
     islands = [curb for curb in apart if curb.kind == "island" and not lies_behind(curb.steps, before)]
-    return [curb for curb in apart if curb.kind == "corner" and is_free_corner(curb.steps, beside)] + _long_islands(islands)
+    return [curb for curb in apart if curb.kind == "corner" and is_free_corner(curb.steps, confirming)] + _long_islands(islands)
 
 
 def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
     """A line along the road, uphill outward, where far and wide no main curb is known: its points lie too sparse for profiles. Else None."""
-    own = steps[chain.steps]
-    s, d = line.locate(own.x, own.y)
+    line_steps = steps[chain.steps]
+    s, d = line.locate(line_steps.x, line_steps.y)
     side = _side(s, d, passes)
     free = limits[side].far_from(s, RETURN.opening_margin)
-    out = SIDE_SIGNS[side] * (own.ny * np.cos(line.heading(s)) - own.nx * np.sin(line.heading(s)))
+    out = SIDE_SIGNS[side] * (line_steps.ny * np.cos(line.heading(s)) - line_steps.nx * np.sin(line.heading(s)))
     if chain.closed or not free.any() or np.ptp(s[free]) < CURBS.min_curb_length or np.median(out) < RETURN.min_parallel_cosine \
             or np.mean(np.isfinite(falls[chain.steps])) >= RETURN.min_island_share \
-            or elsewhere.lines and np.median(elsewhere.distances(own.x, own.y)) <= RETURN.outline_margin:
+            or elsewhere.lines and np.median(elsewhere.distances(line_steps.x, line_steps.y)) <= RETURN.outline_margin:
         return None
-    return CurbReturn(own, s, d, side, "main")
+    return CurbReturn(line_steps, s, d, side, "main")
 
 
 def _side(s, d, passes):
@@ -200,8 +200,8 @@ class _LinesOfSteps:
 
     def __init__(self, lines):
         self.lines = lines
-        self.owner = np.repeat(np.arange(len(lines)), [len(own) for own in lines])
-        self.tree = cKDTree(np.concatenate([np.empty((0, 2)), *(np.c_[own.x, own.y] for own in lines)]))
+        self.owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+        self.tree = cKDTree(np.concatenate([np.empty((0, 2)), *(np.c_[line.x, line.y] for line in lines)]))
 
     def about(self, x, y, distance):
         """Those with steps within a distance of a place."""
@@ -211,11 +211,11 @@ class _LinesOfSteps:
 def _has_opposite_curb(own, lines):
     """Is there another line along the opposite side of the street that this one bounds?"""
     k = len(own) // 2
-    for other in lines.about(own.x[k], own.y[k], RETURN.side_street_widths[1] + RETURN.max_opposite_shift):
-        dx, dy = other.x - own.x[k], other.y - own.y[k]
-        out, aside = -(dx * own.nx[k] + dy * own.ny[k]), np.abs(dx * own.ny[k] - dy * own.nx[k])
-        opposite = other.nx * own.nx[k] + other.ny * own.ny[k] < -0.7
-        if np.any((out > RETURN.side_street_widths[0]) & (out < RETURN.side_street_widths[1]) & (aside < RETURN.max_opposite_shift) & opposite):
+    for line in lines.about(own.x[k], own.y[k], RETURN.side_street_widths[1] + RETURN.max_opposite_shift):
+        dx, dy = line.x - own.x[k], line.y - own.y[k]
+        out, shift = -(dx * own.nx[k] + dy * own.ny[k]), np.abs(dx * own.ny[k] - dy * own.nx[k])
+        opposite = line.nx * own.nx[k] + line.ny * own.ny[k] < -0.7
+        if np.any((out > RETURN.side_street_widths[0]) & (out < RETURN.side_street_widths[1]) & (shift < RETURN.max_opposite_shift) & opposite):
             return True
     return False
 
@@ -237,10 +237,10 @@ def _where_straight(own, order, along):
     """Position in `order` from which a line runs straight to its end, away from the road; its length where it does not."""
     x, y = own.x[order], own.y[order]
     for k in range(len(x) - 2):
-        rest = np.hypot(x[-1] - x[k], y[-1] - y[k])
-        if rest < RETURN.min_straight_length:
+        chord = np.hypot(x[-1] - x[k], y[-1] - y[k])
+        if chord < RETURN.min_straight_length:
             break
-        off = np.abs((x[-1] - x[k]) * (y[k:] - y[k]) - (y[-1] - y[k]) * (x[k:] - x[k])) / rest
+        off = np.abs((x[-1] - x[k]) * (y[k:] - y[k]) - (y[-1] - y[k]) * (x[k:] - x[k])) / chord
         if off.max() <= RETURN.max_straight_deviation and np.median(along[order[k:]]) < RETURN.min_road_cosine:
             return k
     return len(x)
@@ -282,10 +282,10 @@ def lies_behind(line: PlanSteps, curbs: CurbLines) -> bool:
         # on the right of a segment is uphill, so where the cross product is negative the way across it leads down
         cross = rx * sy - ry * sx
         with np.errstate(divide="ignore", invalid="ignore"):
-            away, share = (dx * sy - dy * sx) / cross, (dx * ry - dy * rx) / cross
-        met = np.flatnonzero((away > RETURN.own_curb) & (away < RETURN.road_width) & (share >= 0.0) & (share <= 1.0))
+            distance, share = (dx * sy - dy * sx) / cross, (dx * ry - dy * rx) / cross
+        met = np.flatnonzero((distance > RETURN.own_curb) & (distance < RETURN.road_width) & (share >= 0.0) & (share <= 1.0))
         if len(met):
-            off.append(cross[met[np.argmin(away[met])]] < 0.0)
+            off.append(cross[met[np.argmin(distance[met])]] < 0.0)
     return bool(off) and float(np.mean(off)) > 0.5
 
 
@@ -310,15 +310,15 @@ def is_free_corner(own: PlanSteps, curbs: CurbLines) -> bool:
     if not RETURN.corner_radii[0] <= radius <= RETURN.corner_radii[1]:
         return False
     off = np.abs(np.hypot(x - cx, y - cy) - radius)
-    about = np.unwrap(np.arctan2(y - cy, x - cx))
+    angle = np.unwrap(np.arctan2(y - cy, x - cx))
     uphill = np.median((cx - x) * own.nx + (cy - y) * own.ny) > 0
-    if off.max() > RETURN.max_bend_deviation or abs(about[-1] - about[0]) < RETURN.min_corner_angle or not uphill:
+    if off.max() > RETURN.max_bend_deviation or abs(angle[-1] - angle[0]) < RETURN.min_corner_angle or not uphill:
         return False
-    way = np.sign(about[-1] - about[0])
-    for k, out in ((0, -way), (-1, way)):
+    turn = np.sign(angle[-1] - angle[0])
+    for k, out in ((0, -turn), (-1, turn)):
         tip = np.array([own.x[k], own.y[k]])
         # along the circle, out of the line
-        direction = out * np.array([-np.sin(about[k]), np.cos(about[k])])
+        direction = out * np.array([-np.sin(angle[k]), np.cos(angle[k])])
         if not any(_points_at(tip, direction, end, radius, out) for end in curbs.ends_about(tip, RETURN.max_crossing_gap + END_MARGIN)):
             return False
     return True

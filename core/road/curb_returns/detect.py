@@ -51,25 +51,25 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     """
     survey, lines, parts = decimation.survey, [], []
     roads = survey.store.roads()
-    aside, behind = on_main_islands(curb_points, survey, beside)
-    mains = {road: main_curbs_of(curb_points[~aside], survey, road) for road in roads}
-    runs = {road: [place[:2] for _, place in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
+    on_islands, behind = on_main_islands(curb_points, survey, beside)
+    mains = {road: main_curbs_of(curb_points[~on_islands], survey, road) for road in roads}
+    runs = {road: [coordinates[:2] for _, coordinates in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         main, chain = mains[road]
-        elsewhere = [run for other in roads if other != road for run in runs[other]]
-        own = curb_points.road == road
-        islands = curb_points[own & aside]
+        elsewhere = [run for other_road in roads if other_road != road for run in runs[other_road]]
+        of_road = curb_points.road == road
+        islands = curb_points[of_road & on_islands]
         curbs = find_curb_returns(decimation, road, main, settings, part.part(0.0, 0.5) if len(islands) else part, elsewhere, behind[road])
         if not are_replaced(islands, curbs):
-            aside &= ~own
+            on_islands &= ~of_road
             main, chain = main_curbs_of(curb_points, survey, road)
             curbs = find_curb_returns(decimation, road, main, settings, part.part(0.5, 1.0), elsewhere)
         points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
         lines += points
         parts += points + hidden
     progress.info(f"Curbs away from the road's direction: {_lengths(lines) or 'none'}.")
-    return CurbPoints.join([curb_points[~aside], *parts], curb_points.crs)
+    return CurbPoints.join([curb_points[~on_islands], *parts], curb_points.crs)
 
 
 def _points_of_road(survey, road, curbs, chain, main, beside, crs):
@@ -110,22 +110,22 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     survey = decimation.survey
     limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
     line = survey.frame.road(road)
-    known = KnownPlaces(places_along(line, main, CURBS.max_joined_gap))
+    known_places = KnownPlaces(places_along(line, main, CURBS.max_joined_gap))
     barrier = PlaceIndex(places_along(line, main, RETURN.min_opening_length), CORRIDOR)
     runs = main_runs(main, line)
-    tips = FollowedEnds.of([place for _, place in runs], np.full(len(runs), np.nan))
-    arguments = road, limits, known, barrier, tips, settings, behind
+    tips = FollowedEnds.of([coordinates for _, coordinates in runs], np.full(len(runs), np.nan))
+    arguments = road, limits, known_places, barrier, tips, settings, behind
     phase = phase_along(plan_steps_of_section, decimation, arguments, settings.profile_width, _join_parts)
     sections = work_sections(survey, road, settings.profile_width)
-    found = _join_parts(decimation.executor.run(phase, sections, progress.part(0.0, RETURN.led_progress)))
-    if found is None:
+    measured = _join_parts(decimation.executor.run(phase, sections, progress.part(0.0, RETURN.led_progress)))
+    if measured is None:
         return []
-    steps, falls, scanner_noise = found
+    steps, falls, scanner_noise = measured
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)]
     curbs = classify_curbs(chains, steps, falls, runs, line, limits, survey.frame.passes_of(road), elsewhere)
     noisy = _noisy_sections(sections, line, steps, scanner_noise, settings)
-    curbs = with_led_on(curbs, runs, decimation, road, noisy, known, limits, settings, progress.part(RETURN.led_progress, 1.0))
-    return with_curbs_beyond(curbs, decimation, road, known)
+    curbs = with_led_on(curbs, runs, decimation, road, noisy, known_places, limits, settings, progress.part(RETURN.led_progress, 1.0))
+    return with_curbs_beyond(curbs, decimation, road, known_places)
 
 
 def _noisy_sections(sections, line, steps, scanner_noise, settings):
@@ -139,10 +139,10 @@ def _noisy_sections(sections, line, steps, scanner_noise, settings):
 
 def _join_parts(parts):
     """The results of `plan_steps_of_section` of several sections as one."""
-    found = [part for part in parts if part is not None]
-    if not found:
+    results = [part for part in parts if part is not None]
+    if not results:
         return None
-    steps, falls, scanner_noise = zip(*found)
+    steps, falls, scanner_noise = zip(*results)
     return PlanSteps.join(steps), np.concatenate(falls), np.concatenate(scanner_noise)
 
 
@@ -184,8 +184,8 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     steps = measure_plan_steps(views, x, y, nx, ny, 0.5 * clear, settings.max_height)
     tips = tips[line.within(tips.x, tips.y, section[0] * width, section[1] * width)]
     ends = FollowedEnds.join([tips, FollowedEnds.of_chains(link_plan_steps(steps), steps)])
-    further = followed_steps(views[0], ends, 0.5 * clear, settings.max_height, settings.limits.clear_slope, partial(wanted, before_curbs=True))
-    steps = PlanSteps.join([steps, further])
+    followed = followed_steps(views[0], ends, 0.5 * clear, settings.max_height, settings.limits.clear_slope, partial(wanted, before_curbs=True))
+    steps = PlanSteps.join([steps, followed])
     if not len(steps):
         return None
     # inside a tight bend a step may be measured outside the range of stations
@@ -209,12 +209,12 @@ def _is_noisy(raster, clear):
 def _is_wanted(x, y, line, limits, known, start, end, before_curbs=False):
     """(N,) bool: do local places lie between two stations and beside no main curb, or also before these?"""
     s, d = line.locate(x, y)
-    fresh = (s >= start) & (s < end)
+    wanted = (s >= start) & (s < end)
     if before_curbs:
-        fresh &= np.all([limit.outward(s, d) <= 0.0 for limit in limits.values()], axis=0)
-    which = np.flatnonzero(fresh)
-    fresh[which] = ~known.within(x.take(which), y.take(which), RETURN.main_curb_distance)
-    return fresh
+        wanted &= np.all([limit.outward(s, d) <= 0.0 for limit in limits.values()], axis=0)
+    indices = np.flatnonzero(wanted)
+    wanted[indices] = ~known.within(x.take(indices), y.take(indices), RETURN.main_curb_distance)
+    return wanted
 
 
 def _behind(raster, slopes, steps):
@@ -226,18 +226,18 @@ def _beside_vehicle(decimation, road, profiles, limits, points_per_cell):
     and whether each lies between the road's own curbs. The far side of a long island is road, too, but it may not be
     connected with the track within a section."""
     survey, reach = decimation.survey, _Reach(limits, *(k * decimation.width for k in profiles))
-    seen = [np.empty((5, 0))]
+    columns = [np.empty((5, 0))]
     for points in decimation.decimated_points(road, profiles, points_per_cell):
         s, d = points.s, points.d
         inside, inner = reach(s, d)
-        own = np.flatnonzero(inside)
-        along = ahead_of_vehicle(survey, points[own], s.take(own))
-        near = np.flatnonzero(np.abs(along) < CURBS.max_look_along + np.abs(d.take(own)))
-        own, along = own.take(near), along.take(near)
-        points = points[own]
-        h = points.z - expected_height(survey, road, s.take(own))
-        seen.append((points.x, points.y, h, along, inner.take(own) & (np.abs(h) < RETURN.max_inner_height)))
-    *places, inner = (np.concatenate(column) for column in zip(*seen))
+        indices = np.flatnonzero(inside)
+        along = ahead_of_vehicle(survey, points[indices], s.take(indices))
+        near = np.flatnonzero(np.abs(along) < CURBS.max_look_along + np.abs(d.take(indices)))
+        indices, along = indices.take(near), along.take(near)
+        points = points[indices]
+        h = points.z - expected_height(survey, road, s.take(indices))
+        columns.append((points.x, points.y, h, along, inner.take(indices) & (np.abs(h) < RETURN.max_inner_height)))
+    *places, inner = (np.concatenate(column) for column in zip(*columns))
     return *places, inner.astype(bool)
 
 

@@ -82,8 +82,8 @@ class _Arc:
         cos, sin = np.cos(self.heading), np.sin(self.heading)
         ahead, left = dx * cos + dy * sin, dy * cos - dx * sin
         if abs(self.bend) > 1e-4:
-            away = np.hypot(ahead, 1.0 / self.bend - left)
-            ahead, left = np.arctan2(self.bend * ahead, 1.0 - self.bend * left) / self.bend, 1.0 / self.bend - np.sign(self.bend) * away
+            radius = np.hypot(ahead, 1.0 / self.bend - left)
+            ahead, left = np.arctan2(self.bend * ahead, 1.0 - self.bend * left) / self.bend, 1.0 / self.bend - np.sign(self.bend) * radius
         inside = np.flatnonzero((ahead >= 0.0) & (ahead < RETURN.led_length) & (np.abs(left) < RETURN.led_length))
         return ahead.take(inside), self.uphill * left.take(inside), points[2].take(inside)
 
@@ -132,14 +132,14 @@ def _led_on(ground, end):
     # uphill is on the left of the arc where it is not on the right of the end
     arc = _Arc(x - RETURN.line_direction_length * tx, y - RETURN.line_direction_length * ty, h, float(np.arctan2(ty, tx)), 0.0, -float(end.uphill[0]))
     steps: list[PlanSteps] = []
-    tried = RETURN.first_turns, RETURN.first_bends, RETURN.first_sigmas
+    trials = RETURN.first_turns, RETURN.first_bends, RETURN.first_sigmas
     while len(steps) * RETURN.led_step < RETURN.line_direction_length + RETURN.max_led_length:
-        average = _best_average(*arc.beside(points), arc.uphill * arc.bend, *tried)
+        average = _best_average(*arc.beside(points), arc.uphill * arc.bend, *trials)
         if average is None or not average.good or abs(average.bottom - arc.h) > CURBS.height_tolerance + RETURN.max_height_grade * RETURN.led_step:
             break
         arc = arc.moved(average)
         steps.append(arc.step(average))
-        arc, tried = arc.onward(RETURN.led_step), (RETURN.next_turns, RETURN.next_bends, RETURN.next_sigmas)
+        arc, trials = arc.onward(RETURN.led_step), (RETURN.next_turns, RETURN.next_bends, RETURN.next_sigmas)
     # one average at least begins beyond the end
     if len(steps) <= LEAD_IN_STEPS:
         return PlanSteps.none()
@@ -157,8 +157,8 @@ def _best_average(t, u, z, bend, turns, bends, sigmas):
     if len(road) < INDEPENDENT:
         return None
     turns, bends = (v.ravel() for v in np.meshgrid(turns, bends, indexing="ij"))
-    few = np.abs(bend + bends) <= RETURN.largest_bend
-    turns, bends = turns[few], bends[few]
+    allowed = np.abs(bend + bends) <= RETURN.largest_bend
+    turns, bends = turns[allowed], bends[allowed]
     # the grade along the curb
     plane, *_ = np.linalg.lstsq(np.c_[np.ones(len(road)), u[road], t[road]], z[road], rcond=None)
     z = z - plane[2] * t
@@ -167,16 +167,17 @@ def _best_average(t, u, z, bend, turns, bends, sigmas):
     half = 0.5 * RETURN.led_length
     halves, spread = zip(*(_profiles(*(v[part] for v in (t, u, z)), turns, bends, zero, cells) for part in (t < half, t >= half)))
     whole = _Levels(0.5 * (halves[0] + halves[1]))
-    own = zero + SHIFTS
+    cells_of_shifts = zero + SHIFTS
     with np.errstate(invalid="ignore", divide="ignore"):
         level = whole.height[:, slice(*(zero + int(round(end / RETURN.across_cell)) for end in RETURN.level_road))]
         doubt = np.sqrt(np.nansum(level**2, axis=1) / np.maximum(np.isfinite(level).sum(axis=1), 1))
         # what the levels and the step between them do not explain
         along = 0.5 * (spread[0] + spread[1]) + 0.25 * (halves[0] - halves[1])**2
-        beside = np.r_[-gap - fit:-gap + 1, gap:gap + short + 1]
-        there = np.isfinite(along)[:, own[:, None] + beside]
-        unexplained = np.nansum(along[:, own[:, None] + beside], axis=2) / np.maximum(there.sum(axis=2), 1) + whole.scatter(own)**2
-        height = whole.height[:, own]
+        fitted = np.r_[-gap - fit:-gap + 1, gap:gap + short + 1]
+        filled = np.isfinite(along)[:, cells_of_shifts[:, None] + fitted]
+        unexplained = np.nansum(along[:, cells_of_shifts[:, None] + fitted], axis=2) / np.maximum(filled.sum(axis=2), 1) \
+            + whole.scatter(cells_of_shifts)**2
+        height = whole.height[:, cells_of_shifts]
         middle = SHIFTS * RETURN.across_cell + (turns * half + 0.5 * bends * half**2)[:, None]
         gain = 0.5 * INDEPENDENT * np.log1p(RETURN.step_share * height**2 / unexplained) \
             - 0.5 * ((SHIFTS * RETURN.across_cell / sigmas[0])**2 + (middle / sigmas[1])**2 + (bends / RETURN.bend_sigma)[:, None]**2)
@@ -184,12 +185,12 @@ def _best_average(t, u, z, bend, turns, bends, sigmas):
     k, shift = np.unravel_index(int(np.argmax(gain)), gain.shape)
     if not np.isfinite(gain[k, shift]):
         return None
-    cell, height, least = own[shift], float(height[k, shift]), CURBS.significant_sigmas * max(float(doubt[k]), CURBS.texture_sigma)
-    both = min(_Levels(profiles[k:k + 1]).height[0, cell] for profiles in halves)
+    cell, height, least = cells_of_shifts[shift], float(height[k, shift]), CURBS.significant_sigmas * max(float(doubt[k]), CURBS.texture_sigma)
+    lower_half = min(_Levels(profiles[k:k + 1]).height[0, cell] for profiles in halves)
     slopes = whole.before.slope[k, cell], whole.behind.slope[k, cell]
     sharp = whole.smooth[k, cell + near] - whole.smooth[k, cell - near] - near * RETURN.across_cell * sum(slopes)
-    scatter = float(whole.scatter(own)[k, shift])
-    good = height >= least and both >= RETURN.min_half_share * least and sharp >= RETURN.min_sharp_share * height \
+    scatter = float(whole.scatter(cells_of_shifts)[k, shift])
+    good = height >= least and lower_half >= RETURN.min_half_share * least and sharp >= RETURN.min_sharp_share * height \
         and scatter <= CURBS.max_averaged_scatter and max(map(abs, slopes)) <= CURBS.max_road_slope
     return _Average(float(turns[k]), float(bends[k]), float(SHIFTS[shift] * RETURN.across_cell), height, float(whole.before.level[k, cell]),
                     float(plane[2]), scatter, int(whole.before.n[k, cell]), int(whole.behind.n[k, cell]), bool(good))
@@ -221,8 +222,8 @@ class _Levels:
         sums = RunningSums(averages.shape, RETURN.across_cell)
         sums.add(averages)
         self.before, self.behind, self.smooth = sums.line(-gap - fit, -gap), sums.line(gap, gap + short), sums.mean(-1, 1)
-        known = (self.before.n >= CURBS.min_filled_share * (fit + 1)) & (self.behind.n >= CURBS.min_filled_share * (short + 1))
-        self.height = np.where(known, self.behind.level - self.before.level, np.nan)
+        filled = (self.before.n >= CURBS.min_filled_share * (fit + 1)) & (self.behind.n >= CURBS.min_filled_share * (short + 1))
+        self.height = np.where(filled, self.behind.level - self.before.level, np.nan)
 
     def scatter(self, cells: np.ndarray) -> np.ndarray:
         """(P, K) m, scatter of averages about the rougher of both lines at some cells of every profile."""
@@ -250,32 +251,32 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
         progress.report(1.0)
         return list(curbs)
     line, free = decimation.survey.frame.road(road), [curb for curb in curbs if curb.kind in LED_KINDS and not curb.closed]
-    lines = [place for _, place in runs] + [(curb.steps.x, curb.steps.y, curb.steps.h) for curb in free]
+    lines = [coordinates for _, coordinates in runs] + [(curb.steps.x, curb.steps.y, curb.steps.h) for curb in free]
     ends, owner = FollowedEnds.with_lines(lines)
     met = known.and_steps([curb.steps for curb in curbs])
-    open_ones = np.flatnonzero(~met.within(ends.x + RETURN.leaving_length * ends.tx, ends.y + RETURN.leaving_length * ends.ty,
+    open_ends = np.flatnonzero(~met.within(ends.x + RETURN.leaving_length * ends.tx, ends.y + RETURN.leaving_length * ends.ty,
                                            0.5 * RETURN.leaving_length))
-    ends, owner = ends[open_ones], owner[open_ones]
+    ends, owner = ends[open_ends], owner[open_ends]
     phase = phase_along(_led_steps_of_section, decimation, (road, ends, settings), settings.profile_width, _join_led)
-    more: list[CurbReturn] = []
+    continuations: list[CurbReturn] = []
     main_ends = CurbLines([(x, y) for _, (x, y, _) in runs])
     extended = {id(curb): curb for curb in curbs}
-    for number, own in _join_led(list(decimation.executor.run(phase, sections, progress))):
+    for number, line_steps in _join_led(list(decimation.executor.run(phase, sections, progress))):
         # inside a tight bend a place may have no station
-        own = _until_met(own[np.isfinite(line.locate(own.x, own.y)[0])], met)
+        line_steps = _until_met(line_steps[np.isfinite(line.locate(line_steps.x, line_steps.y)[0])], met)
         k, at_head = owner[number], ends.uphill[number] < 0
-        if len(own) < RETURN.min_return_steps:
+        if len(line_steps) < RETURN.min_return_steps:
             continue
         # from the other end of a gap only the rest is continued
-        met = met.and_places(own.x, own.y)
-        own = own[::-1] if at_head else own
-        s, d = line.locate(own.x, own.y)
+        met = met.and_places(line_steps.x, line_steps.y)
+        line_steps = line_steps[::-1] if at_head else line_steps
+        s, d = line.locate(line_steps.x, line_steps.y)
         if k < len(runs):
-            more += classify_continuation(own, s, d, runs[k][0], line, limits[runs[k][0]], main_ends)
+            continuations += classify_continuation(line_steps, s, d, runs[k][0], line, limits[runs[k][0]], main_ends)
         else:
             curb = free[k - len(runs)]
-            extended[id(curb)] = _joined(extended[id(curb)], CurbReturn(own, s, d, curb.side, curb.kind), at_head)
-    return list(extended.values()) + more
+            extended[id(curb)] = _joined(extended[id(curb)], CurbReturn(line_steps, s, d, curb.side, curb.kind), at_head)
+    return list(extended.values()) + continuations
 
 
 def _until_met(own, met):
@@ -294,7 +295,7 @@ def _joined(curb, more, before):
 
 def _join_led(parts: Sequence[list[tuple[int, PlanSteps]] | None]) -> list[tuple[int, PlanSteps]]:
     """The results of `_led_steps_of_section` of several sections as one."""
-    return [found for part in parts if part is not None for found in part]
+    return [led for part in parts if part is not None for led in part]
 
 
 def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, ends: FollowedEnds,
@@ -307,12 +308,12 @@ def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     Returns a list of (number of the end, PlanSteps)
     """
     width, line, reach = decimation.width, decimation.survey.frame.road(road), RETURN.max_led_length + RETURN.led_length
-    at, _ = line.locate(ends.x, ends.y)
-    own = np.flatnonzero((at >= section[0] * width) & (at < section[1] * width))
-    if not len(own):
+    stations, _ = line.locate(ends.x, ends.y)
+    members = np.flatnonzero((stations >= section[0] * width) & (stations < section[1] * width))
+    if not len(members):
         return []
-    profiles = int(np.floor((at[own].min() - reach) / width)), int(np.ceil((at[own].max() + reach) / width))
-    parts = [_near_ends(decimation.survey, road, part, ends[own]) for part in decimation.decimated_points(road, profiles, None)]
+    profiles = int(np.floor((stations[members].min() - reach) / width)), int(np.ceil((stations[members].max() + reach) / width))
+    parts = [_near_ends(decimation.survey, road, part, ends[members]) for part in decimation.decimated_points(road, profiles, None)]
     if not parts:
         return []
     x, y, h = (np.concatenate(column) for column in zip(*parts))
@@ -320,7 +321,7 @@ def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     ground = averaged(raster, settings.layer_jump)
     if ground is None:
         return []
-    return [(int(k), steps) for k, steps in zip(own, led_on(ground, ends[own])) if len(steps)]
+    return [(int(k), steps) for k, steps in zip(members, led_on(ground, ends[members])) if len(steps)]
 
 
 def _near_ends(survey, road, points, ends):
@@ -328,13 +329,13 @@ def _near_ends(survey, road, points, ends):
     near = np.zeros(len(points.x), bool)
     for x, y in zip(ends.x, ends.y):
         near |= (points.x - x)**2 + (points.y - y)**2 < (RETURN.max_led_length + RETURN.led_length)**2
-    own = np.flatnonzero(near)
-    points = points[own]
+    indices = np.flatnonzero(near)
+    points = points[indices]
     s = points.s
     h = points.z - expected_height(survey, road, s)
-    seen = np.abs(ahead_of_vehicle(survey, points, s)) < CURBS.max_look_along + np.abs(points.d)
-    own = np.flatnonzero(seen & (h > ends.h.min() - RETURN.max_layer_height) & (h < ends.h.max() + RETURN.max_layer_height))
-    return points.x.take(own), points.y.take(own), h.take(own)
+    near_vehicle = np.abs(ahead_of_vehicle(survey, points, s)) < CURBS.max_look_along + np.abs(points.d)
+    indices = np.flatnonzero(near_vehicle & (h > ends.h.min() - RETURN.max_layer_height) & (h < ends.h.max() + RETURN.max_layer_height))
+    return points.x.take(indices), points.y.take(indices), h.take(indices)
 
 
 # Curbs followed beyond the places where they were found.
@@ -377,15 +378,15 @@ class FollowedEnds(Rows):
         """The same ends, of unknown height, and (2 K,) number of the line to which each belongs."""
         long = np.flatnonzero([np.hypot(x[-1] - x[0], y[-1] - y[0]) >= RETURN.line_direction_length for x, y, _ in lines])
         ends = LineEnds.of([lines[k] for k in long], RETURN.line_direction_length)
-        both = np.concatenate([ends.tails, ends.heads])
+        tips = np.concatenate([ends.tails, ends.heads])
         uphill = np.repeat([1.0, -1.0], len(ends.tails))
-        return cls(both[:, 0], both[:, 1], both[:, 2], both[:, 3], both[:, 4], uphill, np.full(len(both), np.nan)), np.tile(long, 2)
+        return cls(tips[:, 0], tips[:, 1], tips[:, 2], tips[:, 3], tips[:, 4], uphill, np.full(len(tips), np.nan)), np.tile(long, 2)
 
     @classmethod
     def of_chains(cls, chains: Sequence[PlanStepChain], steps: PlanSteps) -> FollowedEnds:
         """The ends of open chains of steps."""
-        own = [steps[chain.steps] for chain in chains if not chain.closed and len(chain.steps) > 2]
-        return cls.of([(line.x, line.y, line.h) for line in own], np.array([np.median(line.height) for line in own]))
+        lines = [steps[chain.steps] for chain in chains if not chain.closed and len(chain.steps) > 2]
+        return cls.of([(line.x, line.y, line.h) for line in lines], np.array([np.median(line.height) for line in lines]))
 
 
 def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, max_height: float, least_slope: float,
@@ -400,12 +401,12 @@ def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, 
     # the places behind an end, from which its direction follows
     back = RETURN.following_step * np.arange(RETURN.followed_steps, 0, -1)
     trail_x, trail_y = ends.x[:, None] - back * ends.tx[:, None], ends.y[:, None] - back * ends.ty[:, None]
-    away, left, found = np.full(len(ends), RETURN.following_step), np.full(len(ends), RETURN.followed_length), []
+    distance, left, result = np.full(len(ends), RETURN.following_step), np.full(len(ends), RETURN.followed_length), []
     while len(ends):
-        x, y = ends.x + away * ends.tx, ends.y + away * ends.ty
+        x, y = ends.x + distance * ends.tx, ends.y + distance * ends.ty
         on = wanted(x, y) & (left > 0)
         ends = ends[on]
-        x, y, away, left, trail_x, trail_y = (v[on] for v in (x, y, away, left, trail_x, trail_y))
+        x, y, distance, left, trail_x, trail_y = (v[on] for v in (x, y, distance, left, trail_x, trail_y))
         if not len(x):
             break
         nx, ny = ends.uphill * ends.ty, -ends.uphill * ends.tx
@@ -413,10 +414,10 @@ def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, 
         with np.errstate(invalid="ignore"):
             ratio = steps.height / ends.height
             good &= ~((ratio > RETURN.followed_height_ratio) | (ratio < 1 / RETURN.followed_height_ratio))
-        good &= (np.abs(steps.h - ends.h) <= CURBS.height_tolerance + RETURN.max_height_grade * away) & (steps.behind >= 2) \
+        good &= (np.abs(steps.h - ends.h) <= CURBS.height_tolerance + RETURN.max_height_grade * distance) & (steps.behind >= 2) \
             & (steps.noise <= max(CURBS.max_road_roughness, 2 * raster.noise)) \
             & (np.arctan2(steps.height, np.maximum(steps.run - 2 * raster.noise, 0.0)) >= least_slope)
-        found.append(steps[good])
+        result.append(steps[good])
         trail_x[good] = np.c_[trail_x[good, 1:], ends.x[good]]
         trail_y[good] = np.c_[trail_y[good, 1:], ends.y[good]]
         dx, dy = steps.x - trail_x[:, 0], steps.y - trail_y[:, 0]
@@ -424,9 +425,9 @@ def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, 
         x, y, h, tx, ty = (np.where(good, new, old) for new, old in (
             (steps.x, ends.x), (steps.y, ends.y), (steps.h, ends.h), (dx / size, ends.tx), (dy / size, ends.ty)))
         ends = FollowedEnds(x, y, h, tx, ty, ends.uphill, np.where(good & np.isnan(ends.height), steps.height, ends.height))
-        away, left = np.where(good, RETURN.following_step, away + RETURN.following_step), left - RETURN.following_step
-        left[away > RETURN.max_plan_link] = 0.0
-    return PlanSteps.join(found) if found else PlanSteps.none()
+        distance, left = np.where(good, RETURN.following_step, distance + RETURN.following_step), left - RETURN.following_step
+        left[distance > RETURN.max_plan_link] = 0.0
+    return PlanSteps.join(result) if result else PlanSteps.none()
 
 
 def _measured_across(raster, x, y, nx, ny, min_height, max_height):
@@ -435,21 +436,21 @@ def _measured_across(raster, x, y, nx, ny, min_height, max_height):
     steps = PlanSteps(*(np.zeros(len(x), column.dtype) for column in PlanSteps.none().columns()))
     for half in RETURN.short_half_length, RETURN.long_half_length, RETURN.followed_half_length:
         left = np.flatnonzero(~good)
-        about = points_about(raster, raster.by_cell, *(v.take(left) for v in (x, y, nx, ny)), half)
+        points = points_about(raster, raster.by_cell, *(v.take(left) for v in (x, y, nx, ny)), half)
         # points on all sides, and few, are what most places lack
-        few, about = _few_all_around(about, len(left), half)
-        left = left[few]
+        suitable, points = _few_all_around(points, len(left), half)
+        left = left[suitable]
         if not len(left):
             continue
-        own = tuple(v.take(left) for v in (x, y, nx, ny))
-        seen, those = steps_of_points(about, *own, raster.noise, min_height, max_height, graded=True)
+        place = tuple(v.take(left) for v in (x, y, nx, ny))
+        corners, measured = steps_of_points(points, *place, raster.noise, min_height, max_height, graded=True)
         # the line says where along the curb the step is measured, and the face how far across
-        across = seen["u"] - seen["skew"] * seen["s"]
-        those.x, those.y = own[0] + across * own[2], own[1] + across * own[3]
-        there = seen["good"] & (np.abs(across) <= RETURN.followed_across) & (np.abs(seen["skew"]) <= RETURN.followed_skew)
-        for column, values in zip(steps.columns(), those.columns()):
+        across = corners["u"] - corners["skew"] * corners["s"]
+        measured.x, measured.y = place[0] + across * place[2], place[1] + across * place[3]
+        proved = corners["good"] & (np.abs(across) <= RETURN.followed_across) & (np.abs(corners["skew"]) <= RETURN.followed_skew)
+        for column, values in zip(steps.columns(), measured.columns()):
             column[left] = values
-        good[left] = there
+        good[left] = proved
     return steps, good
 
 
@@ -458,7 +459,7 @@ def _few_all_around(about, count, half):
     owner, u, v, h = about
     quarter = np.bincount(4 * owner + 2 * (u > 0) + (v > 0), minlength=4 * count).reshape(-1, 4)
     density = quarter.sum(axis=1) * RETURN.plan_cell**2 / (4 * PATCH_HALF_WIDTH * half)
-    there = (quarter.min(axis=1) >= RETURN.min_quarter_points) & (density <= RETURN.max_followed_points)
-    own = np.flatnonzero(there.take(owner))
-    number = np.cumsum(there) - 1
-    return np.flatnonzero(there), (number.take(owner.take(own)), u.take(own), v.take(own), h.take(own))
+    chosen = (quarter.min(axis=1) >= RETURN.min_quarter_points) & (density <= RETURN.max_followed_points)
+    indices = np.flatnonzero(chosen.take(owner))
+    number = np.cumsum(chosen) - 1
+    return np.flatnonzero(chosen), (number.take(owner.take(indices)), u.take(indices), v.take(indices), h.take(indices))

@@ -98,16 +98,16 @@ def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float
     row -= first_row
     row *= columns
     column -= first_column
-    place = row
-    place += column
-    n, total, squares = _sums(place, h, rows * columns)
-    parted, above = _above_ground(place, h, n, total, squares, layer_jump)
+    cell = row
+    cell += column
+    n, total, squares = _sums(cell, h, rows * columns)
+    parted, above = _above_ground(cell, h, n, total, squares, layer_jump)
     if above.any():
         ground = np.flatnonzero(~above)
-        x, y, h, place = (v.take(ground) for v in (x, y, h, place))
+        x, y, h, cell = (v.take(ground) for v in (x, y, h, cell))
         # in the other cells all points are ground
-        again = np.flatnonzero(parted.take(place))
-        for old, new in zip((n, total, squares), _sums(place.take(again), h.take(again), rows * columns)):
+        in_parted = np.flatnonzero(parted.take(cell))
+        for old, new in zip((n, total, squares), _sums(cell.take(in_parted), h.take(in_parted), rows * columns)):
             np.copyto(old, new, where=parted)
     with np.errstate(invalid="ignore", divide="ignore"):
         low = total / n
@@ -116,7 +116,7 @@ def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float
     spread = spread[n >= RETURN.min_noise_points]
     enough = len(spread) >= RETURN.min_noise_cells
     noise = max(float(np.quantile(spread, RETURN.noise_quantile)), CURBS.min_scanner_noise) if enough else CURBS.default_scanner_noise
-    return GroundRaster(first_column * RETURN.plan_cell, first_row * RETURN.plan_cell, x, y, h, place, low.reshape(rows, columns), noise)
+    return GroundRaster(first_column * RETURN.plan_cell, first_row * RETURN.plan_cell, x, y, h, cell, low.reshape(rows, columns), noise)
 
 
 def _above_ground(place, h, n, total, squares, layer_jump):
@@ -125,9 +125,9 @@ def _above_ground(place, h, n, total, squares, layer_jump):
         # heights on either side of a gap have at least this sum of squares about their mean
         parted = squares - total * total / n > 0.99 * layer_jump**2 * (n - 1) / n
     above = np.zeros(len(h), bool)
-    own = np.flatnonzero(parted.take(place))
-    if len(own):
-        order = own.take(order_by(np.rint((h.take(own) + RETURN.plan_ground_depth) * 1e4).astype(np.int32), place.take(own)))
+    indices = np.flatnonzero(parted.take(place))
+    if len(indices):
+        order = indices.take(order_by(np.rint((h.take(indices) + RETURN.plan_ground_depth) * 1e4).astype(np.int32), place.take(indices)))
         ground, _, _ = lowest_layers(place.take(order), h.take(order), layer_jump)
         above[order] = ~ground
     return parted, above
@@ -149,9 +149,9 @@ def averaged(raster: GroundRaster | None, layer_jump: float) -> GroundRaster | N
     column, row = np.floor(raster.x / RETURN.averaging_cell).astype(np.int64), np.floor(raster.y / RETURN.averaging_cell).astype(np.int64)
     cell = (row - row.min()) * (column.max() - column.min() + 1) + column - column.min()
     count = np.bincount(cell)
-    held = np.flatnonzero(count)
-    count = count[held]
-    x, y, h = (np.bincount(cell, v)[held] / count for v in (raster.x, raster.y, raster.h))
+    occupied = np.flatnonzero(count)
+    count = count[occupied]
+    x, y, h = (np.bincount(cell, v)[occupied] / count for v in (raster.x, raster.y, raster.h))
     mean = ground_raster(x, y, h, layer_jump)
     if mean is None:
         raise ValueError("a raster with points has an average")
@@ -176,10 +176,10 @@ def ground_slopes(low: np.ndarray) -> list[np.ndarray]:
     rows, columns = low.shape
     padded = np.pad(low, ((0, -rows % RETURN.slope_block_cells), (0, -columns % RETURN.slope_block_cells)), constant_values=np.nan)
     blocks = padded.reshape(padded.shape[0] // RETURN.slope_block_cells, RETURN.slope_block_cells, -1, RETURN.slope_block_cells)
-    there = np.isfinite(blocks)
+    filled = np.isfinite(blocks)
     with np.errstate(invalid="ignore", divide="ignore"):
-        mean = np.where(there, blocks, 0.0).sum((1, 3)) / there.sum((1, 3))
-    found = []
+        mean = np.where(filled, blocks, 0.0).sum((1, 3)) / filled.sum((1, 3))
+    result = []
     for axis in (1, 0):
         slope = np.full(mean.shape, np.nan)
         ahead, behind = (slice(None), slice(1, None)), (slice(None), slice(None, -1))
@@ -187,8 +187,8 @@ def ground_slopes(low: np.ndarray) -> list[np.ndarray]:
             ahead, behind = ahead[::-1], behind[::-1]
         slope[behind] = (mean[ahead] - mean[behind]) / (RETURN.slope_block_cells * RETURN.plan_cell)
         slope = np.clip(_median_about(slope, RETURN.slope_window_blocks), -RETURN.max_ground_slope, RETURN.max_ground_slope)
-        found.append(np.repeat(np.repeat(slope, RETURN.slope_block_cells, 0), RETURN.slope_block_cells, 1)[:rows, :columns])
-    return found
+        result.append(np.repeat(np.repeat(slope, RETURN.slope_block_cells, 0), RETURN.slope_block_cells, 1)[:rows, :columns])
+    return result
 
 
 def _median_about(values, size):
@@ -196,10 +196,10 @@ def _median_about(values, size):
     around = np.lib.stride_tricks.sliding_window_view(np.pad(values, size // 2, constant_values=np.nan), (size, size))
     count = cv2.boxFilter(np.isfinite(values).astype(np.uint8), cv2.CV_32S, (size, size), normalize=False, borderType=cv2.BORDER_CONSTANT)
     middle = np.zeros(values.shape)
-    full, some = count == size * size, (count > 0) & (count < size * size)
+    full, partial = count == size * size, (count > 0) & (count < size * size)
     middle[full] = np.partition(around[full].reshape(-1, size * size), size * size // 2, axis=1)[:, size * size // 2]
-    ordered = np.sort(around[some].reshape(-1, size * size), axis=1)
-    middle[some] = ordered[np.arange(len(ordered)), (count[some] - 1) // 2]
+    ordered = np.sort(around[partial].reshape(-1, size * size), axis=1)
+    middle[partial] = ordered[np.arange(len(ordered)), (count[partial] - 1) // 2]
     return middle
 
 
@@ -219,23 +219,24 @@ def driven_ground(raster: GroundRaster, slopes: Sequence[np.ndarray], track_x: n
     driven : (rows, columns) bool
     stepped : (rows, columns) bool, occupied cells about which the ground rises more than its slope explains
     """
-    there = np.isfinite(raster.low)
+    filled = np.isfinite(raster.low)
     window = np.ones((RETURN.level_window_cells, RETURN.level_window_cells), np.uint8)
-    span = cv2.dilate(np.where(there, raster.low, -OUT_OF_RANGE_HEIGHT), window) - cv2.erode(np.where(there, raster.low, OUT_OF_RANGE_HEIGHT), window)
+    span = cv2.dilate(np.where(filled, raster.low, -OUT_OF_RANGE_HEIGHT), window) \
+        - cv2.erode(np.where(filled, raster.low, OUT_OF_RANGE_HEIGHT), window)
     level = span <= RETURN.max_level_share * min_height + (np.abs(slopes[0]) + np.abs(slopes[1])) * (RETURN.level_window_cells - 1) * RETURN.plan_cell
-    passable = level & grown(there, diamond(RETURN.max_bridged_cells))
-    barrier = np.zeros(there.shape, bool)
+    passable = level & grown(filled, diamond(RETURN.max_bridged_cells))
+    barrier = np.zeros(filled.shape, bool)
     barrier[raster.inside(barrier_x, barrier_y)] = True
     passable &= ~grown(barrier, np.ones((3, 3), np.uint8))
     count, label = cv2.connectedComponents(passable.view(np.uint8), connectivity=4)
-    track = np.zeros(there.shape, bool)
+    track = np.zeros(filled.shape, bool)
     track[raster.inside(track_x, track_y)] = True
     track = grown(track, diamond(int(round(RETURN.driven_half_width / RETURN.plan_cell))))
     track[raster.inside(*inner)] = True
     wanted = np.zeros(count, bool)
     wanted[label[track & passable]] = True
     wanted[0] = False
-    return wanted[label], there & ~level
+    return wanted[label], filled & ~level
 
 
 def grown(mask: np.ndarray, about: np.ndarray) -> np.ndarray:
@@ -245,5 +246,5 @@ def grown(mask: np.ndarray, about: np.ndarray) -> np.ndarray:
 
 def diamond(reach: int) -> np.ndarray:
     """(2 reach + 1, 2 reach + 1) uint8: 1 in cells up to `reach` away, counted along rows and columns."""
-    away = np.abs(np.arange(-reach, reach + 1))
-    return (away[:, None] + away <= reach).astype(np.uint8)
+    distance = np.abs(np.arange(-reach, reach + 1))
+    return (distance[:, None] + distance <= reach).astype(np.uint8)

@@ -36,21 +36,21 @@ def on_main_islands(points: CurbPoints, survey: Survey,
 
     Returns (N,) bool, and number of the road -> (2, K) local x and y of places on the road behind
     """
-    found, behind = np.zeros(len(points), bool), {road: [np.empty((2, 0))] for road in survey.store.roads()}
+    on_islands, behind = np.zeros(len(points), bool), {road: [np.empty((2, 0))] for road in survey.store.roads()}
     across = np.arange(0.0, RETURN.min_road_behind, RETURN.plan_cell)
     for road, sides in (beside or {}).items():
         for side, sign in SIDE_SIGNS.items():
-            whole = np.flatnonzero((points.road == road) & (points.side == side))
-            whole = whole[np.argsort(points.station[whole], kind="stable")]
-            own = whole[(points.part[whole] == "bottom") & (points.status[whole] == "measured")]
-            s, of_whole = points.station[own], points.station[whole]
-            heights = points.z[own] - expected_height(survey, road, s), points.height[own]
-            for part, away in island_stretches(s, sign * points.offset[own], *heights, sides[side]):
-                found[whole[stretch_of(of_whole, s[part][0], s[part][-1])]] = True
-                down = np.flatnonzero(np.isfinite(away))
-                d = points.offset[own][part][down] + sign * (away[down] + across[:, None])
+            of_side = np.flatnonzero((points.road == road) & (points.side == side))
+            of_side = of_side[np.argsort(points.station[of_side], kind="stable")]
+            bottoms = of_side[(points.part[of_side] == "bottom") & (points.status[of_side] == "measured")]
+            s, side_stations = points.station[bottoms], points.station[of_side]
+            heights = points.z[bottoms] - expected_height(survey, road, s), points.height[bottoms]
+            for part, distance in island_stretches(s, sign * points.offset[bottoms], *heights, sides[side]):
+                on_islands[of_side[stretch_of(side_stations, s[part][0], s[part][-1])]] = True
+                down = np.flatnonzero(np.isfinite(distance))
+                d = points.offset[bottoms][part][down] + sign * (distance[down] + across[:, None])
                 behind[road].append(np.array(survey.frame.road(road).to_map(np.broadcast_to(s[part][down], d.shape).ravel(), d.ravel())))
-    return found, {road: np.concatenate(places, axis=1) for road, places in behind.items()}
+    return on_islands, {road: np.concatenate(places, axis=1) for road, places in behind.items()}
 
 
 def are_replaced(points: CurbPoints, curbs: Sequence[CurbReturn]) -> bool:
@@ -59,18 +59,18 @@ def are_replaced(points: CurbPoints, curbs: Sequence[CurbReturn]) -> bool:
     points : CurbPoints on sides of islands, of one road
     curbs : list of CurbReturn, found without these points
     """
-    own = points[(points.part == "bottom") & (points.status == "measured")]
-    if not len(own):
+    bottoms = points[(points.part == "bottom") & (points.status == "measured")]
+    if not len(bottoms):
         return True
-    about = [np.c_[curb.steps.x, curb.steps.y] for curb in curbs if curb.kind == "island"]
-    behind = np.zeros(len(own), bool)
+    islands = [np.c_[curb.steps.x, curb.steps.y] for curb in curbs if curb.kind == "island"]
+    behind = np.zeros(len(bottoms), bool)
     for curb in curbs:
         if curb.kind == "main":
-            behind |= (own.side == curb.side) & (own.station >= np.min(curb.s)) & (own.station <= np.max(curb.s))
-    if not about or np.mean(behind) < RETURN.min_island_share:
+            behind |= (bottoms.side == curb.side) & (bottoms.station >= np.min(curb.s)) & (bottoms.station <= np.max(curb.s))
+    if not islands or np.mean(behind) < RETURN.min_island_share:
         return False
-    away = cKDTree(np.concatenate(about)).query(np.c_[own.x, own.y])[0]
-    return bool(np.mean(away <= RETURN.island_line_distance) >= RETURN.min_island_share)
+    distance = cKDTree(np.concatenate(islands)).query(np.c_[bottoms.x, bottoms.y])[0]
+    return bool(np.mean(distance <= RETURN.island_line_distance) >= RETURN.min_island_share)
 
 
 def island_stretches(s: np.ndarray, u: np.ndarray, h: np.ndarray, height: np.ndarray,
@@ -84,33 +84,33 @@ def island_stretches(s: np.ndarray, u: np.ndarray, h: np.ndarray, height: np.nda
     Returns a list of (slice of the N points, m outward from each of these to where the ground is down again, NaN where that is not seen)
     """
     jump = np.flatnonzero(np.abs(np.diff(u)) > RETURN.min_side_step) + 1
-    found = []
+    result = []
     for a, b in zip(jump[:-1], jump[1:]):
         out = min(u[a - 1] - u[a], u[b] - u[b - 1])
         if out > RETURN.min_side_step and max(s[a] - s[a - 1], s[b] - s[b - 1]) <= CURBS.max_hidden_gap:
-            down = np.array([_down_behind(*place, out, beside) for place in zip(s[a:b], u[a:b], h[a:b], height[a:b])])
+            down = np.array([_down_behind(*point, out, beside) for point in zip(s[a:b], u[a:b], h[a:b], height[a:b])])
             if np.mean(np.isfinite(down)) >= RETURN.min_island_share:
-                found.append((slice(int(a), int(b)), down))
-    return found
+                result.append((slice(int(a), int(b)), down))
+    return result
 
 
 def _down_behind(s, u, h, height, out, beside):
     """m outward from one point of a curb to where the ground behind it, raised at first, is down again; NaN where it is not within `out`."""
     around, row = int(round(RETURN.averaged_length / beside.width)), int(np.floor(s / beside.width)) - beside.first
     rows = beside.ground[max(row - around, 0):row + around + 1]
-    seen = np.flatnonzero(np.isfinite(rows).any(axis=0))
-    ground, away = np.nanmedian(rows[:, seen], axis=0), (seen + 0.5) * CURBS.occlusion_cell - u
-    before = (away > -RETURN.slope_length) & (away < -CURBS.occlusion_cell)
+    columns = np.flatnonzero(np.isfinite(rows).any(axis=0))
+    ground, distance = np.nanmedian(rows[:, columns], axis=0), (columns + 0.5) * CURBS.occlusion_cell - u
+    before = (distance > -RETURN.slope_length) & (distance < -CURBS.occlusion_cell)
     if np.count_nonzero(before) < RETURN.min_slope_cells:
         return np.nan
-    slope = np.clip(np.polyfit(away[before], ground[before], 1)[0], -RETURN.max_ground_slope, RETURN.max_ground_slope)
-    share = (ground - h - slope * away) / height
-    behind = away > CURBS.occlusion_cell
+    slope = np.clip(np.polyfit(distance[before], ground[before], 1)[0], -RETURN.max_ground_slope, RETURN.max_ground_slope)
+    share = (ground - h - slope * distance) / height
+    behind = distance > CURBS.occlusion_cell
     low = np.flatnonzero(behind & (share < RETURN.island_drop_share))
-    if not len(low) or away[low[0]] >= out or not (share[:low[0]][behind[:low[0]]] >= RETURN.min_edge_share).any():
+    if not len(low) or distance[low[0]] >= out or not (share[:low[0]][behind[:low[0]]] >= RETURN.min_edge_share).any():
         return np.nan
-    road = (away >= away[low[0]]) & (away <= min(away[low[0]] + RETURN.min_road_behind, out))
-    return away[low[0]] if (share[road] < RETURN.island_drop_share).mean() > 0.5 else np.nan
+    road = (distance >= distance[low[0]]) & (distance <= min(distance[low[0]] + RETURN.min_road_behind, out))
+    return distance[low[0]] if (share[road] < RETURN.island_drop_share).mean() > 0.5 else np.nan
 
 
 # Far sides of islands: an island hides the foot of its own far curb, but the edge of its top is seen.
@@ -130,24 +130,24 @@ def far_sides(raster: GroundRaster, steps: PlanSteps, behind: GroundBehind) -> P
     near = np.flatnonzero(behind.edge >= RETURN.min_island_width)
     if not len(near):
         return PlanSteps.none()
-    own, out = steps[near], behind.edge[near]
-    bottom = own.h + behind.slope[near] * out
-    x, y = own.x + out * own.nx, own.y + out * own.ny
-    seen = cKDTree(np.c_[steps.x, steps.y]).query(np.c_[x, y])[0] <= RETURN.seen_step_distance
-    own, x, y, bottom = own[~seen], x[~seen], y[~seen], bottom[~seen]
+    near_steps, out = steps[near], behind.edge[near]
+    bottom = near_steps.h + behind.slope[near] * out
+    x, y = near_steps.x + out * near_steps.nx, near_steps.y + out * near_steps.ny
+    measured = cKDTree(np.c_[steps.x, steps.y]).query(np.c_[x, y])[0] <= RETURN.seen_step_distance
+    near_steps, x, y, bottom = near_steps[~measured], x[~measured], y[~measured], bottom[~measured]
     if not len(x):
         return PlanSteps.none()
-    nx, ny, in_line = line_directions(x, y, -own.nx, -own.ny)
+    nx, ny, in_line = line_directions(x, y, -near_steps.nx, -near_steps.ny)
     owner, u, _, h = points_about(raster, raster.by_cell, x, y, nx, ny, RETURN.edge_half_length)
-    top = np.flatnonzero((h - bottom.take(owner) >= RETURN.min_top_share * own.height.take(owner)) & (np.abs(u) <= RETURN.edge_reach))
+    top = np.flatnonzero((h - bottom.take(owner) >= RETURN.min_top_share * near_steps.height.take(owner)) & (np.abs(u) <= RETURN.edge_reach))
     edge = np.full(len(x), np.inf)
     np.minimum.at(edge, owner.take(top), u.take(top))
     count = np.bincount(owner.take(top), minlength=len(x))
-    gap = _largest_gap(owner, u - edge.take(owner), h - bottom.take(owner), own.height)
+    gap = _largest_gap(owner, u - edge.take(owner), h - bottom.take(owner), near_steps.height)
     good = in_line & (count >= RETURN.min_edge_points) & (gap <= RETURN.max_edge_spacing)
     edge = np.where(good, edge, 0.0)
-    found = PlanSteps(x + edge * nx, y + edge * ny, nx, ny, bottom, own.height, np.zeros(len(x)), np.zeros(len(x)), count, count)
-    return found[good]
+    result = PlanSteps(x + edge * nx, y + edge * ny, nx, ny, bottom, near_steps.height, np.zeros(len(x)), np.zeros(len(x)), count, count)
+    return result[good]
 
 
 def _largest_gap(owner, inward, above, height):
@@ -175,16 +175,17 @@ def on_island_tops(steps: PlanSteps, behind: GroundBehind) -> np.ndarray:
     on_top = np.zeros(len(steps), bool)
     end = np.where(np.isfinite(behind.edge), behind.edge, behind.falls)
     out = np.arange(RETURN.ray_spacing, np.nanmax(end, initial=0.0), RETURN.ray_spacing)
-    ray, place = np.nonzero(out < end[:, None])
+    ray, cell = np.nonzero(out < end[:, None])
     if not len(ray):
         return on_top
-    away = out[place]
-    places = np.c_[steps.x[ray] + away * steps.nx[ray], steps.y[ray] + away * steps.ny[ray]]
+    distance = out[cell]
+    places = np.c_[steps.x[ray] + distance * steps.nx[ray], steps.y[ray] + distance * steps.ny[ray]]
     near = cKDTree(np.c_[steps.x, steps.y]).sparse_distance_matrix(cKDTree(places), RETURN.ray_reach, output_type="ndarray")
-    own, of = near["i"], ray[near["j"]]
-    foot = steps.h[own] - steps.h[of] - behind.slope[of] * away[near["j"]]
-    above = (foot > np.maximum(RETURN.min_foot_share * steps.height[of], CURBS.height_tolerance)) & (steps.height[own] < steps.height[of])
-    on_top[own[above]] = True
+    foot_of, bounding = near["i"], ray[near["j"]]
+    foot = steps.h[foot_of] - steps.h[bounding] - behind.slope[bounding] * distance[near["j"]]
+    above = (foot > np.maximum(RETURN.min_foot_share * steps.height[bounding], CURBS.height_tolerance)) \
+        & (steps.height[foot_of] < steps.height[bounding])
+    on_top[foot_of[above]] = True
     return on_top
 
 
@@ -221,15 +222,15 @@ def ground_behind(raster: GroundRaster, slopes: Sequence[np.ndarray], x: np.ndar
     out = (np.arange(int(round(farthest / RETURN.plan_cell))) + 2) * RETURN.plan_cell
     row, column = raster.cells_at(x[:, None] + out * nx[:, None], y[:, None] + out * ny[:, None])
     on = (row >= 0) & (column >= 0) & (row < raster.low.shape[0]) & (column < raster.low.shape[1])
-    there = np.where(on, raster.low[np.where(on, row, 0), np.where(on, column, 0)], np.nan)
+    heights = np.where(on, raster.low[np.where(on, row, 0), np.where(on, column, 0)], np.nan)
     with np.errstate(invalid="ignore"):
-        share = (there - bottom[:, None] - slope[:, None] * out) / height[:, None]
+        share = (heights - bottom[:, None] - slope[:, None] * out) / height[:, None]
         down, up = share < RETURN.island_drop_share, share >= RETURN.island_drop_share
     first = np.where(down.any(1), np.argmax(down, axis=1), len(out))
     last = np.where(up, np.arange(len(out)), -1)
     last[np.arange(len(out)) >= first[:, None]] = -1
     last = last.max(axis=1)
-    own = np.arange(len(x))
+    index = np.arange(len(x))
     # a ramp is seen all the way down
-    hidden = (first < len(out)) & (last >= 0) & (first - last > 1) & (share[own, last] >= RETURN.min_edge_share)
+    hidden = (first < len(out)) & (last >= 0) & (first - last > 1) & (share[index, last] >= RETURN.min_edge_share)
     return GroundBehind(np.where(first < len(out), out[np.minimum(first, len(out) - 1)], np.nan), np.where(hidden, out[last], np.nan), slope)

@@ -25,8 +25,8 @@ def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[d
     """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first free chain number."""
     main, curbs = {}, curb_points[curb_points.road == road]
     for side in SIDE_SIGNS:
-        own = curbs[(curbs.side == side) & (curbs.part == "bottom")]
-        rows = np.c_[own.station, own.offset, own.z, own.status == "measured"]
+        of_side = curbs[(curbs.side == side) & (curbs.part == "bottom")]
+        rows = np.c_[of_side.station, of_side.offset, of_side.z, of_side.status == "measured"]
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
         if len(rows):
             rows[:, 2] -= expected_height(survey, road, rows[:, 0])
@@ -96,19 +96,19 @@ def places_along(line: Road, main: Mapping[str, np.ndarray], gap: float) -> np.n
 def _split(points, gap=CURBS.max_joined_gap):
     if not len(points):
         return []
-    apart = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > RETURN.max_run_jump + np.diff(points[:, 0]))
-    return np.split(points, np.flatnonzero(apart) + 1)
+    breaks = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > RETURN.max_run_jump + np.diff(points[:, 0]))
+    return np.split(points, np.flatnonzero(breaks) + 1)
 
 
 def main_runs(main: Mapping[str, np.ndarray], line: Road) -> list[tuple]:
     """Main curbs as polylines in plan with uphill on the right: list of (side, (x, y, h))."""
-    found = []
+    runs = []
     for side, points in main.items():
         for run in _split(points):
             if len(run) > 1:
                 run = run[::-1] if side == "left" else run
-                found.append((side, (*line.to_map(run[:, 0], run[:, 1]), run[:, 2])))
-    return found
+                runs.append((side, (*line.to_map(run[:, 0], run[:, 1]), run[:, 2])))
+    return runs
 
 
 class KnownPlaces:
@@ -128,12 +128,12 @@ class KnownPlaces:
 
     def and_places(self, x: np.ndarray, y: np.ndarray) -> KnownPlaces:
         """These and (N,) further places; what is known of these is not made anew for every few that come."""
-        found = KnownPlaces(np.c_[x, y])
-        found._trees = self._trees + found._trees
+        result = KnownPlaces(np.c_[x, y])
+        result._trees = self._trees + result._trees
         # trees of like size are joined, so that a place is put into few of them, and few are asked
-        while len(found._trees) > 1 and 2 * found._trees[-1].n >= found._trees[-2].n:
-            found._trees[-2:] = [cKDTree(np.concatenate([tree.data for tree in found._trees[-2:]]))]
-        return found
+        while len(result._trees) > 1 and 2 * result._trees[-1].n >= result._trees[-2].n:
+            result._trees[-2:] = [cKDTree(np.concatenate([tree.data for tree in result._trees[-2:]]))]
+        return result
 
     def and_steps(self, lines: Sequence[PlanSteps]) -> KnownPlaces:
         """These and the places of lines of steps."""
@@ -141,12 +141,12 @@ class KnownPlaces:
 
     def within(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
         """(N,) bool, is one of the places within a distance of (N,) local places?"""
-        there = np.zeros(len(x), bool)
+        inside = np.zeros(len(x), bool)
         for tree in self._trees if len(x) else ():
             if tree.n:
                 # the tree finds what is nearer than its bound
-                there |= tree.query(np.c_[x, y], distance_upper_bound=np.nextafter(distance, np.inf))[0] <= distance
-        return there
+                inside |= tree.query(np.c_[x, y], distance_upper_bound=np.nextafter(distance, np.inf))[0] <= distance
+        return inside
 
 
 # Lines of curb in plan, among which those near a place are looked up: a long road has many of them.
@@ -182,7 +182,7 @@ class CurbLines:
     @cached_property
     def ends(self) -> np.ndarray:
         """(2 L, 4) x, y and the direction out of the line of both ends of every line; its last metre gives the direction."""
-        return np.array([_end(x, y, at) for x, y in self.lines for at in (0, -1)]).reshape(-1, 4)
+        return np.array([_end(x, y, index) for x, y in self.lines for index in (0, -1)]).reshape(-1, 4)
 
     @cached_property
     def _tips(self):
@@ -202,17 +202,17 @@ class CurbLines:
 
     def distances(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """(N,) m from (N,) places to the nearest line; there must be one."""
-        (place, _), away = self._tree.query_nearest(shapely.points(x, y), return_distance=True, all_matches=False)
-        found = np.full(len(x), np.inf)
-        found[place] = away
-        return found
+        (row, _), distance = self._tree.query_nearest(shapely.points(x, y), return_distance=True, all_matches=False)
+        result = np.full(len(x), np.inf)
+        result[row] = distance
+        return result
 
 
 def _end(x, y, at):
     """x, y and the direction out of the line at its first (0) or last (-1) place."""
     order = 1 if at == 0 else -1
-    away = np.hypot(x - x[at], y - y[at])[::order]
-    k = int(np.argmax(away >= 1.0)) or len(x) - 1
+    distance = np.hypot(x - x[at], y - y[at])[::order]
+    k = int(np.argmax(distance >= 1.0)) or len(x) - 1
     back = np.array([x[::order][k], y[::order][k]])
     out = np.array([x[at], y[at]]) - back
     return x[at], y[at], *(out / max(np.hypot(*out), 1e-9))

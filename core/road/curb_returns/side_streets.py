@@ -56,9 +56,9 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
     if not any(number < 0 for number in survey.store.numbers()):
         return list(curbs)
     met = known.and_steps([curb.steps for curb in curbs])
-    more = [_led_from(curb, at_tail, decimation, road, met) for curb in curbs if not curb.closed and curb.kind in BEYOND_KINDS
-            for at_tail in (True, False)]
-    return [*curbs, *_distinct([curb for curb in more if curb is not None], met)]
+    candidates = [_led_from(curb, at_tail, decimation, road, met) for curb in curbs if not curb.closed and curb.kind in BEYOND_KINDS
+                  for at_tail in (True, False)]
+    return [*curbs, *_distinct([curb for curb in candidates if curb is not None], met)]
 
 
 def _led_from(curb, at_tail, decimation, road, met):
@@ -100,8 +100,8 @@ def _leaves(end, roads):
 
 def _ground(decimation, end):
     """Points about the straight continuation of a curb: metres along and uphill, and heights, averaged in cells."""
-    found = [_beside(part, end) for parts in (_in_corridors(decimation, end), _beyond_corridors(decimation.survey, end)) for part in parts]
-    t, u, z = (np.concatenate(column) for column in zip(*found)) if found else np.empty((3, 0))
+    parts_beside = [_beside(part, end) for parts in (_in_corridors(decimation, end), _beyond_corridors(decimation.survey, end)) for part in parts]
+    t, u, z = (np.concatenate(column) for column in zip(*parts_beside)) if parts_beside else np.empty((3, 0))
     return _cell_means(t, u, z)
 
 
@@ -131,9 +131,9 @@ def _beyond_corridors(survey, end):
 def _beside(points, end):
     x, y, z = points.x, points.y, points.z
     t, u = end.beside(x, y)
-    own = np.flatnonzero((t > -0.5) & (t < RETURN.max_beyond_length) & (np.abs(u) < RETURN.ground_half_width + 0.1 * np.maximum(t, 0.0) + 0.1)
-                         & (np.abs(z - end.z) < RETURN.max_layer_height + 0.05 * np.maximum(t, 0.0)))
-    return t[own], u[own], z[own]
+    inside = np.flatnonzero((t > -0.5) & (t < RETURN.max_beyond_length) & (np.abs(u) < RETURN.ground_half_width + 0.1 * np.maximum(t, 0.0) + 0.1)
+                            & (np.abs(z - end.z) < RETURN.max_layer_height + 0.05 * np.maximum(t, 0.0)))
+    return t[inside], u[inside], z[inside]
 
 
 def _cell_means(t, u, z):
@@ -154,13 +154,13 @@ def led_beyond(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd) -> _Cu
     """
     for start in np.arange(0.0, RETURN.max_dropped_length + 0.1, 1.0):
         course, length = None, RETURN.led_length
-        about, *_ = _best_levels(t, u, z, end, start, start + length, (0.0, 0.0, 0.0), RETURN.first_arcs) or (None,)
-        while about is not None and start + length <= RETURN.max_beyond_length:
-            longer = _fitted(t, u, z, end, start, start + length, about, RETURN.finer_arcs if course is None else RETURN.farther_arcs)
+        arc, *_ = _best_levels(t, u, z, end, start, start + length, (0.0, 0.0, 0.0), RETURN.first_arcs) or (None,)
+        while arc is not None and start + length <= RETURN.max_beyond_length:
+            longer = _fitted(t, u, z, end, start, start + length, arc, RETURN.finer_arcs if course is None else RETURN.farther_arcs)
             # the first arc must be seen along both halves
             if longer is None or course is None and longer.end < start + 0.5 * RETURN.led_length:
                 break
-            course, about, length = longer, longer.arc, length + RETURN.growth
+            course, arc, length = longer, longer.arc, length + RETURN.growth
         if course is not None:
             return _surest(t, u, z, end, course, start + length - RETURN.growth)
     return None
@@ -175,22 +175,22 @@ def _surest(t, u, z, end, course, stop):
     ground = GroundAboutArc.about(t, u, z, end, course.start, stop, course.arc)
     if ground is None:
         return course
-    at = np.linspace(course.start, course.end, 3)
+    stations = np.linspace(course.start, course.end, 3)
     # arcs by what they are aside at the beginning, in the middle and at the end
-    to_arc = np.linalg.inv(np.stack([np.ones(3), at, 0.5 * at * at], axis=1))
-    mean, axes = _aside_of_arcs(np.array([course.arc]), at)[0], RETURN.spread_step * np.eye(3)
+    to_arc = np.linalg.inv(np.stack([np.ones(3), stations, 0.5 * stations * stations], axis=1))
+    mean, axes = _aside_of_arcs(np.array([course.arc]), stations)[0], RETURN.spread_step * np.eye(3)
     for _ in range(RETURN.spread_rounds):
-        aside = mean + SPREAD_GRID @ axes.T
-        cost = ground.explained(aside @ to_arc.T)[0]
+        offsets = mean + SPREAD_GRID @ axes.T
+        cost = ground.explained(offsets @ to_arc.T)[0]
         weight = np.exp(-0.5 * (cost - cost.min()))
         weight /= weight.sum()
-        mean = weight @ aside
-        spread = (aside - mean).T @ ((aside - mean) * weight[:, None])
+        mean = weight @ offsets
+        spread = (offsets - mean).T @ ((offsets - mean) * weight[:, None])
         size, direction = np.linalg.eigh(spread)
         axes = direction * np.maximum(RETURN.spread_step_sigmas * np.sqrt(np.maximum(size, 0.0)), RETURN.least_spread_step)
     shift, turn, bend = (to_arc @ (mean + ground.foot(to_arc @ mean))).tolist()
-    found = _fitted(t, u, z, end, course.start, stop, (shift, turn, bend), np.zeros((3, 1)))
-    return replace(found or course, spread=to_arc @ spread @ to_arc.T)
+    mean_course = _fitted(t, u, z, end, course.start, stop, (shift, turn, bend), np.zeros((3, 1)))
+    return replace(mean_course or course, spread=to_arc @ spread @ to_arc.T)
 
 
 def _best_levels(t, u, z, end, start, stop, about, arcs):
@@ -201,11 +201,11 @@ def _best_levels(t, u, z, end, start, stop, about, arcs):
     ground = GroundAboutArc.about(t, u, z, end, start, stop, about)
     if ground is None:
         return None
-    tried = np.stack([v.ravel() + middle for v, middle in zip(np.meshgrid(*arcs, indexing="ij"), about)], axis=1)
-    cost, levels, design, v = ground.explained(tried)
+    trials = np.stack([v.ravel() + middle for v, middle in zip(np.meshgrid(*arcs, indexing="ij"), about)], axis=1)
+    cost, levels, design, v = ground.explained(trials)
     k = int(np.argmin(cost))
     near = np.abs(v[k]) > RETURN.curb_half_width
-    return (float(tried[k, 0]), float(tried[k, 1]), float(tried[k, 2])), levels[k], ground.prior, ground.t, ground.z, design[k], v[k], near
+    return (float(trials[k, 0]), float(trials[k, 1]), float(trials[k, 2])), levels[k], ground.prior, ground.t, ground.z, design[k], v[k], near
 
 
 def _fitted(t, u, z, end, start, stop, about, arcs):
@@ -214,24 +214,24 @@ def _fitted(t, u, z, end, start, stop, about, arcs):
     if best is None:
         return None
     arc, levels, prior, t, z, design, v, near = best
-    seen = near & (t >= stop - RETURN.led_length)
-    low, high = seen & (v < 0), seen & (v > 0)
+    last = near & (t >= stop - RETURN.led_length)
+    low, high = last & (v < 0), last & (v > 0)
     if min(low.sum(), high.sum()) < RETURN.min_side_points:
         return None
     reach = float(min(t[low].max(), t[high].max()))
     plain = z - design[:, [0, 1, 3]] @ levels[[0, 1, 3]]
     rise = np.median(plain[high]) - np.median(plain[low])
     middle = np.median(plain[low]) + 0.5 * rise
-    apart = min(np.mean(plain[low] < middle), np.mean(plain[high] > middle))
-    if not RETURN.min_height_share * end.height <= rise <= RETURN.max_height_share * end.height or apart < RETURN.min_level_share:
+    level_share = min(np.mean(plain[low] < middle), np.mean(plain[high] > middle))
+    if not RETURN.min_height_share * end.height <= rise <= RETURN.max_height_share * end.height or level_share < RETURN.min_level_share:
         return None
     # a slope, however steep, must explain the last points worse
-    every = np.ones((1, seen.sum()), bool)
-    slope = _cost_of_arcs(_levels_of_arcs(design[None, seen][:, :, [0, 1, 3]], z[seen], every, np.full(3, 1e-6), np.zeros(3))[1])[0]
-    step = _cost_of_arcs(_levels_of_arcs(design[None, seen], z[seen], every, prior, levels)[1])[0]
+    all_points = np.ones((1, last.sum()), bool)
+    slope = _cost_of_arcs(_levels_of_arcs(design[None, last][:, :, [0, 1, 3]], z[last], all_points, np.full(3, 1e-6), np.zeros(3))[1])[0]
+    step = _cost_of_arcs(_levels_of_arcs(design[None, last], z[last], all_points, prior, levels)[1])[0]
     if slope - step < CURBS.significant_sigmas**2:
         return None
-    residual = z[seen] - design[seen] @ levels
+    residual = z[last] - design[last] @ levels
     return _CurbCourse(arc, levels, start, reach, (int(low.sum()), int(high.sum())), float(np.median(np.abs(residual)) / 0.6745))
 
 
@@ -247,8 +247,8 @@ def _led(course, end, curb, at_tail, survey, road, line):
     z = end.z + course.levels[0] + course.levels[1] * t
     s, d = line.locate(x, y)
     k = -1 if at_tail else 0
-    lost = ~np.isfinite(s)
-    s, d = np.where(lost, curb.s[k], s), np.where(lost, curb.d[k], d)
+    unlocated = ~np.isfinite(s)
+    s, d = np.where(unlocated, curb.s[k], s), np.where(unlocated, curb.d[k], d)
     ones = np.ones(count)
     low, high = course.support
     steps = PlanSteps(x, y, nx, ny, z - expected_height(survey, road, s), course.levels[2] * ones, 0.0 * ones, course.scatter * ones,
@@ -315,11 +315,11 @@ class GroundAboutArc:
     @staticmethod
     def about(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd, start: float, stop: float, arc: Arc) -> GroundAboutArc | None:
         """The points between two distances; None where there are too few."""
-        own = np.flatnonzero((t >= start) & (t < stop) & (np.abs(u - _aside_of_arcs(np.array([arc]), t)[0]) < RETURN.ground_half_width))
-        if len(own) < 2 * RETURN.min_side_points:
+        inside = np.flatnonzero((t >= start) & (t < stop) & (np.abs(u - _aside_of_arcs(np.array([arc]), t)[0]) < RETURN.ground_half_width))
+        if len(inside) < 2 * RETURN.min_side_points:
             return None
         prior = np.array([RETURN.bottom_sigma + 0.01 * start, RETURN.grade_sigma, RETURN.rise_sigma, RETURN.crossfall_sigma])**-2.0
-        return GroundAboutArc(t[own], u[own], z[own] - end.z, end, prior)
+        return GroundAboutArc(t[inside], u[inside], z[inside] - end.z, end, prior)
 
     def explained(self, arcs: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """How well (C, 3) arcs explain points and known curb.
@@ -334,9 +334,9 @@ class GroundAboutArc:
         low, height = residual + design[:, :, 2] * levels[:, 2:3] / RETURN.point_height_sigma, levels[:, 2:3] / RETURN.point_height_sigma
         # the curb itself is as high as either level, or anywhere between them
         residual = np.where(on_level, residual, low - np.clip(low, 0.0, np.maximum(height, 0.0)))
-        at, aside, _ = end.trail
-        off = (aside - _aside_of_arcs(arcs, at)) / RETURN.place_sigma
-        cost = _cost_of_arcs(residual) + (off**2).mean(axis=1) * min(len(at), RETURN.least_steps) + (arcs[:, 2] / RETURN.arc_bend_sigma)**2
+        trail_t, trail_u, _ = end.trail
+        off = (trail_u - _aside_of_arcs(arcs, trail_t)) / RETURN.place_sigma
+        cost = _cost_of_arcs(residual) + (off**2).mean(axis=1) * min(len(trail_t), RETURN.least_steps) + (arcs[:, 2] / RETURN.arc_bend_sigma)**2
         return cost, levels, design, v
 
     def foot(self, arc: np.ndarray) -> float:
@@ -363,10 +363,10 @@ def _levels_of_arcs(design: np.ndarray, z: np.ndarray, used: np.ndarray, prior: 
     for _ in range(3):
         normal = np.einsum("ck,cki,ckj->cij", weight, design, design, optimize=True) / RETURN.point_height_sigma**2 + np.diag(prior)
         right = np.einsum("ck,cki,k->ci", weight, design, z, optimize=True) / RETURN.point_height_sigma**2 + prior * expected
-        found = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
-        residual = (z - np.einsum("cki,ci->ck", design, found)) / RETURN.point_height_sigma
+        levels = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
+        residual = (z - np.einsum("cki,ci->ck", design, levels)) / RETURN.point_height_sigma
         weight = used / (1.0 + (residual / RETURN.max_residual)**2)
-    return found, residual
+    return levels, residual
 
 
 def _cost_of_arcs(residual: np.ndarray) -> np.ndarray:

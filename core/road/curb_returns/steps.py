@@ -64,36 +64,36 @@ def measure_plan_steps(rasters: Sequence[GroundRaster], x: np.ndarray, y: np.nda
         return PlanSteps.none()
     line_x, line_y, in_line = line_directions(x, y, nx, ny)
     # the slope of the ground gives the direction where points are dense, else the line that the steps make
-    found, left = [], np.arange(len(x))
+    parts, left = [], np.arange(len(x))
     for raster in rasters:
         points = raster.by_cell
         steps, good = _measured(raster, points, x[left], y[left], nx[left], ny[left], RETURN.short_half_length, min_height, max_height)
-        found.append(steps)
+        parts.append(steps)
         left = left[~good & in_line[left]]
         for half in (RETURN.short_half_length, RETURN.long_half_length):
             if not len(left):
-                return PlanSteps.join(found)
+                return PlanSteps.join(parts)
             steps, good = _measured(raster, points, x[left], y[left], line_x[left], line_y[left], half, min_height, max_height)
-            found.append(steps)
+            parts.append(steps)
             left = left[~good]
-    return PlanSteps.join(found)
+    return PlanSteps.join(parts)
 
 
 def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
     """The steps, and (M,) bool: which places proved to be steps; `points` are the raster's by cell."""
-    proved, place, found = np.zeros(len(x), bool), np.arange(len(x)), []
+    proved, candidate, parts = np.zeros(len(x), bool), np.arange(len(x)), []
     for turn in range(RETURN.measuring_rounds):
-        seen, steps = _seen_at(raster, points, x, y, nx, ny, half, min_height, max_height)
+        corners, steps = _seen_at(raster, points, x, y, nx, ny, half, min_height, max_height)
         # a step of another direction or place is measured again, across its own direction and from its own place
-        settled = seen["good"] & ((np.abs(seen["skew"]) <= CURBS.remeasure_skew) & (np.abs(seen["u"]) <= RETURN.remeasure_offset)
-                                  | (turn == RETURN.measuring_rounds - 1))
-        proved[place[settled]] = True
-        found.append(steps[settled])
-        again = seen["good"] & ~settled
-        if not again.any():
+        settled = corners["good"] & ((np.abs(corners["skew"]) <= CURBS.remeasure_skew) & (np.abs(corners["u"]) <= RETURN.remeasure_offset)
+                                     | (turn == RETURN.measuring_rounds - 1))
+        proved[candidate[settled]] = True
+        parts.append(steps[settled])
+        unsettled = corners["good"] & ~settled
+        if not unsettled.any():
             break
-        place, x, y, nx, ny = place[again], steps.x[again], steps.y[again], steps.nx[again], steps.ny[again]
-    return PlanSteps.join(found), proved
+        candidate, x, y, nx, ny = candidate[unsettled], steps.x[unsettled], steps.y[unsettled], steps.nx[unsettled], steps.ny[unsettled]
+    return PlanSteps.join(parts), proved
 
 
 def _seen_at(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray, half: float,
@@ -115,10 +115,11 @@ def steps_of_points(about: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray,
                     min_height: float, max_height: float, graded: bool = False) -> tuple[dict[str, np.ndarray], PlanSteps]:
     """`_seen_at` of points that are known: `about` is the result of `points_about`; `noise` in m; `graded` as of StepPatches."""
     owner, u, v, h = about
-    seen = StepPatches(owner, u, v, h, np.full(len(x), noise), min_height, max_height, graded=graded).corners()
+    corners = StepPatches(owner, u, v, h, np.full(len(x), noise), min_height, max_height, graded=graded).corners()
     # the tangent is the uphill direction turned to the left
-    return seen, PlanSteps(x + seen["u"] * nx - seen["s"] * ny, y + seen["u"] * ny + seen["s"] * nx, *_rotated(nx, ny, seen["skew"]),
-                           *(seen[name] for name in ("h", "height", "run", "noise", "support", "behind")))
+    return corners, PlanSteps(x + corners["u"] * nx - corners["s"] * ny, y + corners["u"] * ny + corners["s"] * nx,
+                              *_rotated(nx, ny, corners["skew"]),
+                              *(corners[name] for name in ("h", "height", "run", "noise", "support", "behind")))
 
 
 def line_directions(x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -179,9 +180,9 @@ def points_about(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.nda
 def _between(nx, ny, low, high, half):
     """Metres along x between which |u| <= PATCH_HALF_WIDTH and |v| <= half somewhere between `low` and `high` along y."""
     left, right = -np.inf, np.inf
-    for along_x, along_y, most in ((nx, ny, PATCH_HALF_WIDTH), (-ny, nx, half)):
+    for along_x, along_y, reach in ((nx, ny, PATCH_HALF_WIDTH), (-ny, nx, half)):
         along_x = np.where(np.abs(along_x) < 1e-9, 1e-9, along_x)
-        middles, width = (-along_y * low / along_x, -along_y * high / along_x), most / np.abs(along_x)
+        middles, width = (-along_y * low / along_x, -along_y * high / along_x), reach / np.abs(along_x)
         left, right = np.maximum(left, np.minimum(*middles) - width), np.minimum(right, np.maximum(*middles) + width)
     return left, right
 
@@ -203,22 +204,22 @@ def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.n
     x, y : (M,) local m
     nx, ny : (M,) unit vector uphill
     """
-    beside = grown(driven, diamond(RETURN.max_cells_from_road))
-    row, column = np.nonzero(stepped & beside)
-    asked = np.ones(len(row), bool)
+    near_road = grown(driven, diamond(RETURN.max_cells_from_road))
+    row, column = np.nonzero(stepped & near_road)
+    in_reach = np.ones(len(row), bool)
     if wanted is not None:
         x, y = raster.middle(row, column)
-        asked = wanted(x, y)
+        in_reach = wanted(x, y)
         _, square = np.unique(_squares(x, y), return_inverse=True)
-        own = np.flatnonzero(np.bincount(square, asked)[square])
-        row, column, asked = row[own], column[own], asked[own]
+        kept = np.flatnonzero(np.bincount(square, in_reach)[square])
+        row, column, in_reach = row[kept], column[kept], in_reach[kept]
     ground = np.pad(raster.low, RETURN.patch_cells, constant_values=np.nan)
     parts = [_rises_at(raster, ground, slopes, row[a:a + RETURN.steps_per_batch], column[a:a + RETURN.steps_per_batch], min_height, max_height)
              for a in range(0, len(row), RETURN.steps_per_batch)]
     good, rises = (np.concatenate(column, axis=-1) for column in zip(*parts)) if parts else (np.empty(0, bool), np.empty((5, 0)))
     x, y, nx, ny, cost = rises
     best = _one_of_each_square(x, y, cost)
-    best = best[asked[good][best]]
+    best = best[in_reach[good][best]]
     return x[best], y[best], nx[best], ny[best]
 
 
@@ -241,12 +242,12 @@ def _rises_at(raster, ground, slopes, row, column, min_height, max_height):
     nx, ny = gx / size, gy / size
     u, v = nx[:, None] * dx + ny[:, None] * dy, ny[:, None] * dx - nx[:, None] * dy
     strip = near & (np.abs(v) <= RETURN.patch_half_length)
-    before, after, at = (_mean(around, strip & m) for m in ((u < -RETURN.step_half_width), (u > RETURN.step_half_width),
-                                                            (np.abs(u) < RETURN.step_half_width)))
+    before, after, middle = (_mean(around, strip & m) for m in ((u < -RETURN.step_half_width), (u > RETURN.step_half_width),
+                                                                (np.abs(u) < RETURN.step_half_width)))
     rise = after - before
     rough = np.sqrt(_mean((around - before[:, None]) ** 2, strip & (u < -RETURN.step_half_width)))
     with np.errstate(invalid="ignore", divide="ignore"):
-        part = (at - before) / rise
+        part = (middle - before) / rise
         good = (part > 0.15) & (part < 0.85) & (rise >= RETURN.min_plan_rise_share * min_height) & (rise <= max_height + 0.05) \
             & (rough <= RETURN.max_plan_roughness_share * rise)
     # the middle of the step, not of the cell

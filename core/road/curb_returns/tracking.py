@@ -40,8 +40,8 @@ def without_duplicates(steps: PlanSteps) -> np.ndarray:
         return np.empty(0, np.int64)
     a, b = cKDTree(np.c_[steps.x, steps.y]).query_pairs(RETURN.duplicate_along, output_type="ndarray").T
     dx, dy = steps.x[b] - steps.x[a], steps.y[b] - steps.y[a]
-    same = (steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b] > 0.5) & (np.abs(dx * steps.nx[a] + dy * steps.ny[a]) < RETURN.duplicate_across)
-    a, b = a[same], b[same]
+    alike = (steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b] > 0.5) & (np.abs(dx * steps.nx[a] + dy * steps.ny[a]) < RETURN.duplicate_across)
+    a, b = a[alike], b[alike]
     # of equal support the place decides, so that the order of the work does not
     rank = np.empty(len(steps), np.int64)
     rank[np.lexsort((steps.y, steps.x, -steps.support))] = np.arange(len(steps))
@@ -112,10 +112,10 @@ def _paths(following):
 
 def join_chains(chains: Sequence[PlanStepChain], steps: PlanSteps) -> list[PlanStepChain]:
     """The chains, those that lie in one line a short gap apart joined to one."""
-    open_ones = [c for c in chains if not c.closed]
-    tips = LineEnds.of([(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in open_ones])
+    open_chains = [c for c in chains if not c.closed]
+    tips = LineEnds.of([(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in open_chains])
     runs = _paths(tips.successors(RETURN.max_nose_gap))
-    return [PlanStepChain(np.concatenate([open_ones[k].steps for k in run]), ring) for run, ring in runs] + [c for c in chains if c.closed]
+    return [PlanStepChain(np.concatenate([open_chains[k].steps for k in run]), ring) for run, ring in runs] + [c for c in chains if c.closed]
 
 
 def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> np.ndarray:
@@ -188,11 +188,11 @@ class LineEnds:
         size = np.maximum(np.hypot(tx, ty), 1e-9)
         turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
         # uphill is on the right, so the line bends about it where the way out of the head lies to the left of the tail's
-        about = tail[:, 3] * head[:, 4] - tail[:, 4] * head[:, 3] > 0
-        most = RETURN.max_join_turn + np.where(about & (gap <= nose), gap / RETURN.nose_radius, 0.0)
+        bends_uphill = tail[:, 3] * head[:, 4] - tail[:, 4] * head[:, 3] > 0
+        max_turn = RETURN.max_join_turn + np.where(bends_uphill & (gap <= nose), gap / RETURN.nose_radius, 0.0)
         along, across = (dx * tx + dy * ty) / size, np.abs(dx * ty - dy * tx) / size
         up = np.abs(head[:, 2] - tail[:, 2])
-        good = (a != b) & (along > -overlap) & (across <= RETURN.join_tolerance + RETURN.join_drift * np.abs(along)) & (turn <= most) \
+        good = (a != b) & (along > -overlap) & (across <= RETURN.join_tolerance + RETURN.join_drift * np.abs(along)) & (turn <= max_turn) \
             & (up <= CURBS.height_tolerance + RETURN.max_height_grade * gap)
         return _mutual(a[good], b[good], (gap + 2 * across + turn)[good], count)
 

@@ -26,11 +26,11 @@ def curb_return_lines(curb_points: CurbPoints, frame: RoadFrame) -> dict[int, li
     points = curb_points[~curb_points.of_main_curb & (curb_points.status == "measured") & (curb_points.part == "bottom")]
     points = points[np.lexsort((points.along, points.chain, points.road))]
     cuts = np.flatnonzero((np.diff(points.road) != 0) | (np.diff(points.chain) != 0)) + 1
-    found: dict[int, list[tuple[CurbPoints, np.ndarray]]] = {}
+    lines: dict[int, list[tuple[CurbPoints, np.ndarray]]] = {}
     for rows in np.split(np.arange(len(points)), cuts):
         if len(rows) > 1:
-            found.setdefault(int(points.road[rows[0]]), []).append((points[rows], points[rows].map_places(frame)))
-    return found
+            lines.setdefault(int(points.road[rows[0]]), []).append((points[rows], points[rows].map_places(frame)))
+    return lines
 
 
 def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbPoints, np.ndarray]], number: int,
@@ -62,8 +62,8 @@ def _ends_met(places, kind, ends, tree):
         return places[:0], places[:0]
     first, last = (_nearest(ends, tree, places[k]) for k in (0, -1))
     if len(first) and len(last) and np.array_equal(first, last):
-        away = np.hypot(*(places[[0, -1], :2] - first[0, :2]).T)
-        return (first, last[:0]) if away[0] <= away[1] else (first[:0], last)
+        distance = np.hypot(*(places[[0, -1], :2] - first[0, :2]).T)
+        return (first, last[:0]) if distance[0] <= distance[1] else (first[:0], last)
     return first, last
 
 
@@ -83,8 +83,8 @@ def _edge_of(points, places, first, last, passes, road, number):
     vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
     sigma = edge_sigma(along, along, residual, shares=EDGE.curb_return, passes=passes, shared=shared)
     # where the returns thin out a line is cut; elsewhere one number speaks for all of it
-    at = _chord_length(*vertices.T[:2])
-    sigma = np.interp(at * along[-1] / at[-1], along, sigma) if shared.any() else np.full(len(at), sigma.mean())
+    vertex_lengths = _chord_length(*vertices.T[:2])
+    sigma = np.interp(vertex_lengths * along[-1] / vertex_lengths[-1], along, sigma) if shared.any() else np.full(len(vertex_lengths), sigma.mean())
     return EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
                      height=float(np.median(points.height)), rmse=float(np.sqrt(np.mean(residual**2))), kind=kind, sigma=sigma)
 
@@ -113,8 +113,8 @@ def _sharp_chords(places):
     around = length.copy()
     around[1:-1] += 0.5 * (length[2:] + length[:-2])
     turn[(turn < EDGE.min_corner_turn) | (turn < around / EDGE.max_corner_radius)] = 0.0
-    beside = np.maximum(np.r_[0.0, turn[:-1]], np.r_[turn[1:], 0.0])
-    return np.flatnonzero((turn > beside) | (turn == beside) & (turn > 0) & (np.r_[0.0, turn[:-1]] < turn))
+    neighbour_turn = np.maximum(np.r_[0.0, turn[:-1]], np.r_[turn[1:], 0.0])
+    return np.flatnonzero((turn > neighbour_turn) | (turn == neighbour_turn) & (turn > 0) & (np.r_[0.0, turn[:-1]] < turn))
 
 
 def _corner(before, after):
@@ -207,15 +207,15 @@ def dropped_corners(pieces: Sequence[EdgePiece], frame: RoadFrame, number: int) 
     free = cKDTree(places).query_ball_point(places, EDGE.meeting_distance, return_length=True) == 1
     begin, end = np.flatnonzero(free[:len(tails)]), np.flatnonzero(free[len(tails):])
     near = cKDTree(places[begin]).query_ball_tree(cKDTree(places[len(tails) + end]), EDGE.max_dropped_gap + EDGE.meeting_distance)
-    found = []
+    gaps = []
     for i, ahead in zip(begin.tolist(), near):
         check_cancelled()
         for j in end[ahead].tolist():
             if i != j and _is_corner(tails[i], heads[j]):
-                found.append((float(np.hypot(*(heads[j].place - tails[i].place)[:2])), i, j))
+                gaps.append((float(np.hypot(*(heads[j].place - tails[i].place)[:2])), i, j))
     arcs: list[EdgePiece] = []
     used: set[tuple[str, int]] = set()
-    for _, i, j in sorted(found):
+    for _, i, j in sorted(gaps):
         if not used & {("tail", i), ("head", j)}:
             used |= {("tail", i), ("head", j)}
             arcs.append(_arc(tails[i], heads[j], frame, number + len(arcs)))
@@ -230,10 +230,10 @@ def _uphill_right(piece):
 
 def _end(piece, line):
     """The last vertex of a line as _End."""
-    away = np.hypot(*(line[:, :2] - line[-1, :2]).T)
+    distance = np.hypot(*(line[:, :2] - line[-1, :2]).T)
 
     def back(length):
-        far = np.flatnonzero(away >= length)
+        far = np.flatnonzero(distance >= length)
         return int(far[-1]) if len(far) else 0
 
     near, first = back(EDGE.direction_length), back(EDGE.bend_length)
@@ -301,10 +301,10 @@ def _arc(tail, head, frame, number):
     along = np.linspace(0.0, length, int(np.ceil(length / EDGE.arc_vertex_spacing)) + 1)
     angle = np.clip(along - straight, 0.0, bend) / radius
     ahead = np.minimum(along, straight) + radius * np.sin(angle)
-    aside = radius * (1.0 - np.cos(angle))
-    rest = np.maximum(along - straight - bend, 0.0)
-    ahead, aside = ahead + rest * np.cos(turn), aside + rest * np.sin(turn)
-    plan = tail.place[:2] + ahead[:, None] * tail.out + aside[:, None] * np.array([tail.out[1], -tail.out[0]])
+    sideways = radius * (1.0 - np.cos(angle))
+    after_arc = np.maximum(along - straight - bend, 0.0)
+    ahead, sideways = ahead + after_arc * np.cos(turn), sideways + after_arc * np.sin(turn)
+    plan = tail.place[:2] + ahead[:, None] * tail.out + sideways[:, None] * np.array([tail.out[1], -tail.out[0]])
     vertices = np.round(np.c_[plan, tail.place[2] + along / length * chord[2]], COORDINATE_DECIMALS)
     vertices[0], vertices[-1] = tail.place, head.place
     piece = tail.piece

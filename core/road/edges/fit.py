@@ -48,24 +48,24 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     Returns RoadEdges, along the road, one piece for each stretch of one status. Pieces of one
     edge share their end vertices and `chain`.
     """
-    found: list[EdgePiece] = []
+    pieces: list[EdgePiece] = []
     points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & np.isin(curb_points.status, ("measured", "occluded"))]
     table, returns = point_table(points, frame), curb_return_lines(curb_points, frame)
     lines, of_table = 0, np.ascontiguousarray(table["road"])
     for road in frame.roads:
         of_road: list[EdgePiece] = []
-        own = table[stretch_of(of_table, road.number, road.number)]
+        road_points = table[stretch_of(of_table, road.number, road.number)]
         for side in ("left", "right"):
             drawn = []
-            for piece in _pieces(own[own["side"] == side], settings.max_gap):
+            for piece in _pieces(road_points[road_points["side"] == side], settings.max_gap):
                 drawn.append(_draw(of_road, frame, road.number, side, piece, lines, led_across))
                 lines += 1
             if settings.fallback_width:
                 lines = _draw_fallback(of_road, frame, road, side, drawn, settings.fallback_width, lines)
         lines = draw_curb_returns(of_road, road.number, returns.get(road.number, []), lines, frame)
-        found += of_road
-    found += dropped_corners(found, frame, lines)
-    edges = joined_pieces(found, frame, curb_points.crs)
+        pieces += of_road
+    pieces += dropped_corners(pieces, frame, lines)
+    edges = joined_pieces(pieces, frame, curb_points.crs)
     length = {status: edges.length[edges.status == status].sum() for status in ("measured", "bridged")}
     if len(edges):
         progress.info(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
@@ -176,9 +176,9 @@ def without_outliers(points: np.ndarray) -> np.ndarray:
         # an edge that changes direction is no outlier: its own running direction is subtracted first
         direction = median_filter(np.diff(d) / np.maximum(np.diff(s), 0.05), window, mode="nearest")
         off = d - np.r_[0.0, np.cumsum(direction * np.diff(s))]
-        away = np.abs(off - median_filter(off, window, mode="nearest"))
-        limit = max(EDGE.outlier_mads * MAD_TO_SIGMA * np.median(away), EDGE.outlier_floor)
-        inliers[rows] = away <= limit
+        deviation = np.abs(off - median_filter(off, window, mode="nearest"))
+        limit = max(EDGE.outlier_mads * MAD_TO_SIGMA * np.median(deviation), EDGE.outlier_floor)
+        inliers[rows] = deviation <= limit
     return points[inliers]
 
 
@@ -203,8 +203,8 @@ class EdgeCurve:
         x, y, z = x - self.middle[0], y - self.middle[1], z - self.middle[2]
         self.t = np.r_[0.0, np.cumsum(np.maximum(np.hypot(np.diff(x), np.diff(y)), 1e-3))]
         order = min(3, len(x) - 1)
-        known = np.arange(len(x)) if measured is None else measured
-        across, up = (max(_noise(self.t[known], points[name][known]), EDGE.gap_sigma * longest_gap) for name in ("d", "z"))
+        rows = np.arange(len(x)) if measured is None else measured
+        across, up = (max(_noise(self.t[rows], points[name][rows]), EDGE.gap_sigma * longest_gap) for name in ("d", "z"))
         # the noise across divides between x and y: N points have the sum N sigma²
         self.plan, _ = splprep([x, y], u=self.t, k=order, s=len(x) * across**2)
         self.height = splrep(self.t, z, k=order, s=len(x) * up**2)
@@ -230,9 +230,9 @@ def _noise(t, values):
 def _draw(found, frame, road, side, piece, number, led_across):
     """Add the pieces of one edge; returns its (start, end) station."""
     points, bridged = piece
-    with_bridges, known, longest = _with_bridges(points, bridged, frame, road, led_across)
-    curve = EdgeCurve(with_bridges, longest, known)
-    t, residual = curve.t[known], curve.residual[known]
+    with_bridges, measured, longest = _with_bridges(points, bridged, frame, road, led_across)
+    curve = EdgeCurve(with_bridges, longest, measured)
+    t, residual = curve.t[measured], curve.residual[measured]
     changes = np.flatnonzero(np.diff(bridged.astype(int))) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
@@ -253,11 +253,11 @@ def _draw_fallback(found, frame, road, side, drawn, width, number):
     """Add lines at half the width beside the middle of the driven tracks where no edge was found."""
     passes = frame.passes_of(road.number)
     start, end = min(p.span[0] for p in passes), max(p.span[1] for p in passes)
-    free, at = [], max(start, 0.0)
+    free, station = [], max(start, 0.0)
     for a, b in sorted(drawn):
-        free.append((at, a))
-        at = max(at, b)
-    free.append((at, end))
+        free.append((station, a))
+        station = max(station, b)
+    free.append((station, end))
     for a, b in free:
         if b - a < CURBS.max_joined_gap:
             continue

@@ -128,17 +128,17 @@ class RoadEdges(LayerRows):
         """These edges and further pieces, whose chains are numbered on."""
         if not pieces:
             return self
-        more = joined_pieces(pieces, frame, self.crs)
-        more = replace(more, chain=more.chain + max(self.chain.max(initial=-1), -1) + 1)
-        whole = replace(self, **{name: _joined(getattr(self, name), getattr(more, name)) for name in self.names()})
-        return replace(whole, edge=np.arange(len(whole)))
+        added = joined_pieces(pieces, frame, self.crs)
+        added = replace(added, chain=added.chain + max(self.chain.max(initial=-1), -1) + 1)
+        joined = replace(self, **{name: _joined(getattr(self, name), getattr(added, name)) for name in self.names()})
+        return replace(joined, edge=np.arange(len(joined)))
 
     def on_map(self, frame: RoadFrame) -> np.ndarray:
         """(E,) shapely lines with Z in map coordinates, as the layer holds them."""
         course = self.course
         places = np.round(np.c_[course.x, course.y, course.z] + frame.origin, COORDINATE_DECIMALS)
-        found = np.full(len(self), None, object)
-        return shapely.linestrings(places, indices=course.owner, out=found) if len(places) else found
+        lines = np.full(len(self), None, object)
+        return shapely.linestrings(places, indices=course.owner, out=lines) if len(places) else lines
 
     def derived(self, frame: RoadFrame) -> dict[str, np.ndarray]:
         """The road, which the course knows."""
@@ -172,7 +172,7 @@ def joined_pieces(pieces: Sequence[EdgePiece], frame: RoadFrame, crs: str = "") 
     x, y, z = as_written(frame, *np.concatenate([piece.vertices for piece in pieces] or [np.empty((0, 3))]).T)
     start = np.append(0, np.cumsum([len(piece.vertices) for piece in pieces], dtype=int))
     course = FrameLines.at(frame, np.array([piece.road for piece in pieces], int), start, x, y, z)
-    columns = {one.name: _column(pieces, one.name) for one in fields(EdgePiece) if one.name not in ("vertices", "road")}
+    columns = {field.name: _column(pieces, field.name) for field in fields(EdgePiece) if field.name not in ("vertices", "road")}
     return RoadEdges(edge=np.arange(len(pieces)), nearest_pass=_nearest_passes(course, columns["station"], frame), **columns, course=course, crs=crs)
 
 
@@ -193,11 +193,11 @@ def _nearest_passes(course, station, frame):
     s, d = course.s[middle], course.d[middle]
     # the line of a side street may leave the road's frame
     s, d = np.where(np.isfinite(s), s, station), np.where(np.isfinite(d), d, 0.0)
-    found = np.full(len(course), -1)
+    numbers = np.full(len(course), -1)
     for road in np.unique(course.road).tolist():
         rows = course.road == road
-        found[rows] = frame.nearest_pass(road, s[rows], d[rows])
-    return found
+        numbers[rows] = frame.nearest_pass(road, s[rows], d[rows])
+    return numbers
 
 
 # How uncertain the place of a road edge is: one sigma across it.
@@ -228,9 +228,9 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     first, last = np.searchsorted(places, at - EDGE.scatter_reach), np.searchsorted(places, at + EDGE.scatter_reach, side="right")
     # of a line as long as the road, only the points about the piece
     near = slice(int(first.min()), int(last.max()))
-    few = np.zeros(near.stop - near.start) if support is None else np.where(support[near] > 0, 1.0 / np.maximum(support[near], 1), 0.0)
-    scatter, spacing = (np.diff(np.append(0.0, np.cumsum(each))[[first - near.start, last - near.start]], axis=0)[0] / np.maximum(last - first, 1)
-                        for each in (np.square(residual[near]), few))
+    inverse_support = np.zeros(near.stop - near.start) if support is None else np.where(support[near] > 0, 1.0 / np.maximum(support[near], 1), 0.0)
+    scatter, spacing = (np.diff(np.append(0.0, np.cumsum(values))[[first - near.start, last - near.start]], axis=0)[0] / np.maximum(last - first, 1)
+                        for values in (np.square(residual[near]), inverse_support))
     k = np.clip(np.searchsorted(places, at), 1, len(places) - 1)
     gap = np.clip(np.minimum(at - places[k - 1], places[k] - at), 0.0, None)
     length, into = places[k] - places[k - 1], at - places[k - 1]

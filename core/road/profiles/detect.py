@@ -41,8 +41,8 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
     status `occluded` lie where the curb is expected and something hides it.
     """
     if decimation is None:
-        with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own:
-            return detect_curbs(survey, settings, progress, include_returns, own, beside, side_chains)
+        with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own_decimation:
+            return detect_curbs(survey, settings, progress, include_returns, own_decimation, beside, side_chains)
     parts, beside, side_chains = [], {} if beside is None else beside, {} if side_chains is None else side_chains
     roads, width = survey.store.roads(), settings.profile_width
     for i, road in enumerate(roads):
@@ -53,12 +53,12 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
             if len(steps[side]):
                 side_chains[road, side] = SideChains.of(steps[side], width, settings.limits, bounds)
                 parts.append(points_of_side(survey, road, side, side_chains[road, side], beside[road][side]))
-    found = CurbPoints.join(parts, survey.crs)
-    measured, main = np.count_nonzero(found.status == "measured"), len(found)
+    points = CurbPoints.join(parts, survey.crs)
+    measured, main = np.count_nonzero(points.status == "measured"), len(points)
     if include_returns:
-        found = with_curb_returns(found, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside)
+        points = with_curb_returns(points, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside)
     progress.info(f"Curb points: {measured:,} measured, {main - measured:,} hidden by something in front.")
-    return found
+    return points
 
 
 def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int,
@@ -76,18 +76,18 @@ def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road
     around = max(CURBS.spread_profiles, int(np.ceil(PROFILE.averaging_length / width)))
     tracks = {side: OutermostTrack(decimation.survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
     occlusion = {side: OcclusionGrid(width, section[0], section[1] - section[0], CURBS.max_curb_offset) for side in SIDE_SIGNS}
-    found: dict[str, list[CurbSteps]] = {side: [] for side in SIDE_SIGNS}
+    steps_by_side: dict[str, list[CurbSteps]] = {side: [] for side in SIDE_SIGNS}
     wide = section[0] - around, section[1] + around
     limit = None if decimation.mostly_uneven(road, sum(section) // 2) else CURBS.points_per_level_cell
-    seen: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
+    profiles: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
     # averages need every point
-    if limit and any((lines.part(*section).spread > CURBS.noisy_share * settings.limits.clear_height).any() for *_, lines in seen):
-        seen = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
-    for side, _, (u, s, h), lines in seen:
+    if limit and any((lines.part(*section).spread > CURBS.noisy_share * settings.limits.clear_height).any() for *_, lines in profiles):
+        profiles = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
+    for side, _, (u, s, h), lines in profiles:
         occlusion[side].add_points(u, s, h, section, lines.part(*section))
         steps = _steps_by_noise(lines, section, settings, overgrown=limit is None)
-        found[side].append(steps[steps.u > tracks[side](steps.s) + PROFILE.min_track_distance])
-    return {side: merged_passes(steps) for side, steps in found.items() if steps}, occlusion
+        steps_by_side[side].append(steps[steps.u > tracks[side](steps.s) + PROFILE.min_track_distance])
+    return {side: merged_passes(steps) for side, steps in steps_by_side.items() if steps}, occlusion
 
 
 def _steps_by_noise(lines, section, settings, overgrown):
@@ -95,15 +95,15 @@ def _steps_by_noise(lines, section, settings, overgrown):
 
     overgrown : is it the scanner that is noisy, so that curbs before plants are looked for, and not a meadow that is rough?
     """
-    own = lines.part(*section)
+    section_lines = lines.part(*section)
     limits = settings.limits
-    noisy = own.spread > CURBS.noisy_share * limits.clear_height
-    single = find_steps(own, CURBS.low_curb_share * limits.least_height, settings.max_height)
+    noisy = section_lines.spread > CURBS.noisy_share * limits.clear_height
+    single = find_steps(section_lines, CURBS.low_curb_share * limits.least_height, settings.max_height)
     if not noisy.any():
         return single
     averaged = find_averaged_steps(lines, CURBS.low_curb_share * limits.clear_height, settings.max_height, settings.layer_jump, overgrown)
     averaged = averaged[(averaged.profile >= section[0]) & (averaged.profile < section[1])]
-    return CurbSteps.join([single[~noisy[single.profile - own.first]], averaged[noisy[averaged.profile - own.first]]])
+    return CurbSteps.join([single[~noisy[single.profile - section_lines.first]], averaged[noisy[averaged.profile - section_lines.first]]])
 
 
 # The principal points of every profile as a layer: the ground on which curbs are looked for.
@@ -119,19 +119,19 @@ def find_principal_points(survey: Survey, settings: CurbSettings, progress: Prog
     """
     import shapely
 
-    found = Features("PointZ", list(PRINCIPAL_POINTS), crs=survey.crs)
+    features = Features("PointZ", list(PRINCIPAL_POINTS), crs=survey.crs)
     roads = survey.store.roads()
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         for pass_number, side, s, u, h in _points_of_road(survey, road, settings, part):
             d = SIDE_SIGNS[side] * u
             x, y, z = survey.frame.to_map(road, s, d, h + expected_height(survey, road, s))
-            found.geometries += list(shapely.points(np.c_[x, y, z]))
-            found.rows += [
+            features.geometries += list(shapely.points(np.c_[x, y, z]))
+            features.rows += [
                 {"road": road, "pass": pass_number, "side": side, "station_m": station, "offset_m": offset, "height_m": height}
                 for station, offset, height in zip(s.tolist(), d.tolist(), h.tolist())
             ]
-    return found
+    return features
 
 
 def _points_of_road(survey: Survey, road: int, settings: CurbSettings,
@@ -140,12 +140,12 @@ def _points_of_road(survey: Survey, road: int, settings: CurbSettings,
     tracks = {side: OutermostTrack(survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
 
     def work(section):
-        found = []
+        parts = []
         for side, number, _, lines in side_profiles(decimation, road, section, tracks, settings):
             profile, cell = np.nonzero(np.isfinite(lines.high))
             stations = (lines.first + profile + 0.5) * lines.width
-            found.append((number, side, stations, lines.offset(cell), lines.high[profile, cell]))
-        return found
+            parts.append((number, side, stations, lines.offset(cell), lines.high[profile, cell]))
+        return parts
 
     with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
         for results in ordered_map(work, work_sections(survey, road, settings.profile_width), progress):

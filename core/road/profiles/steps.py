@@ -26,29 +26,29 @@ def _rising_cells(lines, min_height, max_height):
     low, high, spacing = lines.low, lines.high, lines.spacing
     span = max(int(round(PROFILE.max_rise_width / spacing)), 2)
     # only occupied cells are looked at, profile by profile outward
-    place = np.flatnonzero(np.isfinite(high))
-    row = place // low.shape[1]
-    column = place - row * low.shape[1]
+    indices = np.flatnonzero(np.isfinite(high))
+    row = indices // low.shape[1]
+    column = indices - row * low.shape[1]
     offset = column * spacing
-    own_low, own_high = low.ravel().take(place), high.ravel().take(place)
-    top = _max_ahead(high, span).ravel().take(place) - (TOP_QUANTILE_SIGMAS * lines.noise).take(row)
+    own_low, own_high = low.ravel().take(indices), high.ravel().take(indices)
+    top = _max_ahead(high, span).ravel().take(indices) - (TOP_QUANTILE_SIGMAS * lines.noise).take(row)
     # the cell before must still be road: the last occupied one within the window
-    before = np.full(len(place), np.nan)
-    near = (place[1:] - place[:-1] <= span) & (row[1:] == row[:-1])
+    before = np.full(len(indices), np.nan)
+    near = (indices[1:] - indices[:-1] <= span) & (row[1:] == row[:-1])
     np.copyto(before[1:], own_low[:-1], where=near)
     # a step's middle lies between that and its top, which it leaves half of its height below
     with np.errstate(invalid="ignore"):
         rising = np.flatnonzero((own_high > before) & (top - before > 0.4 * min_height - 1e-9))
-    place, row, column, own_high, top, before = (v.take(rising) for v in (place, row, column, own_high, top, before))
+    indices, row, column, own_high, top, before = (v.take(rising) for v in (indices, row, column, own_high, top, before))
     base, slope, rough, count = _road_before(low, own_low, offset, spacing, row, column)
     with np.errstate(invalid="ignore"):
         step = top - base
         middle = base + 0.5 * step
         least = np.maximum(0.8 * min_height, CURBS.min_step_sigmas * np.maximum(lines.noise.take(row), rough) / 2)
-        found = np.flatnonzero((count >= 3) & (step >= least)
-                               & (step <= max_height + 0.05) & (own_high >= middle) & (before < middle))
+        candidates = np.flatnonzero((count >= 3) & (step >= least)
+                                    & (step <= max_height + 0.05) & (own_high >= middle) & (before < middle))
     # of neighbouring cells only the best within the window is a step
-    best = found[best_within(place.take(found), row.take(found), (step - 2 * rough).take(found), span)]
+    best = candidates[best_within(indices.take(candidates), row.take(candidates), (step - 2 * rough).take(candidates), span)]
     row, column, base, slope = (v.take(best) for v in (row, column, base, slope))
     up = _stays_up(low, base, slope, row, column, min_height, spacing)
     return row[up], column[up]
@@ -75,10 +75,10 @@ def _road_before(low, heights, offsets, spacing, rows, columns):
     """
     reach, skip = int(round(CURBS.road_side_length / spacing)), int(round(CURBS.face_margin / spacing))
     # of the occupied cells, those before a cell are a range
-    held = np.zeros(low.size + 1, np.int32)
-    np.cumsum(np.isfinite(low), out=held[1:])
+    filled_before = np.zeros(low.size + 1, np.int32)
+    np.cumsum(np.isfinite(low), out=filled_before[1:])
     start = rows * low.shape[1]
-    first, end = (held.take(start + np.maximum(columns + 1 - back, 0)).astype(np.intp) for back in (reach + skip, skip))
+    first, end = (filled_before.take(start + np.maximum(columns + 1 - back, 0)).astype(np.intp) for back in (reach + skip, skip))
     n = end - first
     bounds = np.c_[first, end].ravel()
     u, z = np.append(offsets, 0.0), np.append(heights, 0.0)
@@ -136,16 +136,16 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
     blurred face does not separate its bottom from its top.
     """
     least = np.maximum(min_height, PROFILE.all_views_sigmas * lines.spread)[:, None]
-    found, *before_plants = _steps_in(lines, least, max_height, (True, False) if overgrown else (True,))
+    result, *before_plants = _steps_in(lines, least, max_height, (True, False) if overgrown else (True,))
     for nearest, farthest in ((0.0, np.inf), (-np.inf, 0.0)):
         # a single view averages few rings of a multi-beam scanner, each with an error of its own
         single, = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
                             np.maximum(min_height, PROFILE.single_view_sigmas * lines.spread)[:, None], max_height)
-        found = CurbSteps.join([found, single[~_beside(single, found)]])
+        result = CurbSteps.join([result, single[~_beside(single, result)]])
     for steps in before_plants:
         # level ground behind is the surer sign
-        found = CurbSteps.join([found, steps[~_beside(steps, found)]])
-    return found[np.lexsort((found.u, found.profile))]
+        result = CurbSteps.join([result, steps[~_beside(steps, result)]])
+    return result[np.lexsort((result.u, result.profile))]
 
 
 def _beside(steps, others):
@@ -168,8 +168,8 @@ def _steps_in(lines, min_height, max_height, behind=(True,)):
     for skew in sorted(np.arange(-PROFILE.skew_steps, PROFILE.skew_steps + 1) * PROFILE.skew_step, key=abs):
         sums.add(_averaged(lines, skew))
         for best, is_level in zip(kinds, behind):
-            cells, seen = _rises(sums, PROFILE.oblique_factor * best["rise"], is_level)
-            for name, values in seen.items():
+            cells, rises = _rises(sums, PROFILE.oblique_factor * best["rise"], is_level)
+            for name, values in rises.items():
                 best[name].flat[cells] = values
             best["skew"].flat[cells] = skew
     return [_steps_of(lines, best, min_height, max_height) for best in kinds]
@@ -247,12 +247,12 @@ def _median(rows, count, min_count):
         rows = np.sort(rows, axis=0)
     else:
         # odd-even transposition sort of the layers
-        spare = np.empty_like(rows[0])
+        buffer = np.empty_like(rows[0])
         for turn in range(len(rows)):
             for k in range(turn % 2, len(rows) - 1, 2):
-                np.minimum(rows[k], rows[k + 1], out=spare)
+                np.minimum(rows[k], rows[k + 1], out=buffer)
                 np.maximum(rows[k], rows[k + 1], out=rows[k + 1])
-                rows[k], spare = spare, rows[k]
+                rows[k], buffer = buffer, rows[k]
     middle = np.full(count.shape, np.nan)
     for n in range(int(np.ceil(min_count)), len(rows) + 1):
         np.copyto(middle, 0.5 * (rows[(n - 1) // 2] + rows[n // 2]), where=count == n)
@@ -274,8 +274,8 @@ def _moved(values, k, empty=np.nan):
 def _shifted(values, rows, cells):
     """values[p + rows, c + cells] at every profile and cell, infinite where there is none."""
     out = np.full(values.shape, np.inf)
-    to, of = zip(*(_overlap(size, by) for size, by in zip(values.shape, (rows, cells))))
-    out[to] = values[of]
+    target, source = zip(*(_overlap(size, by) for size, by in zip(values.shape, (rows, cells))))
+    out[target] = values[source]
     return out
 
 

@@ -107,15 +107,15 @@ def find_candidates(side: HeightGrid, measured: np.ndarray, nearest: np.ndarray,
                             & (rough <= SCANLINE.max_roughness_share * step) & (low[row, cell] >= middle) & (before < middle))
     best = rising[best_within((row * low.shape[1] + cell)[rising], row[rising], (step - 2 * rough)[rising], span)]
     row, cell = row[best], cell[best]
-    found = CurbCandidates(row, cell, side.offset(cell), *(values[best].astype(float) for values in (base, slope, step, rough)))
-    found = found[_stays_up(low, found) & _measured_itself(measured, found, span)]
-    return found[_persistent(found)]
+    candidates = CurbCandidates(row, cell, side.offset(cell), *(values[best].astype(float) for values in (base, slope, step, rough)))
+    candidates = candidates[_stays_up(low, candidates) & _measured_itself(measured, candidates, span)]
+    return candidates[_persistent(candidates)]
 
 
 def _rising(low, span, least):
     """(row, cell, height before, height reached ahead) of cells in which half of a rise of `least` metres may be crossed."""
-    there = np.isfinite(low)
-    filled = np.where(there, low, np.float32(-LINE_SEPARATION))
+    measured = np.isfinite(low)
+    filled = np.where(measured, low, np.float32(-LINE_SEPARATION))
     top = cv2.dilate(filled, np.ones((1, span + 1), np.uint8), anchor=(0, 0))
     # height of the nearest occupied cell before each, within the span
     before = np.empty_like(low)
@@ -131,9 +131,9 @@ def _rising(low, span, least):
         empty, column = empty[missed], column[missed]
     with np.errstate(invalid="ignore"):
         rising = (top - before > 0.5 * least) & (low > before)
-    place = np.flatnonzero(rising)
-    row = place // low.shape[1]
-    return row, place - row * low.shape[1], before.reshape(-1)[place], top.reshape(-1)[place]
+    indices = np.flatnonzero(rising)
+    row = indices // low.shape[1]
+    return row, indices - row * low.shape[1], before.reshape(-1)[indices], top.reshape(-1)[indices]
 
 
 def _road_before(low, row, cell):
@@ -141,14 +141,14 @@ def _road_before(low, row, cell):
     reach, skip = int(round(CURBS.road_side_length / SCANLINE.scanline_resolution)), int(round(CURBS.face_margin / SCANLINE.scanline_resolution))
     back = np.arange(-reach - skip + 1, -skip + 1)
     padded = cv2.copyMakeBorder(low, 0, 0, reach + skip, 0, cv2.BORDER_CONSTANT, value=np.nan)
-    place = row * padded.shape[1] + cell + reach + skip
+    indices = row * padded.shape[1] + cell + reach + skip
     powers = np.stack([np.ones(reach), back * SCANLINE.scanline_resolution, (back * SCANLINE.scanline_resolution) ** 2], axis=1).astype(np.float32)
-    found = []
-    for first in range(0, len(place), SCANLINE.places_per_batch):
-        heights = padded.reshape(-1).take(place[first:first + SCANLINE.places_per_batch, None] + back)
-        there = np.isfinite(heights)
-        np.copyto(heights, 0.0, where=~there)
-        n, su, suu = (there.astype(np.float32) @ powers).T
+    lines = []
+    for first in range(0, len(indices), SCANLINE.places_per_batch):
+        heights = padded.reshape(-1).take(indices[first:first + SCANLINE.places_per_batch, None] + back)
+        measured = np.isfinite(heights)
+        np.copyto(heights, 0.0, where=~measured)
+        n, su, suu = (measured.astype(np.float32) @ powers).T
         sz, suz, _ = (heights @ powers).T
         szz = np.einsum("ij,ij->i", heights, heights)
         with np.errstate(all="ignore"):
@@ -156,8 +156,8 @@ def _road_before(low, row, cell):
             vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
             slope = np.clip(np.where(vuu > 1e-4, vuz / vuu, 0.0), -CURBS.max_road_slope, CURBS.max_road_slope)
             rough = np.sqrt(np.maximum(vzz - 2 * slope * vuz + slope * slope * vuu, 0.0))
-            found.append((mz - slope * mu, slope, rough, n))
-    return (np.concatenate(values) for values in zip(*found)) if found else (np.empty(0, np.float32),) * 4
+            lines.append((mz - slope * mu, slope, rough, n))
+    return (np.concatenate(values) for values in zip(*lines)) if lines else (np.empty(0, np.float32),) * 4
 
 
 def gap_fill_rows(interval: float) -> int:
@@ -200,10 +200,10 @@ def _persistent(candidates):
         right = np.searchsorted(key, (candidates.row + ahead) * span + candidates.u)
         partner = np.zeros(count, bool)
         for k in (np.clip(right - 1, 0, count - 1), np.clip(right, 0, count - 1)):
-            other = order[k]
-            partner |= (candidates.row[other] == candidates.row + ahead) \
-                & (np.abs(candidates.u[other] - candidates.u) <= SCANLINE.match_across * max(abs(ahead), 1)) \
-                & (np.abs(candidates.base[other] - candidates.base) <= SCANLINE.match_up)
+            neighbour = order[k]
+            partner |= (candidates.row[neighbour] == candidates.row + ahead) \
+                & (np.abs(candidates.u[neighbour] - candidates.u) <= SCANLINE.match_across * max(abs(ahead), 1)) \
+                & (np.abs(candidates.base[neighbour] - candidates.base) <= SCANLINE.match_up)
         showing += partner
     return showing >= SCANLINE.min_lines_showing
 
@@ -262,13 +262,13 @@ def _segments_near(lines, row, count, place_row, place_d, across, along):
     """First vertices of the line segments that cross marked cells, and their lines."""
     low, high = lines.d.min(), lines.d.max()
     cells = int((high - low) / SCANLINE.place_cell) + 1
-    marked = np.zeros((count, cells), np.uint8)
-    marked[place_row, np.clip(((place_d - low) / SCANLINE.place_cell).astype(np.int64), 0, cells - 1)] = 1
+    mask = np.zeros((count, cells), np.uint8)
+    mask[place_row, np.clip(((place_d - low) / SCANLINE.place_cell).astype(np.int64), 0, cells - 1)] = 1
     # one cell more, so that every sample has both neighbours, from which its slope is computed
-    aside = int(np.ceil(across / SCANLINE.place_cell)) + 2
-    marked = cv2.dilate(marked, np.ones((2 * along + 1, 2 * aside + 1), np.uint8))
+    cells_across = int(np.ceil(across / SCANLINE.place_cell)) + 2
+    mask = cv2.dilate(mask, np.ones((2 * along + 1, 2 * cells_across + 1), np.uint8))
     before = np.zeros((count, cells + 1), np.int32)
-    np.cumsum(marked, axis=1, out=before[:, 1:])
+    np.cumsum(mask, axis=1, out=before[:, 1:])
     cell = ((lines.d - low) * (1.0 / SCANLINE.place_cell)).astype(np.int32)
     inside = (row >= 0) & (row < count)
     line = np.repeat(np.arange(len(lines)), np.diff(lines.first))
@@ -294,13 +294,13 @@ def _at_equal_steps(lines, heights, segment, line):
     # the end of a line is a sample where a step falls on it
     closing = (segment + 2 == lines.first[1:][line]) & (last * SCANLINE.scanline_resolution <= end)
     number = last + closing - first
-    which = np.repeat(np.arange(len(segment)), number)
-    count = np.arange(len(which)) + (first - (np.cumsum(number) - number)).take(which)
-    share = np.clip((count * SCANLINE.scanline_resolution - begin.take(which)) / np.maximum(end - begin, 1e-9).take(which), 0.0, 1.0)
+    owner = np.repeat(np.arange(len(segment)), number)
+    count = np.arange(len(owner)) + (first - (np.cumsum(number) - number)).take(owner)
+    share = np.clip((count * SCANLINE.scanline_resolution - begin.take(owner)) / np.maximum(end - begin, 1e-9).take(owner), 0.0, 1.0)
     d0, h0 = lines.d.take(segment), heights.take(segment)
-    d = d0.take(which) + share * (lines.d.take(segment + 1) - d0).take(which)
-    h = h0.take(which) + share * (heights.take(segment + 1) - h0).take(which)
-    line = line.take(which)
+    d = d0.take(owner) + share * (lines.d.take(segment + 1) - d0).take(owner)
+    h = h0.take(owner) + share * (heights.take(segment + 1) - h0).take(owner)
+    line = line.take(owner)
     return line, d, h, _steepness(line, count, d, h)
 
 

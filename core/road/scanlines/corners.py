@@ -66,13 +66,13 @@ def _fit_planes(v: np.ndarray, p: np.ndarray, q: np.ndarray, count: np.ndarray, 
     reach = np.broadcast_to(np.maximum(distance, tolerance), sets)
     for first in range(0, sets, SCANLINE.sets_per_batch):
         part = slice(first, first + SCANLINE.sets_per_batch)
-        found = _fit_batch(v[part], p[part], q[part], count[part], reach[part].astype(np.float32), np.float32(distance))
-        coefficients[part], sigma[part], inliers[part] = found
+        planes = _fit_batch(v[part], p[part], q[part], count[part], reach[part].astype(np.float32), np.float32(distance))
+        coefficients[part], sigma[part], inliers[part] = planes
     return Planes(coefficients, sigma, inliers, count)
 
 
 def _fit_batch(v, p, q, count, reach, distance):
-    there = np.arange(v.shape[1]) < count[:, None]
+    valid = np.arange(v.shape[1]) < count[:, None]
     coefficients = _best_trial(v, p, q, count, reach)
     for _ in range(SCANLINE.ransac_refits):
         off = v - coefficients[:, :1]
@@ -80,7 +80,7 @@ def _fit_batch(v, p, q, count, reach, distance):
         off -= coefficients[:, 2:] * q
         np.abs(off, out=off)
         off /= np.sqrt(1 + coefficients[:, 1:2] ** 2 + coefficients[:, 2:] ** 2)
-        inside = there & (off <= reach[:, None])
+        inside = valid & (off <= reach[:, None])
         coefficients, sigma = _least_squares(v, p, q, inside.astype(np.float32))
         reach = np.maximum(distance, SCANLINE.inlier_sigmas * TRUNCATED_SIGMA_FACTOR * sigma)
     few = count < 3
@@ -168,11 +168,11 @@ def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: Scan
         return usual
     # a sloped face is looked for where no upright one is
     wanted = (side.first + candidates.row) * LINE_SEPARATION + candidates.u
-    again = nearest_distance(wanted, usual.profile * LINE_SEPARATION + usual.u) >= SCANLINE.face_half_width
-    sloped = _corners_with_face(near, again, limits.least_slope)
+    without_corner = nearest_distance(wanted, usual.profile * LINE_SEPARATION + usual.u) >= SCANLINE.face_half_width
+    sloped = _corners_with_face(near, without_corner, limits.least_slope)
     sloped.sloped[:] = True
-    found = CurbCorners.join([usual, sloped])
-    return found[np.lexsort((found.u, found.profile))]
+    corners = CurbCorners.join([usual, sloped])
+    return corners[np.lexsort((corners.u, corners.profile))]
 
 
 class _Surroundings:
@@ -182,15 +182,15 @@ class _Surroundings:
         self.side, self.candidates, self.settings, count = side, candidates, settings, len(candidates)
         self.owner, self.s, self.u, self.h, self.steep = owner, _, u, h, _ = _neighbourhood(side, candidates, settings)
         # heights above the line of the road, so that its slope is no part of the rise
-        over = h - candidates.slope.astype(np.float32).take(owner) * u
-        share = over / candidates.step.astype(np.float32).take(owner)
-        road = (u < -SCANLINE.face_clearance) & (share < SCANLINE.max_road_share) & (over > -SCANLINE.gutter_depth)
+        above = h - candidates.slope.astype(np.float32).take(owner) * u
+        share = above / candidates.step.astype(np.float32).take(owner)
+        road = (u < -SCANLINE.face_clearance) & (share < SCANLINE.max_road_share) & (above > -SCANLINE.gutter_depth)
         self.face = np.flatnonzero((np.abs(u) < SCANLINE.face_half_width) & (share > SCANLINE.face_share[0]) & (share < SCANLINE.face_share[1]))
         raised = (u > SCANLINE.face_clearance) & (share > SCANLINE.min_raised_share) \
-            & (over < (candidates.step + SCANLINE.raised_margin).astype(np.float32).take(owner))
+            & (above < (candidates.step + SCANLINE.raised_margin).astype(np.float32).take(owner))
         self.road, self.raised = (_VertexSet(np.flatnonzero(part), owner, count) for part in (road, raised))
         # grass behind a curb scatters more than the road before it
-        self.scatter = np.maximum(candidates.rough, _scatter(owner, over, self.raised.vertices, count))
+        self.scatter = np.maximum(candidates.rough, _scatter(owner, above, self.raised.vertices, count))
 
     def faces(self, least_slope: float) -> _VertexSet:
         """The samples of faces with at least this slope, radians."""
@@ -229,11 +229,11 @@ def _corners_with_face(near, which, least_slope):
                        / np.maximum(total, 1))
     candidates = candidates[alive]
     row, noise = side.first + candidates.row, ground.sigma.astype(float)
-    found = CurbCorners(profile=row, s=row * side.interval, u=candidates.u + bottom_u, h=candidates.base + bottom_h,
-                        skew=front.coefficients[:, 2].astype(float), height=top_h - bottom_h, run=np.maximum(top_u - bottom_u, 0.0),
-                        noise=noise, scanner_noise=noise, support=ground.inliers + front.inliers, behind=top.inliers,
-                        top_u=candidates.u + top_u, top_h=candidates.base + top_h, residual=residual, sloped=np.zeros(len(row), bool))
-    return found[good]
+    corners = CurbCorners(profile=row, s=row * side.interval, u=candidates.u + bottom_u, h=candidates.base + bottom_h,
+                          skew=front.coefficients[:, 2].astype(float), height=top_h - bottom_h, run=np.maximum(top_u - bottom_u, 0.0),
+                          noise=noise, scanner_noise=noise, support=ground.inliers + front.inliers, behind=top.inliers,
+                          top_u=candidates.u + top_u, top_h=candidates.base + top_h, residual=residual, sloped=np.zeros(len(row), bool))
+    return corners[good]
 
 
 class _VertexSet:
@@ -249,8 +249,8 @@ class _VertexSet:
         number, first = self.number[which], self.first[which]
         size = np.minimum(number, most)
         column = np.arange(most)
-        place = np.where(column < size[:, None], (column * number[:, None]) // np.maximum(size, 1)[:, None], 0)
-        return self.vertices.take(first[:, None] + place) if len(which) else np.zeros((0, most), np.int64), size
+        index = np.where(column < size[:, None], (column * number[:, None]) // np.maximum(size, 1)[:, None], 0)
+        return self.vertices.take(first[:, None] + index) if len(which) else np.zeros((0, most), np.int64), size
 
 
 def _planes(part, which, most, coordinates, scatter, settings):
@@ -283,9 +283,9 @@ def _neighbourhood(side, candidates, settings):
     key = side.row * 1000.0 + side.u
     ahead = np.arange(-(reach // stride), reach // stride + 1) * stride
     row = candidates.row[:, None] + ahead
-    at = row * 1000.0 + candidates.u[:, None]
-    start = np.searchsorted(key, at - settings.distance_across)
-    end = np.searchsorted(key, at + settings.distance_across)
+    middle = row * 1000.0 + candidates.u[:, None]
+    start = np.searchsorted(key, middle - settings.distance_across)
+    end = np.searchsorted(key, middle + settings.distance_across)
     length = np.where((row >= 0) & (row < side.rows), end - start, 0).ravel()
     # what all samples of a range or of a candidate have is looked up by its number, which is quicker than numpy's repeat
     part, index = expand_ranges(start.ravel(), start.ravel() + length)
@@ -311,6 +311,6 @@ def _distance(u, h, points, count, at_u, at_h):
     """(M,) m from each corner to the nearest of its samples."""
     if not u.size:
         return np.full(len(at_u), np.inf)
-    there = np.arange(points.shape[1]) < count[:, None]
+    valid = np.arange(points.shape[1]) < count[:, None]
     squared = (u.take(points) - at_u[:, None]) ** 2 + (h.take(points) - at_h[:, None]) ** 2
-    return np.sqrt(np.where(there, squared, np.inf).min(1))
+    return np.sqrt(np.where(valid, squared, np.inf).min(1))

@@ -66,10 +66,10 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
             if len(corners[side]):
                 side_chains[road, side] = SideChains.of(_with_scanner_noise(corners[side]), interval, settings.limits, bounds)
                 parts.append(points_of_side(source, road, side, side_chains[road, side], beside[road][side]))
-    found = CurbPoints.join(parts, source.crs)
-    measured, hidden = (np.count_nonzero((found.part == "bottom") & (found.status == status)) for status in ("measured", "occluded"))
+    points = CurbPoints.join(parts, source.crs)
+    measured, hidden = (np.count_nonzero((points.part == "bottom") & (points.status == status)) for status in ("measured", "occluded"))
     progress.info(f"Corners of curbs: {measured:,} measured on scanlines, {hidden:,} hidden by objects.")
-    return found
+    return points
 
 
 def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[int, int], road: int,
@@ -91,7 +91,7 @@ def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[
     rows = begin - margin, end + margin
     stations = np.arange(*rows) * interval
     nearest = {side: tracks[side](stations) + PROFILE.min_track_distance for side in SIDE_SIGNS}
-    found: dict[str, list[CurbCorners]] = {side: [] for side in SIDE_SIGNS}
+    corners_by_side: dict[str, list[CurbCorners]] = {side: [] for side in SIDE_SIGNS}
     for lines in source.runs(road, (rows[0] - 0.5) * interval, (rows[1] - 0.5) * interval):
         heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
         grid = height_grid(lines, heights, rows, interval, min(CURBS.max_curb_offset, source.corridor), settings.clipping_height)
@@ -107,8 +107,8 @@ def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[
             of_side = find_candidates(closed.outward(sign, origin), outward.low, nearest[side], settings)
             candidates[side] = of_side[(of_side.row >= margin) & (of_side.row < margin + end - begin)]
         for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
-            found[side].append(corners)
-    return {side: merged_corners(parts) for side, parts in found.items() if parts}, occlusion
+            corners_by_side[side].append(corners)
+    return {side: merged_corners(parts) for side, parts in corners_by_side.items() if parts}, occlusion
 
 
 def _level_beside(source, road, number, stations):
@@ -172,10 +172,10 @@ def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progre
     number = 0
     for road in frame.roads:
         for side in SIDE_SIGNS:
-            own = corners[(corners.road == road.number) & (corners.side == side)]
-            hidden = np.sort(own.station[own.status == "occluded"])
+            of_side = corners[(corners.road == road.number) & (corners.side == side)]
+            hidden = np.sort(of_side.station[of_side.status == "occluded"])
             for part in ("bottom", "top"):
-                measured = point_table(own[(own.part == part) & (own.status == "measured")], frame)
+                measured = point_table(of_side[(of_side.part == part) & (of_side.status == "measured")], frame)
                 for points, status in _pieces(without_outliers(measured), hidden, max_gap):
                     passes = frame.passes_sigma(road.number, points["s"])
                     _draw(pieces, points, status, passes, road=road.number, side=side, part=part, chain=number)
@@ -287,19 +287,19 @@ class LayerScanlines:
     """
 
     def __init__(self, lines: dict[int, Scanlines], frame: RoadFrame, interval: float, crs: str, sensor_height: float = 0.0):
-        self.lines = {road: found for road, found in sorted(lines.items()) if len(found)}
+        self.lines = {road: scanlines for road, scanlines in sorted(lines.items()) if len(scanlines)}
         self.level: LevelGround | None = None
         self.executor: Executor = THREADS
         self.frame, self.interval, self.crs = frame, interval, crs
-        if not any(len(np.unique(found.station)) > 1 for found in self.lines.values()):
+        if not any(len(np.unique(scanlines.station)) > 1 for scanlines in self.lines.values()):
             raise RoadExtractionError("The scanlines of every road lie on fewer than two section planes, so no curb can be followed along "
                                       "the road. Make them with Normalized scanlines along the whole trajectory.")
-        self.corridor = max(float(np.abs(found.d).max()) for found in self.lines.values())
+        self.corridor = max(float(np.abs(scanlines.d).max()) for scanlines in self.lines.values())
         self.heights = {p.number: sensor_height for p in frame.passes} if sensor_height else self._sensor_heights()
 
     def _sensor_heights(self):
         """m from the trajectory down to the road by pass, where its scanlines cross its own track."""
-        known = {}
+        heights = {}
         for p in self.frame.passes:
             drops = []
             if p.road in self.lines:
@@ -308,9 +308,9 @@ class LayerScanlines:
                 drops = _drops(lines, *p.at_station(lines.station))
             height = sensor_height_of(drops)
             if height is not None:
-                known[p.number] = height
-        typical = float(np.median(list(known.values()))) if known else READING.default_sensor_height
-        return {p.number: known.get(p.number, typical) for p in self.frame.passes}
+                heights[p.number] = height
+        typical = float(np.median(list(heights.values()))) if heights else READING.default_sensor_height
+        return {p.number: heights.get(p.number, typical) for p in self.frame.passes}
 
     def roads(self) -> list[int]:
         """Numbers of the roads."""
@@ -335,7 +335,7 @@ def _drops(lines, track_d, track_z):
     """m from the track down to every line that it crosses."""
     if not len(lines):
         return np.empty(0)
-    under = (lines.d[lines.first[:-1]] <= track_d) & (lines.d[lines.first[1:] - 1] >= track_d)
+    crosses_track = (lines.d[lines.first[:-1]] <= track_d) & (lines.d[lines.first[1:] - 1] >= track_d)
     number = np.arange(len(lines)) * LINE_SEPARATION
     z = np.interp(number + track_d, np.repeat(number, np.diff(lines.first)) + lines.d, lines.z)
-    return (track_z - z)[under]
+    return (track_z - z)[crosses_track]

@@ -64,8 +64,8 @@ class HeightGrid:
         """
         closed = self.low.copy()
         for ahead in range(1, min(reach, len(closed) - 1) + 1):
-            for shifted, own in ((self.low[ahead:], closed[:-ahead]), (self.low[:-ahead], closed[ahead:])):
-                np.copyto(own, shifted, where=np.isnan(own))
+            for shifted, empty in ((self.low[ahead:], closed[:-ahead]), (self.low[:-ahead], closed[ahead:])):
+                np.copyto(empty, shifted, where=np.isnan(empty))
         return HeightGrid(self.first, self.interval, self.origin, closed)
 
 
@@ -84,10 +84,10 @@ def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], in
     """
     half = int(np.ceil(reach / SCANLINE.scanline_resolution))
     low = np.full((rows[1] - rows[0], 2 * half), np.nan, np.float32)
-    found = HeightGrid(rows[0], interval, -half * SCANLINE.scanline_resolution, low)
+    grid = HeightGrid(rows[0], interval, -half * SCANLINE.scanline_resolution, low)
     row = row_of_lines(lines, rows, interval)
     if len(heights) < 2:
-        return found
+        return grid
     column = lines.d * (1.0 / SCANLINE.scanline_resolution)
     column += half - 0.5
     floor = np.floor(column)
@@ -120,20 +120,20 @@ def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], in
         _lower_to(flat, *_heights_of_segments(end[part], int(end[first] - number[first]), ahead[part], slope[part], base[part]))
     with np.errstate(invalid="ignore"):
         flat[(flat > clipping_height) | (flat <= -SCANLINE.max_ground_depth)] = np.nan
-    return found
+    return grid
 
 
 def _heights_of_segments(end, before, ahead, slope, base):
     """Indices in the grid, and heights, of the cells that some segments cross; those of a segment end before cell `end`, of `before` at first."""
-    which = np.zeros(end[-1] - before, np.int32)
-    which[end[:-1] - before] = 1
-    np.cumsum(which, out=which)
-    place = ahead.take(which)
-    place += np.arange(before, end[-1])
-    height = slope.take(which)
-    height *= place
-    height += base.take(which)
-    return place, height.astype(np.float32)
+    owner = np.zeros(end[-1] - before, np.int32)
+    owner[end[:-1] - before] = 1
+    np.cumsum(owner, out=owner)
+    index = ahead.take(owner)
+    index += np.arange(before, end[-1])
+    height = slope.take(owner)
+    height *= index
+    height += base.take(owner)
+    return index, height.astype(np.float32)
 
 
 def _lower_to(flat, place, height):

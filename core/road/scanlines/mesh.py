@@ -126,15 +126,15 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
 
 def _side_by_side(line, phase, ranges, places, mirror):
     """(N,) whether a point and the next one are neighbours on a surface; `places` holds s, d and z."""
-    apart = np.diff(phase)
+    phase_step = np.diff(phase)
     joined = np.zeros(len(phase), bool)
-    joined[:-1] = same = line[1:] == line[:-1]
+    joined[:-1] = same_line = line[1:] == line[:-1]
     # only pairs with missing points between them or with a jump of range are checked further
-    far = np.flatnonzero(same & (apart > (SCANLINE.max_missing_pulses + 1.5) * mirror.pulse))
+    far = np.flatnonzero(same_line & (phase_step > (SCANLINE.max_missing_pulses + 1.5) * mirror.pulse))
     joined[far[sum((c[far + 1] - c[far]) ** 2 for c in places) > SCANLINE.max_neighbour_distance**2]] = False
     leap = np.abs(np.diff(ranges))
-    jump = np.flatnonzero(same & (leap > SCANLINE.range_jump))
-    edge = SCANLINE.grazing_tangent * leap[jump] > 2 * np.pi * apart[jump] * ranges[jump]
+    jump = np.flatnonzero(same_line & (leap > SCANLINE.range_jump))
+    edge = SCANLINE.grazing_tangent * leap[jump] > 2 * np.pi * phase_step[jump] * ranges[jump]
     for c in places[:2]:
         edge |= np.abs(c[jump + 1] - c[jump]) > SCANLINE.max_edge
     joined[jump[edge]] = False
@@ -143,15 +143,15 @@ def _side_by_side(line, phase, ranges, places, mirror):
 
 def _ranges(columns, p, time, line):
     """(N,) float32 m from the vehicle to its points; the vehicle is taken as standing during a turn."""
-    away = np.zeros(len(columns["s"]), np.float32)
+    ranges = np.zeros(len(columns["s"]), np.float32)
     for name, track in (("s", p.s), ("d", p.d), ("z", p.z)):
         stood = np.rint(np.interp(time, p.time, track) / COORDINATE_SCALE).astype(np.int32)
         across = (columns[name] - stood.take(line)).astype(np.float32)
         across *= across
-        away += across
-    np.sqrt(away, out=away)
-    away *= np.float32(COORDINATE_SCALE)
-    return away
+        ranges += across
+    np.sqrt(ranges, out=ranges)
+    ranges *= np.float32(COORDINATE_SCALE)
+    return ranges
 
 
 def ribs_of(lines: ScannerLines, direction: int, mirror: MirrorPhase, interval: float) -> Ribs:
@@ -166,12 +166,12 @@ def ribs_of(lines: ScannerLines, direction: int, mirror: MirrorPhase, interval: 
     cell = np.ceil(station).astype(np.int32)
     cell_after = np.append(cell[1:], cell[-1:])
     longest = np.maximum(SCANLINE.max_rib, SCANLINE.max_lines_ahead * mirror.spacing * lines.driven) / interval
-    found, rest = [], None   # rest: points without a place ahead so far, None for all
+    ribs, unmatched = [], None   # unmatched: points without a place ahead so far, None for all
     for step in range(1, SCANLINE.max_lines_ahead * mirror.spacing + 1):
-        own_key, own_line, own_cell = (values if rest is None else values.take(rest) for values in (key, lines.line, cell))
-        place = np.interp(own_key + step, key, number)
-        place += SCANLINE.rib_tolerance
-        ahead = place.astype(np.int64)
+        own_key, own_line, own_cell = (values if unmatched is None else values.take(unmatched) for values in (key, lines.line, cell))
+        position = np.interp(own_key + step, key, number)
+        position += SCANLINE.rib_tolerance
+        ahead = position.astype(np.int64)
         hit = lines.joined.take(ahead)
         hit &= lines.line.take(ahead) == own_line + step
         # no plane lies between points of one cell
@@ -179,11 +179,12 @@ def ribs_of(lines: ScannerLines, direction: int, mirror: MirrorPhase, interval: 
         cut |= cell_after.take(ahead) != own_cell
         cut &= hit
         cut = np.flatnonzero(cut)
-        found.append(_ribs_on_surface(lines, station, longest, direction, cut if rest is None else rest.take(cut), ahead.take(cut), place.take(cut)))
-        rest = np.flatnonzero(~hit) if rest is None else rest[~hit]
-        if not len(rest):
+        ribs.append(_ribs_on_surface(lines, station, longest, direction, cut if unmatched is None else unmatched.take(cut),
+                                     ahead.take(cut), position.take(cut)))
+        unmatched = np.flatnonzero(~hit) if unmatched is None else unmatched[~hit]
+        if not len(unmatched):
             break
-    return Ribs.join(found)
+    return Ribs.join(ribs)
 
 
 def _ribs_on_surface(lines, station, longest, direction, point, ahead, place):
@@ -194,13 +195,13 @@ def _ribs_on_surface(lines, station, longest, direction, point, ahead, place):
     after = ahead + 1
     near, far = station.take(point), station.take(ahead)
     far += share * (station.take(after) - far)
-    onward = far - near
-    onward *= direction
+    length = far - near
+    length *= direction
     difference = lines.ranges.take(ahead)
     difference += share * (lines.ranges.take(after) - difference)
     difference -= lines.ranges.take(point)
     good = np.ceil(near) != np.ceil(far)
-    good &= (onward > 0) & (onward <= longest[lines.line[point]]) & (np.abs(difference) <= SCANLINE.range_jump)
+    good &= (length > 0) & (length <= longest[lines.line[point]]) & (np.abs(difference) <= SCANLINE.range_jump)
     good = np.flatnonzero(good)
     return Ribs(*(values.take(good) for values in (point, ahead, share, near, far)))
 
@@ -266,9 +267,9 @@ class PlaneVertices:
         side[far] = step[far] ** 2 + (self.z[j] - self.z[i])[far] ** 2 <= SCANLINE.max_neighbour_distance**2
         # one behind the other as seen from the track: the edge of an object and its background
         jump = np.flatnonzero(side & (leap > SCANLINE.range_jump))
-        across, above, away = ((values[i][jump], values[j][jump]) for values in (self.across, self.above, self.away))
-        aside = np.abs(across[1] * above[0] - across[0] * above[1])
-        side[jump[aside < SCANLINE.grazing_tangent * leap[jump] * away[0]]] = False
+        across, above, ranges = ((values[i][jump], values[j][jump]) for values in (self.across, self.above, self.away))
+        cross_product = np.abs(across[1] * above[0] - across[0] * above[1])
+        side[jump[cross_product < SCANLINE.grazing_tangent * leap[jump] * ranges[0]]] = False
         return side
 
     def lines(self) -> tuple[np.ndarray | None, np.ndarray]:
@@ -325,9 +326,9 @@ def increasing(d: np.ndarray, first: np.ndarray) -> np.ndarray:
 
     Returns (V,) m
     """
-    place = np.rint(d / SCANLINE.offset_unit).astype(np.int64)
-    apart = np.repeat(np.arange(len(first) - 1) * LINE_OFFSET_UNITS, np.diff(first))
-    place += apart
-    middle = np.maximum.accumulate(place)
-    middle += np.minimum.accumulate(place[::-1])[::-1]
-    return (middle - 2 * apart) * (0.5 * SCANLINE.offset_unit)
+    units = np.rint(d / SCANLINE.offset_unit).astype(np.int64)
+    line_offset = np.repeat(np.arange(len(first) - 1) * LINE_OFFSET_UNITS, np.diff(first))
+    units += line_offset
+    middle = np.maximum.accumulate(units)
+    middle += np.minimum.accumulate(units[::-1])[::-1]
+    return (middle - 2 * line_offset) * (0.5 * SCANLINE.offset_unit)

@@ -83,18 +83,18 @@ def scanline_runs(survey: Survey, road: int, start: float, end: float, settings:
         return []
     if lattice is None:
         lattice = find_lattice(survey, settings.rotation_frequency)
-    parts, apart = [], not lattice.mirror_phases
+    parts, unmeshed = [], not lattice.mirror_phases
     if lattice.mirror_phases:
         margin = max(_margin(survey, road, lattice), SCANLINE.min_slice_length, interval)
         window = first * interval - margin, (last - 1) * interval + margin
         records = survey.window(road, *window).records
-        for key, own in scanner_runs(records):
+        for key, run in scanner_runs(records):
             mirror = lattice.mirror_phases.get(key)
-            apart |= mirror is None
+            unmeshed |= mirror is None
             if mirror is not None:
-                parts.append(_cut(own, survey.frame.passes[key[0]], key, mirror, (first, last), settings, intensity,
+                parts.append(_cut(run, survey.frame.passes[key[0]], key, mirror, (first, last), settings, intensity,
                                   None if level is None else level(key[0], *window)))
-    if apart:
+    if unmeshed:
         lines = point_scanlines(survey, road, start, end, interval, settings.corridor)
         meshed = [key in lattice.mirror_phases for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())]
         parts += lines[~np.array(meshed, bool)].runs()
@@ -167,9 +167,9 @@ def _cut(records, p, key, mirror, planes, settings, intensity, level):
     if order is not None:
         plane, d, z, bright = plane[order], d[order], z[order], bright[order] if intensity else bright
     count = len(first) - 1
-    found = Scanlines(plane[first[:-1]] * settings.interval, np.full(count, key[0]), np.full(count, key[1]), first,
-                      increasing(d, first), z, bright)
-    return found[np.diff(first) >= SCANLINE.min_plane_line_vertices]
+    scanlines = Scanlines(plane[first[:-1]] * settings.interval, np.full(count, key[0]), np.full(count, key[1]), first,
+                          increasing(d, first), z, bright)
+    return scanlines[np.diff(first) >= SCANLINE.min_plane_line_vertices]
 
 
 def _planes_through(ribs, planes):
@@ -180,10 +180,10 @@ def _planes_through(ribs, planes):
     ribs_cut, planes_cut = [], []
     for ahead in range(int(count.max(initial=0))):
         # most ribs have one intersection
-        again = np.flatnonzero(count > ahead) if ahead else np.arange(len(low))
-        plane = low[again] + ahead if ahead else low
-        inside = np.flatnonzero((plane >= planes[0]) & (plane < planes[1]) & (count[again] > ahead))
-        ribs_cut.append(again[inside])
+        members = np.flatnonzero(count > ahead) if ahead else np.arange(len(low))
+        plane = low[members] + ahead if ahead else low
+        inside = np.flatnonzero((plane >= planes[0]) & (plane < planes[1]) & (count[members] > ahead))
+        ribs_cut.append(members[inside])
         planes_cut.append(plane[inside])
     return (np.concatenate(ribs_cut), np.concatenate(planes_cut)) if ribs_cut else (np.empty(0, np.int64),) * 2
 
@@ -215,9 +215,9 @@ def point_scanlines(survey: Survey, road: int, start: float, end: float, interva
     key = points.pass_number.astype(np.int64) * 256 + points.scanner
     parts = []
     for value in np.unique(key):
-        own = np.flatnonzero(key == value)
-        rows, index = _slices(s[own], first, last, interval, half)
-        index = own[index]
+        members = np.flatnonzero(key == value)
+        rows, index = _slices(s[members], first, last, interval, half)
+        index = members[index]
         # the row replaces the station, so that slices may overlap
         cells = pseudo_scan_lines(d[index], rows + 0.5, h[index], points.intensity[index].astype(float), (first, last), 1.0,
                                   SCANLINE.scanline_resolution, SCANLINE.slice_layer_jump, -corridor, corridor)
@@ -266,16 +266,16 @@ def _vertices(cells, selected, quantile):
     The height of a level cell is a quantile of its heights: the median of ground, the maximum of tall objects.
     """
     count = cells.shape[1]
-    place = np.repeat(np.arange(len(cells.starts) - 1), np.diff(cells.starts))[selected]
+    cell_index = np.repeat(np.arange(len(cells.starts) - 1), np.diff(cells.starts))[selected]
     point, h = cells.point[selected], cells.h[selected]
     d, intensity = cells.u[point], cells.along[point]
     if not len(selected):
         return (np.empty(0, np.int64),) + (np.empty(0),) * 3
-    begins = np.r_[True, np.diff(place) > 0]
+    begins = np.r_[True, np.diff(cell_index) > 0]
     first = np.flatnonzero(begins)
     cell = np.cumsum(begins) - 1
     lowest, highest = h[first], h[np.r_[first[1:], len(h)] - 1]
-    noise = cells.noise[place[first] // count]
+    noise = cells.noise[cell_index[first] // count]
     steep = (highest - lowest > np.maximum(SCANLINE.min_steep_rise, SCANLINE.steep_noise_sigmas * noise)) & (quantile < 1.0)
     level = np.where(steep[cell], np.floor((h - lowest[cell]) / SCANLINE.face_vertex_step), 0.0).astype(np.int64)
     begins = begins | np.r_[True, np.diff(level) != 0]
@@ -283,7 +283,7 @@ def _vertices(cells, selected, quantile):
     number = np.diff(np.r_[start, len(h)])
     middle = start + np.floor(quantile * (number - 1) + 0.5).astype(np.int64)
     across, bright = np.add.reduceat(d, start) / number, np.add.reduceat(intensity, start) / number
-    row, column = place[start] // count, place[start] % count
+    row, column = cell_index[start] // count, cell_index[start] % count
     # offsets increase to the left: upward on a face left of the road, downward on the right
     rise = np.where(column < count // 2, -1, 1) * level[start]
     order = np.lexsort((rise, column, row))

@@ -120,32 +120,32 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
     tracks = np.array([p.at_station(stations)[0] for p in survey.frame.passes_of(road)])
     limits, grown, closed = {}, {}, {}
     for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):
-        offset, known = measured[side]
-        closed[side] = np.isfinite(offset) & ~known
+        offset, bounded = measured[side]
+        closed[side] = np.isfinite(offset) & ~bounded
         if profiles is not None and np.isnan(offset).any():
             grown[side] = grown_limit(profiles, cells, height, prior, sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown[side].offset - sign * SURFACE.grown_inset, offset)
-        limits[side] = offset, known
+        limits[side] = offset, bounded
         progress.report(SURFACE.measured_progress + (1.0 - SURFACE.measured_progress) * (0.6 if side == "left" else 0.9))
     limits = _with_mouths(limits, closed, tracks, cells, followed.ground, cells_driven(survey.frame, road, cells), settings.max_width)
-    there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + SURFACE.min_surface_width)
+    has_road = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + SURFACE.min_surface_width)
     tolerance = float(np.clip(SURFACE.tolerance_floor + SURFACE.tolerance_sigmas * followed.noise, 0.0, settings.height_tolerance))
-    return Carriageway(cells, height, followed.ground, np.where(there, limits["right"][0], np.nan),
-                       np.where(there, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance,
+    return Carriageway(cells, height, followed.ground, np.where(has_road, limits["right"][0], np.nan),
+                       np.where(has_road, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance,
                        grown)
 
 
 def _with_mouths(limits, closed, tracks, cells, ground, driven, max_width):
     """The limits of both sides, farther out where a side street joins through an opening of the edge."""
     street = street_ground(cells, ground, limits["right"][0], limits["left"][0])
-    found = {}
+    result = {}
     for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):
         offset, bounded = limits[side]
         outward = slice(None) if sign > 0 else slice(None, None, -1)
         opened = opened_limits(sign * offset, closed[side], cells.height[:, outward], street[:, outward],
                                sign * cells.offsets[outward], sign * track + max_width, driven[:, outward])
-        found[side] = sign * opened, bounded
-    return found
+        result[side] = sign * opened, bounded
+    return result
 
 
 def _has_road(ground, offsets):
@@ -162,10 +162,10 @@ def _take_points(survey, road, carriageway, road_points, progress):
     phase = Phase(surface_points, survey, (), lambda item: survey.stretch(road, item[0][1] * length, item[0][2] * length),
                   lambda item: survey.store.points_between(road, item[0][1] * length, item[0][2] * length))
     for sections in executor.run(phase, [(stretch, surface_about(carriageway, stretch, length)) for stretch in stretches], progress):
-        for found in sections:
-            road_points.store.put_mask(road, found.number, found.bits, half_width=found.half_width, covered=found.covered)
-            first = found.first_row - carriageway.cells.first_row
-            per_row[first:first + len(found.per_row)] += found.per_row
+        for surface in sections:
+            road_points.store.put_mask(road, surface.number, surface.bits, half_width=surface.half_width, covered=surface.covered)
+            first = surface.first_row - carriageway.cells.first_row
+            per_row[first:first + len(surface.per_row)] += surface.per_row
     return per_row
 
 
@@ -200,13 +200,13 @@ def cells_driven(frame: RoadFrame, road: int, cells: GroundCells) -> np.ndarray:
     Returns (R, C) bool
     """
     driven = np.zeros(cells.height.shape, bool)
-    for other in frame.roads:
-        if other.number == road:
+    for other_road in frame.roads:
+        if other_road.number == road:
             continue
-        s, d = frame.road(road).locate(*other.to_map(np.arange(0.0, other.length, cells.column_size), 0.0))
-        found = np.isfinite(s)
-        row = np.floor(s[found] / cells.row_size).astype(np.int64) - cells.first_row
-        column = np.floor(d[found] / cells.column_size).astype(np.int64) - cells.first_column
+        s, d = frame.road(road).locate(*other_road.to_map(np.arange(0.0, other_road.length, cells.column_size), 0.0))
+        located = np.isfinite(s)
+        row = np.floor(s[located] / cells.row_size).astype(np.int64) - cells.first_row
+        column = np.floor(d[located] / cells.column_size).astype(np.int64) - cells.first_column
         inside = (row >= 0) & (row < driven.shape[0]) & (column >= 0) & (column < driven.shape[1])
         driven[row[inside], column[inside]] = True
     return driven
@@ -252,21 +252,21 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
 
 def _goes_on_wider(limit, first, end):
     """Whether the road before or after some rows is known to be as much wider as a mouth is deep."""
-    beside = limit[[k for k in (first - 1, end) if 0 <= k < len(limit)]]
-    return bool((beside > limit[first:end].max() + SURFACE.min_mouth_depth).any())
+    neighbours = limit[[k for k in (first - 1, end) if 0 <= k < len(limit)]]
+    return bool((neighbours > limit[first:end].max() + SURFACE.min_mouth_depth).any())
 
 
 def _street(beyond, seen, ground):
     """(N, C) bool, ground that goes on from the limit of each row without a step and without a long gap."""
     street = np.zeros(beyond.shape, bool)
-    unseen, other = np.zeros((2, len(beyond)), np.int64)
+    unseen_columns, stepped_columns = np.zeros((2, len(beyond)), np.int64)
     going = np.ones(len(beyond), bool)
     for column in np.flatnonzero(beyond.any(axis=0)):
-        here = beyond[:, column] & going
-        unseen = np.where(here, np.where(seen[:, column], 0, unseen + 1), unseen)
-        other = np.where(here & seen[:, column], np.where(ground[:, column], 0, other + 1), other)
-        going &= (unseen <= SURFACE.max_unseen_columns) & (other < SURFACE.step_columns)
-        street[:, column] = here & going & ground[:, column]
+        reached = beyond[:, column] & going
+        unseen_columns = np.where(reached, np.where(seen[:, column], 0, unseen_columns + 1), unseen_columns)
+        stepped_columns = np.where(reached & seen[:, column], np.where(ground[:, column], 0, stepped_columns + 1), stepped_columns)
+        going &= (unseen_columns <= SURFACE.max_unseen_columns) & (stepped_columns < SURFACE.step_columns)
+        street[:, column] = reached & going & ground[:, column]
     return street
 
 
@@ -275,13 +275,13 @@ def _level_share(street, first, height, limit, offsets):
     level = []
     for column in np.flatnonzero(street.any(axis=0)):
         rows = first + np.flatnonzero(street[:, column])[[0, -1]]
-        beside = rows + [-SURFACE.flank_rows, SURFACE.flank_rows]
-        known = (beside >= 0) & (beside < len(height))
-        known[known] = (offsets[column] > limit[beside[known]]) & (offsets[column] > limit[rows[known]] + SURFACE.flank_depth)
-        level.append(height[rows[known], column] - height[beside[known], column])
-    apart = np.abs(np.concatenate(level)) if level else np.empty(0)
-    apart = apart[np.isfinite(apart)]
-    return float((apart < SURFACE.min_flank_step).mean()) if len(apart) else 0.0
+        flanks = rows + [-SURFACE.flank_rows, SURFACE.flank_rows]
+        usable = (flanks >= 0) & (flanks < len(height))
+        usable[usable] = (offsets[column] > limit[flanks[usable]]) & (offsets[column] > limit[rows[usable]] + SURFACE.flank_depth)
+        level.append(height[rows[usable], column] - height[flanks[usable], column])
+    differences = np.abs(np.concatenate(level)) if level else np.empty(0)
+    differences = differences[np.isfinite(differences)]
+    return float((differences < SURFACE.min_flank_step).mean()) if len(differences) else 0.0
 
 
 def _outermost(cells, offsets):
@@ -360,7 +360,7 @@ def _mostly(rows):
 
 def _densities(cells: GroundCells, ground: np.ndarray, sign: float, limit: np.ndarray) -> np.ndarray:
     """(K,) points per m² along one margin, of stretches of SURFACE.stretch_rows; NaN where it was hardly seen."""
-    found = []
+    densities = []
     for first in range(0, len(limit), SURFACE.stretch_rows):
         rows = slice(first, first + SURFACE.stretch_rows)
         inside = sign * (limit[rows, None] - cells.offsets)   # NaN is not inside
@@ -368,8 +368,8 @@ def _densities(cells: GroundCells, ground: np.ndarray, sign: float, limit: np.nd
         count = cells.count[rows]
         count = count[margin & ground[rows] & (count > 0)]
         enough = 2 * np.isfinite(limit[rows]).sum() >= SURFACE.stretch_rows and len(count) >= max(SURFACE.seen_share * margin.sum(), 1)
-        found.append(float(np.median(count)) / (cells.row_size * cells.column_size) if enough else np.nan)
-    return np.array(found)
+        densities.append(float(np.median(count)) / (cells.row_size * cells.column_size) if enough else np.nan)
+    return np.array(densities)
 
 
 def said_of_thin(margins: Sequence[ThinMargin]) -> str:
@@ -379,9 +379,9 @@ def said_of_thin(margins: Sequence[ThinMargin]) -> str:
         return ""
     longest = sorted(margins, key=lambda margin: margin.start - margin.end)[:SURFACE.told_stretches]
     density = float(np.average([margin.density for margin in margins], weights=[margin.end - margin.start for margin in margins]))
-    where = "; ".join(f"road {m.road}, {m.side} side, station {m.start:.0f} to {m.end:.0f} m" for m in longest)
-    where += "; …" if len(margins) > len(longest) else ""
-    return (f"The points are too few to find curbs along {total:.0f} m, where none was drawn ({where}): {density:.0f} per m² beside "
+    stretches = "; ".join(f"road {m.road}, {m.side} side, station {m.start:.0f} to {m.end:.0f} m" for m in longest)
+    stretches += "; …" if len(margins) > len(longest) else ""
+    return (f"The points are too few to find curbs along {total:.0f} m, where none was drawn ({stretches}): {density:.0f} per m² beside "
             f"the limit of the road surface, some {100 / np.sqrt(density):.0f} cm apart. A curb of 10 cm needs about "
             f"{SURFACE.min_curb_density:.0f}, a lower one more; whether there is one is not known. Give the whole cloud if this one was thinned, or "
             "drive slower or nearer to that side.")

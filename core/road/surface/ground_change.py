@@ -47,16 +47,16 @@ class HalfProfiles:
         start = np.searchsorted(self.u, beside + SURFACE.certain_road)
         stop = np.searchsorted(self.u, beside + max_width)
         empty = self.blind()
-        found = np.empty(len(self.off), np.int64)
-        for first in range(0, len(found), SURFACE.profiles_per_batch):
+        cells = np.empty(len(self.off), np.int64)
+        for first in range(0, len(cells), SURFACE.profiles_per_batch):
             check_cancelled()
             part = slice(first, first + SURFACE.profiles_per_batch)
             uneven = _unevenness(self.off[part], np.maximum(start[part], SURFACE.cells_of_unevenness))
             differs = _differs(self.u, self.off[part], self.rough[part], uneven)
             for k in range(len(uneven)):
-                at = first + k
-                found[at] = self._change(at, int(start[at]), int(stop[at]), empty[at], differs[k], float(uneven[k]))
-        return found
+                profile = first + k
+                cells[profile] = self._change(profile, int(start[profile]), int(stop[profile]), empty[profile], differs[k], float(uneven[k]))
+        return cells
 
     def blind(self) -> np.ndarray:
         """(P, K) bool, whether nothing was measured in the cells from a cell on."""
@@ -66,8 +66,8 @@ class HalfProfiles:
         """The change of one profile between two cells."""
         if not np.isfinite(self.off[profile, :stop]).any():
             return -1
-        other = np.flatnonzero(differs[start:stop])
-        last = start + int(other[0]) if len(other) else stop
+        changed = np.flatnonzero(differs[start:stop])
+        last = start + int(changed[0]) if len(changed) else stop
         blind = start
         for k in (start + np.flatnonzero(empty[start:min(last + 1, stop)])).tolist():
             if k >= blind:
@@ -86,14 +86,14 @@ class HalfProfiles:
         measured = np.flatnonzero(np.isfinite(off[k:k + SURFACE.max_blind_cells + 1]))
         if not len(measured):
             return 0
-        again = k + int(measured[0])
-        behind, inner = slice(again, again + 2 * SURFACE.min_change_cells), slice(max(k - SURFACE.cells_before_blind, 0), k)
+        resumed = k + int(measured[0])
+        behind, inner = slice(resumed, resumed + 2 * SURFACE.min_change_cells), slice(max(k - SURFACE.cells_before_blind, 0), k)
         if np.isfinite(off[behind]).mean() < SURFACE.min_measured_behind \
                 or (np.abs(off[behind]) > SURFACE.max_height_deviation + SURFACE.unevenness_factor * uneven).any():
             return 0
         with np.errstate(invalid="ignore"):
             smooth = known_median(rough[behind], 0) <= SURFACE.roughness_factor * known_median(rough[inner], 0) + SURFACE.roughness_floor
-        return again if smooth else 0
+        return resumed if smooth else 0
 
 
 def _ahead(values, count, fill=np.nan):
@@ -115,20 +115,21 @@ def _unevenness(off, cells):
 def _differs(u, off, rough, uneven):
     """(P, K) bool, whether the ground from a cell on is no longer that of the road."""
     ahead, before = _ahead(off, SURFACE.min_change_cells), _before(off, SURFACE.min_change_cells)
-    seen = np.isfinite(ahead)
-    count = seen.sum(axis=2)
+    measured = np.isfinite(ahead)
+    count = measured.sum(axis=2)
     slack = SURFACE.unevenness_factor * uneven[:, None]
     with np.errstate(invalid="ignore"):
-        away = np.abs(ahead) > SURFACE.max_height_deviation + slack[..., None]
-        high = (count > 1) & away[..., 0] & (away.sum(axis=2) > SURFACE.min_agreeing_share * count)
+        deviates = np.abs(ahead) > SURFACE.max_height_deviation + slack[..., None]
+        high = (count > 1) & deviates[..., 0] & (deviates.sum(axis=2) > SURFACE.min_agreeing_share * count)
         # the step may cut the first cell that was measured
         stepped = (np.abs(ahead - known_median(before, 2)[..., None]) > SURFACE.max_height_change + slack[..., None]) \
-            | ~seen | (np.cumsum(seen, axis=2) == 1)
+            | ~measured | (np.cumsum(measured, axis=2) == 1)
         step = (count > 2) & (np.isfinite(before).sum(axis=2) > 2) & stepped.all(axis=2)
         rough_ahead, usual = _ahead(rough, SURFACE.min_change_cells), _before(rough, SURFACE.cells_of_roughness)
         rougher = rough_ahead > (SURFACE.roughness_factor * known_median(usual, 2) + SURFACE.roughness_floor)[..., None]
-        known = np.isfinite(rough_ahead).sum(axis=2)
-        rugged = (known > 1) & (np.isfinite(usual).sum(axis=2) > 3) & rougher[..., 0] & (rougher.sum(axis=2) > SURFACE.min_agreeing_share * known)
+        rough_count = np.isfinite(rough_ahead).sum(axis=2)
+        rugged = (rough_count > 1) & (np.isfinite(usual).sum(axis=2) > 3) & rougher[..., 0] \
+            & (rougher.sum(axis=2) > SURFACE.min_agreeing_share * rough_count)
     return high | step | rugged | _turns(u, off, slack)
 
 
@@ -140,15 +141,15 @@ def _turns(u, off, slack):
     at_after, at_inner = np.arange(SURFACE.cells_of_tilt[1]) * size, np.arange(-SURFACE.cells_of_tilt[0], 0) * size
     a, b = np.isfinite(after), np.isfinite(inner)
     level, slope = _lines(at_inner, inner, b)
-    over = np.where(a, after - level[..., None] - slope[..., None] * at_after, np.nan)
-    _, tilt = _lines(at_after, over, a)
+    rise = np.where(a, after - level[..., None] - slope[..., None] * at_after, np.nan)
+    _, tilt = _lines(at_after, rise, a)
     # most cells, not a single one beside an obstacle
-    most = known_median(over / (at_after + 0.5 * size), 2)
+    typical = known_median(rise / (at_after + 0.5 * size), 2)
     with np.errstate(invalid="ignore"):
         # the bank may begin farther out
-        begins = np.abs(over[..., 0]) >= 0.5 * SURFACE.min_tilt_change * size + slack
+        begins = np.abs(rise[..., 0]) >= 0.5 * SURFACE.min_tilt_change * size + slack
         return (b.sum(axis=2) >= SURFACE.min_cells_of_tilt[0]) & (a.sum(axis=2) >= SURFACE.min_cells_of_tilt[1]) & a[..., 0] & begins \
-            & (np.minimum(np.abs(most), np.abs(tilt)) > SURFACE.min_tilt_change)
+            & (np.minimum(np.abs(typical), np.abs(tilt)) > SURFACE.min_tilt_change)
 
 
 def _lines(at, values, known):
@@ -156,9 +157,9 @@ def _lines(at, values, known):
     count = np.maximum(known.sum(axis=2), 1)
     values = np.where(known, values, 0.0)
     middle, mean = (known * at).sum(axis=2) / count, values.sum(axis=2) / count
-    away = known * (at - middle[..., None])
+    offset = known * (at - middle[..., None])
     with np.errstate(invalid="ignore", divide="ignore"):
-        slope = (away * values).sum(axis=2) / (away * at).sum(axis=2)
+        slope = (offset * values).sum(axis=2) / (offset * at).sum(axis=2)
     return mean - slope * middle, slope
 
 
@@ -174,20 +175,20 @@ def other_ground_begins(brightness: np.ndarray, stations: np.ndarray, track: np.
 
     Returns (P,) cells; NaN where there is no such ground
     """
-    begins, step, still = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness)).T
-    there = begins >= 0
-    holds = np.flatnonzero(there & (still >= SURFACE.lasting_share * step))
+    begins, step, step_at_limit = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness)).T
+    brighter = begins >= 0
+    holds = np.flatnonzero(brighter & (step_at_limit >= SURFACE.lasting_share * step))
     if not len(holds):
         return np.full(len(begins), np.nan)
     # a single profile tells little of how far a strip goes on, which has dark patches and fades with range, but where it begins
-    place = median_filter(np.interp(np.arange(len(begins)), holds, begins[holds]), SURFACE.agreeing_profiles, mode="nearest")
-    alike = there & (np.abs(begins - place) <= SURFACE.max_strip_shift)
+    course = median_filter(np.interp(np.arange(len(begins)), holds, begins[holds]), SURFACE.agreeing_profiles, mode="nearest")
+    alike = brighter & (np.abs(begins - course) <= SURFACE.max_strip_shift)
     lasting = np.zeros(len(begins), bool)
     for first, end in zip(*_stretches(stations)):
-        about = first + _profiles_about(end - first)
-        some = np.where(alike, still - SURFACE.lasting_share * step, np.nan)[about]
-        lasting[first:end] = alike[first:end] & (alike[about].sum(1) > 0.5 * SURFACE.lasting_profiles) & (known_median(some, 1) >= 0.0)
-    return np.where(lasting, place, np.nan)
+        window = first + _profiles_about(end - first)
+        some = np.where(alike, step_at_limit - SURFACE.lasting_share * step, np.nan)[window]
+        lasting[first:end] = alike[first:end] & (alike[window].sum(1) > 0.5 * SURFACE.lasting_profiles) & (known_median(some, 1) >= 0.0)
+    return np.where(lasting, course, np.nan)
 
 
 def _stretches(stations):
@@ -198,9 +199,9 @@ def _stretches(stations):
 
 def _profiles_about(count):
     """(P, SURFACE.lasting_profiles) int, the profiles nearest to each one; at an end of the road as many on the other side."""
-    several = min(SURFACE.lasting_profiles, count)
-    first = np.clip(np.arange(count) - several // 2, 0, count - several)
-    return first[:, None] + np.arange(several)
+    window = min(SURFACE.lasting_profiles, count)
+    first = np.clip(np.arange(count) - window // 2, 0, count - window)
+    return first[:, None] + np.arange(window)
 
 
 def _brighter_from(brightness, track, limit):
@@ -211,18 +212,18 @@ def _brighter_from(brightness, track, limit):
     count = brightness.shape[1]
     level = np.log(np.maximum(brightness, 1.0))
     padded = np.pad(level, ((0, 0), (SURFACE.compared_cells, SURFACE.compared_cells)), constant_values=np.nan)
-    beside = known_median(np.lib.stride_tricks.sliding_window_view(padded, SURFACE.compared_cells, axis=1), 2)
+    medians = known_median(np.lib.stride_tricks.sliding_window_view(padded, SURFACE.compared_cells, axis=1), 2)
     # median of the cells before each cell, and of those from it on
-    inner, outer = beside[:, :count], beside[:, SURFACE.compared_cells:SURFACE.compared_cells + count]
+    inner, outer = medians[:, :count], medians[:, SURFACE.compared_cells:SURFACE.compared_cells + count]
     cell = np.arange(count)
     # medians rise half a window before the step itself
     between = (cell >= track[:, None]) & (cell + SURFACE.compared_cells // 2 + SURFACE.inner_cells < limit[:, None])
     step = np.where(between & np.isfinite(outer - inner), outer - inner, -np.inf)
     rows, begins = np.arange(len(step)), step.argmax(axis=1)
-    last = beside[rows, np.clip(np.rint(limit).astype(np.int64), 0, count)]
-    there = step[rows, begins] >= SURFACE.brighter
-    still = np.where(there, last - inner[rows, begins], np.nan)
-    return np.c_[np.where(there, begins, -1), np.where(there, step[rows, begins], np.nan), still]
+    last = medians[rows, np.clip(np.rint(limit).astype(np.int64), 0, count)]
+    brighter = step[rows, begins] >= SURFACE.brighter
+    step_at_limit = np.where(brighter, last - inner[rows, begins], np.nan)
+    return np.c_[np.where(brighter, begins, -1), np.where(brighter, step[rows, begins], np.nan), step_at_limit]
 
 
 # The height of the road, followed outward from the track of the vehicle, cell by cell.
@@ -266,8 +267,8 @@ def follow_road(cells: GroundCells, prior: np.ndarray) -> _RoadHeight | None:
     middle = int(np.flatnonzero(offsets > 0)[0])
     start = _starting_tilt(cells.height, base, offsets)
     # both sides at once, as far as the narrower one
-    both = min(middle, len(offsets) - middle)
-    columns = np.stack([middle + np.arange(both), middle - 1 - np.arange(both)], axis=1)
+    common_columns = min(middle, len(offsets) - middle)
+    columns = np.stack([middle + np.arange(common_columns), middle - 1 - np.arange(common_columns)], axis=1)
     _walk(cells, base, columns, start, noise, height, ground)
     return _RoadHeight(height, ground, noise)
 
@@ -275,8 +276,8 @@ def follow_road(cells: GroundCells, prior: np.ndarray) -> _RoadHeight | None:
 def _running_median(values, reach):
     """Median over 2 * reach + 1 rows; gaps are interpolated before."""
     rows = np.arange(len(values))
-    known = np.isfinite(values)
-    filled = np.interp(rows, rows[known], values[known])
+    finite = np.isfinite(values)
+    filled = np.interp(rows, rows[finite], values[finite])
     padded = np.pad(filled, reach, mode="edge")
     return np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1), axis=1)
 
@@ -300,8 +301,8 @@ def _walk(cells, base, columns, start, noise, height, ground):
         if k % step == step - 1:
             check_cancelled()
         predicted = z + tilt * (0.5 * SURFACE.column_width if k == 0 else SURFACE.column_width)
-        there, count = (cells.height[:, pair] - base[:, None]).T, np.nan_to_num(cells.count[:, pair]).T
-        off = there - predicted
+        measured, count = (cells.height[:, pair] - base[:, None]).T, np.nan_to_num(cells.count[:, pair]).T
+        off = measured - predicted
         tolerance = SURFACE.max_height_deviation + SURFACE.noise_factor * noise / np.sqrt(np.clip(count, 1.0, 25.0)) \
             + np.minimum(SURFACE.tolerance_gain * np.maximum(skipped - 0.5, 0.0), SURFACE.max_tolerance_gain)
         near = np.abs(off) < tolerance   # False where there is no ground
@@ -318,7 +319,7 @@ def _walk(cells, base, columns, start, noise, height, ground):
         tilt = correlate1d(tilt, kernel, mode="nearest")
         skipped = np.where(certainty > 0.5, 0.0, skipped + SURFACE.column_width)
         height[:, pair] = (z + base).T
-        ground[:, pair] = (np.abs(there - z) < tolerance).T
+        ground[:, pair] = (np.abs(measured - z) < tolerance).T
 
 
 def _bell(sigma):
@@ -344,11 +345,11 @@ def smooth_road(road: _RoadHeight, cells: GroundCells) -> np.ndarray:
         ground = road.ground[:, some]
         weight = np.where(ground, np.minimum(cells.count[:, some], 20.0), 0.0)
         off = np.where(ground, np.nan_to_num(cells.height[:, some] - road.height[:, some]), 0.0)
-        for values, whole in ((weight, total), (off * weight, rise)):
-            uniform_filter1d(values, 5, axis=0, mode="nearest", output=whole[:, some])
+        for values, output in ((weight, total), (off * weight, rise)):
+            uniform_filter1d(values, 5, axis=0, mode="nearest", output=output[:, some])
 
     def smoothed(some):
-        about, above = (uniform_filter1d(values[some], 3, axis=1, mode="nearest") for values in (total, rise))
-        return road.height[some] + np.where(about > 1e-6, above / np.maximum(about, 1e-9), 0.0)
+        weights, rises = (uniform_filter1d(values[some], 3, axis=1, mode="nearest") for values in (total, rise))
+        return road.height[some] + np.where(weights > 1e-6, rises / np.maximum(weights, 1e-9), 0.0)
 
     return by_rows(smoothed, len(road.height))

@@ -152,14 +152,14 @@ def _ground_cells(points: Points, first_row: int, rows: int, reach: float, road_
     order = order_by(z, cell)
     index, cell, z = index[order], cell[order], z[order] * COORDINATE_SCALE
     low = np.flatnonzero(_in_lowest_layer(cell, z, np.bincount(cell, minlength=rows * columns)))
-    index, at, z = index[low], cell[low].astype(np.intp), z[low]
-    count = np.bincount(at, minlength=rows * columns)
+    index, owner, z = index[low], cell[low].astype(np.intp), z[low]
+    count = np.bincount(owner, minlength=rows * columns)
     row, column = np.divmod(np.arange(rows * columns), columns)
-    u, v = (points.records[name].take(index) * COORDINATE_SCALE - middle.take(at) for name, middle in
+    u, v = (points.records[name].take(index) * COORDINATE_SCALE - middle.take(owner) for name, middle in
             (("d", (column - half + 0.5) * column_size), ("s", (row + first_row + 0.5) * row_size)))
-    height, rough = _planes(at, count, u, v, z)
+    height, rough = _planes(owner, count, u, v, z)
     shape = rows, columns
-    brightness, scatter = np.full((2, len(count)), np.nan) if bright is None else _looks(points[index], at, shape, column_size, bright)
+    brightness, scatter = np.full((2, len(count)), np.nan) if bright is None else _looks(points[index], owner, shape, column_size, bright)
     return GroundCells(first_row, -half, row_size, column_size,
                  *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count)))
 
@@ -194,8 +194,8 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
     turn = np.arange(1, SURFACE.ground_points_per_batch + 1, dtype=np.uint32) * np.uint32(GOLDEN_RATIO_32)
     indices = [np.empty(0, np.intp)]
     for first in range(0, len(cell), SURFACE.ground_points_per_batch):
-        here = share.take(cell[first:first + SURFACE.ground_points_per_batch])
-        selected = np.flatnonzero(turn[:len(here)] + np.uint32(first * GOLDEN_RATIO_32 % 2**32) < here)
+        limit = share.take(cell[first:first + SURFACE.ground_points_per_batch])
+        selected = np.flatnonzero(turn[:len(limit)] + np.uint32(first * GOLDEN_RATIO_32 % 2**32) < limit)
         selected += first
         indices.append(selected)
     indices = np.concatenate(indices)
@@ -237,9 +237,9 @@ def _planes(at, count, u, v, z):
     uu, vv = uu + 1e-4, vv + 1e-4
     determinant = uu * vv - uv * uv
     across, along = (uz * vv - vz * uv) / determinant, (vz * uu - uz * uv) / determinant
-    rest = np.maximum(zz - across * uz - along * vz, 0.0)
+    squares = np.maximum(zz - across * uz - along * vz, 0.0)
     enough, any_ground = count >= SURFACE.min_plane_points, count >= SURFACE.min_layer_points
-    rough = np.sqrt(rest * n / np.maximum(n - 3, 1))
+    rough = np.sqrt(squares * n / np.maximum(n - 3, 1))
     height = np.where(enough, mz - across * mu - along * mv, mz)
     return np.where(any_ground, height, np.nan), np.where(enough, rough, np.nan)
 
@@ -288,9 +288,9 @@ def at_one_level(intensity: np.ndarray, view: np.ndarray, cell: np.ndarray, shap
     if views == 1:
         return value
     logarithm = np.log(np.maximum(value, 1.0))
-    place = cell.astype(np.int64) * views + view
-    count = np.bincount(place, minlength=shape[0] * shape[1] * views).reshape(*shape, views)
-    mean = np.bincount(place, logarithm, count.size).reshape(count.shape) / np.maximum(count, 1)
+    group = cell.astype(np.int64) * views + view
+    count = np.bincount(group, minlength=shape[0] * shape[1] * views).reshape(*shape, views)
+    mean = np.bincount(group, logarithm, count.size).reshape(count.shape) / np.maximum(count, 1)
     level = _levels(count, mean, column_size)
     return value * np.exp(-level.astype(np.float32))[view, cell % shape[1]]
 
@@ -301,24 +301,24 @@ def _levels(count, mean, column_size):
     total = np.maximum(count.sum(2, keepdims=True), 1)
     off = count * (mean - (count * mean).sum(2, keepdims=True) / total)
     # normal equations without the unknown brightness of each cell
-    both = -np.einsum("rcv,rcw->cvw", count / total, count)
-    both[:, np.arange(views), np.arange(views)] += count.sum(0)
+    normal = -np.einsum("rcv,rcw->cvw", count / total, count)
+    normal[:, np.arange(views), np.arange(views)] += count.sum(0)
     bin_of = (np.arange(columns) * column_size / SURFACE.level_width).astype(np.int64)
     bins = int(bin_of[-1]) + 1
     first = np.searchsorted(bin_of, np.arange(bins))
-    both, off = np.add.reduceat(both, first, axis=0), np.add.reduceat(off.sum(0), first, axis=0)
+    normal, off = np.add.reduceat(normal, first, axis=0), np.add.reduceat(off.sum(0), first, axis=0)
     smooth = (SURFACE.point_sigma / SURFACE.change_sigma) ** 2
     neighbours = np.full(bins, 2.0)
     neighbours[[0, -1]] -= 1.0
-    both[:, np.arange(views), np.arange(views)] += (neighbours * smooth)[:, None] + (SURFACE.point_sigma / SURFACE.level_sigma) ** 2
+    normal[:, np.arange(views), np.arange(views)] += (neighbours * smooth)[:, None] + (SURFACE.point_sigma / SURFACE.level_sigma) ** 2
     # bins are coupled to the next ones alone: a band of one value per view
     band = np.zeros((views + 1, bins * views))
     for k in range(views):
-        band[views - k].reshape(bins, views)[:, k:] = np.diagonal(both, k, 1, 2)
+        band[views - k].reshape(bins, views)[:, k:] = np.diagonal(normal, k, 1, 2)
     band[0, views:] = -smooth if bins > 1 else 0.0
-    found = solveh_banded(band, off.ravel()).reshape(bins, views)
+    levels = solveh_banded(band, off.ravel()).reshape(bins, views)
     middles = (np.arange(bins) + 0.5) * SURFACE.level_width
-    return np.array([np.interp((np.arange(columns) + 0.5) * column_size, middles, found[:, k]) for k in range(views)])
+    return np.array([np.interp((np.arange(columns) + 0.5) * column_size, middles, levels[:, k]) for k in range(views)])
 
 
 # The ground beside the roads of a survey, measured in windows and kept from one stage to the next.
@@ -354,25 +354,26 @@ class MeasuredGround:
         self._measure(road, rows, profiled, progress)
         half = _ground_columns(CORRIDOR, SURFACE.column_width)
         cells = np.empty((len(CELL_NAMES), SURFACE.window_rows * len(rows), 2 * half), np.float32)
-        for place, row in enumerate(rows):
-            self._read(0, road, row, cells[:, SURFACE.window_rows * place:SURFACE.window_rows * (place + 1)])
-        known = dict(zip(CELL_NAMES, cells), **dict.fromkeys(("brightness", "scatter"), np.broadcast_to(np.float32(np.nan), cells.shape[1:])))
-        ground = GroundCells(rows[0], -half, SURFACE.row_length, SURFACE.column_width, **known)
+        for number, row in enumerate(rows):
+            self._read(0, road, row, cells[:, SURFACE.window_rows * number:SURFACE.window_rows * (number + 1)])
+        values = dict(zip(CELL_NAMES, cells), **dict.fromkeys(("brightness", "scatter"), np.broadcast_to(np.float32(np.nan), cells.shape[1:])))
+        ground = GroundCells(rows[0], -half, SURFACE.row_length, SURFACE.column_width, **values)
         wanted = [row for row, want in zip(rows, profiled) if want]
         if not wanted:
             return ground, None
         half = _ground_columns(CORRIDOR, SURFACE.profile_column)
         profiles = np.empty((len(SurfaceProfiles.NAMES), PROFILES_PER_WINDOW * len(wanted), 2 * half), np.float32)
-        for place, row in enumerate(wanted):
-            self._read(1, road, row, profiles[:, PROFILES_PER_WINDOW * place:PROFILES_PER_WINDOW * (place + 1)])
+        for number, row in enumerate(wanted):
+            self._read(1, road, row, profiles[:, PROFILES_PER_WINDOW * number:PROFILES_PER_WINDOW * (number + 1)])
         first = np.array(wanted)[:, None] // round(SURFACE.profile_row / SURFACE.row_length) + np.arange(PROFILES_PER_WINDOW)
         return ground, SurfaceProfiles((first.ravel() + 0.5) * SURFACE.profile_row, (np.arange(-half, half) + 0.5) * SURFACE.profile_column,
                                        *profiles)
 
     def _measure(self, road, rows, profiled, progress):
         """Keep what is wanted of windows and not known yet."""
-        known, seen = self._kept
-        windows = [window for window in ((row, (road, row) not in known, wanted and (road, row) not in seen) for row, wanted in zip(rows, profiled))
+        kept_cells, kept_profiles = self._kept
+        windows = [window for window in ((row, (road, row) not in kept_cells, wanted and (road, row) not in kept_profiles)
+                                         for row, wanted in zip(rows, profiled))
                    if any(window[1:])]
         executor = self.survey.executor.passing()
         size = SURFACE.measured_windows if executor.folder else 1
@@ -380,8 +381,8 @@ class MeasuredGround:
         phase = Phase(ground_of_windows, self.survey, (road,), lambda item: self.survey.stretch(
             road, item[0][0] * SURFACE.row_length, (item[-1][0] + SURFACE.window_rows) * SURFACE.row_length))
         self._file = self._file or SpillFile()
-        for item, found in zip(items, executor.run(phase, items, progress)):
-            self._keep(road, item, found)
+        for item, measured in zip(items, executor.run(phase, items, progress)):
+            self._keep(road, item, measured)
 
     def _keep(self, road, item, found):
         """Put what `ground_of_windows` found of some windows into the file."""

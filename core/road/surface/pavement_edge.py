@@ -28,8 +28,8 @@ def _pooled(values):
 
     def medians(some):
         first, end = some.start * SURFACE.rows_per_step - half, (some.stop - 1) * SURFACE.rows_per_step + half + 1
-        here = np.pad(values[max(first, 0):end], ((max(-first, 0), max(end - len(values), 0)), (0, 0)), constant_values=np.nan)
-        return known_median(np.lib.stride_tricks.sliding_window_view(here, SURFACE.pooled_rows, axis=0)[::SURFACE.rows_per_step], 2)
+        padded = np.pad(values[max(first, 0):end], ((max(-first, 0), max(end - len(values), 0)), (0, 0)), constant_values=np.nan)
+        return known_median(np.lib.stride_tricks.sliding_window_view(padded, SURFACE.pooled_rows, axis=0)[::SURFACE.rows_per_step], 2)
 
     return by_rows(medians, -(-len(values) // SURFACE.rows_per_step))
 
@@ -77,24 +77,24 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     rows = replace(rows, height=above)
     places = rows.stations[::SURFACE.rows_per_step]
     pooled_height, rough, brightness = (_pooled(values) for values in (rows.height, rows.rough, rows.brightness))
-    beside = sign * np.interp(places, stations, track)
+    track_offset = sign * np.interp(places, stations, track)
     halves = HalfProfiles(rows.offsets, pooled_height, rough)
-    changes = halves.changes(beside, max_width)
-    known = np.flatnonzero(changes >= 0)
-    if not len(known):
+    changes = halves.changes(track_offset, max_width)
+    measured = np.flatnonzero(changes >= 0)
+    if not len(measured):
         return _GrownLimit(track + sign * max_width, np.full(len(track), np.inf), nowhere, nowhere, ~nowhere)
     # at the last cell, nothing beyond it was looked for
     blind = np.pad(halves.blind(), ((0, 0), (0, 1)))[np.arange(len(changes)), changes]
-    changes = np.interp(places, places[known], _agreed(changes[known], blind[known], len(rows.offsets)))
-    other = other_ground_begins(brightness, places, (beside - rows.offsets[0]) / SURFACE.profile_column, changes)
-    changes = np.interp(rows.stations, places, np.where(np.isfinite(other), other, changes))
-    found = pavement_limits(rows, changes)
-    outward = np.interp(stations, rows.stations, rows.offsets[0] + (found.cell - 0.5) * SURFACE.profile_column)
+    changes = np.interp(places, places[measured], _agreed(changes[measured], blind[measured], len(rows.offsets)))
+    brighter = other_ground_begins(brightness, places, (track_offset - rows.offsets[0]) / SURFACE.profile_column, changes)
+    changes = np.interp(rows.stations, places, np.where(np.isfinite(brighter), brighter, changes))
+    limits = pavement_limits(rows, changes)
+    outward = np.interp(stations, rows.stations, rows.offsets[0] + (limits.cell - 0.5) * SURFACE.profile_column)
     row = np.clip(np.searchsorted(rows.stations + 0.5 * SURFACE.profile_row, stations), 0, len(rows.stations) - 1)
     farthest = sign * track + max_width
     within = outward < farthest
-    return _GrownLimit(sign * np.minimum(outward, farthest), found.gap[row] * SURFACE.profile_column / np.sqrt(12.0),
-                       found.shown[row] & within, found.likely[row] & within, found.hidden[row])
+    return _GrownLimit(sign * np.minimum(outward, farthest), limits.gap[row] * SURFACE.profile_column / np.sqrt(12.0),
+                       limits.shown[row] & within, limits.likely[row] & within, limits.hidden[row])
 
 
 def _agreed(changes, blind, cells):
@@ -157,35 +157,35 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
     edges and for closed openings. Edges of the pavement count where there is no curb; short openings between them, and beside
     curbs, are closed too.
     """
-    found = {}
+    result = {}
     for side, sign in (("left", 1.0), ("right", -1.0)):
         offset = np.full(len(stations), np.nan)
         measured = np.zeros(len(stations), bool)
         for s, d, status in () if edges is None else _lines_of(edges, road, side, edges.of_curb):
-            beside = stretch_of(stations, s[0], s[-1])
-            here = np.interp(stations[beside], s, d)
+            inside = stretch_of(stations, s[0], s[-1])
+            line_offset = np.interp(stations[inside], s, d)
             # of two parallel lines the outer one is the limit of the road
-            take = ~(sign * offset[beside] > sign * here)
-            offset[beside][take] = here[take]
-            measured[beside][take] = status != "inferred"
+            take = ~(sign * offset[inside] > sign * line_offset)
+            offset[inside][take] = line_offset[take]
+            measured[inside][take] = status != "inferred"
         offset = _continued(stations, offset)
         for s, d, _ in () if edges is None else _lines_of(edges, road, side, ~edges.of_curb):
-            beside = stretch_of(stations, s[0], s[-1])
-            take = np.isnan(offset[beside])
-            offset[beside][take] = np.interp(stations[beside][take], s, d)
-            measured[beside][take] = True
-        found[side] = _closed(stations, offset), measured
-    return found
+            inside = stretch_of(stations, s[0], s[-1])
+            take = np.isnan(offset[inside])
+            offset[inside][take] = np.interp(stations[inside][take], s, d)
+            measured[inside][take] = True
+        result[side] = _closed(stations, offset), measured
+    return result
 
 
 def rows_with_edge(edges: RoadEdges | None, road: int, stations: np.ndarray, curb: bool) -> dict[str, np.ndarray]:
     """Side (left, right) to (N,) bool, stations (ascending, m) beside which an edge was drawn at a curb, or one of the pavement without a curb."""
-    found = {}
+    result = {}
     for side in ("left", "right"):
-        found[side] = np.zeros(len(stations), bool)
+        result[side] = np.zeros(len(stations), bool)
         for s, _, _ in () if edges is None else _lines_of(edges, road, side, edges.of_curb == curb):
-            found[side][stretch_of(stations, s[0], s[-1])] = True
-    return found
+            result[side][stretch_of(stations, s[0], s[-1])] = True
+    return result
 
 
 def _lines_of(edges, road, side, wanted):
@@ -202,25 +202,25 @@ def _lines_of(edges, road, side, wanted):
 
 def _closed(stations, offset):
     """Offsets with openings closed that the edges before and after them reach across: each holds for SURFACE.edge_continuation beyond its end."""
-    known = np.flatnonzero(np.isfinite(offset))
-    before, after = known[:-1], known[1:]
+    rows = np.flatnonzero(np.isfinite(offset))
+    before, after = rows[:-1], rows[1:]
     length, shift = stations[after] - stations[before], np.abs(offset[after] - offset[before])
     reached = np.r_[False, (length <= 2 * SURFACE.edge_continuation) & (shift <= EDGE.max_edge_jump + SURFACE.max_bridged_skew * length), False]
     if not reached.any():
         return offset
-    inside = np.isnan(offset) & reached[np.searchsorted(stations[known], stations)]
-    return np.where(inside, np.interp(stations, stations[known], offset[known]), offset)
+    inside = np.isnan(offset) & reached[np.searchsorted(stations[rows], stations)]
+    return np.where(inside, np.interp(stations, stations[rows], offset[rows]), offset)
 
 
 def _continued(stations, offset):
     """Offsets with short openings closed by a straight line and the ends continued."""
-    known = np.flatnonzero(np.isfinite(offset))
-    if not len(known):
+    rows = np.flatnonzero(np.isfinite(offset))
+    if not len(rows):
         return offset
-    filled = np.interp(stations, stations[known], offset[known])
-    after = np.searchsorted(stations[known], stations)
-    s0 = stations[known][np.maximum(after - 1, 0)]
-    s1 = stations[known][np.minimum(after, len(known) - 1)]
-    between = (after > 0) & (after < len(known))
+    filled = np.interp(stations, stations[rows], offset[rows])
+    after = np.searchsorted(stations[rows], stations)
+    s0 = stations[rows][np.maximum(after - 1, 0)]
+    s1 = stations[rows][np.minimum(after, len(rows) - 1)]
+    between = (after > 0) & (after < len(rows))
     near = np.minimum(np.abs(stations - s0), np.abs(stations - s1)) <= SURFACE.edge_continuation
     return np.where(np.isfinite(offset), offset, np.where((between & (s1 - s0 <= SURFACE.max_opening)) | near, filled, np.nan))

@@ -50,40 +50,42 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimit
 
     Returns _PavementLimits
     """
-    whole = np.rint(change).astype(np.int64)
+    change_cell = np.rint(change).astype(np.int64)
     # cells along the edge, so that rows can be averaged where it bends away from the reference line
-    at = whole[:, None] + np.arange(-SURFACE.road_cells - SURFACE.inner_cells, SURFACE.outer_cells + SURFACE.cells_outside)
-    there = (at >= 0) & (at < rows.height.shape[1])
-    height, rough, brightness, scatter, count = (np.where(there, np.take_along_axis(values, np.clip(at, 0, values.shape[1] - 1), 1), np.nan)
+    cells = change_cell[:, None] + np.arange(-SURFACE.road_cells - SURFACE.inner_cells, SURFACE.outer_cells + SURFACE.cells_outside)
+    inside_profile = (cells >= 0) & (cells < rows.height.shape[1])
+    height, rough, brightness, scatter, count = (np.where(inside_profile,
+                                                          np.take_along_axis(values, np.clip(cells, 0, values.shape[1] - 1), 1), np.nan)
                                                  for values in (rows.height, rows.rough, rows.brightness, rows.scatter, rows.count))
-    measured, known = np.isfinite(height), _added(np.isfinite(height), SURFACE.averaged_rows)
-    seen = _added(np.nan_to_num(count), SURFACE.averaged_rows)
+    measured, measured_rows = np.isfinite(height), _added(np.isfinite(height), SURFACE.averaged_rows)
+    coverage = _added(np.nan_to_num(count), SURFACE.averaged_rows)
     height, rough, brightness, scatter = (_around(values) for values in (height, rough, brightness, scatter))
     share = known_median((scatter / np.maximum(brightness, 1.0))[:, :SURFACE.road_cells], 1)[:, None]
-    off = _unlike_road(height, np.log(np.maximum(rough, 1e-4)), np.log(np.maximum(brightness, 1.0)), share, seen, at[:, 0])
-    own = _added(measured & np.isfinite(off), SURFACE.own_rows)
-    weight = np.minimum(known / SURFACE.min_known_rows, 1.0)
+    off = _unlike_road(height, np.log(np.maximum(rough, 1e-4)), np.log(np.maximum(brightness, 1.0)), share, coverage, cells[:, 0])
+    own_rows = _added(measured & np.isfinite(off), SURFACE.own_rows)
+    weight = np.minimum(measured_rows / SURFACE.min_known_rows, 1.0)
     costs = weight * np.nan_to_num(np.clip(off, 0.0, SURFACE.max_sigmas) ** 2 - SURFACE.other_sigmas ** 2) / 2
     # cell by cell outward, the cost of counting all cells before it as road
     total = np.concatenate([np.zeros((len(costs), 1)), np.cumsum(costs[:, SURFACE.road_cells:-SURFACE.cells_outside], axis=1)], axis=1)
-    limit = _along(total, whole)
-    beside = SURFACE.road_cells + np.arange(-SURFACE.cells_inside, SURFACE.cells_outside)
-    beside = np.clip(limit, 0, SURFACE.inner_cells + SURFACE.outer_cells)[:, None] + beside
+    limit = _along(total, change_cell)
+    window = SURFACE.road_cells + np.arange(-SURFACE.cells_inside, SURFACE.cells_outside)
+    window = np.clip(limit, 0, SURFACE.inner_cells + SURFACE.outer_cells)[:, None] + window
     with np.errstate(invalid="ignore"):
         ground = np.abs(height) < SURFACE.max_ground_height
-    costs, known, own, ground = (np.take_along_axis(values, beside, 1) for values in (np.where(ground, costs, 0.0), known, own, ground))
+    costs, measured_rows, own_rows, ground = (np.take_along_axis(values, window, 1)
+                                              for values in (np.where(ground, costs, 0.0), measured_rows, own_rows, ground))
     inside, outside = slice(SURFACE.cells_inside), slice(SURFACE.cells_inside, None)
     # far away only every third cell may hold a scan line
-    usual = known[:, inside].mean(1) / (2 * SURFACE.averaged_rows + 1)
-    hidden = (own[:, outside].mean(1) / (2 * SURFACE.own_rows + 1) < SURFACE.min_measured_share * usual) | (usual == 0.0)
+    usual = measured_rows[:, inside].mean(1) / (2 * SURFACE.averaged_rows + 1)
+    hidden = (own_rows[:, outside].mean(1) / (2 * SURFACE.own_rows + 1) < SURFACE.min_measured_share * usual) | (usual == 0.0)
     costs_inside, costs_outside = costs[:, inside].sum(1), costs[:, outside].sum(1)
-    flat, seen = ground[:, outside].mean(1), (known[:, outside] > 0).mean(1)
-    goes_on = (flat >= SURFACE.min_ground_share * seen) & (seen >= SURFACE.min_ground_seen * usual)
+    flat, coverage = ground[:, outside].mean(1), (measured_rows[:, outside] > 0).mean(1)
+    goes_on = (flat >= SURFACE.min_ground_share * coverage) & (coverage >= SURFACE.min_ground_seen * usual)
     likely = (costs_inside < 0.0) & (costs_outside > 0.0) & ~hidden & goes_on
     shown = likely & (costs_inside <= -SURFACE.shown_cost) & (costs_outside >= SURFACE.shown_cost * usual)
-    place, gap = _between_known(limit + SURFACE.road_cells, weight)
-    place = place + _mixed(limit + SURFACE.road_cells, off, weight)
-    return _PavementLimits(place - SURFACE.road_cells - SURFACE.inner_cells + change, gap, shown, likely, hidden)
+    cell, gap = _between_known(limit + SURFACE.road_cells, weight)
+    cell = cell + _mixed(limit + SURFACE.road_cells, off, weight)
+    return _PavementLimits(cell - SURFACE.road_cells - SURFACE.inner_cells + change, gap, shown, likely, hidden)
 
 
 def _between_known(limit, weight):
@@ -92,16 +94,16 @@ def _between_known(limit, weight):
     counts = weight > 0
     before = np.where(counts & (columns < limit[:, None]), columns, -1).max(1)
     behind = np.where(counts & (columns >= limit[:, None]), columns, len(columns)).min(1)
-    known = (before >= 0) & (behind < len(columns))
-    return np.where(known, (before + 1 + behind) / 2, limit), np.where(known, behind - before, 1.0)
+    enclosed = (before >= 0) & (behind < len(columns))
+    return np.where(enclosed, (before + 1 + behind) / 2, limit), np.where(enclosed, behind - before, 1.0)
 
 
 def _mixed(limit, off, weight):
     """(P,) cells by which a limit lies farther out than the cells tell: those about it hold road and other ground, and look like a mixture."""
-    about = np.clip(limit[:, None] + np.arange(-SURFACE.mixed_cells, 2), 0, off.shape[1] - 1)
-    off, every_cell = np.take_along_axis(off, about, 1), (np.take_along_axis(weight, about, 1) > 0).all(1)
-    other = np.clip(off[:, :-1] / np.maximum(off[:, -1:], SURFACE.other_sigmas), 0.0, 1.0)
-    return np.where(every_cell & (off[:, -1] > SURFACE.other_sigmas), 1.0 - np.nan_to_num(other).sum(1), 0.0)
+    window = np.clip(limit[:, None] + np.arange(-SURFACE.mixed_cells, 2), 0, off.shape[1] - 1)
+    off, every_cell = np.take_along_axis(off, window, 1), (np.take_along_axis(weight, window, 1) > 0).all(1)
+    shares = np.clip(off[:, :-1] / np.maximum(off[:, -1:], SURFACE.other_sigmas), 0.0, 1.0)
+    return np.where(every_cell & (off[:, -1] > SURFACE.other_sigmas), 1.0 - np.nan_to_num(shares).sum(1), 0.0)
 
 
 def _unlike_road(height, rough, brightness, scatter, seen, first):
@@ -144,16 +146,16 @@ def _darker_patch(values, sigma, first):
 
     values : (P, K) logarithms of brightness, NaN at paint; `sigma` : (P, K) of single cells; `first` : (P,) the first cell of each row
     """
-    about = np.lib.stride_tricks.sliding_window_view(values[:, :SURFACE.road_cells], 2 * SURFACE.patch_edge_cells, axis=1)
-    inner, outer = about[..., :SURFACE.patch_edge_cells], about[..., SURFACE.patch_edge_cells:]
+    windows = np.lib.stride_tricks.sliding_window_view(values[:, :SURFACE.road_cells], 2 * SURFACE.patch_edge_cells, axis=1)
+    inner, outer = windows[..., :SURFACE.patch_edge_cells], windows[..., SURFACE.patch_edge_cells:]
     change = known_median(outer, 2) - known_median(inner, 2)
     # what it loses over as many cells elsewhere is due to range and angle
     change = change - known_median(change, 1)[:, None]
     columns = (first - first.min())[:, None] + np.arange(change.shape[1])
-    along, seen = np.zeros((2, len(change), columns.max() + 1))
+    along, measured = np.zeros((2, len(change), columns.max() + 1))
     np.put_along_axis(along, columns, np.nan_to_num(change), 1)
-    np.put_along_axis(seen, columns, np.isfinite(change).astype(float), 1)
-    usual = _added(along, SURFACE.patch_rows) / np.maximum(_added(seen, SURFACE.patch_rows), 1.0)
+    np.put_along_axis(measured, columns, np.isfinite(change).astype(float), 1)
+    usual = _added(along, SURFACE.patch_rows) / np.maximum(_added(measured, SURFACE.patch_rows), 1.0)
     change = change - np.take_along_axis(usual, columns, 1)
     least = SURFACE.patch_edge_sigmas * known_median(sigma[:, :SURFACE.road_cells], 1)[:, None]
     sure = (np.isfinite(inner).sum(2) > 1) & (np.isfinite(outer).sum(2) > 1) & (change < -least)
@@ -211,8 +213,8 @@ def _painted(brightness, sigma):
     """(P, K) bool, cells in or beside a painted line: brighter than the cells on both sides of it."""
     padded = np.pad(brightness, ((0, 0), (max(SURFACE.line_cells),) * 2), constant_values=np.nan)
     columns = max(SURFACE.line_cells) + np.arange(brightness.shape[1])
-    one, other = (brightness - np.fmin.reduce([padded[:, columns + sign * k] for k in SURFACE.line_cells]) for sign in (-1, 1))
-    bright = np.minimum(one, other) > np.maximum(SURFACE.line_sigmas * sigma, SURFACE.paint_share * np.maximum(one, other))
+    inward, outward = (brightness - np.fmin.reduce([padded[:, columns + sign * k] for k in SURFACE.line_cells]) for sign in (-1, 1))
+    bright = np.minimum(inward, outward) > np.maximum(SURFACE.line_sigmas * sigma, SURFACE.paint_share * np.maximum(inward, outward))
     bright = np.pad(bright, ((0, 0), (1, 1)))
     # a line covers the cells beside it in part
     return bright[:, :-2] | bright[:, 1:-1] | bright[:, 2:]

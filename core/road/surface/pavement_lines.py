@@ -64,16 +64,16 @@ def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edge
 
     Returns a list of EdgePiece, along the road, side by side
     """
-    found: list[EdgePiece] = []
+    result: list[EdgePiece] = []
     stations = carriageway.cells.stations
-    there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
+    has_road = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
     curbs = edge_offsets(edges, road, stations)
     curb_lines = shapely.STRtree(shapely.force_2d(edges.on_map(frame)[edges.of_curb & (edges.status == "measured")]))
     for side, grown in carriageway.grown.items():
         curb = curbs[side][0]
-        free = there & np.isnan(curb)
+        free = has_road & np.isnan(curb)
         # beside a curb that goes on from it the edge is shown, too
-        shown = grown.shown & (free | there & (np.abs(np.nan_to_num(curb, nan=np.inf) - grown.offset) <= SURFACE.max_row_jump))
+        shown = grown.shown & (free | has_road & (np.abs(np.nan_to_num(curb, nan=np.inf) - grown.offset) <= SURFACE.max_row_jump))
         agreeing = uniform_filter1d(shown.astype(float), int(SURFACE.agreeing_length / SURFACE.row_length) | 1, mode="constant") > 0.5
         places = np.array(frame.to_map(road, stations, grown.offset))
 
@@ -84,9 +84,9 @@ def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edge
 
         lines = _clear_of_curbs(lines_of, lambda runs: _drawn(frame, road, side, carriageway, grown, runs), free, stations, curb_lines)
         for pieces in lines:
-            number = chain + len(found)
-            found += [replace(piece, chain=number) for piece in pieces]
-    return found
+            number = chain + len(result)
+            result += [replace(piece, chain=number) for piece in pieces]
+    return result
 
 
 def _clear_of_curbs(lines_of, drawn, rows, stations, curb_lines):
@@ -94,20 +94,20 @@ def _clear_of_curbs(lines_of, drawn, rows, stations, curb_lines):
 
     lines_of : function, (R,) bool rows -> runs of lines; drawn : function, runs -> pieces
     """
-    known: dict[tuple[tuple[int, int], ...], tuple[list[EdgePiece], np.ndarray]] = {}   # lines drawn so far, and where they cross curbs
+    drawn_lines: dict[tuple[tuple[int, int], ...], tuple[list[EdgePiece], np.ndarray]] = {}   # lines drawn so far, and where they cross curbs
     while True:
         lines = lines_of(rows)
         for runs in lines:
-            if runs not in known:
+            if runs not in drawn_lines:
                 check_cancelled()
                 pieces = drawn(runs)
-                known[runs] = pieces, np.concatenate([_crossings(piece, curb_lines) for piece in pieces])
+                drawn_lines[runs] = pieces, np.concatenate([_crossings(piece, curb_lines) for piece in pieces])
         # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
-        more = np.concatenate([np.empty(0), *(known[runs][1] for runs in lines)])
-        taken = rows & (_distance(stations, more) <= SURFACE.agreeing_length)
-        if not taken.any():
-            return [known[runs][0] for runs in lines]
-        rows = rows & ~taken
+        crossings = np.concatenate([np.empty(0), *(drawn_lines[runs][1] for runs in lines)])
+        crossing = rows & (_distance(stations, crossings) <= SURFACE.agreeing_length)
+        if not crossing.any():
+            return [drawn_lines[runs][0] for runs in lines]
+        rows = rows & ~crossing
 
 
 def _distance(places, others):
@@ -126,8 +126,8 @@ def _crossings(piece, curb_lines):
     points = shapely.points(shapely.get_coordinates(shapely.intersection(line, met)))
     along = shapely.line_locate_point(line, points)
     inside = (along > SURFACE.meeting_length) & (along < line.length - SURFACE.meeting_length)
-    away = np.r_[0.0, np.cumsum(np.hypot(*np.diff(piece.vertices[:, :2], axis=0).T))]
-    return np.interp(along[inside], away, np.linspace(piece.station, piece.end, len(away)))
+    distance = np.r_[0.0, np.cumsum(np.hypot(*np.diff(piece.vertices[:, :2], axis=0).T))]
+    return np.interp(along[inside], distance, np.linspace(piece.station, piece.end, len(distance)))
 
 
 def _lines(shown, confirmed, likely, possible, offset, places, max_gap):
@@ -146,16 +146,17 @@ def _lines(shown, confirmed, likely, possible, offset, places, max_gap):
             lines[-1][-1] = (last[0], run[1])
         else:
             lines[-1].append(run)
-    seen = np.array(_runs(confirmed, broken)).reshape(-1, 2)
-    return [line for line in lines if _long_enough(line, seen)]
+    confirmed_runs = np.array(_runs(confirmed, broken)).reshape(-1, 2)
+    return [line for line in lines if _long_enough(line, confirmed_runs)]
 
 
 def _long_enough(line, seen):
     """Are the runs of a line long enough, and with the seen runs (K, 2) about them?"""
     first, end = line[0][0], line[-1][1]
     begin, stop = seen[np.searchsorted(seen[:, 0], first, "right") - 1, 0], seen[np.searchsorted(seen[:, 1], end), 1]
-    own = sum(b - a for a, b in line)
-    return own * SURFACE.row_length >= MIN_OWN_LENGTH and (own + first - begin + stop - end) * SURFACE.row_length >= SURFACE.min_pavement_length
+    row_count = sum(b - a for a, b in line)
+    return row_count * SURFACE.row_length >= MIN_OWN_LENGTH \
+        and (row_count + first - begin + stop - end) * SURFACE.row_length >= SURFACE.min_pavement_length
 
 
 def _runs(rows, broken):
@@ -194,7 +195,7 @@ def _drawn(frame, road, side, carriageway, grown, runs):
         # a single row between two gaps is a place where bridges meet, without a length to draw
         if b - a > 1:
             pieces.append(("measured", stations[a], stations[b - 1]))
-    found = []
+    result = []
     for status, start, end in pieces:
         s = np.linspace(start, end, max(int(np.ceil((end - start) / EDGE.edge_vertex_spacing)), 1) + 1)
         d = splev(s, curve) if status == "measured" else np.interp(s, [start, end], splev([start, end], curve))
@@ -202,9 +203,9 @@ def _drawn(frame, road, side, carriageway, grown, runs):
         near = stretch_of(stations[rows], start, end)
         passes = frame.passes_sigma(road, s)
         rmse = float(np.sqrt(np.mean(residual[near] ** 2)))
-        found.append(EdgePiece(vertices, road, side, status, -1, float(start), float(end), rmse=rmse,
-                               what="pavement", sigma=float(np.sqrt(np.mean(sigma[near] ** 2) + rmse**2 + np.mean(passes**2)))))
-    return found
+        result.append(EdgePiece(vertices, road, side, status, -1, float(start), float(end), rmse=rmse,
+                                what="pavement", sigma=float(np.sqrt(np.mean(sigma[near] ** 2) + rmse**2 + np.mean(passes**2)))))
+    return result
 
 
 def _height(carriageway, s, d):

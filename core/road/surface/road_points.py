@@ -42,18 +42,18 @@ def _squares(*points):
     size = np.int32(round(SURFACE.obstacle_square / COORDINATE_SCALE))
     low = [min(int(records[name].min()) for records in points) // size - 1 for name in ("s", "d")]
     shape = tuple(max(int(records[name].max()) for records in points) // size - first + 2 for name, first in zip(("s", "d"), low))
-    found = []
+    numbers = []
     for records in points:
-        place = np.empty(len(records), np.int32)
-        for first in range(0, len(place), SURFACE.ground_points_per_batch):
-            run = place[first:first + SURFACE.ground_points_per_batch]
+        number = np.empty(len(records), np.int32)
+        for first in range(0, len(number), SURFACE.ground_points_per_batch):
+            run = number[first:first + SURFACE.ground_points_per_batch]
             np.floor_divide(records["s"][first:first + SURFACE.ground_points_per_batch], size, out=run)
             run -= np.int32(low[0])
             run *= np.int32(shape[1])
             run += records["d"][first:first + SURFACE.ground_points_per_batch] // size
             run -= np.int32(low[1])
-        found.append(place)
-    return *found, shape
+        numbers.append(number)
+    return *numbers, shape
 
 @dataclass(frozen=True)
 class _SurfaceOfSection:
@@ -81,14 +81,14 @@ def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: fl
     section_length : m
     """
     cells, count = carriageway.cells, len(carriageway.height)
-    beside = SURFACE.rows_beside * SURFACE.row_length
-    low, high = stretch[1] * section_length - beside, stretch[2] * section_length + beside
+    margin = SURFACE.rows_beside * SURFACE.row_length
+    low, high = stretch[1] * section_length - margin, stretch[2] * section_length + margin
     a = int(np.clip(np.floor(low / SURFACE.row_length) - cells.first_row, 0, count - 1))
     b = int(np.clip(np.ceil(high / SURFACE.row_length) - cells.first_row, a + 1, count))
     none = cells.height[:0]
-    here = replace(cells, first_row=cells.first_row + a, height=cells.height[a:b], rough=none, brightness=none, scatter=none, count=none)
+    cells_of_stretch = replace(cells, first_row=cells.first_row + a, height=cells.height[a:b], rough=none, brightness=none, scatter=none, count=none)
     rows = {name: getattr(carriageway, name)[a:b] for name in ("height", "ground", "right", "left", "right_bounded", "left_bounded")}
-    return replace(carriageway, cells=here, grown={}, **rows)
+    return replace(carriageway, cells=cells_of_stretch, grown={}, **rows)
 
 
 def surface_points(survey: Survey, item: tuple[Stretch, Carriageway]) -> list[_SurfaceOfSection]:
@@ -106,16 +106,17 @@ def _points_of_section(survey, road, number, carriageway):
     # an obstacle beside a point may lie in the next section
     first_square, last_square = np.floor(start / SURFACE.obstacle_square - 1.01), np.ceil(end / SURFACE.obstacle_square + 1.01)
     points = survey.window(road, first_square * SURFACE.obstacle_square, last_square * SURFACE.obstacle_square)
-    found = points_on_road(points, carriageway)
-    beneath = covered_by_obstacles(points[found.surface], points[found.above])
+    on_road = points_on_road(points, carriageway)
+    beneath = covered_by_obstacles(points[on_road.surface], points[on_road.above])
     # points are sorted by station
     stations = points.records["s"]
     first, last = np.searchsorted(stations, np.array([store.first_unit(number), store.first_unit(number + 1)], stations.dtype))
-    own = slice(*np.searchsorted(found.surface, [first, last]))
-    rows, first_row, count = found.surface[own], carriageway.cells.first_row, len(carriageway.height)
+    of_section = slice(*np.searchsorted(on_road.surface, [first, last]))
+    rows, first_row, count = on_road.surface[of_section], carriageway.cells.first_row, len(carriageway.height)
     row = np.floor(stations.take(rows) * COORDINATE_SCALE / SURFACE.row_length).astype(np.int64) - first_row
     per_row = np.bincount(np.clip(row, 0, count - 1), minlength=count)
-    return _SurfaceOfSection(number, packed_mask(rows - first), found.half_width[own], beneath[own].astype(np.uint8), first_row, per_row)
+    return _SurfaceOfSection(number, packed_mask(rows - first), on_road.half_width[of_section], beneath[of_section].astype(np.uint8),
+                             first_row, per_row)
 
 
 @dataclass(frozen=True)
@@ -148,11 +149,11 @@ def points_on_road(points: Points, carriageway: Carriageway) -> _OnRoad:
     records = points.records
     if not len(records):
         return _OnRoad(np.empty(0, np.intp), np.empty(0, np.uint16), np.empty(0, np.intp))
-    here = _SurfaceTables(carriageway, records["s"], records["d"])
+    tables = _SurfaceTables(carriageway, records["s"], records["d"])
     parts = []
     for first in range(0, len(records), SURFACE.ground_points_per_batch):
-        found = here.points(*(records[name][first:first + SURFACE.ground_points_per_batch] for name in ("s", "d", "z")))
-        parts.append((found[0] + first, found[1], found[2] + first))
+        indices = tables.points(*(records[name][first:first + SURFACE.ground_points_per_batch] for name in ("s", "d", "z")))
+        parts.append((indices[0] + first, indices[1], indices[2] + first))
     return _OnRoad(*(np.concatenate(part) for part in zip(*parts)))
 
 
@@ -185,15 +186,15 @@ class _SurfaceTables:
         cell, v = _steps(d, self.d0, SURFACE.column_width)
         row *= np.int32(self.columns)
         cell += row
-        rest, across, along, twist = (table.take(cell, mode="clip") for table in self.tables)
+        surface, across, along, twist = (table.take(cell, mode="clip") for table in self.tables)
         twist *= v
         along += twist
         along *= u
         across *= v
-        rest += across
-        rest += along
+        surface += across
+        surface += along
         rise = z - self.corner.take(cell, mode="clip")
-        rise = rise - rest
+        rise = rise - surface
         d = d.astype(np.float32)
         inside = d < left
         inside &= d > right
@@ -214,24 +215,24 @@ def _middles(units, size, first, count):
 def _steps(units, first, size):
     """Number of the step of `size` metres that each place lies in, from `first`, and the share of it, (N,) int32 and float32."""
     size = np.int32(round(size / COORDINATE_SCALE))
-    place = units - np.int32(first)
-    step = place // size
-    place -= step * size
-    return step, place * np.float32(1.0 / size)
+    distance = units - np.int32(first)
+    step = distance // size
+    distance -= step * size
+    return step, distance * np.float32(1.0 / size)
 
 
 def _line(start, slope, half, u):
     """Values in half rows, (N,) float32."""
-    found = slope.take(half, mode="clip")
-    found *= u
-    found += start.take(half, mode="clip")
-    return found
+    values = slope.take(half, mode="clip")
+    values *= u
+    values += start.take(half, mode="clip")
+    return values
 
 
 def _half_rows(limit):
     """(start, slope) of a limit in each half row, (2 (R - 1),) float32 each: start + slope * u with u from 0 to 1 between rows."""
     before, after = limit[:-1], limit[1:]
-    whole = np.isfinite(before) & np.isfinite(after)
-    slope = np.where(whole, after - before, 0.0)
-    start = np.stack([before, np.where(whole, before, after)], axis=1)
+    complete = np.isfinite(before) & np.isfinite(after)
+    slope = np.where(complete, after - before, 0.0)
+    start = np.stack([before, np.where(complete, before, after)], axis=1)
     return start.ravel().astype(np.float32), np.repeat(slope, 2).astype(np.float32)

@@ -68,11 +68,11 @@ def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_r
 
     Returns a list of rows of a SurfaceOutlines: road, status, station, end, area, points and outline
     """
-    found = []
+    result = []
     cells = carriageway.cells
-    there = _as_far_as_measured(np.isfinite(carriageway.left) & np.isfinite(carriageway.right), points_per_row)
+    has_road = _as_far_as_measured(np.isfinite(carriageway.left) & np.isfinite(carriageway.right), points_per_row)
     measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(SURFACE.min_surface_status_length / SURFACE.row_length))
-    kind = np.where(there, np.where(measured, 2, 1), 0)
+    kind = np.where(has_road, np.where(measured, 2, 1), 0)
     cuts = np.r_[0, np.flatnonzero(np.diff(kind)) + 1, len(kind)]
     for a, b in zip(cuts[:-1], cuts[1:]):
         if not kind[a]:
@@ -85,8 +85,8 @@ def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_r
         local = shapely.transform(polygon, lambda places: places - frame.origin, include_z=True)
         station, end = (round(float(cells.stations[row]), 3) for row in rows[[0, -1]])
         status, area = "measured" if kind[a] == 2 else "grown", round(float(polygon.area), 3)
-        found.append((road, status, station, end, area, int(points_per_row[a:b].sum()), local))
-    return found
+        result.append((road, status, station, end, area, int(points_per_row[a:b].sum()), local))
+    return result
 
 
 def _polygon(frame, road, carriageway, rows):
@@ -101,15 +101,15 @@ def _polygon(frame, road, carriageway, rows):
 
 def _as_far_as_measured(there, points):
     """The rows of road from the first to the last one with points: the limits of a few rows before and behind them are known as well."""
-    seen = there.copy()
+    measured = there.copy()
     cuts = np.r_[0, np.flatnonzero(np.diff(there.astype(int))) + 1, len(there)]
     for a, b in zip(cuts[:-1], cuts[1:]):
-        held = np.flatnonzero(points[a:b])
+        filled = np.flatnonzero(points[a:b])
         if there[a]:
-            seen[a:b] = False
-            if len(held):
-                seen[a + held[0]:a + held[-1] + 1] = True
-    return seen
+            measured[a:b] = False
+            if len(filled):
+                measured[a + filled[0]:a + filled[-1] + 1] = True
+    return measured
 
 
 def _without_short_runs(mask, shortest):

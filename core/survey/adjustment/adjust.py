@@ -46,13 +46,13 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
     compared: list[PassOffsets] = []
     for k, road in enumerate(roads):
         offsets = pass_offsets(survey, road, progress.part(0.5 * k / len(roads), 0.5 * (k + 1) / len(roads)))
-        apart = _disagree(offsets)
+        disagree = _disagree(offsets)
         if (sigma := sigma_of_passes(offsets)) is not None:
             survey.frame.pass_sigma[road] = sigma
-        found = solve_corrections(offsets) if apart else {}
-        moves.update(found)
+        solved = solve_corrections(offsets) if disagree else {}
+        moves.update(solved)
         compared += offsets
-        _report_offsets(road, offsets, found, progress)
+        _report_offsets(road, offsets, solved, progress)
     if moves:
         corrections = continued_corrections(survey.frame, _map_corrections(survey.frame, moves), compared)
         for road in survey.store.roads():
@@ -73,14 +73,14 @@ def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray,
     rows = np.arange(count - 1)
     step = sparse.coo_matrix((np.r_[-np.ones(count - 1), np.ones(count - 1)], (np.r_[rows, rows], np.r_[rows, rows + 1])), (count - 1, count))
     prior = sparse.kron(sparse.identity(len(numbers)), step.T @ step / ADJUST.drift_change_sigma**2 + sparse.identity(count) / ADJUST.drift_sigma**2)
-    found = np.zeros((len(numbers), len(AXES), count))
+    corrections = np.zeros((len(numbers), len(AXES), count))
     for k, axis in enumerate(AXES):
         places, measured = [], []
         for pair in offsets:
-            known = np.flatnonzero(np.isfinite(getattr(pair, axis)))
-            at = np.rint((pair.stations[known] - first) / REGISTER.correction_step).astype(np.int64)
-            places.append(np.c_[numbers.index(pair.one) * count + at, numbers.index(pair.other) * count + at])
-            measured.append(getattr(pair, axis)[known])
+            windows = np.flatnonzero(np.isfinite(getattr(pair, axis)))
+            nodes = np.rint((pair.stations[windows] - first) / REGISTER.correction_step).astype(np.int64)
+            places.append(np.c_[numbers.index(pair.one) * count + nodes, numbers.index(pair.other) * count + nodes])
+            measured.append(getattr(pair, axis)[windows])
         columns, values = np.concatenate(places), np.concatenate(measured)
         of = np.repeat(np.arange(len(values)), 2)
         between = sparse.csr_matrix((np.tile([-1.0, 1.0], len(values)), (of, columns.ravel())), (len(values), len(numbers) * count))
@@ -89,8 +89,8 @@ def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray,
             precision = sparse.diags(weight / ADJUST.offset_sigma**2)
             u = spsolve((between.T @ precision @ between + prior).tocsc(), between.T @ (precision @ values))
             weight = 1.0 / (1.0 + ((between @ u - values) / ADJUST.outlier_scale) ** 2)
-        found[:, k] = u.reshape(len(numbers), count)
-    return {number: (stations, found[k]) for k, number in enumerate(numbers)}
+        corrections[:, k] = u.reshape(len(numbers), count)
+    return {number: (stations, corrections[k]) for k, number in enumerate(numbers)}
 
 
 def _separations(offsets):
@@ -109,15 +109,15 @@ def _disagree(offsets):
 def _report_offsets(road, offsets, found, progress):
     """Log the offsets, and warn of places where passes still differ after the corrections found."""
     if found:
-        apart = _separations(offsets)
-        plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in apart)
-        said = f"Road {road}: its passes lay {plan} beside and {up} above each other"
-        if max((float(v.max()) for v in apart if len(v)), default=0.0) > REGISTER.max_offset:
-            progress.warn(f"{said}, which is more than navigation drifts within a survey. Drives of different years or datums lie so far apart. They "
-                          "were laid on each other, each moved by its share. Nothing shows which of them is right, so the map may be off by half of "
-                          "that distance. Process the files of each drive by itself, or measure control points.")
+        separations = _separations(offsets)
+        plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in separations)
+        message = f"Road {road}: its passes lay {plan} beside and {up} above each other"
+        if max((float(v.max()) for v in separations if len(v)), default=0.0) > REGISTER.max_offset:
+            progress.warn(f"{message}, which is more than navigation drifts within a survey. Drives of different years or datums lie so far apart. "
+                          "They were laid on each other, each moved by its share. Nothing shows which of them is right, so the map may be off by "
+                          "half of that distance. Process the files of each drive by itself, or measure control points.")
         else:
-            progress.info(f"{said}, as navigation drifts between two drives. They were laid on each other, each moved by its share.")
+            progress.info(f"{message}, as navigation drifts between two drives. They were laid on each other, each moved by its share.")
     elif all(len(v) for v in _separations(offsets)):
         plan, up = (100 * np.percentile(v, 90) for v in _separations(offsets))
         progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
@@ -151,10 +151,10 @@ def _moved_points(frame, moves, records):
     numbers = records["pass_number"]
     for number in np.unique(numbers).tolist():
         if number in moves.by_pass:
-            own = np.flatnonzero(numbers == number)
-            change = _coordinate_changes(frame, moves, number, *(records[name].take(own) * COORDINATE_SCALE for name in ("s", "d")))
+            rows = np.flatnonzero(numbers == number)
+            change = _coordinate_changes(frame, moves, number, *(records[name].take(rows) * COORDINATE_SCALE for name in ("s", "d")))
             for name, metres in zip(MOVED_COLUMNS, change):
-                moved[name][own] += to_units(metres)
+                moved[name][rows] += to_units(metres)
     return records.with_columns(**moved)
 
 
@@ -210,12 +210,12 @@ def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: li
     is also the sigma of where they meet; `frame.pass_sigma` of roads without one says so. Passes that were compared and found to lie as the others
     do are not moved.
     """
-    known = {number for pair in compared for number in (pair.one, pair.other)}
+    compared_passes = {number for pair in compared for number in (pair.one, pair.other)}
     by_pass = dict(moves.by_pass)
     passes = sorted(frame.passes, key=lambda p: float(p.time[0]))
-    while found := _beside_moved(passes, by_pass, known):
-        by_pass.update(found)
-        for number in found:
+    while continued := _beside_moved(passes, by_pass, compared_passes):
+        by_pass.update(continued)
+        for number in continued:
             across = _moved_across(frame, PassCorrections(by_pass), frame.passes[number])
             frame.pass_sigma.setdefault(frame.passes[number].road, SigmaAlong.everywhere(across))
     return PassCorrections(by_pass)
@@ -223,13 +223,13 @@ def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: li
 
 def _beside_moved(passes, by_pass, known):
     """Corrections of the passes, in order of time, that touch one of those moved, and are neither moved nor known to lie right."""
-    found = {}
+    continued = {}
     for before, p, after in zip([None, *passes[:-1]], passes, [*passes[1:], None]):
         if p.number not in by_pass and p.number not in known:
             ends = _touching(before, p, by_pass), _touching(p, after, by_pass)
             if any(ends):
-                found[p.number] = _led_on(PassCorrections(by_pass), p, *ends)
-    return found
+                continued[p.number] = _led_on(PassCorrections(by_pass), p, *ends)
+    return continued
 
 
 def _moved_across(frame, moves, p):
@@ -244,12 +244,12 @@ def _touching(first: Pass | None, then: Pass | None, by_pass: dict) -> Pass | No
     """The one of two passes that was moved, if they touch in time."""
     if first is None or then is None or not 0.0 <= then.time[0] - first.time[-1] <= ADJUST.max_seam:
         return None
-    return next((one for one in (first, then) if one.number in by_pass), None)
+    return next((p for p in (first, then) if p.number in by_pass), None)
 
 
 def _led_on(moves, p, before, after):
     """(station of the first node, (3, N) int16 in 0.1 mm) of a pass from the ends of those before and after it, either of them None."""
-    ends = [np.array(moves.metres(one.number, one.s[[row]])) for one, row in ((before, -1), (after, 0)) if one is not None]
+    ends = [np.array(moves.metres(neighbour.number, neighbour.s[[row]])) for neighbour, row in ((before, -1), (after, 0)) if neighbour is not None]
     first, last = p.span
     nodes = first + REGISTER.correction_step * np.arange(int(np.ceil((last - first) / REGISTER.correction_step)) + 1)
     share = np.interp(nodes, [first, last], [0.0, 1.0] if p.s[-1] > p.s[0] else [1.0, 0.0])
@@ -288,37 +288,37 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
     for p in passes:
         if p.number not in corrections.by_pass:
             continue
-        known = np.concatenate([pair.stations[np.isfinite(pair.left) | np.isfinite(pair.along)] for pair in offsets
-                                if p.number in (pair.one, pair.other)] or [np.empty(0)])
+        compared = np.concatenate([pair.stations[np.isfinite(pair.left) | np.isfinite(pair.along)] for pair in offsets
+                                   if p.number in (pair.one, pair.other)] or [np.empty(0)])
         first, last = np.floor(np.array(p.span) / WINDOW_LENGTH).astype(int)
         stations = (np.arange(first, last + 1) + 0.5) * WINDOW_LENGTH
-        away = np.abs(stations[:, None] - known).min(axis=1, initial=np.inf)
+        distance = np.abs(stations[:, None] - compared).min(axis=1, initial=np.inf)
         moved = np.hypot(*corrections.metres(p.number, stations)[:2])
-        alone = (away > REGISTER.pooling_sigma) & (moved > ADJUST.max_remaining)
-        for station, metres in zip(stations[alone].tolist(), moved[alone].tolist()):
+        uncompared = (distance > REGISTER.pooling_sigma) & (moved > ADJUST.max_remaining)
+        for station, metres in zip(stations[uncompared].tolist(), moved[uncompared].tolist()):
             places[station] = max(places.get(station, 0.0), metres)
     return _stretches_of(places)
 
 
 def _evened_out(stations, applied):
     """(N,) m of a jump that remain in the windows it lies between, as corrections change evenly from one to the next; 0 where there is none."""
-    found = np.zeros(len(stations))
+    remaining = np.zeros(len(stations))
     change = np.abs(np.diff(applied))
     for k in np.flatnonzero((change > ADJUST.max_change) & (np.diff(stations) < 1.5 * WINDOW_LENGTH)).tolist():
-        found[k:k + 2] = np.maximum(found[k:k + 2], change[k] / 2)
-    return found
+        remaining[k:k + 2] = np.maximum(remaining[k:k + 2], change[k] / 2)
+    return remaining
 
 
 def _stretches_of(places: dict[float, float]) -> list[tuple[float, float, float]]:
     """[(start, end, largest metres)] of {middle of a window: metres}, windows that touch in one; infinite ones apart from the others."""
-    found: list[tuple[float, float, float]] = []
+    stretches: list[tuple[float, float, float]] = []
     for station, metres in sorted(places.items()):
         start, end = station - WINDOW_LENGTH / 2, station + WINDOW_LENGTH / 2
-        if found and start <= found[-1][1] and np.isinf(metres) == np.isinf(found[-1][2]):
-            found[-1] = found[-1][0], end, max(metres, found[-1][2])
+        if stretches and start <= stretches[-1][1] and np.isinf(metres) == np.isinf(stretches[-1][2]):
+            stretches[-1] = stretches[-1][0], end, max(metres, stretches[-1][2])
         else:
-            found.append((start, end, metres))
-    return found
+            stretches.append((start, end, metres))
+    return stretches
 
 
 def _applied(pair, corrections, axis):
@@ -326,8 +326,8 @@ def _applied(pair, corrections, axis):
     if pair.one not in corrections:
         return np.zeros(len(pair.stations))
     row = ("along", "left", "up").index(axis)
-    one, other = (np.interp(pair.stations, stations, moved[row]) for stations, moved in (corrections[pair.one], corrections[pair.other]))
-    return other - one
+    first, second = (np.interp(pair.stations, stations, moved[row]) for stations, moved in (corrections[pair.one], corrections[pair.other]))
+    return second - first
 
 
 def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
@@ -384,20 +384,20 @@ def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
     """Tell how far roads of a Survey lie apart in height that run beside each other and share no pass, after its passes were adjusted."""
     for pair in roads_beside(survey.frame):
         up = ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))
-        found = pair._replace(up=np.array(list(up)))
-        said, warns = _message_of_carriageways(found)
-        (progress.warn if warns else progress.info)(said)
+        measured = pair._replace(up=np.array(list(up)))
+        message, warns = _message_of_carriageways(measured)
+        (progress.warn if warns else progress.info)(message)
 
 
 def roads_beside(frame: Any) -> list[Beside]:
     """Pairs of roads that run beside each other for `shortest_beside` and more on one level; `up` is not known yet."""
-    found = []
-    for one, other, s, place, offset, rise in _parallel(frame):
-        known = np.flatnonzero(np.abs(rise) < FRAME.level_separation)
-        if len(known) * REGISTER.correction_step >= ADJUST.shortest_beside:
-            way = np.sign(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known])))
-            found.append(Beside(one, other, s[known], place[known], -way * offset[known], np.full(len(known), np.nan)))
-    return found
+    pairs = []
+    for road, other_road, s, places, offset, rise in _parallel(frame):
+        rows = np.flatnonzero(np.abs(rise) < FRAME.level_separation)
+        if len(rows) * REGISTER.correction_step >= ADJUST.shortest_beside:
+            way = np.sign(np.cos(frame.road(road).heading(s[rows]) - frame.road(other_road).heading(places[rows])))
+            pairs.append(Beside(road, other_road, s[rows], places[rows], -way * offset[rows], np.full(len(rows), np.nan)))
+    return pairs
 
 
 def warnings_of_levels(frame: Any) -> list[str]:
@@ -405,21 +405,21 @@ def warnings_of_levels(frame: Any) -> list[str]:
 
     A bridge or a second deck climbs to its height somewhere, and roads on a slope lie farther apart.
     """
-    said = []
-    for one, other, s, _, offset, rise in _parallel(frame):
-        known = np.flatnonzero((np.abs(offset) < FRAME.same_carriageway) & (np.abs(rise) >= FRAME.level_separation))
-        length = min(np.ptp([p.span for p in frame.passes_of(road)]) for road in (one, other))
-        if len(known) * REGISTER.correction_step < max(ADJUST.shortest_beside, ADJUST.share_along * length):
+    messages = []
+    for road, other_road, s, _, offset, rise in _parallel(frame):
+        rows = np.flatnonzero((np.abs(offset) < FRAME.same_carriageway) & (np.abs(rise) >= FRAME.level_separation))
+        length = min(np.ptp([p.span for p in frame.passes_of(number)]) for number in (road, other_road))
+        if len(rows) * REGISTER.correction_step < max(ADJUST.shortest_beside, ADJUST.share_along * length):
             continue
-        middle = float(np.median(rise[known]))
-        if np.quantile(np.abs(rise[known] - middle), ADJUST.share_along) < ADJUST.even_rise:
-            first, last = s[known].min() - REGISTER.correction_step / 2, s[known].max() + REGISTER.correction_step / 2
-            said.append(
-                f"Roads {one} and {other} run along each other at stations {first:.0f} to {last:.0f} m of road {one}, and one lies "
+        middle = float(np.median(rise[rows]))
+        if np.quantile(np.abs(rise[rows] - middle), ADJUST.share_along) < ADJUST.even_rise:
+            first, last = s[rows].min() - REGISTER.correction_step / 2, s[rows].max() + REGISTER.correction_step / 2
+            messages.append(
+                f"Roads {road} and {other_road} run along each other at stations {first:.0f} to {last:.0f} m of road {road}, and one lies "
                 f"{abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two kinds (above the "
                 "ellipsoid and above sea level), and the map shows it twice. Bring the drives to one kind of heights, or process the files of each "
                 "drive by itself.")
-    return said
+    return messages
 
 
 def _parallel(frame):
@@ -427,16 +427,16 @@ def _parallel(frame):
     tracks = [shapely.linestrings(np.c_[p.x, p.y]) for p in frame.passes]
     near = shapely.STRtree(tracks).query(tracks, predicate="dwithin", distance=ADJUST.farthest_beside).T
     roads = np.array([p.road for p in frame.passes])
-    for one, other in sorted({(int(a), int(b)) for a, b in roads[near] if a < b}):
-        spans = np.array([p.span for p in frame.passes_of(one)])
+    for road, other_road in sorted({(int(a), int(b)) for a, b in roads[near] if a < b}):
+        spans = np.array([p.span for p in frame.passes_of(road)])
         step = REGISTER.correction_step
         s = np.arange(np.floor(spans.min() / step), np.ceil(spans.max() / step)) * step + step / 2
-        x, y = frame.road(one).to_map(s, np.zeros(len(s)))
-        place, offset = frame.road(other).locate(x, y, corridor=ADJUST.farthest_beside)
-        known = np.flatnonzero(np.isfinite(offset))
-        known = known[np.abs(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known]))) > ADJUST.least_parallel]
-        rise = frame.track_height(one, s[known]) - frame.track_height(other, place[known])
-        yield one, other, s[known], place[known], offset[known], rise
+        x, y = frame.road(road).to_map(s, np.zeros(len(s)))
+        places, offset = frame.road(other_road).locate(x, y, corridor=ADJUST.farthest_beside)
+        rows = np.flatnonzero(np.isfinite(offset))
+        rows = rows[np.abs(np.cos(frame.road(road).heading(s[rows]) - frame.road(other_road).heading(places[rows]))) > ADJUST.least_parallel]
+        rise = frame.track_height(road, s[rows]) - frame.track_height(other_road, places[rows])
+        yield road, other_road, s[rows], places[rows], offset[rows], rise
 
 
 def _height_apart(survey, pair, k):
@@ -447,10 +447,10 @@ def _height_apart(survey, pair, k):
         points = survey.window(number, station - 1.5 * half, station + 1.5 * half)
         between = np.flatnonzero(np.abs(np.abs(points.d) - 0.5 * abs(pair.apart[k])) < np.ptp(sides) / 2 + 1.0)
         s, d = road.locate(points.x[between], points.y[between], corridor=ADJUST.farthest_beside)
-        own = (np.abs(s - pair.stations[k]) < half) & (d > sides[0]) & (d < sides[1])
-        cells.append(_flat_cells(s[own] - pair.stations[k] + half, d[own] - sides[0], points.z[between[own]]))
-    (one, low), (other, high) = cells
-    _, a, b = np.intersect1d(one, other, return_indices=True)
+        inside = (np.abs(s - pair.stations[k]) < half) & (d > sides[0]) & (d < sides[1])
+        cells.append(_flat_cells(s[inside] - pair.stations[k] + half, d[inside] - sides[0], points.z[between[inside]]))
+    (low_cells, low), (high_cells, high) = cells
+    _, a, b = np.intersect1d(low_cells, high_cells, return_indices=True)
     return float(np.median(high[b] - low[a])) if len(a) >= ADJUST.min_flat_cells else np.nan
 
 
@@ -468,15 +468,16 @@ def _flat_cells(along, across, z):
 
 def _message_of_carriageways(pair: Beside) -> tuple[str, bool]:
     """What is said of two roads beside each other, and whether it is a warning."""
-    known = np.isfinite(pair.up)
-    far = known & (np.abs(pair.up) > ADJUST.max_height_apart)
-    where = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - REGISTER.correction_step / 2:.0f} to "
+    measured = np.isfinite(pair.up)
+    far = measured & (np.abs(pair.up) > ADJUST.max_height_apart)
+    intro = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - REGISTER.correction_step / 2:.0f} to "
              f"{pair.stations.max() + REGISTER.correction_step / 2:.0f} m, and no drive measured both")
     if far.any():
-        return (f"{where}. Their drives differ in height at "
+        return (f"{intro}. Their drives differ in height at "
                 f"{_named_places(_stretches_of(dict(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist()))), 'by up to {:.1f} cm')}. "
                 "They stay as they were measured, and nothing that both see shows how far they lie apart across: adjust the trajectories of the "
                 "drives to each other, or measure control points on both, if these centimetres matter.", True)
-    if not known.any():
-        return f"{where}: nothing that both see shows how far they lie apart.", False
-    return (f"{where}: in height they agree within {100 * np.abs(pair.up[known]).max():.1f} cm; how far they lie apart across is not known.", False)
+    if not measured.any():
+        return f"{intro}: nothing that both see shows how far they lie apart.", False
+    return (f"{intro}: in height they agree within {100 * np.abs(pair.up[measured]).max():.1f} cm; "
+            "how far they lie apart across is not known.", False)

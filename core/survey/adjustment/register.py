@@ -54,12 +54,12 @@ class PassCorrections:
 
     def units(self, records: Columns | np.ndarray) -> np.ndarray:
         """(3, N) int32 corrections of x, y and z of moved points (Columns or structured records), in units of 0.1 mm."""
-        numbers, found = records["pass_number"], np.zeros((3, len(records)), np.int32)
+        numbers, corrections = records["pass_number"], np.zeros((3, len(records)), np.int32)
         for number in np.unique(numbers).tolist():
             if number in self.by_pass:
-                own = np.flatnonzero(numbers == number)
-                found[:, own] = [to_units(v) for v in self.metres(number, records["s"].take(own) * COORDINATE_SCALE)]
-        return found
+                rows = np.flatnonzero(numbers == number)
+                corrections[:, rows] = [to_units(v) for v in self.metres(number, records["s"].take(rows) * COORDINATE_SCALE)]
+        return corrections
 
     def to_records(self) -> list[laspy.VLR]:
         """The corrections as LAS variable length records, one per pass."""
@@ -72,13 +72,13 @@ class PassCorrections:
     @classmethod
     def of_records(cls, records: Iterable[laspy.VLR]) -> PassCorrections | None:
         """Read what `to_records` wrote, from the records of a file; None where there is nothing."""
-        found = {}
+        by_pass = {}
         for record in records:
             if record.user_id.rstrip("\0") == VLR_USER_ID:
                 data = bytes(record.record_data_bytes())
                 first, count = np.frombuffer(data, _HEAD, 1)[0].tolist()
-                found[record.record_id - 1] = first, np.frombuffer(data, "<i2", 3 * count, _HEAD.itemsize).reshape(3, count)
-        return cls(found) if found else None
+                by_pass[record.record_id - 1] = first, np.frombuffer(data, "<i2", 3 * count, _HEAD.itemsize).reshape(3, count)
+        return cls(by_pass) if by_pass else None
 
 
 AXES = "along", "left", "up"
@@ -112,8 +112,8 @@ class PassOffsets:
     def everywhere(self, axis: str) -> np.ndarray:
         """(N,) metres along an axis, interpolated where unknown; 0 where nothing is known."""
         values = getattr(self, axis)
-        known = np.isfinite(values)
-        return np.interp(self.stations, self.stations[known], values[known]) if known.any() else np.zeros(len(values))
+        measured = np.isfinite(values)
+        return np.interp(self.stations, self.stations[measured], values[measured]) if measured.any() else np.zeros(len(values))
 
 
 @dataclass(frozen=True)
@@ -138,20 +138,20 @@ class Strips:
         """
         row, cell = (coarse / REGISTER.row_cell).astype(np.int64), (fine / REGISTER.lag_cell).astype(np.int64)
         inside = (row >= 0) & (row < shape[0]) & (cell >= 0) & (cell < shape[1])
-        place = (row * shape[1] + cell)[inside]
+        flat_index = (row * shape[1] + cell)[inside]
 
         def means(values, cells):
             # over neighbouring cells, where points are farther apart than cells
-            total, count = (_box_sum(np.bincount(place, some, shape[0] * shape[1]).reshape(shape).astype(np.float32), cells)
-                            for some in (values[inside], None))
+            total, count = (_box_sum(np.bincount(flat_index, weights, shape[0] * shape[1]).reshape(shape).astype(np.float32), cells)
+                            for weights in (values[inside], None))
             with np.errstate(invalid="ignore", divide="ignore"):
                 return np.where(count > 0.5, total / count, np.float32(np.nan))
 
         heights = means(h, REGISTER.height_blur_cells)
         steps = np.clip(_detrended(heights), -REGISTER.max_step, REGISTER.max_step)
         paint = _detrended(np.where(_at_faces(heights), np.float32(np.nan), means(intensity, 1)))
-        known = np.isfinite(paint)
-        spread = float(np.median(np.abs(paint[known]))) / 0.6745 if known.any() else 0.0
+        finite = np.isfinite(paint)
+        spread = float(np.median(np.abs(paint[finite]))) / 0.6745 if finite.any() else 0.0
         return cls(heights, steps, np.clip(paint / max(spread, 1e-6), -REGISTER.max_contrast, REGISTER.max_contrast))
 
     def part(self, rows: slice, cells: slice) -> Strips:
@@ -160,15 +160,15 @@ class Strips:
 
 def _at_faces(heights):
     """(rows, cells) bool, whether heights differ by `face_height` within `face_cells`; unknown ones do not."""
-    known, far = np.isfinite(heights), np.float32(1e3)
-    return (maximum_filter1d(np.where(known, heights, -far), REGISTER.face_cells, axis=1)
-            - minimum_filter1d(np.where(known, heights, far), REGISTER.face_cells, axis=1)) > REGISTER.face_height
+    finite, far = np.isfinite(heights), np.float32(1e3)
+    return (maximum_filter1d(np.where(finite, heights, -far), REGISTER.face_cells, axis=1)
+            - minimum_filter1d(np.where(finite, heights, far), REGISTER.face_cells, axis=1)) > REGISTER.face_height
 
 
 def _detrended(values):
     """Values minus their mean over `detrend_cells` cells of the row; NaN stays."""
-    known = np.isfinite(values)
-    total, count = (_box_sum(part, REGISTER.detrend_cells) for part in (np.where(known, values, np.float32(0)), known.astype(np.float32)))
+    finite = np.isfinite(values)
+    total, count = (_box_sum(part, REGISTER.detrend_cells) for part in (np.where(finite, values, np.float32(0)), finite.astype(np.float32)))
     return values - total / np.maximum(count, 1)
 
 
@@ -184,17 +184,17 @@ def correlation_sums(one: Strips, other: Strips, lags: np.ndarray = LAGS) -> np.
     """
     cells = one.heights.shape[1]
     size = next_fast_len(cells + int(np.abs(lags).max()), real=True)
-    found = np.zeros((2, 4, len(lags)))
+    sums = np.zeros((2, 4, len(lags)))
     for k, name in enumerate(CHANNELS):
         spectra = []
         for strips in (one, other):
-            known = np.isfinite(getattr(strips, name))
-            values = np.where(known, np.rint(getattr(strips, name) * CHANNEL_SCALE[name]), 0.0).astype(float)
-            spectra.append([rfft(part, size, axis=1) for part in (values, values * values, known.astype(float))])
-        (a, a2, there), (b, b2, seen) = spectra
-        for i, (left, right) in enumerate(((a, b), (a2, seen), (there, b2), (there, seen))):
-            found[k, i] = np.rint(irfft((left * right.conj()).sum(axis=0), size)[lags])
-    return found
+            finite = np.isfinite(getattr(strips, name))
+            values = np.where(finite, np.rint(getattr(strips, name) * CHANNEL_SCALE[name]), 0.0).astype(float)
+            spectra.append([rfft(part, size, axis=1) for part in (values, values * values, finite.astype(float))])
+        (a, a2, mask_a), (b, b2, mask_b) = spectra
+        for i, (left, right) in enumerate(((a, b), (a2, mask_b), (mask_a, b2), (mask_a, mask_b))):
+            sums[k, i] = np.rint(irfft((left * right.conj()).sum(axis=0), size)[lags])
+    return sums
 
 
 def height_offset(one: Strips, other: Strips, lag: int) -> float:
@@ -214,25 +214,25 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     is across alone, so offsets along come first only where they are much the larger.
     """
     windows = _windows_of_several(survey, road)
-    seen = _seen(survey, road, windows, {}, progress.part(0.0, 1.0 / 3.0))
-    found = _combined(seen)
-    rough = {(pair.one, pair.other): places for pair in found if (places := _rough_offsets(survey, road, pair))}
+    evidence = _seen(survey, road, windows, {}, progress.part(0.0, 1.0 / 3.0))
+    offsets = _combined(evidence)
+    rough = {(pair.one, pair.other): places for pair in offsets if (places := _rough_offsets(survey, road, pair))}
     if rough:
-        seen = _seen(survey, road, windows, rough, progress.part(1.0 / 3.0, 1.0 / 3.0))
-        found = _combined(seen)
-    along, left = (_mean_size(found, axis) for axis in PLAN_AXES)
+        evidence = _seen(survey, road, windows, rough, progress.part(1.0 / 3.0, 1.0 / 3.0))
+        offsets = _combined(evidence)
+    along, left = (_mean_size(offsets, axis) for axis in PLAN_AXES)
     order = PLAN_AXES if along > REGISTER.much_larger * left else PLAN_AXES[::-1]
-    found = _uncoupled(survey, road, found, seen, rough, order, progress)
-    return [_with_rough(pair, rough.get((pair.one, pair.other), {})) for pair in found]
+    offsets = _uncoupled(survey, road, offsets, evidence, rough, order, progress)
+    return [_with_rough(pair, rough.get((pair.one, pair.other), {})) for pair in offsets]
 
 
 def _uncoupled(survey, road, offsets, seen, rough, order, progress):
     """The PassOffsets, those along each axis of the order measured with those along the other taken out."""
     for k, (taken, measured) in enumerate((order, order[::-1]), start=1):
         moves = {(pair.one, pair.other): _taken_out(pair, taken, rough.get((pair.one, pair.other), {})) for pair in offsets}
-        if apart := sorted({number for places in moves.values() for number in places}):
-            again = _seen(survey, road, apart, moves, progress.part(k / 3.0, (k + 1) / 3.0))
-            offsets = _measured_again(offsets, measured, seen, again)
+        if windows := sorted({number for places in moves.values() for number in places}):
+            evidence = _seen(survey, road, windows, moves, progress.part(k / 3.0, (k + 1) / 3.0))
+            offsets = _measured_again(offsets, measured, seen, evidence)
     return offsets
 
 
@@ -263,8 +263,8 @@ def _taken_out(pair, axis, rough):
 def _measured_again(found, axis, seen, again):
     """The PassOffsets with offsets along an axis from evidence in which those along the other are taken out, where there is such evidence."""
     of_window = {pair: {row[0]: row for row in rows} for pair, rows in again.items()}
-    there = {pair: [of_window.get(pair, {}).get(row[0], row) for row in rows] for pair, rows in seen.items()}
-    return [replace(before, **{axis: getattr(after, axis)}) for before, after in zip(found, _combined(there))]
+    evidence = {pair: [of_window.get(pair, {}).get(row[0], row) for row in rows] for pair, rows in seen.items()}
+    return [replace(before, **{axis: getattr(after, axis)}) for before, after in zip(found, _combined(evidence))]
 
 
 def _with_rough(pair, places):
@@ -283,8 +283,8 @@ def _rough_offsets(survey, road, pair):
     Drives of different years, or in different datums, lie apart by as much as a metre. Where hardly any window shows an offset, or large ones,
     and where none shows one along the road, groups of windows are searched up to `max_rough_offset`.
     """
-    known = pair.left[np.isfinite(pair.left)]
-    across = len(known) < REGISTER.min_compared * len(pair.left) or len(pair.far) > 0 or np.median(np.abs(known)) > REGISTER.max_offset / 2
+    measured = pair.left[np.isfinite(pair.left)]
+    across = len(measured) < REGISTER.min_compared * len(pair.left) or len(pair.far) > 0 or np.median(np.abs(measured)) > REGISTER.max_offset / 2
     if not across and np.isfinite(pair.along).any():
         return {}
     numbers = (pair.stations // WINDOW_LENGTH).astype(int)
@@ -299,20 +299,20 @@ def _rough_offsets(survey, road, pair):
 def _of_groups(survey, road, pair, numbers):
     """(N,) m along and (N,) m left at N windows, up to `max_rough_offset`, as groups of them show; 0 along an axis that few groups show."""
     starts = np.unique(np.linspace(0, max(len(numbers) - REGISTER.rough_group, 0), REGISTER.rough_groups).astype(int)).tolist()
-    found = []
+    rows = []
     for group in (numbers[start:start + REGISTER.rough_group] for start in starts):
-        evidence = [one[pair.one, pair.other]
-                    for one in ordered_map(lambda number: _window_evidence(survey, road, number, {}, ROUGH_LAGS), group.tolist())
-                    if (pair.one, pair.other) in one]
+        evidence = [window[pair.one, pair.other]
+                    for window in ordered_map(lambda number: _window_evidence(survey, road, number, {}, ROUGH_LAGS), group.tolist())
+                    if (pair.one, pair.other) in window]
         if evidence:
-            found.append((np.mean(group), *(_rough_offset(np.sum([one[k] for one in evidence], axis=0)) for k in (1, 0))))
-    where, *columns = np.array(found).reshape(-1, 3).T
+            rows.append((np.mean(group), *(_rough_offset(np.sum([window[k] for window in evidence], axis=0)) for k in (1, 0))))
+    middles, *columns = np.array(rows).reshape(-1, 3).T
     metres = []
     for column in columns:
-        there = np.isfinite(column)
+        finite = np.isfinite(column)
         # one group alone may be wrong, the median of three neighbours is not
-        metres.append(np.interp(numbers, where[there], median_filter(column[there], 3, mode="nearest"))
-                      if there.sum() > len(starts) / 3 else np.zeros(len(numbers)))
+        metres.append(np.interp(numbers, middles[finite], median_filter(column[finite], 3, mode="nearest"))
+                      if finite.sum() > len(starts) / 3 else np.zeros(len(numbers)))
     return metres
 
 
@@ -330,11 +330,11 @@ def _mean_size(offsets, axis):
 
 def _seen(survey, road, windows, moves, progress):
     """{(one, other): [(window, *evidence)]} of pairs of passes after the second of a pair was moved; `moves` as in `_window_evidence`."""
-    seen: dict[tuple[int, int], list] = {}
-    for number, found in zip(windows, ordered_map(lambda number: _window_evidence(survey, road, number, moves), windows, progress)):
-        for pair, evidence in found.items():
-            seen.setdefault(pair, []).append((number, *evidence))
-    return seen
+    by_pair: dict[tuple[int, int], list] = {}
+    for number, of_window in zip(windows, ordered_map(lambda number: _window_evidence(survey, road, number, moves), windows, progress)):
+        for pair, evidence in of_window.items():
+            by_pair.setdefault(pair, []).append((number, *evidence))
+    return by_pair
 
 
 def _window_evidence(survey, road, number, moves, lags=LAGS):
@@ -357,14 +357,16 @@ def _window_evidence(survey, road, number, moves, lags=LAGS):
                 for fine, coarse, length, width in ((offsets, places, 2 * REGISTER.strip_half_width, WINDOW_LENGTH),
                                                     (places, offsets, WINDOW_LENGTH, 2 * REGISTER.strip_half_width))]
 
-    rows = {one: own for one in np.unique(owner).tolist() if len(own := np.flatnonzero(owner == one)) > REGISTER.min_shared_cells}
-    still, found = {one: strips(own) for one, own in rows.items()}, {}
-    for one, other in zip(list(rows)[:-1], list(rows)[1:]):
-        move = moves.get((one, other), {}).get(number)
-        across, lengthwise = strips(rows[other], *move) if move is not None else still[other]
-        found[one, other] = (correlation_sums(still[one][0], across, lags), correlation_sums(still[one][1], lengthwise, lags),
-                             height_offset(still[one][0], across, 0))
-    return found
+    rows = {pass_number: own for pass_number in np.unique(owner).tolist()
+            if len(own := np.flatnonzero(owner == pass_number)) > REGISTER.min_shared_cells}
+    still, evidence = {pass_number: strips(own) for pass_number, own in rows.items()}, {}
+    for pass_number, next_number in zip(list(rows)[:-1], list(rows)[1:]):
+        move = moves.get((pass_number, next_number), {}).get(number)
+        across, lengthwise = strips(rows[next_number], *move) if move is not None else still[next_number]
+        evidence[pass_number, next_number] = (correlation_sums(still[pass_number][0], across, lags),
+                                              correlation_sums(still[pass_number][1], lengthwise, lags),
+                                              height_offset(still[pass_number][0], across, 0))
+    return evidence
 
 
 def _combine_windows(pair, evidence):
@@ -377,8 +379,8 @@ def _combine_windows(pair, evidence):
     # along the road, regular scan lines hit a curb face in a periodic pattern, so only paint is used
     along, _ = best_offsets(lengthwise[:, CHANNELS.index("paint")])
     rises = np.array([row[3] for row in evidence])
-    known = np.isfinite(rises)
-    total = _pool(numbers, known.astype(float))
+    finite = np.isfinite(rises)
+    total = _pool(numbers, finite.astype(float))
     up = np.where(total > 0.5, _pool(numbers, np.nan_to_num(rises)) / np.maximum(total, 1e-9), np.nan)
     stations = (numbers + 0.5) * WINDOW_LENGTH
     return PassOffsets(*pair, stations, along, left, up, stations[far])
@@ -387,9 +389,9 @@ def _combine_windows(pair, evidence):
 def _pool(numbers, values):
     """(N, ...) sums over each window and its neighbours, with Gaussian weights of `pooling_sigma`."""
     sigma = REGISTER.pooling_sigma / WINDOW_LENGTH
-    whole = np.zeros((numbers[-1] - numbers[0] + 1, *values.shape[1:]))
-    whole[numbers - numbers[0]] = values
-    return gaussian_filter1d(whole, sigma, axis=0, mode="constant")[numbers - numbers[0]] * (sigma * np.sqrt(2 * np.pi))
+    by_window = np.zeros((numbers[-1] - numbers[0] + 1, *values.shape[1:]))
+    by_window[numbers - numbers[0]] = values
+    return gaussian_filter1d(by_window, sigma, axis=0, mode="constant")[numbers - numbers[0]] * (sigma * np.sqrt(2 * np.pi))
 
 
 def best_offsets(likeness: np.ndarray, lags: np.ndarray = LAGS) -> tuple[np.ndarray, np.ndarray]:
@@ -399,11 +401,11 @@ def best_offsets(likeness: np.ndarray, lags: np.ndarray = LAGS) -> tuple[np.ndar
     """
     cell = REGISTER.lag_cell * float(lags[1] - lags[0])
     prior = REGISTER.prior_offset_sigma * float(lags[-1]) / float(LAGS[-1])
-    products, squares, others, counts = np.moveaxis(likeness, 1, 0)
-    enough = counts[:, len(lags) // 2]
-    correlation = np.clip(products / np.sqrt(np.maximum(squares * others, 1e-12)), 0.0, REGISTER.max_correlation)
-    fit = np.log(1.0 - correlation**2) * (enough / REGISTER.correlated_cells)[:, None]
-    unlikely = np.where(enough[:, None] >= REGISTER.min_shared_cells, fit, 0.0) + (REGISTER.lag_cell * lags / prior) ** 2
+    products, squares, other_squares, counts = np.moveaxis(likeness, 1, 0)
+    shared = counts[:, len(lags) // 2]
+    correlation = np.clip(products / np.sqrt(np.maximum(squares * other_squares, 1e-12)), 0.0, REGISTER.max_correlation)
+    fit = np.log(1.0 - correlation**2) * (shared / REGISTER.correlated_cells)[:, None]
+    unlikely = np.where(shared[:, None] >= REGISTER.min_shared_cells, fit, 0.0) + (REGISTER.lag_cell * lags / prior) ** 2
     best = np.argmin(unlikely, axis=1)
     least = unlikely.min(axis=1)
     clear = (least < -REGISTER.min_likelihood_ratio) & (_second_best(unlikely, best) > REGISTER.max_runner_up * least)
@@ -443,20 +445,21 @@ def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
     Two passes with independent errors of one sigma s differ by s * sqrt(2), and the mean of n of them is off by s / sqrt(n). Single offsets
     that are far off do not count: of the RMS and the median deviation as a sigma the smaller is taken.
     """
-    known = [(pair, np.isfinite(pair.left)) for pair in offsets]
-    stations = np.concatenate([pair.stations[own] for pair, own in known] or [np.empty(0)])
+    measured = [(pair, np.isfinite(pair.left)) for pair in offsets]
+    stations = np.concatenate([pair.stations[mask] for pair, mask in measured] or [np.empty(0)])
     if not len(stations):
         return None
     order = np.argsort(stations, kind="stable")
-    stations, left = stations[order], np.concatenate([_apart(pair)[own] for pair, own in known])[order]
-    one, other = (np.concatenate([np.full(own.sum(), getattr(pair, name)) for pair, own in known])[order] for name in ("one", "other"))
+    stations, left = stations[order], np.concatenate([_apart(pair)[mask] for pair, mask in measured])[order]
+    first_numbers, second_numbers = (np.concatenate([np.full(mask.sum(), getattr(pair, name)) for pair, mask in measured])[order]
+                                     for name in ("one", "other"))
     places = np.unique(stations)
     bounds = np.searchsorted(stations, places - REGISTER.sigma_reach), np.searchsorted(stations, places + REGISTER.sigma_reach, side="right")
-    found = []
+    sigmas = []
     for first, end in zip(*bounds):
-        apart = min(np.sqrt(np.mean(left[first:end] ** 2)), MAD_TO_SIGMA * np.median(np.abs(left[first:end])))
-        found.append(apart / np.sqrt(2 * len({*one[first:end].tolist(), *other[first:end].tolist()})))
-    return SigmaAlong(tuple(places.tolist()), tuple(map(float, found)))
+        spread = min(np.sqrt(np.mean(left[first:end] ** 2)), MAD_TO_SIGMA * np.median(np.abs(left[first:end])))
+        sigmas.append(spread / np.sqrt(2 * len({*first_numbers[first:end].tolist(), *second_numbers[first:end].tolist()})))
+    return SigmaAlong(tuple(places.tolist()), tuple(map(float, sigmas)))
 
 
 def _apart(pair):
@@ -476,20 +479,20 @@ def sigma_to_record(sigma: dict[int, SigmaAlong]) -> list[laspy.VLR]:
 
 def sigma_of_records(records: Iterable[laspy.VLR]) -> dict[int, SigmaAlong]:
     """{road number: SigmaAlong} as `sigma_to_record` wrote it, from the records of a file."""
-    own = {record.record_id: bytes(record.record_data_bytes()) for record in records if record.user_id.rstrip("\0") == SIGMA_USER_ID}
-    if ROAD_RECORD in own:
-        return {road: SigmaAlong.everywhere(metres) for road, metres in np.frombuffer(own[ROAD_RECORD], _ROAD).tolist()}
-    rows = np.frombuffer(b"".join(own[number] for number in sorted(own)), _NODE)
+    data = {record.record_id: bytes(record.record_data_bytes()) for record in records if record.user_id.rstrip("\0") == SIGMA_USER_ID}
+    if ROAD_RECORD in data:
+        return {road: SigmaAlong.everywhere(metres) for road, metres in np.frombuffer(data[ROAD_RECORD], _ROAD).tolist()}
+    rows = np.frombuffer(b"".join(data[number] for number in sorted(data)), _NODE)
     return {road: SigmaAlong(*(tuple(rows[name][rows["road"] == road].tolist()) for name in ("station", "sigma")))
             for road in np.unique(rows["road"]).tolist()}
 
 
 def sigma_of_layer(features: Features) -> dict[int, SigmaAlong]:
     """{road number: SigmaAlong} that the rows of a layer hold, such as CURB_POINTS and MARKING_LINES."""
-    found: dict[int, list[tuple[float, float]]] = {}
+    nodes: dict[int, list[tuple[float, float]]] = {}
     for row in features.rows:
         road, metres, start = (row.get(name) for name in ("road", PASS_SIGMA.name, "station_m"))
         if road is not None and metres is not None:
-            ends = [place for place in (start, row.get("end_m")) if place is not None]
-            found.setdefault(int(road), []).append((float(np.mean(ends)) if ends else 0.0, float(metres)))
-    return {road: SigmaAlong.through(*np.array(rows).T) for road, rows in found.items()}
+            ends = [station for station in (start, row.get("end_m")) if station is not None]
+            nodes.setdefault(int(road), []).append((float(np.mean(ends)) if ends else 0.0, float(metres)))
+    return {road: SigmaAlong.through(*np.array(rows).T) for road, rows in nodes.items()}

@@ -59,12 +59,12 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
     if not any(map(_apart, offsets)):
         return 0.0
     moves = _shares(offsets)
-    across = np.array([[0.0, 0.0], *(np.nan_to_num(one.moves[:, 1]) for one in offsets)])
+    across = np.array([[0.0, 0.0], *(np.nan_to_num(offset.moves[:, 1]) for offset in offsets)])
     # independent errors of one sigma s in n scanners, whose middle is off by s / sqrt(n)
     sigma = float((across.std(axis=0, ddof=1) / np.sqrt(len(across))).max())
-    for one in offsets:
-        if _apart(one):
-            progress.warn(_said(survey, one, sigma))
+    for offset in offsets:
+        if _apart(offset):
+            progress.warn(_said(survey, offset, sigma))
     frame = survey.frame
     replace_points(survey, lambda records: _moved(frame, moves, records), progress, folder)
     return sigma
@@ -75,26 +75,26 @@ def _agree_at_a_look(survey):
 
     An error of a mounting is the same all along a survey, so that one window clears a scanner.
     """
-    seen: dict[int, list] = {}
+    by_scanner: dict[int, list] = {}
     for window in _windows(survey, LOOK_WINDOWS):
         for number, evidence in _window_evidence(survey, window).items():
-            seen.setdefault(number, []).append(evidence)
-        if len(seen) == len(survey.scanners) - 1 and all(map(_clear, seen.values())):
+            by_scanner.setdefault(number, []).append(evidence)
+        if len(by_scanner) == len(survey.scanners) - 1 and all(map(_clear, by_scanner.values())):
             return True
-    return not any(_apart(_offsets(number, evidence)) for number, evidence in seen.items())
+    return not any(_apart(_offsets(number, evidence)) for number, evidence in by_scanner.items())
 
 
 def _clear(evidence):
     """Whether windows show all moves of a scanner, on both sides those across and up, on one that along the way, and none that matters."""
     moves, _, far = zip(*(_moves_of(side) for side in zip(*evidence)))
-    known = np.isfinite(moves)
-    return bool(known[:, 1:].all() and known[:, 0].any() and not any(far) and not (np.abs(moves) > MAX_SCANNER_OFFSETS).any())
+    measured = np.isfinite(moves)
+    return bool(measured[:, 1:].all() and measured[:, 0].any() and not any(far) and not (np.abs(moves) > MAX_SCANNER_OFFSETS).any())
 
 
 def _apart(one):
     """Whether a scanner lies measurably beside the first: by more than is harmless, and than windows of road differ by."""
-    known = np.nan_to_num(np.abs(one.moves))
-    return one.far or bool((known > MAX_SCANNER_OFFSETS + SIGNIFICANT * one.sigma).any())
+    moved = np.nan_to_num(np.abs(one.moves))
+    return one.far or bool((moved > MAX_SCANNER_OFFSETS + SIGNIFICANT * one.sigma).any())
 
 
 def _said(survey, one, sigma):
@@ -113,9 +113,9 @@ def _said(survey, one, sigma):
 
 def _shares(offsets):
     """{scanner: (2, 3) m on the right and the left, and (2, 3) m beside} by which each is moved to the middle of all."""
-    middle = np.mean([np.zeros((2, 3)), *(_filled(one) for one in offsets)], axis=0)
-    beside = np.mean([one.beside for one in offsets], axis=0)
-    return {0: (-middle, beside), **{one.scanner: (_filled(one) - middle, one.beside) for one in offsets}}
+    middle = np.mean([np.zeros((2, 3)), *(_filled(offset) for offset in offsets)], axis=0)
+    positions = np.mean([offset.beside for offset in offsets], axis=0)
+    return {0: (-middle, positions), **{offset.scanner: (_filled(offset) - middle, offset.beside) for offset in offsets}}
 
 
 def _filled(one):
@@ -129,36 +129,36 @@ def _filled(one):
 def _moved(frame, moves, records):
     """The Columns of a section with the points of scanners moved."""
     moved = {name: np.array(records[name]) for name in MOVED_COLUMNS}
-    number, scanner = records["pass_number"], records["scanner"]
-    for p, one in itertools.product(np.unique(number).tolist(), moves):
-        own = np.flatnonzero((number == p) & (scanner == one))
-        if not len(own):
+    number, scanners = records["pass_number"], records["scanner"]
+    for p, scanner in itertools.product(np.unique(number).tolist(), moves):
+        rows = np.flatnonzero((number == p) & (scanners == scanner))
+        if not len(rows):
             continue
         driven, road = frame.passes[p], frame.road(frame.passes[p].road)
-        station, x, y = driven.at(records["time"].take(own), "s", "x", "y")
+        station, x, y = driven.at(records["time"].take(rows), "s", "x", "y")
         yaw = road.heading(station) + (0.0 if driven.direction > 0 else np.pi)
         cos, sin = np.cos(yaw), np.sin(yaw)
-        left = (records["y"].take(own) * COORDINATE_SCALE - y) * cos - (records["x"].take(own) * COORDINATE_SCALE - x) * sin
-        values, beside = moves[one]
+        left = (records["y"].take(rows) * COORDINATE_SCALE - y) * cos - (records["x"].take(rows) * COORDINATE_SCALE - x) * sin
+        values, positions = moves[scanner]
         left = np.clip(left, -REGISTER.strip_half_width, REGISTER.strip_half_width)
-        ahead, aside, up = (a + (left - first) / (last - first) * (b - a) for (a, b), (first, last) in zip(values.T, beside.T))
+        ahead, aside, up = (a + (left - first) / (last - first) * (b - a) for (a, b), (first, last) in zip(values.T, positions.T))
         east, north = ahead * cos - aside * sin, ahead * sin + aside * cos
-        s, d = (records[name].take(own) * COORDINATE_SCALE for name in ("s", "d"))
+        s, d = (records[name].take(rows) * COORDINATE_SCALE for name in ("s", "d"))
         heading = road.heading(s)
         c, n = np.cos(heading), np.sin(heading)
         along = (east * c + north * n) / np.clip(1.0 - road.curvature(s) * d, 0.4, 2.5)
         for name, metres in zip(MOVED_COLUMNS, (east, north, up, along, north * c - east * n)):
-            moved[name][own] += to_units(metres)
+            moved[name][rows] += to_units(metres)
     return records.with_columns(**moved)
 
 
 def _scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[_ScannerOffsets]:
     """How far the scanners of a survey lie beside the first one, from so many windows of road."""
-    seen: dict[int, list] = {}
-    for found in ordered_map(partial(_window_evidence, survey), _windows(survey, windows)):
-        for number, evidence in found.items():
-            seen.setdefault(number, []).append(evidence)
-    return [_offsets(number, evidence) for number, evidence in sorted(seen.items())]
+    by_scanner: dict[int, list] = {}
+    for of_window in ordered_map(partial(_window_evidence, survey), _windows(survey, windows)):
+        for number, evidence in of_window.items():
+            by_scanner.setdefault(number, []).append(evidence)
+    return [_offsets(number, evidence) for number, evidence in sorted(by_scanner.items())]
 
 
 def _windows(survey, count):
@@ -174,15 +174,15 @@ def _window_evidence(survey, window):
     """{scanner: [of each side (sums across, sums along, m up, m beside, weight of it)]} of a window, each scanner against the first."""
     p, start, long = window
     points = survey.window(p.road, start, start + long)
-    own = np.flatnonzero(points.pass_number == p.number)
-    s, d = points.s[own], points.d[own]
+    members = np.flatnonzero(points.pass_number == p.number)
+    s, d = points.s[members], points.d[members]
     nodes = start + np.arange(int(long / REGISTER.row_cell) + 1) * REGISTER.row_cell
-    h = points.z[own] - np.interp(s, nodes, survey.road_height(p.road, nodes))
-    beside = p.direction * (d - p.at_station(s)[0])
-    near = np.flatnonzero((np.abs(beside) < REGISTER.strip_half_width) & (h > REGISTER.min_cell_height) & (h < REGISTER.max_cell_height))
+    h = points.z[members] - np.interp(s, nodes, survey.road_height(p.road, nodes))
+    left = p.direction * (d - p.at_station(s)[0])
+    near = np.flatnonzero((np.abs(left) < REGISTER.strip_half_width) & (h > REGISTER.min_cell_height) & (h < REGISTER.max_cell_height))
     ahead = s - start if p.direction > 0 else start + long - s
-    ahead, beside, h = ahead[near], beside[near] + REGISTER.strip_half_width, h[near]
-    scanner, intensity = points.scanner[own[near]], points.intensity[own[near]].astype(float)
+    ahead, left, h = ahead[near], left[near] + REGISTER.strip_half_width, h[near]
+    scanner, intensity = points.scanner[members[near]], points.intensity[members[near]].astype(float)
 
     def strips(number):
         rows = np.flatnonzero(scanner == number)
@@ -190,14 +190,14 @@ def _window_evidence(survey, window):
             return None
         wide = 2 * REGISTER.strip_half_width
         return [Strips.of(fine[rows], coarse[rows], h[rows], intensity[rows], (round(width / REGISTER.row_cell), round(length / REGISTER.lag_cell)))
-                for fine, coarse, length, width in ((beside, ahead, wide, long), (ahead, beside, long, wide))]
+                for fine, coarse, length, width in ((left, ahead, wide, long), (ahead, left, long, wide))]
 
-    first, found = strips(0), {}
+    first, evidence = strips(0), {}
     for number in range(1, len(survey.scanners)):
-        other = strips(number) if first is not None else None
-        if other is not None:
-            found[number] = [_side_evidence(first, other, side) for side in range(len(SIDES))]
-    return found
+        second = strips(number) if first is not None else None
+        if second is not None:
+            evidence[number] = [_side_evidence(first, second, side) for side in range(len(SIDES))]
+    return evidence
 
 
 def _side_evidence(first, other, side):
@@ -205,39 +205,39 @@ def _side_evidence(first, other, side):
     half = [slice(size // 2) if side == 0 else slice(size // 2, None) for size in (first[0].heights.shape[1], first[1].heights.shape[0])]
     a, b = (strips[0].part(slice(None), half[0]) for strips in (first, other))
     along = correlation_sums(*(strips[1].part(half[1], slice(None)) for strips in (first, other)))
-    place = (np.arange(a.heights.shape[1]) + 0.5) * REGISTER.lag_cell - (REGISTER.strip_half_width if side == 0 else 0.0)
+    left = (np.arange(a.heights.shape[1]) + 0.5) * REGISTER.lag_cell - (REGISTER.strip_half_width if side == 0 else 0.0)
     # unknown cells are NaN, and nothing is less than that
     shown = {name: np.nansum(np.square(getattr(a, name)) * np.isfinite(getattr(b, name)), axis=0) for name in CHANNELS}
     shown["heights"] = np.count_nonzero(np.maximum(np.abs(a.steps), np.abs(b.steps)) < REGISTER.flat_step, axis=0)
-    weights = {name: (float(weight.sum()), float(weight @ place)) for name, weight in shown.items()}
+    weights = {name: (float(weight.sum()), float(weight @ left)) for name, weight in shown.items()}
     return correlation_sums(a, b), along, height_offset(a, b, 0), weights
 
 
 def _offsets(number, evidence):
     """_ScannerOffsets of the evidence of windows."""
-    beside, moves, sigma, far = np.zeros((len(SIDES), 3)), np.full((len(SIDES), 3), np.nan), np.full((len(SIDES), 3), np.inf), False
+    positions, moves, sigma, far = np.zeros((len(SIDES), 3)), np.full((len(SIDES), 3), np.nan), np.full((len(SIDES), 3), np.inf), False
     for side in range(len(SIDES)):
-        seen = [one[side] for one in evidence]
-        moves[side], channel, at_limit = _moves_of(seen)
+        of_side = [window[side] for window in evidence]
+        moves[side], channel, at_limit = _moves_of(of_side)
         for axis, name in enumerate((channel, channel, "heights")):
-            total, place = (sum(weights[name][k] for *_, weights in seen) for k in (0, 1))
-            beside[side, axis] = place / total if total else REGISTER.strip_half_width * (side - 0.5)
-        if len(seen) > 1:
-            left_out, _, still = zip(*(_moves_of(seen[:k] + seen[k + 1:]) for k in range(len(seen))))
+            total, moment = (sum(weights[name][k] for *_, weights in of_side) for k in (0, 1))
+            positions[side, axis] = moment / total if total else REGISTER.strip_half_width * (side - 0.5)
+        if len(of_side) > 1:
+            left_out, _, still = zip(*(_moves_of(of_side[:k] + of_side[k + 1:]) for k in range(len(of_side))))
             sigma[side] = _jackknife(left_out)
-            far |= at_limit and 2 * sum(still) > len(seen)
-    return _ScannerOffsets(number, beside, moves, sigma, far)
+            far |= at_limit and 2 * sum(still) > len(of_side)
+    return _ScannerOffsets(number, positions, moves, sigma, far)
 
 
 def _moves_of(seen):
     """(3,) m ahead, left and up, the channel that shows the second, and whether it is beyond what can be measured, of one side of windows."""
     across, along, up, _ = zip(*seen)
-    found, at_limit = best_offsets(np.sum(across, axis=0))
+    offsets, at_limit = best_offsets(np.sum(across, axis=0))
     # as with passes: a face looks different from another side, so it counts only where no paint shows it
-    channel = next((name for name in CHANNELS[::-1] if np.isfinite(found[CHANNELS.index(name)])), CHANNELS[0])
-    known = [one for one in up if np.isfinite(one)]
+    channel = next((name for name in CHANNELS[::-1] if np.isfinite(offsets[CHANNELS.index(name)])), CHANNELS[0])
+    rises = [rise for rise in up if np.isfinite(rise)]
     ahead = best_offsets(np.sum(along, axis=0))[0][CHANNELS.index("paint")]
-    return np.array([ahead, found[CHANNELS.index(channel)], np.median(known) if known else np.nan]), channel, bool(at_limit.any())
+    return np.array([ahead, offsets[CHANNELS.index(channel)], np.median(rises) if rises else np.nan]), channel, bool(at_limit.any())
 
 
 def _jackknife(left_out):

@@ -53,17 +53,17 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     shape = shaped_trajectory(clean_trajectory(trajectory))
     for warning in shape.said:
         progress.warn(warning)
-    given = shape.trajectory if shape.said else trajectory
+    unmoved = shape.trajectory if shape.said else trajectory
     if not trajectory.has_time or not all(file.has_time for file in files if file.count):
-        return _FittedTrajectory(given, shape.sigma, False)
+        return _FittedTrajectory(unmoved, shape.sigma, False)
     sample = read_places(files, scanner_field)
     mountings = _near(scanner_mountings(sample, shape.trajectory))
     if mountings and _other_heights(sample, shape.trajectory, mountings, progress):
-        return _FittedTrajectory(given, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
+        return _FittedTrajectory(unmoved, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
     if not (mountings := _met(mountings)):
-        return _FittedTrajectory(given, shape.sigma, False)
+        return _FittedTrajectory(unmoved, shape.sigma, False)
     moved = _carried(sample, shape.trajectory, mountings, progress)
-    return _FittedTrajectory(given if moved is shape.trajectory else moved, shape.sigma, True)
+    return _FittedTrajectory(unmoved if moved is shape.trajectory else moved, shape.sigma, True)
 
 
 def _carried(sample, trajectory, mountings, progress):
@@ -75,50 +75,51 @@ def _carried(sample, trajectory, mountings, progress):
 
 def _near(mountings):
     """Those of the mountings that lie within reach of the trajectory."""
-    return [one for one in mountings if np.hypot(*_usual_lever([one])[:2]) < CORRIDOR]
+    return [mounting for mounting in mountings if np.hypot(*_usual_lever([mounting])[:2]) < CORRIDOR]
 
 
 def _met(mountings):
     """Those of the mountings whose rays meet in one place."""
-    return [one for one in mountings if one.misfit <= RAYS.max_unexplained]
+    return [mounting for mounting in mountings if mounting.misfit <= RAYS.max_unexplained]
 
 
 def _other_heights(sample, trajectory, mountings, progress):
     """Whether heights are in another unit than places, or upside down; it is said."""
-    if max(one.misfit for one in mountings) > RAYS.max_unexplained:
-        for stretch, said in ((FOOT, "in feet where x and y are in metres"), (1.0 / FOOT, "in metres where x and y are in feet")):
-            other = scanner_mountings(sample, trajectory, stretch)
-            if len(other) >= len(mountings) and len(_met(other)) == len(other):
-                up, height = float(_usual_lever(other)[2]), float(np.median(trajectory.z))
+    if max(mounting.misfit for mounting in mountings) > RAYS.max_unexplained:
+        for stretch, phrase in ((FOOT, "in feet where x and y are in metres"), (1.0 / FOOT, "in metres where x and y are in feet")):
+            stretched = scanner_mountings(sample, trajectory, stretch)
+            if len(stretched) >= len(mountings) and len(_met(stretched)) == len(stretched):
+                up, height = float(_usual_lever(stretched)[2]), float(np.median(trajectory.z))
                 # from a trajectory that is stretched alike the scanners lie where they ride on the vehicle
-                alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
-                of = "the cloud alone" if alone else "cloud and trajectory"
-                progress.warn(f"The heights of {of} seem to be {said}: the laser beams meet in the scanner only if heights are "
+                cloud_alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
+                of = "the cloud alone" if cloud_alone else "cloud and trajectory"
+                progress.warn(f"The heights of {of} seem to be {phrase}: the laser beams meet in the scanner only if heights are "
                               f"multiplied by {stretch:.4g}. Curbs are missed, and heights and slopes are wrong by that factor. Convert these "
                               "heights, and run again.")
                 return True
-    if all(one.ground > 0 for one in mountings):
-        progress.warn(f"The road lies {np.mean([one.ground for one in mountings]):.1f} m above the scanners, as if heights were counted downwards or "
-                      "turned upside down: curbs, slopes and heights are wrong. Export cloud and trajectory with heights that rise upwards.")
+    if all(mounting.ground > 0 for mounting in mountings):
+        progress.warn(f"The road lies {np.mean([mounting.ground for mounting in mountings]):.1f} m above the scanners, as if heights were counted "
+                      "downwards or turned upside down: curbs, slopes and heights are wrong. Export cloud and trajectory with heights that "
+                      "rise upwards.")
         return True
     return False
 
 
 def _at_height(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Progress) -> Trajectory:
     """The trajectory moved to the height of the scanners where it runs below the road or higher than vehicles are; else the same."""
-    at, lever = _places(mountings)
-    above_road = -float(np.mean([one.ground for one in mountings]))
+    times, lever = _places(mountings)
+    above_road = -float(np.mean([mounting.ground for mounting in mountings]))
     up = lever[:, 2]
     far = (np.abs(up) > VEHICLE_HEIGHT) | (up > above_road + LOWEST_SENSOR)
     if not far.any():
         return trajectory
     worst = float(up[np.argmax(np.abs(up))])
-    where = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
-    progress.warn(f"The trajectory lies {abs(worst):.2f} m {'below' if worst > 0 else 'above'} the scanners{where}, as their laser beams "
+    extent = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
+    progress.warn(f"The trajectory lies {abs(worst):.2f} m {'below' if worst > 0 else 'above'} the scanners{extent}, as their laser beams "
                   f"show: {'below the road' if worst > 0 else 'no vehicle is so high'}. Heights of cloud and trajectory seem to be of two kinds "
                   "(above the ellipsoid and above sea level), or one of them is wrong. The trajectory was moved to the height of the scanners; the "
                   "map has the heights of the cloud. Export both with one kind of heights.")
-    metres = np.full(len(trajectory), np.median(up)) if np.ptp(up) < ONE_MOVE * abs(worst) else np.interp(trajectory.time, at, up)
+    metres = np.full(len(trajectory), np.median(up)) if np.ptp(up) < ONE_MOVE * abs(worst) else np.interp(trajectory.time, times, up)
     return replace(trajectory, z=trajectory.z + metres)
 
 
@@ -126,23 +127,23 @@ def _on_way(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Pr
     """The trajectory moved to the way of the scanners where no vehicle is so wide; else the same."""
     if not mountings:
         return trajectory
-    at, lever = _places(mountings)
+    times, lever = _places(mountings)
     far = np.abs(lever[:, 1]) > HALF_VEHICLE
     if not far.any():
         return trajectory
     worst = float(lever[np.argmax(np.abs(lever[:, 1])), 1])
-    x, y = (np.interp(at[np.argmax(far)], trajectory.time, getattr(trajectory, name)) for name in "xy")
-    where = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
-    progress.warn(f"The trajectory runs {abs(worst):.2f} m to the {'right' if worst > 0 else 'left'} of the way that the scanners took{where} "
+    x, y = (np.interp(times[np.argmax(far)], trajectory.time, getattr(trajectory, name)) for name in "xy")
+    extent = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
+    progress.warn(f"The trajectory runs {abs(worst):.2f} m to the {'right' if worst > 0 else 'left'} of the way that the scanners took{extent} "
                   f"(first near x {x:.0f}, y {y:.0f}), as their laser beams show; no vehicle is so wide. It may belong to another lane or "
                   "drive, or be in another datum than the cloud. It was moved to where the scanners were; check that both files belong together.")
-    return _moved_aside(trajectory, mountings, at, lever[:, 1])
+    return _moved_aside(trajectory, mountings, times, lever[:, 1])
 
 
 def _windows(mountings):
     """(W,) s of the windows of all scanners, in order, and (W, 3) m from the trajectory to the middle of the scanners then."""
-    time = np.concatenate([one.time for one in mountings])
-    lever = np.concatenate([one.lever - np.median(one.lever, axis=0) for one in mountings]) + _usual_lever(mountings)
+    time = np.concatenate([mounting.time for mounting in mountings])
+    lever = np.concatenate([mounting.lever - np.median(mounting.lever, axis=0) for mounting in mountings]) + _usual_lever(mountings)
     order = np.argsort(time, kind="stable")
     return time[order], lever[order]
 
@@ -152,7 +153,7 @@ def _places(mountings):
     time, lever = _windows(mountings)
     cuts = [0, *(np.flatnonzero(np.diff(time) > PLACE_GAP) + 1).tolist(), len(time)]
     places = [slice(i, j) for i, j in zip(cuts[:-1], cuts[1:]) if j - i > PLACE_WINDOWS / 2] or [slice(0, len(time))]
-    return np.array([time[one].mean() for one in places]), np.array([np.median(lever[one], axis=0) for one in places])
+    return np.array([time[part].mean() for part in places]), np.array([np.median(lever[part], axis=0) for part in places])
 
 
 def _moved_aside(trajectory, mountings, at, beside):
@@ -163,11 +164,11 @@ def _moved_aside(trajectory, mountings, at, beside):
     """
     time, lever = _windows(mountings)
     yaw = _vehicle_angles(trajectory)[2]
-    here = np.interp(time, trajectory.time, yaw)
-    cos, sin, one, none = np.cos(here), np.sin(here), np.ones(len(here)), np.zeros(len(here))
+    heading = np.interp(time, trajectory.time, yaw)
+    cos, sin, ones, zeros = np.cos(heading), np.sin(heading), np.ones(len(heading)), np.zeros(len(heading))
     measured = np.r_[lever[:, 0], lever[:, 1]]
     in_vehicle = np.median(lever[:, 1])
-    rows = np.r_[np.c_[cos, sin, one], np.c_[-sin, cos, none]]
+    rows = np.r_[np.c_[cos, sin, ones], np.c_[-sin, cos, zeros]]
     on_map = np.linalg.lstsq(np.r_[rows, [[0.0, 0.0, 1.0 / USUAL_AHEAD]]], np.r_[measured, 0.0], rcond=None)[0]
     left_over = [float(np.quantile(np.abs(off), MOST)) for off in (lever[:, 1] - in_vehicle, measured - rows @ on_map)]
     east, north, metres = 0.0, 0.0, in_vehicle
@@ -224,9 +225,9 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
     census, parts = ScannerCensus(), []
     with ParallelCloudReader(SAMPLED_LAYERS) as reader:
         starts = set()
-        for at in ((np.arange(PLACES_READ) + 0.5) / PLACES_READ * ends[-1]).astype(np.int64).tolist():
-            number = int(np.searchsorted(ends, at, side="right"))
-            starts.add((number, reader.chunk_start(files[number], at - int(ends[number] - files[number].count))))
+        for row in ((np.arange(PLACES_READ) + 0.5) / PLACES_READ * ends[-1]).astype(np.int64).tolist():
+            number = int(np.searchsorted(ends, row, side="right"))
+            starts.add((number, reader.chunk_start(files[number], row - int(ends[number] - files[number].count))))
         for number, start in sorted(starts):
             parts += _read_place(reader, files[number], start, -(-PLACES_READ * PLACE_WINDOWS // len(starts)))
     time, place, source, channel = (np.concatenate(column) for column in zip(*parts))
@@ -243,12 +244,12 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
 
 def _read_place(reader, file, start, windows):
     """[`_first_returns`] of points of a file from the beginning of a chunk on, as many as some windows hold."""
-    parts, seen = [], {}
+    parts, counts = [], {}
     for block in reader.following(file, start, PLACE_POINTS // 10):
         parts.append(_first_returns(block))
         for window, count in zip(*np.unique(np.floor(parts[-1][0] / TURNS_WINDOW), return_counts=True)):
-            seen[window] = seen.get(window, 0) + count
-        if sum(count >= MIN_TURNS_POINTS for count in seen.values()) >= windows or sum(len(part[0]) for part in parts) >= PLACE_POINTS:
+            counts[window] = counts.get(window, 0) + count
+        if sum(count >= MIN_TURNS_POINTS for count in counts.values()) >= windows or sum(len(part[0]) for part in parts) >= PLACE_POINTS:
             break
     return parts
 
@@ -256,14 +257,14 @@ def _read_place(reader, file, start, windows):
 def _first_returns(block):
     """(N,) gps_time, (N, 3) map coordinates, point source and scanner channel of the usable first returns of a block."""
     raw, names = block.array, set(block.point_format.dimension_names)
-    own = np.asarray(block["return_number"]) <= 1
+    usable = np.asarray(block["return_number"]) <= 1
     time = raw["gps_time"].astype(float)
-    own &= np.isfinite(time)
+    usable &= np.isfinite(time)
     if (valid := valid_points(block)) is not None:
-        own &= valid
-    place = np.stack([raw[name][own] * scale + offset for name, scale, offset in zip("XYZ", block.scales, block.offsets)], axis=1)
+        usable &= valid
+    place = np.stack([raw[name][usable] * scale + offset for name, scale, offset in zip("XYZ", block.scales, block.offsets)], axis=1)
     channel = np.asarray(block["scanner_channel"]) if "scanner_channel" in names else np.zeros(len(raw), np.int64)
-    return time[own], place, raw["point_source_id"][own].astype(np.int64), channel[own].astype(np.int64)
+    return time[usable], place, raw["point_source_id"][usable].astype(np.int64), channel[usable].astype(np.int64)
 
 
 def scanner_mountings(sample: _Sample, trajectory: Trajectory, stretch: float = 1.0) -> list[_Mounting]:
@@ -275,9 +276,9 @@ def scanner_mountings(sample: _Sample, trajectory: Trajectory, stretch: float = 
     trajectory : Trajectory with times, in the CRS and time system of the sample
     stretch : by which heights of points and trajectory are multiplied before, to try other units of them
     """
-    seen = _in_vehicle_frame(sample, trajectory, stretch)
-    found = (_mounting_of(number, *(column[seen[2] == number] for column in seen[:2])) for number in np.unique(seen[2]).tolist())
-    return [one for one in found if one is not None]
+    points = _in_vehicle_frame(sample, trajectory, stretch)
+    mountings = (_mounting_of(number, *(column[points[2] == number] for column in points[:2])) for number in np.unique(points[2]).tolist())
+    return [mounting for mounting in mountings if mounting is not None]
 
 
 def _in_vehicle_frame(sample, trajectory, stretch):
@@ -292,10 +293,10 @@ def _in_vehicle_frame(sample, trajectory, stretch):
     used = np.repeat(size >= MIN_TURNS_POINTS, size) & (rank % np.repeat(-(-size // MAX_TURNS_POINTS), size) == 0)
     rows = np.sort(driven[used])
     time, place = sample.time[rows], sample.place[rows]
-    away = place - np.stack([np.interp(time, trajectory.time, getattr(trajectory, name)) for name in "xyz"], axis=1)
-    away[:, 2] *= stretch
+    rays = place - np.stack([np.interp(time, trajectory.time, getattr(trajectory, name)) for name in "xyz"], axis=1)
+    rays[:, 2] *= stretch
     axes = vehicle_axes(*(np.interp(time, trajectory.time, angle) for angle in _vehicle_angles(trajectory, stretch)))
-    return time, np.stack([(axis * away).sum(axis=1) for axis in axes], axis=1), sample.scanner[rows]
+    return time, np.stack([(axis * rays).sum(axis=1) for axis in axes], axis=1), sample.scanner[rows]
 
 
 def _vehicle_angles(trajectory: Trajectory, stretch: float = 1.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -328,14 +329,14 @@ def _mounting_of(number, time, place):
     if rate is None:
         return None
     middles = np.bincount(window, time, size) / np.bincount(window, minlength=size)
-    found = max((_resected_places(a, b, time - middles[window], window, middles, sign * rate) for sign in (1, -1)),
-                key=lambda one: (one[2].sum(), -one[3]))
-    u, v, good, misfit = found
+    best = max((_resected_places(a, b, time - middles[window], window, middles, sign * rate) for sign in (1, -1)),
+               key=lambda one: (one[2].sum(), -one[3]))
+    u, v, good, misfit = best
     if good.sum() < max(MIN_WINDOWS, size / 2):
         return None
     lever = middle + u[:, None] * across + v[:, None] * upright
-    away = place - lever[window]
-    below = away[(np.hypot(*away.T[:2]) < TRACK.usual_height) & good[window], 2]
+    rays = place - lever[window]
+    below = rays[(np.hypot(*rays.T[:2]) < TRACK.usual_height) & good[window], 2]
     return _Mounting(number, middles[good], lever[good], float(np.median(below)) if len(below) else np.nan, misfit)
 
 
@@ -353,9 +354,9 @@ def _scan_plane(place, window, size):
     weight = 1.0 / variance
     for _ in range(TRACK.density_rounds):
         middle = means(weight, place)
-        away = place - middle[window]
-        normal = np.linalg.eigh((weight[:, None] * away).T @ away)[1][:, 0]
-        off = away @ normal / np.sqrt(variance)
+        centred = place - middle[window]
+        normal = np.linalg.eigh((weight[:, None] * centred).T @ centred)[1][:, 0]
+        off = centred @ normal / np.sqrt(variance)
         weight = 1.0 / variance / (1.0 + off**2 / 4.0)
     return middle, normal if normal[0] >= 0 else -normal, off
 
@@ -383,18 +384,18 @@ def _resected_places(a, b, since, window, middles, rate):
     for _ in range(MIRROR.resection_rounds):
         u, v, phase, misfit, in_front = resected(a, b, 2 * np.pi * rate * since, window, len(middles))
         good = in_front >= MIRROR.min_share_in_front
-        apart = np.diff(middles)
-        step = np.diff(phase) - 2 * np.pi * rate * apart
+        seconds = np.diff(middles)
+        step = np.diff(phase) - 2 * np.pi * rate * seconds
         step = (step + np.pi) % (2 * np.pi) - np.pi
-        near = good[1:] & good[:-1] & (apart < 1.5 * TURNS_WINDOW)
+        near = good[1:] & good[:-1] & (seconds < 1.5 * TURNS_WINDOW)
         if near.sum() >= MIN_WINDOWS:
-            rate += float(np.median(step[near] / apart[near])) / (2 * np.pi)
+            rate += float(np.median(step[near] / seconds[near])) / (2 * np.pi)
     return u, v, good, float(np.median(misfit[good])) if good.any() else np.inf
 
 
 def _usual_lever(mountings: Sequence[_Mounting]) -> np.ndarray:
     """(3,) m ahead, left and up of the middle of the scanners from the trajectory."""
-    return np.mean([np.median(one.lever, axis=0) for one in mountings], axis=0)
+    return np.mean([np.median(mounting.lever, axis=0) for mounting in mountings], axis=0)
 
 
 # The numbers by which a survey is told to fit itself, each with where it comes from.

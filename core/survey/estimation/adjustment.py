@@ -74,44 +74,45 @@ def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Re
         if settled:
             break
     by_mounting = follow[:, :3]
-    own = equations.variances()[:, :3, :3]
-    place = own + np.einsum("kia,ab,kjb->kij", by_mounting, covariance, by_mounting)
+    conditional = equations.variances()[:, :3, :3]
+    place_covariance = conditional + np.einsum("kia,ab,kjb->kij", by_mounting, covariance, by_mounting)
     usual = float(np.median(misfit[count > 0]))
     unexplained = float(np.median(np.maximum(misfit - RAYS.most_of_mean * by_rounding, 0.0)[count > 0]))
-    return Adjusted(poses, usual, unexplained, misfit, noise, place, np.sqrt(np.diag(covariance)).reshape(-1, MOUNTING))
+    return Adjusted(poses, usual, unexplained, misfit, noise, place_covariance, np.sqrt(np.diag(covariance)).reshape(-1, MOUNTING))
 
 
 def _equations(poses, guess, crossfall, returns, noise, progress):
     """_BandedEquations at the poses, and (K, S) misfits, what of them the times' rounding explains, and counts of each interval and scanner."""
     knots, columns = poses.control.shape
     equations = _BandedEquations(knots, columns, MOUNTING * poses.scanners)
-    total, count, known = (np.zeros((knots, poses.scanners)) for _ in range(3))
+    total, count, explained = (np.zeros((knots, poses.scanners)) for _ in range(3))
     turned = 2 * np.pi * np.abs(poses.rate) * returns.tick / np.sqrt(12.0)
     cuts = np.searchsorted(returns.interval, np.arange(0, knots + RAYS.block_intervals, RAYS.block_intervals))
     for first, last in zip(cuts[:-1], cuts[1:]):
         if first == last:
             continue
-        own = slice(first, last)
-        interval, share, scanner = returns.interval[own], returns.share[own], returns.scanner[own]
+        rows = slice(first, last)
+        interval, share, scanner = returns.interval[rows], returns.share[rows], returns.scanner[rows]
         rounded = turned[scanner]
         uncertain = (noise[interval, scanner], rounded) if returns.tick else None
-        found = misfits(poses, interval, share, returns.time[own], returns.place[own], scanner, uncertain)
-        variance = noise[interval, scanner] ** 2 + (RAYS.angle_noise**2 + rounded**2) * found.range**2
-        weight = (found.range > RAYS.min_range) / variance / (1.0 + found.off**2 / variance / RAYS.outlier_sigmas**2)
+        residuals = misfits(poses, interval, share, returns.time[rows], returns.place[rows], scanner, uncertain)
+        variance = noise[interval, scanner] ** 2 + (RAYS.angle_noise**2 + rounded**2) * residuals.range**2
+        weight = (residuals.range > RAYS.min_range) / variance / (1.0 + residuals.off**2 / variance / RAYS.outlier_sigmas**2)
         weights = spline_weights(share)
         starts = np.flatnonzero(np.r_[True, np.diff(interval) > 0, True])
         for a, b in zip(starts[:-1], starts[1:]):
-            equations.add_rows(int(interval[a]), np.concatenate([weights[a:b]] * 2), found.pose[:, a:b].reshape(2 * (b - a), columns),
-                               found.mounting[:, a:b].reshape(2 * (b - a), -1), found.off[:, a:b].ravel(), weight[:, a:b].ravel())
-        size = np.where(found.range > RAYS.min_range, np.minimum(np.abs(found.off).max(axis=0), RAYS.max_counted_misfit), RAYS.max_counted_misfit)
+            equations.add_rows(int(interval[a]), np.concatenate([weights[a:b]] * 2), residuals.pose[:, a:b].reshape(2 * (b - a), columns),
+                               residuals.mounting[:, a:b].reshape(2 * (b - a), -1), residuals.off[:, a:b].ravel(), weight[:, a:b].ravel())
+        size = np.where(residuals.range > RAYS.min_range, np.minimum(np.abs(residuals.off).max(axis=0), RAYS.max_counted_misfit),
+                        RAYS.max_counted_misfit)
         np.add.at(total, (interval, scanner), size)
         np.add.at(count, (interval, scanner), 1)
-        np.add.at(known, (interval, scanner), np.minimum(rounded * np.abs(found.range), RAYS.max_counted_misfit))
+        np.add.at(explained, (interval, scanner), np.minimum(rounded * np.abs(residuals.range), RAYS.max_counted_misfit))
         progress.check_cancelled()
     _add_motion(equations, poses, crossfall)
     _add_mounting(equations, poses, guess)
     with np.errstate(invalid="ignore"):
-        return equations, total / count, MEAN_OF_SIGMA * known / count, count
+        return equations, total / count, MEAN_OF_SIGMA * explained / count, count
 
 
 MEAN_OF_SIGMA = 0.8        # derived: sqrt(2 / pi), rounded; mean size of errors against their standard deviation
@@ -153,9 +154,9 @@ def _add_mounting(equations, poses, guess):
     sigma = np.array([RAYS.turn_prior, RAYS.lean_prior, RAYS.lever_prior, RAYS.lever_prior, RAYS.lever_prior])
     off = np.column_stack([poses.turn - guess.turn, poses.lean - guess.lean, poses.lever - guess.lever])
     for number in range(poses.scanners):
-        own = MOUNTING * number + np.arange(MOUNTING)
-        equations.corner[own, own] += 1.0 / sigma**2
-        equations.common[own] -= off[number] / sigma**2
+        columns = MOUNTING * number + np.arange(MOUNTING)
+        equations.corner[columns, columns] += 1.0 / sigma**2
+        equations.common[columns] -= off[number] / sigma**2
     for axis in range(3):
         every = MOUNTING * np.arange(poses.scanners) + 2 + axis
         equations.corner[np.ix_(every, every)] += RAYS.held
@@ -178,17 +179,17 @@ def grown_poses(poses: Poses, known: np.ndarray, returns: Returns, progress: Pro
     held[returns.interval, returns.scanner] = True
     tries = known.astype(int)
     noise = np.full(known.shape, RAYS.first_noise)
-    some = returns[np.arange(0, len(returns.interval), RAYS.growth_stride)]
+    sample = returns[np.arange(0, len(returns.interval), RAYS.growth_stride)]
     for number in range(RAYS.max_growths):
         part = progress.part(number / (RAYS.max_growths + 2), (number + 1) / (RAYS.max_growths + 2))
-        found = _adjust_poses(poses, guess, crossfall, some[known[some.interval, some.scanner]], noise, part)
-        limit = max(RAYS.max_ray_misfit, RAYS.max_times_usual * found.usual)
+        adjusted = _adjust_poses(poses, guess, crossfall, sample[known[sample.interval, sample.scanner]], noise, part)
+        limit = max(RAYS.max_ray_misfit, RAYS.max_times_usual * adjusted.usual)
         with np.errstate(invalid="ignore"):
-            good = known & (found.misfit <= limit)
-        fresh = _reached(found.poses, good) & held & ~good & (tries < RAYS.max_tries)
-        poses = _carried_on(found.poses, good)
-        crossfall = _crossfall_of(poses, some[good[some.interval, some.scanner]])
-        noise = np.where(good, found.noise, RAYS.first_noise)
+            good = known & (adjusted.misfit <= limit)
+        fresh = _reached(adjusted.poses, good) & held & ~good & (tries < RAYS.max_tries)
+        poses = _carried_on(adjusted.poses, good)
+        crossfall = _crossfall_of(poses, sample[good[sample.interval, sample.scanner]])
+        noise = np.where(good, adjusted.noise, RAYS.first_noise)
         if not fresh.any():
             break
         tries += fresh
@@ -201,11 +202,11 @@ def _reached(poses, good):
     """Intervals within reach of good ones of their drive."""
     reached = np.zeros(good.shape, bool)
     for drive in poses.drives:
-        own = slice(drive.first, drive.first + drive.count - 3)
-        total = np.concatenate([np.zeros((1, good.shape[1]), int), np.cumsum(good[own], axis=0)])
+        rows = slice(drive.first, drive.first + drive.count - 3)
+        total = np.concatenate([np.zeros((1, good.shape[1]), int), np.cumsum(good[rows], axis=0)])
         places = np.arange(drive.count - 3)
         low, high = np.maximum(places - RAYS.reach, 0), np.minimum(places + RAYS.reach + 1, drive.count - 3)
-        reached[own] = total[high] > total[low]
+        reached[rows] = total[high] > total[low]
     return reached
 
 
@@ -213,18 +214,18 @@ def _carried_on(poses: Poses, good: np.ndarray) -> Poses:
     """The poses with values where no interval is `good`, (K, S) bool, replaced by smooth continuation."""
     control = poses.control.copy()
     for drive in poses.drives:
-        own = slice(drive.first, drive.first + drive.count)
+        span = slice(drive.first, drive.first + drive.count)
         # a control value is known where one of the four intervals that it belongs to is
-        known = np.zeros((drive.count, poses.scanners), bool)
+        supported = np.zeros((drive.count, poses.scanners), bool)
         for step in range(4):
-            known[step:] |= good[own][:drive.count - step]
-        parts = [(slice(0, POSE), known.any(axis=1), RAYS.pose_stiffness)]
-        parts += [(slice(POSE + k, POSE + k + 1), known[:, k], RAYS.phase_stiffness) for k in range(poses.scanners)]
+            supported[step:] |= good[span][:drive.count - step]
+        parts = [(slice(0, POSE), supported.any(axis=1), RAYS.pose_stiffness)]
+        parts += [(slice(POSE + k, POSE + k + 1), supported[:, k], RAYS.phase_stiffness) for k in range(poses.scanners)]
         for columns, rows, stiffness in parts:
             if rows.any() and not rows.all():
-                values = control[own, columns]
+                values = control[span, columns]
                 bridged = robustly_smoothed(values, rows.astype(float), stiffness)
-                control[own, columns] = np.where(rows[:, None], values, bridged)
+                control[span, columns] = np.where(rows[:, None], values, bridged)
     return replace(poses, control=control)
 
 
@@ -254,33 +255,33 @@ def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndar
     """
     values = poses.at(interval, share)
     ahead, left, up = vehicle_axes(values[:, ROLL], values[:, PITCH], values[:, YAW])
-    away = place - values[:, :3]
-    seen = np.stack([(axis * away).sum(axis=1) for axis in (ahead, left, up)], axis=1) - poses.lever[scanner]
+    rays = place - values[:, :3]
+    in_vehicle = np.stack([(axis * rays).sum(axis=1) for axis in (ahead, left, up)], axis=1) - poses.lever[scanner]
     normal, across, upright = (axes[scanner] for axes in poses.scan_planes())
     rows = np.arange(len(time))
     angle = 2 * np.pi * poses.rate[scanner] * time + values[rows, POSE + scanner]
-    along, above = (seen * across).sum(axis=1), (seen * upright).sum(axis=1)
-    reach, beside = along * np.cos(angle) + above * np.sin(angle), above * np.cos(angle) - along * np.sin(angle)
+    along, above = (in_vehicle * across).sum(axis=1), (in_vehicle * upright).sum(axis=1)
+    reach, aside = along * np.cos(angle) + above * np.sin(angle), above * np.cos(angle) - along * np.sin(angle)
     if noise is not None:
         # where the direction is uncertain, the return lies somewhere between it and the direction in which it is seen; taken by the ray
         # alone, returns that all lie far ahead would draw the scanner towards them
         turned = (noise[1] * reach) ** 2
-        angle = angle + np.arctan2(beside, reach) * turned / (noise[0] ** 2 + turned)
+        angle = angle + np.arctan2(aside, reach) * turned / (noise[0] ** 2 + turned)
     cos, sin = np.cos(angle), np.sin(angle)
     sides = (normal, cos[:, None] * upright - sin[:, None] * across)
-    off = np.stack([(seen * normal).sum(axis=1), beside])
+    off = np.stack([(in_vehicle * normal).sum(axis=1), aside])
     by_pose = np.zeros((2, len(time), values.shape[1]))
     by_mounting = np.zeros((2, len(time), MOUNTING * poses.scanners))
     level_right = np.stack([np.sin(values[:, YAW]), -np.cos(values[:, YAW]), np.zeros(len(time))], axis=1)
     first = MOUNTING * scanner.astype(np.int64)
     for k, side in enumerate(sides):
         on_map = side[:, :1] * ahead + side[:, 1:2] * left + side[:, 2:] * up
-        torque = np.cross(on_map, away)
+        torque = np.cross(on_map, rays)
         by_pose[k, :, :3] = -on_map
         for column, axis in ((ROLL, ahead), (PITCH, level_right)):
             by_pose[k, :, column] = (axis * torque).sum(axis=1)
         by_pose[k, :, YAW] = torque[:, 2]
-        torque = np.cross(side, seen)
+        torque = np.cross(side, in_vehicle)
         by_mounting[k, rows, first] = torque[:, 2]
         by_mounting[k, rows, first + 1] = (torque * across).sum(axis=1)
         for j in range(3):
@@ -354,28 +355,28 @@ class _BandedEquations:
         knots, _, columns, _ = self.band.shape
         blocks = -(-knots // 3)
         side = 3 * columns
-        own, next_ = np.zeros((blocks, side, side)), np.zeros((blocks, side, side))
+        diagonal, next_ = np.zeros((blocks, side, side)), np.zeros((blocks, side, side))
         for knot in range(3 * blocks):
-            at = slice((knot % 3) * columns, (knot % 3 + 1) * columns)
+            rows = slice((knot % 3) * columns, (knot % 3 + 1) * columns)
             if knot >= knots:
-                own[knot // 3, at, at] = np.eye(columns)
+                diagonal[knot // 3, rows, rows] = np.eye(columns)
                 continue
             for step in range(min(4, knots - knot)):
-                other = knot + step
-                to = slice((other % 3) * columns, (other % 3 + 1) * columns)
+                partner = knot + step
+                cols = slice((partner % 3) * columns, (partner % 3 + 1) * columns)
                 part = self.band[knot, step] + (step == 0) * RAYS.tiny * np.eye(columns)
-                if other // 3 == knot // 3:
-                    own[knot // 3, at, to] += part
+                if partner // 3 == knot // 3:
+                    diagonal[knot // 3, rows, cols] += part
                     if step:
-                        own[knot // 3, to, at] += part.T
+                        diagonal[knot // 3, cols, rows] += part.T
                 else:
-                    next_[knot // 3, at, to] += part
-        ahead, behind = own.copy(), own.copy()
+                    next_[knot // 3, rows, cols] += part
+        ahead, behind = diagonal.copy(), diagonal.copy()
         for k in range(1, blocks):
             ahead[k] -= next_[k - 1].T @ np.linalg.solve(ahead[k - 1], next_[k - 1])
         for k in range(blocks - 2, -1, -1):
             behind[k] -= next_[k] @ np.linalg.solve(behind[k + 1], next_[k].T)
-        inverse = np.linalg.inv(ahead + behind - own)
+        inverse = np.linalg.inv(ahead + behind - diagonal)
         return np.concatenate([inverse[:, i * columns:(i + 1) * columns, i * columns:(i + 1) * columns][:, None] for i in range(3)],
                               axis=1).reshape(3 * blocks, columns, columns)[:knots]
 
@@ -388,12 +389,12 @@ class _BandedEquations:
 
 def _crossfall_of(poses: Poses, returns: Returns) -> np.ndarray:
     """(K,) radians of crossfall under the vehicle at every interval, positive where the road rises to the left; 0 where it is not seen."""
-    found = np.zeros(len(poses.control))
+    slopes = np.zeros(len(poses.control))
     for drive in poses.drives:
         rows = slice(*np.searchsorted(returns.interval, [drive.first, drive.first + drive.count]))
         if rows.start < rows.stop:
-            found[drive.first:drive.first + drive.count] = _of_drive(poses, drive, returns, rows)
-    return np.arctan(np.clip(found, -RAYS.max_crossfall, RAYS.max_crossfall))
+            slopes[drive.first:drive.first + drive.count] = _of_drive(poses, drive, returns, rows)
+    return np.arctan(np.clip(slopes, -RAYS.max_crossfall, RAYS.max_crossfall))
 
 
 def _of_drive(poses, drive, returns, rows):
@@ -403,10 +404,10 @@ def _of_drive(poses, drive, returns, rows):
     speed = sum(slopes[:, j, None] * poses.control[interval + j][:, [X, Y, Z]] for j in range(4))
     flat = np.maximum(np.hypot(speed[:, 0], speed[:, 1]), 0.1)
     cos, sin = np.cos(values[:, YAW]), np.sin(values[:, YAW])
-    away = place - values[:, :3]
-    ahead, left = away[:, 0] * cos + away[:, 1] * sin, away[:, 1] * cos - away[:, 0] * sin
+    rays = place - values[:, :3]
+    ahead, left = rays[:, 0] * cos + rays[:, 1] * sin, rays[:, 1] * cos - rays[:, 0] * sin
     # the road keeps to the track's own climb
-    below = away[:, 2] - ahead * speed[:, 2] / flat
+    below = rays[:, 2] - ahead * speed[:, 2] / flat
     near = np.flatnonzero((np.abs(left) < RAYS.under_vehicle) & (np.abs(ahead) < RAYS.ahead_reach) & (below < 0))
     if not len(near):
         return np.zeros(drive.count)
@@ -421,6 +422,6 @@ def _of_drive(poses, drive, returns, rows):
     count, x, y, xx, xy = total[:, high] - total[:, low]
     count = np.maximum(count, 1.0)
     spread = xx / count - (x / count) ** 2
-    known = (count >= RAYS.min_returns) & (spread > RAYS.min_spread**2)
-    slope = (xy / count - x * y / count**2) / np.where(known, spread, 1.0)
-    return np.interp(places, places[known], slope[known]) if known.any() else np.zeros(drive.count)
+    covered = (count >= RAYS.min_returns) & (spread > RAYS.min_spread**2)
+    slope = (xy / count - x * y / count**2) / np.where(covered, spread, 1.0)
+    return np.interp(places, places[covered], slope[covered]) if covered.any() else np.zeros(drive.count)

@@ -84,9 +84,9 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
     copies: list[str] = []
     files = without_copies(read_headers(paths, copies.append, crs), copies.append)
     wkt = check_projected(files, crs)
-    found = _estimated(files, scanner_field, wkt, progress)
-    found.cloud_notes = copies + [note for note in (crs_note(files, crs, wkt), unit_note(found.above_road, wkt)) if note]
-    return found
+    estimate = _estimated(files, scanner_field, wkt, progress)
+    estimate.cloud_notes = copies + [note for note in (crs_note(files, crs, wkt), unit_note(estimate.above_road, wkt)) if note]
+    return estimate
 
 
 def _estimated(files, scanner_field, wkt, progress):
@@ -110,35 +110,35 @@ def _estimated(files, scanner_field, wkt, progress):
         refuse_handheld(tracks, [], heads)
         return _of_heads(samples, tracks, heads, wkt)
     scanners = spinning_scanners(samples, tracks)
-    _refuse_terrestrial(tracks, [fixes.place for one in scanners for fixes in one.fixes])
+    _refuse_terrestrial(tracks, [fixes.place for scanner in scanners for fixes in scanner.fixes])
     return _of_mirrors(samples, tracks, scanners, wkt, progress.part(ESTIMATE.tracked_progress, 1.0))
 
 
 def _of_mirrors(samples, tracks, scanners, wkt, progress):
     """The trajectory by the rays of the scanners that a field distinguishes or, where those explain too little, that the scan lines do."""
-    found = None
+    adjusted = None
     if by_field := samples.scanners > 1 and _all_take_part(samples, scanners):
-        found = _adjusted(samples, tracks, scanners, progress)
-    if not _explains(found):
+        adjusted = _adjusted(samples, tracks, scanners, progress)
+    if not _explains(adjusted):
         # a field may have numbered tiles or files
-        if (apart := separated(samples, tracks, progress)) is not None:
-            result = _of_rays(apart[0], tracks, *apart[1:], wkt)
-            result.notes.append(told_apart(len(apart[1])))
+        if (separation := separated(samples, tracks, progress)) is not None:
+            result = _of_rays(separation[0], tracks, *separation[1:], wkt)
+            result.notes.append(told_apart(len(separation[1])))
             return result
         if not by_field:
             refuse_handheld(tracks, scanners)
-            found = _adjusted(samples, tracks, scanners, progress) if scanners else None
-    if _explains(found):
-        return _of_rays(samples, tracks, scanners, found, wkt)
+            adjusted = _adjusted(samples, tracks, scanners, progress) if scanners else None
+    if _explains(adjusted):
+        return _of_rays(samples, tracks, scanners, adjusted, wkt)
     refuse_handheld(tracks, [])
-    if found is None or not _could_be_driven(found):
+    if adjusted is None or not _could_be_driven(adjusted):
         _refuse_without_road(tracks)
         return _by_density(samples, tracks, wkt)
     # tilted heads of many beams turn, too, and the mean of their beams is nearly the ray of a mirror
-    result = _of_rays(samples, tracks, scanners, found, wkt)
-    least = ESTIMATE.share_of_unexplained * found.unexplained
+    result = _of_rays(samples, tracks, scanners, adjusted, wkt)
+    least = ESTIMATE.share_of_unexplained * adjusted.unexplained
     result.sigma, result.sigma_height = np.maximum(result.sigma, least), np.maximum(result.sigma_height, least)
-    result.notes.append(f"Returns lie {found.unexplained:.2f} m off the rays of a mirror (median), as those of tilted heads of many beams do: the "
+    result.notes.append(f"Returns lie {adjusted.unexplained:.2f} m off the rays of a mirror (median), as those of tilted heads of many beams do: the "
                         "trajectory is less certain than where they keep to them.")
     return result
 
@@ -156,7 +156,7 @@ def _could_be_driven(found):
 
 def _all_take_part(samples, scanners):
     """Whether nearly all points are of scanners whose mirrors turn."""
-    taking = np.isin(samples.scanner, [one.number for one in scanners])
+    taking = np.isin(samples.scanner, [scanner.number for scanner in scanners])
     return np.count_nonzero(taking) >= ESTIMATE.min_taking_part * len(samples)
 
 
@@ -175,19 +175,19 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
     for drive, (row, direction) in zip(samples.drives, steps):
         number = lines_of_each(direction, row, drive.stop - drive.start, ways)
         scanner[drive] = np.where(number < 0, UNKNOWN_SCANNER, number)
-    apart = replace(samples, scanner=scanner)
-    scanners = spinning_scanners(apart, tracks)
+    relabelled = replace(samples, scanner=scanner)
+    scanners = spinning_scanners(relabelled, tracks)
     if len(scanners) < 2:
         return None
-    found = _adjusted(apart, tracks, scanners, progress.part(0.0, 0.6))
-    if not _explains(found):
+    adjusted = _adjusted(relabelled, tracks, scanners, progress.part(0.0, 0.6))
+    if not _explains(adjusted):
         return None
     # the rays distinguish the other points, too, and the few that were wrong
-    splitter = ScannerSplitter(found.poses, 0.0, np.zeros(3))
-    apart = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
-    scanners = [replace(one, number=number) for number, one in enumerate(scanners)]
-    found = grown_poses(found.poses, np.isfinite(found.misfit), _returns(apart, found.poses, scanners), progress.part(0.6, 1.0))
-    return (apart, scanners, found) if _explains(found) else None
+    splitter = ScannerSplitter(adjusted.poses, 0.0, np.zeros(3))
+    relabelled = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
+    scanners = [replace(spinning, number=number) for number, spinning in enumerate(scanners)]
+    adjusted = grown_poses(adjusted.poses, np.isfinite(adjusted.misfit), _returns(relabelled, adjusted.poses, scanners), progress.part(0.6, 1.0))
+    return (relabelled, scanners, adjusted) if _explains(adjusted) else None
 
 
 def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSplitter | None:
@@ -195,14 +195,14 @@ def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSpl
     if not samples.drives:
         return None
     tracks = [first_track(samples.time[drive], samples.place[drive]) for drive in samples.drives]
-    found = separated(samples, tracks, progress)
-    return None if found is None else ScannerSplitter(found[2].poses, samples.start, samples.origin)
+    separation = separated(samples, tracks, progress)
+    return None if separation is None else ScannerSplitter(separation[2].poses, samples.start, samples.origin)
 
 
 def _returns(samples: Samples, poses: Poses, scanners: list[Spinning]) -> Returns:
     """Up to `per_interval` returns of every interval and scanner."""
     order = np.full(256, -1)
-    order[[one.number for one in scanners]] = np.arange(len(scanners))
+    order[[spinning.number for spinning in scanners]] = np.arange(len(scanners))
     parts = []
     for drive, knots in zip(samples.drives, poses.drives):
         scanner = order[samples.scanner[drive]]
@@ -224,10 +224,10 @@ def _of_rays(samples, tracks, scanners, found, crs):
         interval, share = knots.interval(time)
         covariance = found.place_covariance[interval + 1 + (share > 0.5)]
         flat = np.sqrt(covariance[:, 0, 0] + covariance[:, 1, 1] + ESTIMATE.least_sigma**2)
-        known = flat <= ESTIMATE.max_sigma
-        lost += np.count_nonzero(~known) * ESTIMATE.row_spacing
+        kept = flat <= ESTIMATE.max_sigma
+        lost += np.count_nonzero(~kept) * ESTIMATE.row_spacing
         up = np.sqrt(covariance[:, 2, 2] + ESTIMATE.least_sigma**2)
-        rows.append(np.column_stack([time, found.poses.at(interval, share)[:, :YAW + 1], flat, up])[known])
+        rows.append(np.column_stack([time, found.poses.at(interval, share)[:, :YAW + 1], flat, up])[kept])
     time, x, y, z, roll, pitch, yaw, flat, up = np.concatenate(rows).T
     if not len(time):
         raise RoadExtractionError(
@@ -252,17 +252,18 @@ def _of_heads(samples, tracks, heads, crs):
     """The places of a many-beam head, one a turn."""
     time, heading, sigma = (np.concatenate([getattr(head, name) for head in heads]) for name in ("time", "heading", "sigma"))
     ground, height, height_sigma = head_heights(samples, tracks, heads)
-    told = (f"the elevations of its beams give its height above the road, {height:.2f} m, known to {height_sigma:.2f} m: that of where they "
-            "lead out, of which the head's own reference point may lie two decimetres off" if height is not None else
-            f"its height above the road, known to {HEAD.usual_height_sigma:g} m, is a usual one, since its beams fall on too little that stands up")
+    height_note = (f"the elevations of its beams give its height above the road, {height:.2f} m, known to {height_sigma:.2f} m: that of where they "
+                   "lead out, of which the head's own reference point may lie two decimetres off" if height is not None else
+                   f"its height above the road, known to {HEAD.usual_height_sigma:g} m, is a usual one, since its beams fall on "
+                   "too little that stands up")
     if height is None:
         height, height_sigma = HEAD.usual_height, HEAD.usual_height_sigma
     place = np.column_stack([np.concatenate([head.place for head in heads]), np.concatenate(ground) + height])
-    known = sigma <= ESTIMATE.max_sigma
-    trajectory = _rough(time[known] + samples.start, place[known], heading[known], samples.origin, crs, True)
-    return EstimatedTrajectory(trajectory, sigma[known], np.full(int(known.sum()), height_sigma), "turns", notes=[
+    kept = sigma <= ESTIMATE.max_sigma
+    trajectory = _rough(time[kept] + samples.start, place[kept], heading[kept], samples.origin, crs, True)
+    return EstimatedTrajectory(trajectory, sigma[kept], np.full(int(kept.sum()), height_sigma), "turns", notes=[
         f"The points are those of a head of many beams that turns {abs(heads[0].rate):.1f} times a second. Its place follows from the "
-        f"directions in which it looked; {told}. Roll and pitch are not known."])
+        f"directions in which it looked; {height_note}. Roll and pitch are not known."])
 
 
 def _by_density(samples, tracks, crs):
@@ -313,10 +314,10 @@ def _refuse_airborne(tracks: list[FirstTrack]) -> None:
 
 def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
     """Refuse points that were measured in two places at most of the times: drives whose clocks overlap."""
-    apart = np.concatenate([_places_apart(samples.time[drive], samples.place[drive, :2], track) for drive, track in zip(samples.drives, tracks)])
-    if len(apart) and np.mean(np.isfinite(apart)) > 0.5:
+    distances = np.concatenate([_places_apart(samples.time[drive], samples.place[drive, :2], track) for drive, track in zip(samples.drives, tracks)])
+    if len(distances) and np.mean(np.isfinite(distances)) > 0.5:
         raise RoadExtractionError(
-            f"At most times the points lie in two places {np.nanmedian(apart):.0f} m apart: these are drives whose clocks overlap, as seconds of "
+            f"At most times the points lie in two places {np.nanmedian(distances):.0f} m apart: these are drives whose clocks overlap, as seconds of "
             "the day or of the week do on other days. Estimate the trajectory of each drive by itself, from its own files.")
 
 
@@ -325,17 +326,17 @@ def _places_apart(time, flat, track):
     size = len(track.time)
     window = np.clip(((time - track.time[0] + TRACK.window / 2) / TRACK.window).astype(np.int64), 0, size - 1)
     # one place about the densest of the window, and what lies farthest from it
-    away = flat - track.foot[window, :2]
-    order = np.lexsort((np.hypot(*away.T), window))
+    offsets = flat - track.foot[window, :2]
+    order = np.lexsort((np.hypot(*offsets.T), window))
     held = np.bincount(window, minlength=size)
     last = np.maximum(np.cumsum(held) - 1, 0)
-    middles = np.stack([np.zeros((size, 2)), away[order[last]]])
+    middles = np.stack([np.zeros((size, 2)), offsets[order[last]]])
     for _ in range(ESTIMATE.split_rounds):
-        far = np.stack([np.hypot(*(away - middle[window]).T) for middle in middles])
+        far = np.stack([np.hypot(*(offsets - middle[window]).T) for middle in middles])
         second = far[1] < far[0]
-        for number, own in enumerate((~second, second)):
-            count = np.maximum(np.bincount(window[own], minlength=size), 1)
-            middles[number] = np.stack([np.bincount(window[own], column, size) / count for column in away[own].T], axis=1)
+        for number, members in enumerate((~second, second)):
+            count = np.maximum(np.bincount(window[members], minlength=size), 1)
+            middles[number] = np.stack([np.bincount(window[members], column, size) / count for column in offsets[members].T], axis=1)
     share = np.bincount(window, second, size) / np.maximum(held, 1)
     near = np.bincount(window, far.min(axis=0) < ESTIMATE.place_radius, size) / np.maximum(held, 1)
     between = np.hypot(*(middles[1] - middles[0]).T)
@@ -391,13 +392,13 @@ def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning], heads: S
     if heads:
         # a vehicle may stand most of the time, but where it drives, it is faster than anybody walks
         pace = np.concatenate([_paces_of(head) for head in heads])
-        walks = len(pace) > 0 and pace.max() < ESTIMATE.walking_pace
+        at_walking_pace = len(pace) > 0 and pace.max() < ESTIMATE.walking_pace
     else:
         # between places some seconds apart: the track swings from window to window by more than anybody walks meanwhile
-        apart = round(ESTIMATE.pace_time / TRACK.window)
-        pace = np.concatenate([np.hypot(*(track.foot[apart:, :2] - track.foot[:-apart, :2]).T) / ESTIMATE.pace_time for track in tracks])
-        walks = len(pace) > 0 and np.quantile(pace, 0.9) < ESTIMATE.walking_pace
-    if walks:
+        windows = round(ESTIMATE.pace_time / TRACK.window)
+        pace = np.concatenate([np.hypot(*(track.foot[windows:, :2] - track.foot[:-windows, :2]).T) / ESTIMATE.pace_time for track in tracks])
+        at_walking_pace = len(pace) > 0 and np.quantile(pace, 0.9) < ESTIMATE.walking_pace
+    if at_walking_pace:
         raise RoadExtractionError(
             f"This looks like a handheld or backpack survey: it moved at {np.median(pace):.1f} m/s, at walking pace, and no mirror turns steadily "
             "in it. A trajectory is estimated for scanners on vehicles; give the trajectory that the scanner's own program has computed.")

@@ -27,14 +27,14 @@ def steps_of(place: np.ndarray, track: FirstTrack, time: np.ndarray) -> tuple[np
     place, time : (N, 3) m and (N,) s, ascending. A direction is a number among those of half a turn, relative to the way driven
     """
     foot, heading = track.at(time)
-    away = place - foot
-    near = np.flatnonzero((np.abs(away[:, 2]) < MIRROR.ground_band) & (np.hypot(away[:, 0], away[:, 1]) < MIRROR.near_foot))
+    offset = place - foot
+    near = np.flatnonzero((np.abs(offset[:, 2]) < MIRROR.ground_band) & (np.hypot(offset[:, 0], offset[:, 1]) < MIRROR.near_foot))
     rows, directions = [], []
     for ahead in range(1, MIRROR.followers + 1):
         a, b = near[:-ahead], near[ahead:]
         close = b - a <= MIRROR.followers
         a, b = a[close], b[close]
-        step = away[b, :2] - away[a, :2]
+        step = offset[b, :2] - offset[a, :2]
         size = np.hypot(*step.T)
         used = (size > MIRROR.nearest_step) & (size < MIRROR.farthest_step)
         angle = np.arctan2(step[used, 1], step[used, 0]) - heading[a[used]]
@@ -47,18 +47,18 @@ def scan_line_directions(direction: np.ndarray) -> list[int]:
     """The directions in which (M,) steps lead, the most frequent first; one where the points are of one scanner, none where they lead anywhere."""
     if len(direction) < MIRROR.min_steps:
         return []
-    alone = np.bincount(direction, minlength=MIRROR.directions).astype(float)
-    count = np.sum([np.roll(alone, shift) for shift in range(-MIRROR.blurred, MIRROR.blurred + 1)], axis=0)
+    unblurred = np.bincount(direction, minlength=MIRROR.directions).astype(float)
+    count = np.sum([np.roll(unblurred, shift) for shift in range(-MIRROR.blurred, MIRROR.blurred + 1)], axis=0)
     most, usual = float(count.max()), float(np.median(count))
     needed = min(max(share * most, clearness * usual) for share, clearness in MIRROR.clear_directions)
-    found: list[int] = []
-    while len(found) < MIRROR.max_directions:
+    directions: list[int] = []
+    while len(directions) < MIRROR.max_directions:
         best = int(np.argmax(count))
         if count[best] < needed:
             break
-        found.append(best)
+        directions.append(best)
         count[_apart(np.arange(MIRROR.directions), best) < MIRROR.min_apart] = -1.0
-    return found
+    return directions
 
 
 def _apart(direction, one):
@@ -68,7 +68,7 @@ def _apart(direction, one):
 
 def lines_of_each(direction: np.ndarray, row: np.ndarray, size: int, ways: list[int]) -> np.ndarray:
     """(size,) number of the scanner of every point, among the directions `ways` of their scan lines; -1 where its steps do not tell."""
-    votes = np.stack([np.bincount(row[_apart(direction, one) <= MIRROR.direction_tolerance], minlength=size) for one in ways])
+    votes = np.stack([np.bincount(row[_apart(direction, way) <= MIRROR.direction_tolerance], minlength=size) for way in ways])
     first = votes.argmax(axis=0)
     most = votes.max(axis=0)
     return np.where((votes == most).sum(axis=0) == 1, first, -1)
@@ -95,12 +95,12 @@ class ScannerSplitter:
     def _places(self, since):
         interval, share = np.zeros(len(since), np.int64), np.zeros(len(since))
         for drive in self.poses.drives:
-            own = np.flatnonzero(since >= drive.start) if drive.first else np.arange(len(since))
-            interval[own], share[own] = drive.interval(since[own])
+            rows = np.flatnonzero(since >= drive.start) if drive.first else np.arange(len(since))
+            interval[rows], share[rows] = drive.interval(since[rows])
         return interval, np.clip(share, 0.0, 1.0)
 
 
 def _ray_distance(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, number: int) -> np.ndarray:
     """(N,) m by which points lie off the rays of one scanner; inf behind it."""
-    found = misfits(poses, interval, share, time, place, np.full(len(time), number))
-    return np.where(found.range > RAYS.min_range, np.abs(found.off).max(axis=0), np.inf)
+    off_rays = misfits(poses, interval, share, time, place, np.full(len(time), number))
+    return np.where(off_rays.range > RAYS.min_range, np.abs(off_rays.off).max(axis=0), np.inf)

@@ -127,14 +127,14 @@ def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> 
     spectra = []
     for time, place, track in runs:
         for middle in np.linspace(track.time[0], track.time[-1], MIRROR.rotation_samples_per_drive + 2)[1:-1]:
-            own = slice(*np.searchsorted(time, [middle - LATTICE.rotation_window / 2, middle + LATTICE.rotation_window / 2]))
-            if own.stop - own.start < MIRROR.min_spectrum_samples:
+            window = slice(*np.searchsorted(time, [middle - LATTICE.rotation_window / 2, middle + LATTICE.rotation_window / 2]))
+            if window.stop - window.start < MIRROR.min_spectrum_samples:
                 continue
-            foot, heading = track.at(time[own])
-            away = place[own] - foot
-            across = away[:, 1] * np.cos(heading) - away[:, 0] * np.sin(heading)
-            phasor = away[:, 2] - TRACK.usual_height + 1j * across
-            spectra.append(rotation_spectrum(time[own], phasor / np.maximum(np.abs(phasor), 1e-9)))
+            foot, heading = track.at(time[window])
+            offset = place[window] - foot
+            across = offset[:, 1] * np.cos(heading) - offset[:, 0] * np.sin(heading)
+            phasor = offset[:, 2] - TRACK.usual_height + 1j * across
+            spectra.append(rotation_spectrum(time[window], phasor / np.maximum(np.abs(phasor), 1e-9)))
     if not spectra:
         return None
     rate, peak = strongest_rotation(spectra)
@@ -152,23 +152,23 @@ def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: floa
     time, place, window = time[kept], place[kept], window[kept]
     size = len(track.time)
     foot, heading = track.at(time)
-    away = place - foot
-    near = np.flatnonzero((np.abs(away[:, 2]) < MIRROR.ground_band) & (np.hypot(away[:, 0], away[:, 1]) < MIRROR.near_foot))
-    direction, middle, grounded = _line_directions(away[near, :2], window[near], size)
+    offset = place - foot
+    near = np.flatnonzero((np.abs(offset[:, 2]) < MIRROR.ground_band) & (np.hypot(offset[:, 0], offset[:, 1]) < MIRROR.near_foot))
+    direction, middle, grounded = _line_directions(offset[near, :2], window[near], size)
     # scan lines run to the left of the way driven
     yaw = (direction - track.heading + 0.0) % np.pi - np.pi / 2
     direction = track.heading + np.pi / 2 + yaw
-    beside = middle[:, 1] * np.cos(direction) - middle[:, 0] * np.sin(direction)
-    along = away[:, 0] * np.cos(direction)[window] + away[:, 1] * np.sin(direction)[window]
+    aside = middle[:, 1] * np.cos(direction) - middle[:, 0] * np.sin(direction)
+    along = offset[:, 0] * np.cos(direction)[window] + offset[:, 1] * np.sin(direction)[window]
     angle = 2 * np.pi * rate * (time - track.time[window])
-    u, v, phase, misfit, in_front = resected(along, away[:, 2], angle, window, size)
-    found = track.foot + np.stack([u * np.cos(direction) - beside * np.sin(direction), u * np.sin(direction) + beside * np.cos(direction), v], axis=1)
+    u, v, phase, misfit, in_front = resected(along, offset[:, 2], angle, window, size)
+    places = track.foot + np.stack([u * np.cos(direction) - aside * np.sin(direction), u * np.sin(direction) + aside * np.cos(direction), v], axis=1)
     count = np.bincount(window, minlength=size)
     good = (count >= TRACK.min_window_samples) & (grounded >= TRACK.min_window_samples / 2) & (in_front >= MIRROR.min_share_in_front)
     good &= (v > MIRROR.heights[0]) & (v < MIRROR.heights[1])
     if good.any():
         good &= misfit <= MIRROR.max_worse * np.median(misfit[good])
-    return _Fixes(track.time[good], found[good], phase[good], yaw[good], misfit[good])
+    return _Fixes(track.time[good], places[good], phase[good], yaw[good], misfit[good])
 
 
 def _line_directions(place, window, size):
@@ -225,28 +225,28 @@ class Spinning:
 
 def spinning_scanners(samples: Samples, tracks: list[FirstTrack]) -> list[Spinning]:
     """The scanners with a mirror that turns, and where they were."""
-    found = []
+    scanners = []
     for number in range(samples.scanners):
         runs = []
         for drive, track in zip(samples.drives, tracks):
-            own = drive.start + np.flatnonzero(samples.scanner[drive] == number)
-            runs.append((samples.time[own], samples.place[own], track))
+            rows = drive.start + np.flatnonzero(samples.scanner[drive] == number)
+            runs.append((samples.time[rows], samples.place[rows], track))
         rate = _rotation_rate_of([run for run in runs if len(run[0])])
         if rate is None:
             continue
         # seen from either side a mirror turns either way: the true way gives more windows that make sense, and a smaller misfit
-        both = [Spinning(number, sign * rate, [_fixes_of(*run, sign * rate) if len(run[0]) else EMPTY for run in runs]) for sign in (1, -1)]
-        best = max(both, key=lambda one: _quality(one.fixes))
+        candidates = [Spinning(number, sign * rate, [_fixes_of(*run, sign * rate) if len(run[0]) else EMPTY for run in runs]) for sign in (1, -1)]
+        best = max(candidates, key=lambda one: _quality(one.fixes))
         if sum(len(fixes.time) for fixes in best.fixes) >= MIRROR.min_fixes:
-            found.append(_with_true_rate(best))
-    return found
+            scanners.append(_with_true_rate(best))
+    return scanners
 
 
 EMPTY = _Fixes(np.empty(0), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0))
 
 
 def _quality(fixes):
-    misfit = np.concatenate([one.misfit for one in fixes])
+    misfit = np.concatenate([fix.misfit for fix in fixes])
     return len(misfit) / (float(np.median(misfit)) + 1e-3) if len(misfit) else 0.0
 
 
@@ -258,14 +258,14 @@ def _with_true_rate(one):
 
 def _phase_steps(fixes, rate):
     """(M,) radians by which the phase gains on an even rate between neighbouring windows."""
-    apart = np.diff(fixes.time)
-    step = np.diff(fixes.phase) - 2 * np.pi * rate * apart
-    return ((step + np.pi) % (2 * np.pi) - np.pi)[apart < 1.5 * TRACK.window]
+    seconds = np.diff(fixes.time)
+    step = np.diff(fixes.phase) - 2 * np.pi * rate * seconds
+    return ((step + np.pi) % (2 * np.pi) - np.pi)[seconds < 1.5 * TRACK.window]
 
 
 def first_poses(samples: Samples, tracks: list[FirstTrack], scanners: list[Spinning]) -> Poses:
     """Poses through the fixes of all scanners that spin, which are numbered anew in this order; mountings upright."""
-    turn = np.array([np.median(np.concatenate([fixes.yaw for fixes in one.fixes])) for one in scanners])
+    turn = np.array([np.median(np.concatenate([fixes.yaw for fixes in scanner.fixes])) for scanner in scanners])
     lever = _levers(tracks, scanners)
     drives, control, first = [], [], 0
     for number, (drive, track) in enumerate(zip(samples.drives, tracks)):
@@ -273,29 +273,29 @@ def first_poses(samples: Samples, tracks: list[FirstTrack], scanners: list[Spinn
         count = int(np.ceil((samples.time[drive.stop - 1] - start) / MIRROR.knot_spacing)) + 4
         knots = _DriveKnots(start, first, count)
         values = np.zeros((count, POSE + len(scanners)))
-        values[:, :3] = _places(track, [one.fixes[number] for one in scanners], lever, knots.middles)
+        values[:, :3] = _places(track, [scanner.fixes[number] for scanner in scanners], lever, knots.middles)
         values[:, YAW] = headings_of(values[:, :2], track.at(knots.middles)[1])
-        for k, one in enumerate(scanners):
-            values[:, POSE + k] = _phases(one.fixes[number], one.rate, knots.middles)
+        for k, scanner in enumerate(scanners):
+            values[:, POSE + k] = _phases(scanner.fixes[number], scanner.rate, knots.middles)
         drives.append(knots)
         control.append(values)
         first += count
-    return Poses(tuple(drives), np.concatenate(control), np.array([one.rate for one in scanners]), turn, np.zeros(len(scanners)), lever)
+    return Poses(tuple(drives), np.concatenate(control), np.array([scanner.rate for scanner in scanners]), turn, np.zeros(len(scanners)), lever)
 
 
 def _levers(tracks, scanners):
     """(S, 3) m ahead, left and up of every scanner from their middle."""
     lever = np.zeros((len(scanners), 3))
-    for k, one in enumerate(scanners[1:], 1):
-        apart = [np.empty((0, 3))]
-        for track, base, fixes in zip(tracks, scanners[0].fixes, one.fixes):
+    for k, scanner in enumerate(scanners[1:], 1):
+        parts = [np.empty((0, 3))]
+        for track, base, fixes in zip(tracks, scanners[0].fixes, scanner.fixes):
             if len(base.time) and len(fixes.time):
                 heading = np.interp(fixes.time, track.time, track.heading)
-                away = fixes.place - np.stack([np.interp(fixes.time, base.time, column) for column in base.place.T], axis=1)
+                offset = fixes.place - np.stack([np.interp(fixes.time, base.time, column) for column in base.place.T], axis=1)
                 cos, sin = np.cos(heading), np.sin(heading)
-                apart.append(np.stack([away[:, 0] * cos + away[:, 1] * sin, away[:, 1] * cos - away[:, 0] * sin, away[:, 2]], axis=1))
-        together = np.concatenate(apart)
-        lever[k] = np.median(together, axis=0) if len(together) else 0.0
+                parts.append(np.stack([offset[:, 0] * cos + offset[:, 1] * sin, offset[:, 1] * cos - offset[:, 0] * sin, offset[:, 2]], axis=1))
+        offsets = np.concatenate(parts)
+        lever[k] = np.median(offsets, axis=0) if len(offsets) else 0.0
     return lever - lever.mean(axis=0)
 
 
@@ -303,15 +303,15 @@ def _places(track, fixes, lever, middles):
     """(K, 3) m of the pose at times of the drive."""
     cells = len(middles)
     total, weight = np.zeros((cells, 3)), np.zeros(cells)
-    for own, arm in zip(fixes, lever):
-        if not len(own.time):
+    for fix, arm in zip(fixes, lever):
+        if not len(fix.time):
             continue
-        heading = np.interp(own.time, track.time, track.heading)
+        heading = np.interp(fix.time, track.time, track.heading)
         cos, sin = np.cos(heading), np.sin(heading)
-        place = own.place - np.stack([cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1], np.full(len(cos), arm[2])], axis=1)
-        cell = np.clip(np.rint((own.time - middles[0]) / MIRROR.knot_spacing).astype(np.int64), 0, cells - 1)
+        place = fix.place - np.stack([cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1], np.full(len(cos), arm[2])], axis=1)
+        cell = np.clip(np.rint((fix.time - middles[0]) / MIRROR.knot_spacing).astype(np.int64), 0, cells - 1)
         # a window's middle lies off the knot; the track tells how far the vehicle got in between
-        place[:, :2] += (track.at(middles[cell])[0] - track.at(own.time)[0])[:, :2]
+        place[:, :2] += (track.at(middles[cell])[0] - track.at(fix.time)[0])[:, :2]
         total += np.stack([np.bincount(cell, column, cells) for column in place.T], axis=1)
         weight += np.bincount(cell, minlength=cells)
     if not weight.any():
@@ -329,16 +329,16 @@ def _phases(fixes, rate, middles):
     values[cell, 0], weight[cell] = ahead, 1.0
     curves = [robustly_smoothed(values, weight, stiffness) for stiffness in MIRROR.phase_stiffnesses]
     off = [float(np.median(np.abs(curve - values)[weight > 0])) for curve in curves]
-    return next(curve for curve, one in zip(curves, off) if one <= MIRROR.max_worse_phases * off[-1] + 1e-3)[:, 0]
+    return next(curve for curve, residual in zip(curves, off) if residual <= MIRROR.max_worse_phases * off[-1] + 1e-3)[:, 0]
 
 
 def known_intervals(poses: Poses, scanners: list[Spinning]) -> np.ndarray:
     """(K, S) bool: the intervals of the poses in or beside which a scanner has a fix."""
-    known = np.zeros((len(poses.control), len(scanners)), bool)
-    for k, one in enumerate(scanners):
-        for knots, fixes in zip(poses.drives, one.fixes):
+    fixed = np.zeros((len(poses.control), len(scanners)), bool)
+    for k, scanner in enumerate(scanners):
+        for knots, fixes in zip(poses.drives, scanner.fixes):
             if len(fixes.time):
                 interval = knots.interval(fixes.time)[0]
                 for step in (-1, 0, 1):
-                    known[np.clip(interval + step, knots.first, knots.first + knots.count - 4), k] = True
-    return known
+                    fixed[np.clip(interval + step, knots.first, knots.first + knots.count - 4), k] = True
+    return fixed

@@ -49,8 +49,8 @@ class Samples:
     @property
     def scanners(self) -> int:
         """The number of scanners."""
-        known = self.scanner[self.scanner != UNKNOWN_SCANNER]
-        return int(known.max()) + 1 if len(known) else 0
+        numbers = self.scanner[self.scanner != UNKNOWN_SCANNER]
+        return int(numbers.max()) + 1 if len(numbers) else 0
 
 
 def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic", progress: Progress = Progress()) -> Samples:
@@ -63,11 +63,11 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
     census, parts = ScannerCensus(), []
 
     with ParallelCloudReader(SAMPLED_LAYERS) as readers:
-        for found in ordered_map(lambda load: _sample(load(), slots, origin), readers.blocks(files, LAS.points_per_block), progress):
-            time, place, numbers = found
+        for part in ordered_map(lambda load: _sample(load(), slots, origin), readers.blocks(files, LAS.points_per_block), progress):
+            time, place, numbers = part
             for column, name in enumerate(SCANNER_FIELDS):
                 census.take(name, times_by_value(numbers[:, column], time))
-            parts.append(found)
+            parts.append(part)
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     del parts
     if len(time) < TRACK.min_drive_samples:
@@ -110,9 +110,9 @@ def samples_of(time: np.ndarray, place: np.ndarray, scanner: np.ndarray, origin:
 
 def rounding_of(time: np.ndarray, start: float) -> float:
     """What (N,) times in seconds since `start` are rounded to, s; 0 where that is no power of ten or two."""
-    some = time[::max(len(time) // TRACK.max_rounding_samples, 1)] + start
+    sample = time[::max(len(time) // TRACK.max_rounding_samples, 1)] + start
     for tick in ROUNDINGS:
-        steps = some / tick
+        steps = sample / tick
         if np.mean(np.abs(steps - np.rint(steps)) <= TRACK.rounded_tolerance) >= TRACK.min_rounded_share:
             return tick
     return 0.0
@@ -177,8 +177,8 @@ def first_track(time: np.ndarray, place: np.ndarray) -> FirstTrack:
     middle, low = (np.minimum(start + (count * share).astype(np.int64), len(time) - 1) for share in (0.5, TRACK.lowest_share))
     foot = np.stack([column[np.lexsort((column, window))][rank] for column, rank in zip(place.T, (middle, middle, low))], axis=1)
     for _ in range(TRACK.density_rounds):
-        away = place - foot[window]
-        weight = 1.0 / ((1.0 + (away[:, :2] ** 2).sum(axis=1) / TRACK.density_width**2) * (1.0 + (away[:, 2] / TRACK.ground_weight_depth) ** 2))
+        offset = place - foot[window]
+        weight = 1.0 / ((1.0 + (offset[:, :2] ** 2).sum(axis=1) / TRACK.density_width**2) * (1.0 + (offset[:, 2] / TRACK.ground_weight_depth) ** 2))
         total = np.maximum(np.bincount(window, weight, size), 1e-9)
         foot = np.stack([np.bincount(window, weight * column, size) / total for column in place.T], axis=1)
     track = robustly_smoothed(foot, (count >= TRACK.min_window_samples).astype(float), TRACK.stiffness)
@@ -284,9 +284,9 @@ def _on_ground(place):
     first = np.flatnonzero(np.r_[True, np.diff(cell[order]) > 0])
     held = np.diff(np.r_[first, len(cell)])
     ground = np.repeat(place[order[first + (held * TRACK.low_share).astype(np.int64)], 2], held)
-    found = np.empty(len(cell), bool)
-    found[order] = np.abs(place[order, 2] - ground) <= TRACK.ground_layer
-    return found
+    on_ground = np.empty(len(cell), bool)
+    on_ground[order] = np.abs(place[order, 2] - ground) <= TRACK.ground_layer
+    return on_ground
 
 
 def _graph(number, crest):
@@ -296,10 +296,10 @@ def _graph(number, crest):
         height, width = number.shape
         a = (slice(0, height - dr), slice(max(-dc, 0), width - max(dc, 0)))
         b = (slice(dr, height), slice(max(dc, 0), width + min(dc, 0)))
-        both = (number[a] >= 0) & (number[b] >= 0)
-        rows.append(number[a][both])
-        columns.append(number[b][both])
-        costs.append(np.hypot(dr, dc) * TRACK.cell * 2.0 / (crest[a][both] ** TRACK.crest_cost + crest[b][both] ** TRACK.crest_cost))
+        linked = (number[a] >= 0) & (number[b] >= 0)
+        rows.append(number[a][linked])
+        columns.append(number[b][linked])
+        costs.append(np.hypot(dr, dc) * TRACK.cell * 2.0 / (crest[a][linked] ** TRACK.crest_cost + crest[b][linked] ** TRACK.crest_cost))
     size = int(number.max()) + 1
     return sparse.csr_matrix((np.concatenate(costs), (np.concatenate(rows), np.concatenate(columns))), shape=(size, size))
 
@@ -313,8 +313,8 @@ def _longest_path(graph, ends):
     start = int(np.argmax(allowed))
     for _ in range(2):
         cost, before = sparse.csgraph.dijkstra(graph, directed=False, indices=start, return_predecessors=True)
-        other, start = start, int(np.argmax(np.where(allowed, cost, -1.0)))
+        finish, start = start, int(np.argmax(np.where(allowed, cost, -1.0)))
     path = [start]
-    while path[-1] != other and before[path[-1]] >= 0:
+    while path[-1] != finish and before[path[-1]] >= 0:
         path.append(int(before[path[-1]]))
     return np.array(path)

@@ -53,12 +53,12 @@ def _turning_rate(samples: Samples, tracks: list[FirstTrack]) -> float | None:
     drive, track = max(zip(samples.drives, tracks), key=lambda pair: pair[0].stop - pair[0].start)
     middle = 0.5 * (samples.time[drive.start] + samples.time[drive.stop - 1])
     rows = drive.start + np.flatnonzero(np.abs(samples.time[drive] - middle) <= HEAD.rate_seconds / 2)
-    away = samples.place[rows, :2] - track.at(samples.time[rows])[0][:, :2]
-    rows, away = rows[far := np.hypot(*away.T) > HEAD.far_from_track], away[far]
+    offset = samples.place[rows, :2] - track.at(samples.time[rows])[0][:, :2]
+    rows, offset = rows[far := np.hypot(*offset.T) > HEAD.far_from_track], offset[far]
     kept = slice(None, None, max(len(rows) // HEAD.max_rate_samples, 1))
     if len(rows) < HEAD.min_turn_samples:
         return None
-    time, bearing = samples.time[rows][kept] - middle, np.exp(1j * np.arctan2(away[kept, 1], away[kept, 0]))
+    time, bearing = samples.time[rows][kept] - middle, np.exp(1j * np.arctan2(offset[kept, 1], offset[kept, 0]))
     rates = np.arange(*HEAD.turning_rates, HEAD.rate_step)
     rates = np.concatenate([rates, -rates])
     coherence = np.array([abs(np.mean(bearing * np.exp(-2j * np.pi * rate * time))) for rate in rates])
@@ -78,16 +78,16 @@ def _head_track(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: fl
     since = time - middle[turn]
     head = track.at(middle)[0][:, :2].copy()
     speed, omega = np.zeros((count, 2)), np.full(count, 2 * np.pi * rate)
-    away = flat - head[turn]
-    first = np.exp(1j * (np.arctan2(away[:, 1], away[:, 0]) - omega[turn] * since))
+    rays = flat - head[turn]
+    first = np.exp(1j * (np.arctan2(rays[:, 1], rays[:, 0]) - omega[turn] * since))
     phi = np.angle(np.bincount(turn, first.real, count) + 1j * np.bincount(turn, first.imag, count))
     for number in range(HEAD.rounds):
-        away = flat - head[turn] - speed[turn] * since[:, None]
-        square = np.maximum((away**2).sum(axis=1), 1e-6)
-        off = np.angle(np.exp(1j * (np.arctan2(away[:, 1], away[:, 0]) - phi[turn] - omega[turn] * since)))
+        rays = flat - head[turn] - speed[turn] * since[:, None]
+        square = np.maximum((rays**2).sum(axis=1), 1e-6)
+        off = np.angle(np.exp(1j * (np.arctan2(rays[:, 1], rays[:, 0]) - phi[turn] - omega[turn] * since)))
         noise = max(1.4826 * float(np.median(np.abs(off))), HEAD.least_bearing_noise)
         weight = (square > (HEAD.nearest_at_first if number < HEAD.first_rounds else HEAD.nearest_return) ** 2) / (1.0 + (off / noise) ** 2)
-        by_x, by_y, by_time = away[:, 1] / square, -away[:, 0] / square, since * HEAD.rate_scale
+        by_x, by_y, by_time = rays[:, 1] / square, -rays[:, 0] / square, since * HEAD.rate_scale
         slopes = [by_x, by_y, -np.ones(len(off)), -by_time, by_x * by_time, by_y * by_time]
         weighted = [weight * a for a in slopes]
         normal = np.array([[np.bincount(turn, a * b, count) for b in slopes] for a in weighted]).transpose(2, 0, 1)
@@ -114,9 +114,9 @@ def _turns(time, flat, period):
     raw = np.cumsum(np.r_[0, (np.diff(group) > 0) | (np.diff(np.floor((time - begun) / period + 1e-6)) != 0)])
     size = np.bincount(raw)
     first = np.r_[0, np.cumsum(size)[:-1]]
-    whole = (time[first + size - 1] - time[first] >= HEAD.min_seen_share_of_turn * period) & (size >= HEAD.min_turn_samples)
-    kept = whole[raw] & thinned(raw, HEAD.max_turn_samples)
-    return time[kept], flat[kept], (np.cumsum(whole) - 1)[raw[kept]]
+    complete = (time[first + size - 1] - time[first] >= HEAD.min_seen_share_of_turn * period) & (size >= HEAD.min_turn_samples)
+    kept = complete[raw] & thinned(raw, HEAD.max_turn_samples)
+    return time[kept], flat[kept], (np.cumsum(complete) - 1)[raw[kept]]
 
 
 def _headings(time, place):
@@ -140,13 +140,13 @@ def head_heights(samples: Samples, tracks: list[FirstTrack], heads: list[HeadTra
     ground, parts, turns = [], [], 0
     share = max(sum(drive.stop - drive.start for drive in samples.drives) // HEAD.max_height_points, 1)
     for drive, track, head in zip(samples.drives, tracks, heads):
-        turn, away, z = _seen_from(samples.time[drive], samples.place[drive], head, share)
-        plane = _ground_planes(turn, away, z, track.at(head.time)[0][:, 2])
+        turn, rays, z = _seen_from(samples.time[drive], samples.place[drive], head, share)
+        plane = _ground_planes(turn, rays, z, track.at(head.time)[0][:, 2])
         ground.append(plane[:, 0])
-        reach = np.hypot(*away.T)
-        above = z - plane[turn, 0] - (plane[turn, 1:] * away).sum(axis=1)
+        reach = np.hypot(*rays.T)
+        above = z - plane[turn, 0] - (plane[turn, 1:] * rays).sum(axis=1)
         near = (reach > HEAD.own_vehicle_reach) & (reach < HEAD.object_reach)
-        bearing = np.arctan2(away[near, 1], away[near, 0]) - head.heading[turn[near]]
+        bearing = np.arctan2(rays[near, 1], rays[near, 0]) - head.heading[turn[near]]
         parts.append((turns + turn[near], reach[near], above[near], bearing))
         turns += -(-len(head.time) // HEAD.turns_of_group) * HEAD.turns_of_group
     turn, reach, above, bearing = (np.concatenate(column) for column in zip(*parts))
@@ -178,7 +178,7 @@ def _ground_planes(turn: np.ndarray, away: np.ndarray, z: np.ndarray, first: np.
     design = np.column_stack([np.ones(len(turn)), away[near]])
     count = len(first)
     planes = np.column_stack([first, np.zeros((count, 2))])
-    enough = np.bincount(turn, minlength=count) >= HEAD.least_ground_points
+    solvable = np.bincount(turn, minlength=count) >= HEAD.least_ground_points
     for number in range(HEAD.ground_rounds):
         off = z - (planes[turn] * design).sum(axis=1)
         # what stands on the road lies above it, so points above lose their weight sooner than those below
@@ -188,7 +188,7 @@ def _ground_planes(turn: np.ndarray, away: np.ndarray, z: np.ndarray, first: np.
         right = np.array([np.bincount(turn, weight * a * off, count) for a in design.T]).T
         # slopes of roads are small
         normal += np.diag([1e-6, 1.0, 1.0])
-        planes += np.where(enough[:, None], np.linalg.solve(normal, right[..., None])[..., 0], 0.0)
+        planes += np.where(solvable[:, None], np.linalg.solve(normal, right[..., None])[..., 0], 0.0)
     return planes
 
 
@@ -210,13 +210,13 @@ def _sharpest(turn, groups, reach, above, bearing):
             height += up * steps[best([_pooled(sharpness(height + up * step, *tilt.T, fine)) for step in steps])]
             for axis in (0, 1):
                 moved = [tilt + lean * step * np.eye(2)[axis] for step in steps]
-                tilt[:, axis] += lean * steps[best([_ratio(sharpness(height, *one.T, fine)) for one in moved])]
+                tilt[:, axis] += lean * steps[best([_ratio(sharpness(height, *tilts.T, fine)) for tilts in moved])]
     fine, up, _ = HEAD.search[-1]
     if not HEAD.heights[0] < height < HEAD.heights[1] or _pooled(sharpness(height, *tilt.T, fine)) < HEAD.min_sharing:
         return None, np.nan
     around = up * np.arange(-4 * HEAD.search_steps, 4 * HEAD.search_steps + 1)
-    own = around[best([_ratio(sharpness(height + shift, *tilt.T, fine)) for shift in around])]
-    sigma = float(np.hypot(MAD_TO_SIGMA * np.median(np.abs(own)) / np.sqrt(groups), HEAD.least_height_sigma))
+    shifts = around[best([_ratio(sharpness(height + shift, *tilt.T, fine)) for shift in around])]
+    sigma = float(np.hypot(MAD_TO_SIGMA * np.median(np.abs(shifts)) / np.sqrt(groups), HEAD.least_height_sigma))
     return (float(height), sigma) if sigma <= HEAD.max_height_sigma else (None, np.nan)
 
 

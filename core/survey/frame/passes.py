@@ -133,13 +133,13 @@ def _drop_short_pieces(cuts, driven):
 def _split_long_pieces(cuts, driven):
     """The cuts with additional ones that split pieces longer than MAX_ROAD_LENGTH into equal parts."""
     ends = [0, *(row for row, _, _ in cuts), len(driven) - 1]
-    found = []
+    further = []
     for first, last in zip(ends[:-1], ends[1:]):
         length = driven[last] - driven[first]
         parts = int(np.ceil(length / MAX_ROAD_LENGTH))
         rows = np.searchsorted(driven, driven[first] + length * np.arange(1, parts) / max(parts, 1)).tolist()
-        found += [(row, row, row) for row in rows if first < row < last]
-    return sorted([*cuts, *found])
+        further += [(row, row, row) for row in rows if first < row < last]
+    return sorted([*cuts, *further])
 
 
 def _turn_ends(heading, along, apex):
@@ -162,15 +162,15 @@ def _return_cuts(px, py, along, heading):
     if not len(pairs):
         return []
     i, j = pairs.min(axis=1), pairs.max(axis=1)
-    apart = along[j] - along[i]
+    path_between = along[j] - along[i]
     turned = np.abs((heading[j] - heading[i] + np.pi) % (2 * np.pi) - np.pi)
-    back = (turned > np.pi - FRAME.parallel_angle) & (apart > 4 * FRAME.track_step)
-    again = (turned < FRAME.parallel_angle) & (apart > FRAME.min_loop_length)
-    crossed = (apart > FRAME.min_loop_length) & (np.hypot(px[i] - px[j], py[i] - py[j]) < FRAME.track_step)
-    use = back | again | crossed
+    back = (turned > np.pi - FRAME.parallel_angle) & (path_between > 4 * FRAME.track_step)
+    met_again = (turned < FRAME.parallel_angle) & (path_between > FRAME.min_loop_length)
+    crossed = (path_between > FRAME.min_loop_length) & (np.hypot(px[i] - px[j], py[i] - py[j]) < FRAME.track_step)
+    use = back | met_again | crossed
     order = np.flatnonzero(use)[np.lexsort((-i[use], j[use]))]
     cuts, start = [], 0
-    for a, b, is_back, joins, path in zip(i[order].tolist(), j[order].tolist(), back[order], (back | again)[order], apart[order]):
+    for a, b, is_back, joins, path in zip(i[order].tolist(), j[order].tolist(), back[order], (back | met_again)[order], path_between[order]):
         if a < start:
             continue
         # Split a turn on the spot at its apex, a return where the track is met again, and a loop that crosses itself half way
@@ -215,7 +215,7 @@ class Pass:
 
     def __getstate__(self) -> dict:
         """What was driven, without the tables that speed up its use."""
-        return {one.name: getattr(self, one.name) for one in fields(self) if one.init and not one.name.startswith("_")}
+        return {attribute.name: getattr(self, attribute.name) for attribute in fields(self) if attribute.init and not attribute.name.startswith("_")}
 
     def __setstate__(self, state: dict) -> None:
         Pass.__init__(self, **state)
@@ -231,22 +231,22 @@ class Pass:
             tick = max(FRAME.time_tick, span / FRAME.max_ticks)
             self._by_tick["time"] = tick, self.time[0] + tick * np.arange(int(np.ceil(span / tick)) + 2)
         tick, times = self._by_tick["time"]
-        at = (np.asarray(time, float) - times[0]) * (1.0 / tick)
-        np.clip(at, 0.0, len(times) - 1.5, out=at)
-        k = at.astype(np.intp)
-        at -= k
-        found = []
+        ticks = (np.asarray(time, float) - times[0]) * (1.0 / tick)
+        np.clip(ticks, 0.0, len(times) - 1.5, out=ticks)
+        k = ticks.astype(np.intp)
+        ticks -= k
+        columns = []
         for name in names:
             if name not in self._by_tick:
                 self._by_tick[name] = np.interp(times, self.time, getattr(self, name))
             table = self._by_tick[name]
-            here = table.take(k, mode="clip")
+            values = table.take(k, mode="clip")
             step = table[1:].take(k, mode="clip")
-            step -= here
-            step *= at
-            here += step
-            found.append(here)
-        return found
+            step -= values
+            step *= ticks
+            values += step
+            columns.append(values)
+        return columns
 
     def position(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
         """Local x, y, z of the vehicle, (N,) m each, at (N,) times."""

@@ -30,8 +30,8 @@ def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) ->
     s, d = np.full((2, len(x)), np.nan)
     x, y = frame.to_local(x + frame.origin[0], y + frame.origin[1])
     for number in np.unique(road[(road >= 0) & (road < len(frame.roads))]).tolist():
-        there = np.flatnonzero(road == number)
-        s[there], d[there] = frame.roads[number].locate(x[there], y[there])
+        rows = np.flatnonzero(road == number)
+        s[rows], d[rows] = frame.roads[number].locate(x[rows], y[rows])
     return s, d
 
 
@@ -77,8 +77,8 @@ class FrameLines:
         """Some of the lines, by a mask or their numbers."""
         count, first = np.diff(self.start)[rows], self.start[:-1][rows]
         start = np.append(0, np.cumsum(count))
-        at = np.repeat(first - start[:-1], count) + np.arange(start[-1])
-        return FrameLines(self.road[rows], start, *(values[at] for values in (self.x, self.y, self.z, self.s, self.d)))
+        vertices = np.repeat(first - start[:-1], count) + np.arange(start[-1])
+        return FrameLines(self.road[rows], start, *(values[vertices] for values in (self.x, self.y, self.z, self.s, self.d)))
 
     def and_lines(self, more: FrameLines) -> FrameLines:
         """These lines and others behind them."""
@@ -93,8 +93,8 @@ class FrameLines:
 
     def linestrings(self) -> np.ndarray:
         """(L,) shapely lines in local x, y."""
-        found = np.full(len(self), None, object)
-        return shapely.linestrings(np.c_[self.x, self.y], indices=self.owner, out=found) if len(self.x) else found
+        lines = np.full(len(self), None, object)
+        return shapely.linestrings(np.c_[self.x, self.y], indices=self.owner, out=lines) if len(self.x) else lines
 
     @staticmethod
     def at(frame: RoadFrame, road: np.ndarray, start: np.ndarray, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> FrameLines:
@@ -140,13 +140,13 @@ def passes_to_features(frame: RoadFrame, crs: str) -> Features:
     One row a pass in order of time, drawn as it was driven with a vertex every half metre.
     """
     layer = Features("LineStringZ", list(PASSES), crs=crs)
-    for one in frame.passes:
-        rows = decimate_by_distance(one.x, one.y, FRAME.standstill_radius)
+    for p in frame.passes:
+        rows = decimate_by_distance(p.x, p.y, FRAME.standstill_radius)
         if len(rows) < 2:
             continue
-        line = shapely.linestrings(np.round(np.c_[one.x, one.y, one.z][rows] + frame.origin, COORDINATE_DECIMALS))
-        layer.add(line, **{"pass": one.number}, road=one.road, direction=one.direction, station_m=one.s.min(), end_m=one.s.max(),
-                  length_m=line.length, **(dict(begin_s=one.time[0], finish_s=one.time[-1]) if frame.has_time else {}))
+        line = shapely.linestrings(np.round(np.c_[p.x, p.y, p.z][rows] + frame.origin, COORDINATE_DECIMALS))
+        layer.add(line, **{"pass": p.number}, road=p.road, direction=p.direction, station_m=p.s.min(), end_m=p.s.max(),
+                  length_m=line.length, **(dict(begin_s=p.time[0], finish_s=p.time[-1]) if frame.has_time else {}))
     return layer
 
 
@@ -186,9 +186,9 @@ class PlaceIndex:
         columns = self._columns
         corner = np.unique(np.concatenate([self._keys + step for step in (0, 1, columns, columns + 1)]))   # the last square of each window
         (a, b), (c, d) = (self._rows(corner - step - 1, corner - step) for step in (columns, 0))
-        enough = b - a + d - c >= fewest
-        return [np.concatenate([self._order[one:two], self._order[three:four]])
-                for one, two, three, four in zip(*(ends[enough].tolist() for ends in (a, b, c, d)))]
+        filled = b - a + d - c >= fewest
+        return [np.concatenate([self._order[first:second], self._order[third:fourth]])
+                for first, second, third, fourth in zip(*(ends[filled].tolist() for ends in (a, b, c, d)))]
 
     def within(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Ascending rows of the places in a box with the corners `low` and `high`, (2,) m each."""
@@ -196,5 +196,5 @@ class PlaceIndex:
         first[1], last[1] = max(first[1], 0), min(last[1], self._columns - 1)
         row = np.arange(max(first[0], 0), last[0] + 1) * self._columns
         rows = np.concatenate([np.empty(0, np.int32), *(self._order[a:b] for a, b in zip(*self._rows(row + first[1], row + last[1])))])
-        own = self.places[rows]
-        return np.sort(rows[((own >= low) & (own <= high)).all(axis=1)])
+        places = self.places[rows]
+        return np.sort(rows[((places >= low) & (places <= high)).all(axis=1)])

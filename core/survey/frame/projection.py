@@ -60,9 +60,9 @@ class _LineLookup:
                           for values, name in ((x, "x"), (y, "y")))
         ahead, _, _, bend = self._seen_from(start, fine_x, fine_y, buffers)
         k = self._moved(start, ahead, bend, buffers)
-        found = share, offset, left, bend, _ = self._nearest_point(k, fine_x, fine_y, buffers)
+        nearest = share, offset, left, bend, _ = self._nearest_point(k, fine_x, fine_y, buffers)
         if not _all_within(share, -NODE_TOLERANCE, 1.0 + NODE_TOLERANCE):
-            self._carry_on(k, fine_x, fine_y, found)
+            self._carry_on(k, fine_x, fine_y, nearest)
         near = None
         if not (_all_within(share, -NODE_TOLERANCE, 1.0 + NODE_TOLERANCE) and _all_within(bend, -FRAME.closed_form_bend, FRAME.closed_form_bend)):
             near = _beside(share) & (np.abs(bend) < FRAME.closed_form_bend)
@@ -75,9 +75,9 @@ class _LineLookup:
         np.add(s, k, out=s, casting="unsafe")
         reach = int(corridor / COORDINATE_SCALE)
         if x.dtype == np.int64:
-            about = self._about(x, y, reach)
-            if not about.all():
-                near = about if near is None else near & about
+            around = self._about(x, y, reach)
+            if not around.all():
+                near = around if near is None else near & around
         inside = self._inside(s, d, reach)
         if near is not None:
             inside = near if inside is None else inside & near
@@ -98,9 +98,9 @@ class _LineLookup:
         """(N,) float32 fine units from nodes to points along one axis."""
         step = _of_nodes(nodes, k, buffers("step", np.int32))
         np.subtract(values, step, out=step)
-        away = buffers(name, np.float32)
-        np.copyto(away, step)
-        return away
+        offset = buffers(name, np.float32)
+        np.copyto(offset, step)
+        return offset
 
     def _seen_from(self, k, x, y, buffers):
         """Distances ahead of node k and to its left, the turn of the line to the next node, and the bend; (N,) each."""
@@ -150,14 +150,14 @@ class _LineLookup:
         for _ in range(FRAME.max_node_steps):
             if not len(rows):
                 break
-            few = self._scratch.of(len(rows))
-            moved = self._moved(k.take(rows), ahead, bend, few)
+            buffers = self._scratch.of(len(rows))
+            moved = self._moved(k.take(rows), ahead, bend, buffers)
             k[rows] = moved
-            again = self._nearest_point(moved, x, y, few)
-            for whole, part in zip(found[:4], again):
-                whole[rows] = part
-            on = np.flatnonzero(~_beside(again[0]))
-            rows, x, y, bend, ahead = (values.take(on) for values in (rows, x, y, again[3], again[4]))
+            nearest = self._nearest_point(moved, x, y, buffers)
+            for values, moved_values in zip(found[:4], nearest):
+                values[rows] = moved_values
+            on = np.flatnonzero(~_beside(nearest[0]))
+            rows, x, y, bend, ahead = (column.take(on) for column in (rows, x, y, nearest[3], nearest[4]))
 
     def _follow(self, x, y, start, rows, corridor, s, d, inside):
         """Use `Road.locate` for rows outside the validity of the closed form."""
@@ -167,9 +167,9 @@ class _LineLookup:
         k = start.take(rows)
         ahead = (x * COORDINATE_SCALE - road.x[k]) * road._cos[k] + (y * COORDINATE_SCALE - road.y[k]) * road._sin[k]
         s_there, d_there = road.locate(x * COORDINATE_SCALE, y * COORDINATE_SCALE, road.start + k * NODE_SPACING + ahead, corridor)
-        found = np.isfinite(s_there)
-        rows = rows[found]
-        s[rows], d[rows] = to_units(s_there[found]), to_units(d_there[found])
+        inside_road = np.isfinite(s_there)
+        rows = rows[inside_road]
+        s[rows], d[rows] = to_units(s_there[inside_road]), to_units(d_there[inside_road])
         inside[rows] = True
 
 
@@ -230,10 +230,10 @@ class RoadProjection:
         passes, inside = self._owner(time), None
         for first in range(0, len(x), FRAME.points_per_projection):
             part = slice(first, first + FRAME.points_per_projection)
-            here = self._part(passes[part], x[part], y[part], time[part], s[part], d[part])
-            if here is not None:
+            part_inside = self._part(passes[part], x[part], y[part], time[part], s[part], d[part])
+            if part_inside is not None:
                 inside = np.ones(len(x), bool) if inside is None else inside
-                inside[part] = here
+                inside[part] = part_inside
         return passes, inside
 
     def _part(self, owner, x, y, time, s, d):
@@ -244,9 +244,9 @@ class RoadProjection:
         for number in np.unique(owner[owner >= 0]).tolist():
             rows = np.flatnonzero(owner == number)
             own_s, own_d = np.empty((2, len(rows)), np.int32)
-            there = self._project_pass(number, x[rows], y[rows], time[rows], own_s, own_d)
+            pass_inside = self._project_pass(number, x[rows], y[rows], time[rows], own_s, own_d)
             s[rows], d[rows] = own_s, own_d
-            inside[rows] = True if there is None else there
+            inside[rows] = True if pass_inside is None else pass_inside
         return inside
 
     def _owner(self, time):
@@ -280,9 +280,9 @@ class _PassClock:
 
     def node(self, time, buffers):
         """(N,) intp node numbers; those of the ends before and after the pass."""
-        at = np.subtract(time, self.first, out=buffers("at"))
-        at *= 1.0 / self.tick
+        ticks = np.subtract(time, self.first, out=buffers("at"))
+        ticks *= 1.0 / self.tick
         k = buffers("start", np.intp)
-        np.copyto(k, at, casting="unsafe")
+        np.copyto(k, ticks, casting="unsafe")
         np.copyto(k, self.nodes.take(k, out=buffers("node", np.int32), mode="clip"))
         return k

@@ -98,12 +98,12 @@ class Road:
         active = np.arange(len(s))
         # most points converge in three steps
         for _ in range(12):
-            at = self._at(s[active])
-            px, py, c, n = self._line(*at)
+            nodes = self._at(s[active])
+            px, py, c, n = self._line(*nodes)
             ex, ey = x[active] - px, y[active] - py
             along, across = ex * c + ey * n, ey * c - ex * n
             d[active] = across
-            step = along / np.minimum(np.maximum(1.0 - self._bend(*at) * across, 0.4), 2.5)
+            step = along / np.minimum(np.maximum(1.0 - self._bend(*nodes) * across, 0.4), 2.5)
             step = np.minimum(np.maximum(step, -30), 30)
             s[active] = np.minimum(np.maximum(s[active] + step, self.start - 1.0), self.end + 1.0)
             active = active[np.abs(along) > 2e-5]
@@ -121,10 +121,10 @@ class Road:
         """(N,) bool, whether the stations of (N,) local places, as of `locate`, lie from `start` to before `end`; places far away cost little."""
         line = np.stack(self.to_map(np.arange(start, end + NODE_SPACING, NODE_SPACING), 0.0))
         low, high = line.min(axis=1) - CORRIDOR - 1.0, line.max(axis=1) + CORRIDOR + 1.0
-        found = (x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1])
-        s, _ = self.locate(x[found], y[found])
-        found[found] = (s >= start) & (s < end)
-        return found
+        inside = (x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1])
+        s, _ = self.locate(x[inside], y[inside])
+        inside[inside] = (s >= start) & (s < end)
+        return inside
 
     def nearest_station(self, x: np.ndarray, y: np.ndarray, corridor: float = CORRIDOR) -> np.ndarray:
         """Station of the nearest node of the line, (N,) m; NaN where none is within the corridor."""
@@ -194,12 +194,12 @@ def continue_line(line: np.ndarray, track: np.ndarray) -> np.ndarray | None:
     Both are (N, 3) positions of `track_line`; the result has the direction of `line`.
     """
     for way in (track, track[::-1]):
-        found = _append_track(line, way)
-        if found is not None:
-            return found
-        found = _append_track(line[::-1], way)
-        if found is not None:
-            return found[::-1]
+        longer = _append_track(line, way)
+        if longer is not None:
+            return longer
+        longer = _append_track(line[::-1], way)
+        if longer is not None:
+            return longer[::-1]
     return None
 
 

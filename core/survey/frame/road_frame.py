@@ -70,8 +70,8 @@ class RoadFrame:
     def to_map(self, road: int, s: np.ndarray, d: np.ndarray | float, z: np.ndarray | None = None) -> tuple[np.ndarray, ...]:
         """Map coordinates of stations and offsets on a road: x, y, and z if a local z is given."""
         x, y = self.roads[road].to_map(s, d)
-        found = x + self.origin[0], y + self.origin[1]
-        return found if z is None else found + (np.asarray(z, float) + self.origin[2],)
+        on_map = x + self.origin[0], y + self.origin[1]
+        return on_map if z is None else on_map + (np.asarray(z, float) + self.origin[2],)
 
     def track_height(self, road: int, s: np.ndarray, below: dict[int, float] | None = None) -> np.ndarray:
         """Height of the trajectory, (N,) local z in metres, at (N,) stations of a road: the mean of the passes there, else the nearest pass.
@@ -84,23 +84,23 @@ class RoadFrame:
         passes = self.passes_of(road)
         for p in passes:
             first, last = p.span
-            there = (s >= first) & (s <= last)
-            total += np.where(there, p.height_at_station(s) - below.get(p.number, 0.0), 0.0)
-            count += there
+            driven = (s >= first) & (s <= last)
+            total += np.where(driven, p.height_at_station(s) - below.get(p.number, 0.0), 0.0)
+            count += driven
         if not count.all():
             # beyond the driven part and between two passes: the pass that ends nearest
             nearest = np.argmin([np.maximum(np.maximum(p.span[0] - s, s - p.span[1]), 0.0) for p in passes], axis=0)
             for k, p in enumerate(passes):
-                alone = (count == 0) & (nearest == k)
-                total[alone], count[alone] = p.height_at_station(s[alone]) - below.get(p.number, 0.0), 1
+                undriven = (count == 0) & (nearest == k)
+                total[undriven], count[undriven] = p.height_at_station(s[undriven]) - below.get(p.number, 0.0), 1
         return total / count
 
     def nearest_pass(self, road: int, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) number of the pass whose track is nearest to (N,) stations and offsets, of those that drove there."""
         s, d = np.asarray(s, float), np.asarray(d, float)
         passes = self.passes_of(road)
-        away = [np.where((s >= p.span[0]) & (s <= p.span[1]), 0.0, 1e6) + np.abs(p.at_station(s)[0] - d) for p in passes]
-        return np.array([p.number for p in passes])[np.argmin(away, axis=0)]
+        distances = [np.where((s >= p.span[0]) & (s <= p.span[1]), 0.0, 1e6) + np.abs(p.at_station(s)[0] - d) for p in passes]
+        return np.array([p.number for p in passes])[np.argmin(distances, axis=0)]
 
     def locate_nearest(self, x: np.ndarray, y: np.ndarray, corridor: float = CORRIDOR) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Road number, station and offset of the nearest point on any road, (N,) each; -1 and NaN where there is none."""
@@ -243,9 +243,9 @@ def _ranges_of(along, rows, kept, s):
 
 def _jumps(s):
     """Indices at which the station jumps, at least half of `min_shared_length` from the ends and from each other."""
-    found = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
+    rows = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
     shortest, kept, last = int(FRAME.min_shared_length / 2), [], 0
-    for k in found:
+    for k in rows:
         if k - last >= shortest and len(s) - k >= shortest:
             kept.append(int(k))
             last = k

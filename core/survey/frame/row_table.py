@@ -62,15 +62,15 @@ class RowSpans:
         """Which value belongs to rows and stations, which broadcast together, and whether they are kept; 0 where not."""
         rows, stations = np.asarray(rows), np.asarray(stations)
         first = self.first[rows]
-        there = (stations >= first) & (stations < self.end[rows])
-        return np.where(there, self.start[:-1][rows] + stations - first, 0), there
+        kept = (stations >= first) & (stations < self.end[rows])
+        return np.where(kept, self.start[:-1][rows] + stations - first, 0), kept
 
     def near(self, first: int, last: int) -> np.ndarray:
         """(N,) int, ascending, the rows that are kept at any of the stations from `first` to `last` (inclusive)."""
         blocks, rows = self._blocks
         low, high = (min(max(station, 0), max(self.stations - 1, 0)) // BLOCK for station in (first, last))
-        some = np.unique(rows[blocks[low]:blocks[high + 1]])
-        return some[(self.first[some] <= last) & (self.end[some] > first)]
+        candidates = np.unique(rows[blocks[low]:blocks[high + 1]])
+        return candidates[(self.first[candidates] <= last) & (self.end[candidates] > first)]
 
     @cached_property
     def _blocks(self):
@@ -123,10 +123,10 @@ class RowTable:
                 return self._stretch(int(rows), *stations.indices(self.spans.stations)[:2])
             stations = np.arange(*stations.indices(self.spans.stations))
             rows = np.asarray(rows)[:, None]
-        places, there = self.spans.places(rows, stations)
+        places, kept = self.spans.places(rows, stations)
         missing = self.missing if np.ndim(self.missing) == 0 else self.missing[np.asarray(rows)]
-        return np.where(there, self.values[places], missing).astype(self.values.dtype, copy=False) if self.spans.size \
-            else np.broadcast_to(np.asarray(missing, self.values.dtype), there.shape).copy()
+        return np.where(kept, self.values[places], missing).astype(self.values.dtype, copy=False) if self.spans.size \
+            else np.broadcast_to(np.asarray(missing, self.values.dtype), kept.shape).copy()
 
     def _stretch(self, row, first, end):
         """The row at the stations from `first` to `end` (exclusive)."""
@@ -135,15 +135,15 @@ class RowTable:
         if begin == first and last == end:
             return self.values[start + first:start + end].copy()
         missing = self.missing if np.ndim(self.missing) == 0 else self.missing[row]
-        found = np.full(max(end - first, 0), missing, self.values.dtype)
+        values = np.full(max(end - first, 0), missing, self.values.dtype)
         if last > begin:
-            found[begin - first:last - first] = self.values[start + begin:start + last]
-        return found
+            values[begin - first:last - first] = self.values[start + begin:start + last]
+        return values
 
     def __setitem__(self, key: tuple[Any, Any], values: Any) -> None:
         """Only where rows are kept."""
-        places, there = self.spans.places(*key)
-        if not there.all():
+        places, kept = self.spans.places(*key)
+        if not kept.all():
             raise IndexError("Stations at which a row is not kept cannot be set.")
         self.values[places] = values
 
@@ -194,7 +194,7 @@ class SigmaAlong:
 
     def at_least(self, metres: float) -> SigmaAlong:
         """The same, nowhere less than some metres."""
-        return SigmaAlong(self.stations, tuple(max(own, float(metres)) for own in self.metres))
+        return SigmaAlong(self.stations, tuple(max(sigma, float(metres)) for sigma in self.metres))
 
 
 def cuts_where_it_changes(along: np.ndarray, sigma: np.ndarray) -> np.ndarray:
@@ -211,10 +211,10 @@ def cuts_where_it_changes(along: np.ndarray, sigma: np.ndarray) -> np.ndarray:
     mean = np.add.reduceat(sigma, begin) / size
     while len(begin) > 1:
         change = np.abs(np.diff(mean))
-        apart = (change >= FRAME.least_sigma_change) & (np.maximum(mean[1:], mean[:-1]) >= FRAME.sigma_cut_factor * np.minimum(mean[1:], mean[:-1]))
-        if apart.all():
+        differ = (change >= FRAME.least_sigma_change) & (np.maximum(mean[1:], mean[:-1]) >= FRAME.sigma_cut_factor * np.minimum(mean[1:], mean[:-1]))
+        if differ.all():
             break
-        k = int(np.argmin(np.where(apart, np.inf, size[1:] * size[:-1] / (size[1:] + size[:-1]) * change**2)))
+        k = int(np.argmin(np.where(differ, np.inf, size[1:] * size[:-1] / (size[1:] + size[:-1]) * change**2)))
         mean[k] = np.average(mean[k:k + 2], weights=size[k:k + 2])
         size[k] += size[k + 1]
         mean, size, begin = (np.delete(values, k + 1) for values in (mean, size, begin))

@@ -94,18 +94,18 @@ class HeaderFields:
 
     def records(self, file: BinaryIO, size: int) -> Iterator[_Record]:
         """The variable length records before the points of a file of so many bytes, the last as far as it is there."""
-        at = self.header_size
+        position = self.header_size
         for _ in range(self.vlrs):
-            record = _Record.read(file, at, VLR_HEADER_SIZE, size)
+            record = _Record.read(file, position, VLR_HEADER_SIZE, size)
             if record is None:
                 return
             yield record
-            at += VLR_HEADER_SIZE + len(record.data)
+            position += VLR_HEADER_SIZE + len(record.data)
 
     def end_of_points(self, size: int) -> int:
         """The byte before which the points end at the latest, in a file of so many bytes."""
         after = [self.first_waveform] + [self.first_evlr] * bool(self.evlrs)
-        return min([size, *(at for at in after if self.points_at <= at <= size)])
+        return min([size, *(position for position in after if self.points_at <= position <= size)])
 
 
 @dataclass(frozen=True)
@@ -227,15 +227,15 @@ def _readable_extra_bytes(record: _Record, point_format: int, room: int) -> _Rec
         left -= size
         name = _name(entry[4:36], taken, number)
         taken.add(name)
-        same = name.encode() == entry[4:36].split(b"\0")[0]
-        kept.append(entry[:4] + (entry[4:36] if same else name.encode()[:32].ljust(32, b"\0")) + entry[36:160] + _decodable(entry[160:]))
+        unchanged = name.encode() == entry[4:36].split(b"\0")[0]
+        kept.append(entry[:4] + (entry[4:36] if unchanged else name.encode()[:32].ljust(32, b"\0")) + entry[36:160] + _decodable(entry[160:]))
     data = b"".join(kept)
     return record if data == record.data and record.length == len(data) else replace(record, data=data, length=len(data))
 
 
 def _entries(record):
     """The descriptions of the fields; one that is not whole is none."""
-    return [record.data[at:at + EXTRA_BYTES_SIZE] for at in range(0, len(record.data) - EXTRA_BYTES_SIZE + 1, EXTRA_BYTES_SIZE)]
+    return [record.data[start:start + EXTRA_BYTES_SIZE] for start in range(0, len(record.data) - EXTRA_BYTES_SIZE + 1, EXTRA_BYTES_SIZE)]
 
 
 def _size(entry):
@@ -249,9 +249,9 @@ def _size(entry):
 def _name(text, taken, number):
     """A name in UTF-8 that no other field has."""
     name = _decodable(text.split(b"\0")[0]).decode() or "extra"
-    unique, again = name, number
+    unique, suffix = name, number
     while unique in taken:
-        unique, again = f"{name.encode()[:MAX_NAME].decode(errors='ignore')}_{again}", again + 1
+        unique, suffix = f"{name.encode()[:MAX_NAME].decode(errors='ignore')}_{suffix}", suffix + 1
     return unique
 
 
@@ -304,10 +304,10 @@ class _MendedFile(io.FileIO):
         first = self.tell()
         count = super().readinto(buffer) or 0
         view = memoryview(buffer).cast("B")
-        for at, data in self._patches:
-            low, high = max(at, first), min(at + len(data), first + count)
+        for start, data in self._patches:
+            low, high = max(start, first), min(start + len(data), first + count)
             if low < high:
-                view[low - first:high - first] = data[low - at:high - at]
+                view[low - first:high - first] = data[low - start:high - start]
         return count
 
 
@@ -338,13 +338,13 @@ def mend(path: str | os.PathLike[str]) -> _MendedHeader:
             patches.append((RECORD_SIZE_AT, struct.pack("<H", fields.record_size)))
             notes.append(f"its header states {stated.record_size} bytes per point, and there are {fields.record_size}")
         patches += _mended_records(records, fields) + [patch for record in extended for patch in record.patches()]
-        found = _MendedHeader(tuple(patches), tuple(notes))
+        mended = _MendedHeader(tuple(patches), tuple(notes))
         if fields.compressed:
-            return found
+            return mended
         count = _points_in_las(file, fields, size)
         if count == fields.count:
-            return found
-        return found.with_count(fields, count, "" if count in fields.counts else _count_note(fields.count, count))
+            return mended
+        return mended.with_count(fields, count, "" if count in fields.counts else _count_note(fields.count, count))
 
 
 def _count_note(stated: int, there: int) -> str:
@@ -355,13 +355,13 @@ def _count_note(stated: int, there: int) -> str:
 
 def _extended(file, fields, size):
     """The extended records behind the points that lie in the file."""
-    at = fields.first_evlr
+    position = fields.first_evlr
     for _ in range(fields.evlrs):
-        record = _Record.read(file, at, EVLR_HEADER_SIZE, size) if at >= fields.header_size else None
-        if record is None or at + EVLR_HEADER_SIZE + record.length > size:
+        record = _Record.read(file, position, EVLR_HEADER_SIZE, size) if position >= fields.header_size else None
+        if record is None or position + EVLR_HEADER_SIZE + record.length > size:
             return
         yield record
-        at += EVLR_HEADER_SIZE + record.length
+        position += EVLR_HEADER_SIZE + record.length
 
 
 def _lengths(fields, records, size):
@@ -404,41 +404,41 @@ def _points_in_las(file, fields, size):
     """The points of an uncompressed file by its length; what its header states where nothing is sure."""
     if fields.record_size < 20 or not fields.header_size <= fields.points_at <= size:
         return fields.count
-    there, rest = divmod(fields.end_of_points(size) - fields.points_at, fields.record_size)
-    if there in fields.counts:
-        return there
-    fitting = max((count for count in fields.counts if count <= there), default=0)
+    points, rest = divmod(fields.end_of_points(size) - fields.points_at, fields.record_size)
+    if points in fields.counts:
+        return points
+    fitting = max((count for count in fields.counts if count <= points), default=0)
     if fields.counts and not fitting:
-        return there if there and not rest else fields.count   # a file cut off ends within a record
-    return there if _are_points(file, fields, fitting, there, rest) else fitting
+        return points if points and not rest else fields.count   # a file cut off ends within a record
+    return points if _are_points(file, fields, fitting, points, rest) else fitting
 
 
 def _are_points(file, fields, first, end, rest):
     """Whether the records from `first` to before `end`, behind those that the header states, are points of the same survey."""
-    behind = _sampled_places(file, fields, first, end)
-    if not len(behind) or not behind.any(axis=1).mean() > 0.5:   # zeros that fill up a block
+    stored = _sampled_places(file, fields, first, end)
+    if not len(stored) or not stored.any(axis=1).mean() > 0.5:   # zeros that fill up a block
         return False
     if first:
-        inside = np.abs(behind - np.median(_sampled_places(file, fields, 0, first), axis=0)) <= NEAR_STATED
+        inside = np.abs(stored - np.median(_sampled_places(file, fields, 0, first), axis=0)) <= NEAR_STATED
     else:
         low, high = fields.minimum, fields.maximum
         if not (np.isfinite([low, high]).all() and (low < high).any()):
             return not rest
-        places = behind * fields.scales + fields.offsets
+        places = stored * fields.scales + fields.offsets
         inside = (places >= low) & (places <= high)
     return bool(inside.all(axis=1).mean() > 0.5)
 
 
 def _sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) -> np.ndarray:
     """(N, 3) coordinates, as they are stored, of some points of an uncompressed file from `first` to before `end`."""
-    found = []
+    places = []
     for row in np.unique(np.linspace(first, end - 1, min(LAS.points_looked_at, max(end - first, 0))).astype(np.int64)).tolist():
         file.seek(fields.points_at + row * fields.record_size)
-        place = file.read(12)
-        if len(place) < 12:   # of a file cut off
+        stored = file.read(12)
+        if len(stored) < 12:   # of a file cut off
             break
-        found.append(np.frombuffer(place, "<i4"))
-    return np.array(found, float).reshape(-1, 3)
+        places.append(np.frombuffer(stored, "<i4"))
+    return np.array(places, float).reshape(-1, 3)
 
 
 # Checks of the lengths in a LAS or LAZ header before a decoder relies on them.
@@ -470,8 +470,8 @@ def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = Non
 
 def _missing_points(fields, size):
     """What is wrong with the number of points of an uncompressed file."""
-    there = (size - fields.points_at) // fields.record_size if fields.record_size else 0
-    return f"its header promises {fields.count:,} points, and {there:,} are there" if fields.count > there else ""
+    points = (size - fields.points_at) // fields.record_size if fields.record_size else 0
+    return f"its header promises {fields.count:,} points, and {points:,} are there" if fields.count > points else ""
 
 
 def _damage_of_chunks(file, fields, size):
@@ -513,10 +513,11 @@ def places_here_and_there(path: str | os.PathLike[str], mended: _MendedHeader) -
             places = _sampled_places(file, fields, 0, fields.count)
         else:
             _, begin, table = _chunks(file)
-            at = begin + np.cumsum([0] + [length for points, length in table if points and length])[:-1]
+            starts = begin + np.cumsum([0] + [length for points, length in table if points and length])[:-1]
             places = np.empty((0, 3), "<i4")
-            if len(at):
-                places = np.array([_integers_at(file, int(at[k])) for k in np.unique(np.linspace(0, len(at) - 1, LAS.points_looked_at).astype(int))])
+            if len(starts):
+                places = np.array([_integers_at(file, int(starts[k]))
+                                   for k in np.unique(np.linspace(0, len(starts) - 1, LAS.points_looked_at).astype(int))])
         return places * fields.scales + fields.offsets
 
 
@@ -602,21 +603,21 @@ def _compression(file):
 def _chunk_table_damage(file, points_at, size, compression):
     """What is wrong with the table of chunks, or with the chunks."""
     file.seek(points_at)
-    place = file.read(8)
-    if len(place) < 8:
+    stored = file.read(8)
+    if len(stored) < 8:
         return "it ends where its points should begin"
-    at = struct.unpack("<q", place)[0]
-    if at == -1:  # written as a stream: the place of the table is at the end of the file
+    table_at = struct.unpack("<q", stored)[0]
+    if table_at == -1:  # written as a stream: the place of the table is at the end of the file
         file.seek(size - 8)
-        at = struct.unpack("<q", file.read(8))[0]
-    if not points_at <= at <= size - 8:
-        return f"its table of chunks should be at byte {at:,} of {size:,}"
-    file.seek(at)
+        table_at = struct.unpack("<q", file.read(8))[0]
+    if not points_at <= table_at <= size - 8:
+        return f"its table of chunks should be at byte {table_at:,} of {size:,}"
+    file.seek(table_at)
     _, chunks = struct.unpack("<II", file.read(8))
-    if chunks > at - points_at:  # a chunk has at least one byte
-        return f"it states {chunks:,} chunks in {at - points_at:,} bytes"
-    file.seek(at)
-    return _chunk_damage(file, points_at + 8, at, compression)
+    if chunks > table_at - points_at:  # a chunk has at least one byte
+        return f"it states {chunks:,} chunks in {table_at - points_at:,} bytes"
+    file.seek(table_at)
+    return _chunk_damage(file, points_at + 8, table_at, compression)
 
 
 def _chunk_damage(file, first, end, compression):
@@ -629,10 +630,10 @@ def _chunk_damage(file, first, end, compression):
         if isinstance(problem, (KeyboardInterrupt, SystemExit, GeneratorExit)):
             raise
         return f"its table of chunks cannot be read ({problem})"
-    taken = sum(length for _, length in table)
-    if taken > end - first:
-        return f"its chunks should take {taken:,} bytes, and there are {end - first:,}"
-    if end > first and not taken:
+    total = sum(length for _, length in table)
+    if total > end - first:
+        return f"its chunks should take {total:,} bytes, and there are {end - first:,}"
+    if end > first and not total:
         return f"its table of chunks is empty, and there are {end - first:,} bytes of points"
     return _layer_damage(file, first, compression, table) if compression.compressor == LAYERED_COMPRESSOR else ""
 
@@ -643,14 +644,14 @@ def _layer_damage(file, first, compression, table):
     layers = sum(LAYERS_OF_ITEM.get(kind, size) for kind, size in compression.items)
     head = raw + 4 + 4 * layers  # the number of points, and the lengths
     counted = compression.chunk_size == VARIABLE_CHUNKS
-    at = first
+    position = first
     for points, length in table:
-        file.seek(at)
+        file.seek(position)
         data = file.read(min(head, length))
         count, *lengths = struct.unpack_from(f"<{1 + layers}I", data, raw) if len(data) == head else (points,)
         if length and head + sum(lengths) > length:
             return f"a chunk of {length:,} bytes states layers of {sum(lengths):,}"
         if counted and count != points:
             return f"its table of chunks states {points:,} points in a chunk that holds {count:,}"
-        at += length
+        position += length
     return ""

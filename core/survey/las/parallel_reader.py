@@ -70,31 +70,31 @@ class ParallelCloudReader:
         header, chunks = self._layout(file)
         if not header.are_points_compressed:
             return self._read_uncompressed(file.path, header, first, count)
-        record, place, table = chunks
+        record, start, table = chunks
         points, length = table.T
         ends = np.cumsum(points)
         k, end = np.searchsorted(ends, (first, first + count - 1), side="right")
         run = table[k:end + 1].copy()
         run[-1, 0] -= ends[end] - first - count   # for the last chunk the table may state the capacity
         run = [(count, nbytes) for count, nbytes in run.tolist() if count]
-        return self._read_chunks(file.path, header, record, place + int(length[:k].sum()), first, run)
+        return self._read_chunks(file.path, header, record, start + int(length[:k].sum()), first, run)
 
     def _layout(self, file):
         """laspy's header of a file and, where it is compressed, its LASzip record, first byte and (C, 2) points and bytes of its chunks."""
-        found = self._layouts.get(file.path)
-        if found is None:
+        layout = self._layouts.get(file.path)
+        if layout is None:
             with open_cloud(file.path, self._layers, known=file) as reader:
                 header = reader.header
             chunks = None
             if header.are_points_compressed:
-                record, place, table = chunks_of(file.path)
-                chunks = record, place, np.array(table, np.int64).reshape(-1, 2)
-            found = header, chunks
+                record, start, table = chunks_of(file.path)
+                chunks = record, start, np.array(table, np.int64).reshape(-1, 2)
+            layout = header, chunks
             with self._lock:
                 while len(self._layouts) >= LAS.most_layouts:
                     self._layouts.pop(next(iter(self._layouts)))
-                self._layouts[file.path] = found
-        return found
+                self._layouts[file.path] = layout
+        return layout
 
     def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
         """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
@@ -164,13 +164,13 @@ class ParallelCloudReader:
             with open(path, "rb", buffering=0) as file:
                 file.seek(header.offset_to_point_data + first * header.point_format.size)
                 left = memoryview(buffer)
-                while len(left) and (some := file.readinto(left)):
-                    left = left[some:]
+                while len(left) and (size := file.readinto(left)):
+                    left = left[size:]
                 return (len(buffer) - len(left)) // header.point_format.size
 
-        found = wrap_read_error(read, path, header.point_count, first)
-        if found < count:
-            raise truncated_file_error(path, header.point_count, first + found)
+        points_read = wrap_read_error(read, path, header.point_count, first)
+        if points_read < count:
+            raise truncated_file_error(path, header.point_count, first + points_read)
         return _point_record(buffer, header)
 
     def _buffer(self, header, count):
@@ -205,19 +205,19 @@ def _in_one_piece(file, size):
 
 def _chunk_runs(file, size, chunks):
     """Runs of as many chunks as `size` points hold, at least one: (LASzip record, first byte, index of the first point, [(points, bytes)])."""
-    record, place, table = chunks
+    record, start, table = chunks
     first, points, run = 0, 0, []
     for count, length in table.tolist():
         # for the last chunk the table may state the capacity
         count = min(count, file.count - first - points)
         if run and points + count > size:
-            yield record, place, first, run
-            place, first, points, run = place + sum(length for _, length in run), first + points, 0, []
+            yield record, start, first, run
+            start, first, points, run = start + sum(length for _, length in run), first + points, 0, []
         if count > 0:
             run.append((count, length))
             points += count
     if run:
-        yield record, place, first, run
+        yield record, start, first, run
     if first + points < file.count:
         raise truncated_file_error(file.path, file.count, first + points)
 

@@ -34,12 +34,12 @@ class ScannerCensus:
 
     def take(self, name: str, times: dict[int, tuple[float, float, int]]) -> None:
         """Add the result of `times_by_value` for a block."""
-        seen = self.spans[name]
-        if len(seen) > 4 * LAS.max_scanners:
+        spans = self.spans[name]
+        if len(spans) > 4 * LAS.max_scanners:
             return
         for value, (start, end, number) in times.items():
-            first, last, count = seen.get(value, (np.inf, -np.inf, 0))
-            seen[value] = min(first, start), max(last, end), count + number
+            first, last, count = spans.get(value, (np.inf, -np.inf, 0))
+            spans[value] = min(first, start), max(last, end), count + number
 
     def join(self, other: ScannerCensus) -> None:
         """Add what was gathered elsewhere."""
@@ -85,14 +85,14 @@ def times_by_value(values: np.ndarray, time: np.ndarray, span: tuple[float, floa
     if not len(values):
         return {}
     # a broadcast column has one value
-    few = values if values.strides[0] else values[:1]
-    low, high = int(few.min()), int(few.max())
+    distinct = values if values.strides[0] else values[:1]
+    low, high = int(distinct.min()), int(distinct.max())
     present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * LAS.max_scanners + 1].tolist()
-    found = {}
+    times_of = {}
     for value in present:
         times = time if low == high else time[values == value]
-        found[value] = float(times.min()), float(times.max()), len(times)
-    return found
+        times_of[value] = float(times.min()), float(times.max()), len(times)
+    return times_of
 
 
 def numbers_by_value(scanners: Sequence[Any], count: int) -> np.ndarray:
@@ -108,7 +108,7 @@ def _heads(spans):
     """Values of a field, ascending; those that measured one after the other are combined into one scanner."""
     heads: list[list[int]] = []
     for value in sorted(spans):
-        free = next((head for head in heads if not any(_together(spans[value], spans[other]) for other in head)), None)
+        free = next((head for head in heads if not any(_together(spans[value], spans[member]) for member in head)), None)
         if free is None:
             heads.append([value])
         else:
@@ -295,8 +295,8 @@ def flagged(block: laspy.ScaleAwarePointRecord) -> bool:
 
 def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
     """(N,) bool: the points of a block that are neither withheld nor noise; None for all. Its layers `flags` and `classification` are decoded."""
-    there = flagged(block) and "withheld" in block.point_format.dimension_names
-    withheld = np.asarray(block["withheld"]) != 0 if there else np.zeros(1, bool)
+    has_withheld = flagged(block) and "withheld" in block.point_format.dimension_names
+    withheld = np.asarray(block["withheld"]) != 0 if has_withheld else np.zeros(1, bool)
     classes = np.asarray(block["classification"])
     low, high = NOISE_CLASSES
     noise = (classes == low) | (classes == high)

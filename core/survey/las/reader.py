@@ -321,8 +321,8 @@ def _key_values(keys, doubles):
     """{GeoKey: number} of the contents of the records of keys and of doubles."""
     table = np.frombuffer(keys[:len(keys) // 8 * 8], "<u2").reshape(-1, 4)[1:].tolist()
     sizes = np.frombuffer(doubles[:len(doubles) // 8 * 8], "<f8").tolist()
-    return {key: value if where == 0 else sizes[value] for key, where, _, value in table
-            if where == 0 or where == DOUBLES_RECORD and value < len(sizes)}
+    return {key: value if location == 0 else sizes[value] for key, location, _, value in table
+            if location == 0 or location == DOUBLES_RECORD and value < len(sizes)}
 
 
 def _contradiction(written, heights, plane, vertical, place):

@@ -33,16 +33,16 @@ class FileSample:
 
 def sample_files(files: Sequence[CloudHeader]) -> list[FileSample]:
     """Samples of the files that have points; RoadExtractionError where one cannot be read."""
-    found = []
+    samples = []
     with ParallelCloudReader(("z", "intensity", "all_extra_bytes")) as reader:
         for file in files:
             if file.count:
                 places = np.linspace(0, file.count - 1, LAS.sampled_places).astype(int).tolist()
-                starts = sorted({reader.chunk_start(file, at) for at in places})
+                starts = sorted({reader.chunk_start(file, row) for row in places})
                 parts = [_sample(next(reader.following(file, start, LAS.points_per_sample))) for start in starts]
                 raw, intensity = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
-                found.append(FileSample(file, raw, intensity, {name: np.concatenate([part[2][name] for part in parts]) for name in parts[0][2]}))
-    return found
+                samples.append(FileSample(file, raw, intensity, {name: np.concatenate([part[2][name] for part in parts]) for name in parts[0][2]}))
+    return samples
 
 
 def _sample(points):
@@ -55,8 +55,8 @@ def _sample(points):
 def _step(values):
     """Between neighbouring ones of (N,) integers."""
     gaps = np.diff(np.unique(values))
-    enough = len(values) >= LAS.values_for_step and len(gaps) >= LAS.gaps_for_step
-    return float(np.quantile(gaps, LAS.share_of_other_gaps, method="lower")) if enough else 0.0
+    sufficient = len(values) >= LAS.values_for_step and len(gaps) >= LAS.gaps_for_step
+    return float(np.quantile(gaps, LAS.share_of_other_gaps, method="lower")) if sufficient else 0.0
 
 
 def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
@@ -69,16 +69,16 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
         ends = np.array([sample.file.minimum, sample.file.maximum], np.float32)
         short = (np.abs(steps - np.abs(np.spacing(ends))) <= scales).any(axis=0)
         coarse = steps > LAS.coarse_coordinates
-        told = coarse & (short | np.isclose(steps, scales, rtol=0.01))
+        clear = coarse & (short | np.isclose(steps, scales, rtol=0.01))
         # Coarse steps on another axis that neither explains are those of a raster on which the points lie, as after thinning by voxels
-        if not told.any() or (coarse & ~told).any():
+        if not clear.any() or (coarse & ~clear).any():
             continue
-        k = int(np.argmax(np.where(told, steps, 0.0)))
-        listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if told[axis])
+        k = int(np.argmax(np.where(clear, steps, 0.0)))
+        listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if clear[axis])
         cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of 32-bit numbers, in which some program kept them" if short[k] else \
             f"that is the scale in the header of the file ({scales[k]:g} m)"
         return (f"The coordinates of {sample.file.path} lie in steps of {listed}: {cause}. Edges and markings are no better than that. Export "
-                "the cloud again with coordinates of 64 bits and a scale of 0.001 m.", float(np.where(told, steps, 0.0)[:2].max() / np.sqrt(6.0)))
+                "the cloud again with coordinates of 64 bits and a scale of 0.001 m.", float(np.where(clear, steps, 0.0)[:2].max() / np.sqrt(6.0)))
     return "", 0.0
 
 
@@ -145,8 +145,8 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
         for block in read_blocks(file.path, layers=("z", "intensity"), units=file.units):
             read += len(block)
             progress.report(read / total)
-            away = np.abs(np.stack([np.asarray(block.x), np.asarray(block.y)]) - place[:, None])
-            near = np.flatnonzero((away <= radius).all(axis=0))
+            distance = np.abs(np.stack([np.asarray(block.x), np.asarray(block.y)]) - place[:, None])
+            near = np.flatnonzero((distance <= radius).all(axis=0))
             places = np.stack([np.asarray(block[name])[near] for name in "xyz"], axis=1)
             parts.append(np.c_[places if units.metric else units.in_file(places), np.asarray(block.intensity)[near]])
     return np.concatenate(parts)
@@ -172,9 +172,9 @@ def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> lis
     kept = []
     for file in files:
         alike = (file.count, _whole(file.minimum), _whole(file.maximum))
-        other = first.setdefault(alike, file)
-        if other is not file and file.count and content(other) == content(file):
-            warn(f"{file.path} holds the same points as {other.path} and is left out, so that none counts twice.")
+        earlier = first.setdefault(alike, file)
+        if earlier is not file and file.count and content(earlier) == content(file):
+            warn(f"{file.path} holds the same points as {earlier.path} and is left out, so that none counts twice.")
         else:
             kept.append(file)
     return kept
@@ -183,16 +183,16 @@ def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> lis
 def may_overlap(files: Sequence[CloudHeader]) -> bool:
     """Whether the bounds of any two files have an area in common."""
     boxes = shapely.box(*np.array([(*file.minimum[:2], *file.maximum[:2]) for file in files if file.count], float).reshape(-1, 4).T)
-    one, other = shapely.STRtree(boxes).query(boxes, predicate="intersects")
-    apart = one < other
-    return bool((shapely.area(shapely.intersection(boxes[one[apart]], boxes[other[apart]])) > 0.0).any())
+    first, second = shapely.STRtree(boxes).query(boxes, predicate="intersects")
+    once = first < second
+    return bool((shapely.area(shapely.intersection(boxes[first[once]], boxes[second[once]])) > 0.0).any())
 
 
 def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
     """(M,) ascending indices of the points that are no copies of earlier ones, by (N,) times and (N, 3) places."""
     order = np.lexsort((*place.T, time))
-    same = (time[order[1:]] == time[order[:-1]]) & (place[order[1:]] == place[order[:-1]]).all(axis=1)
-    return np.sort(order[np.r_[True, ~same][:len(order)]])
+    repeated = (time[order[1:]] == time[order[:-1]]) & (place[order[1:]] == place[order[:-1]]).all(axis=1)
+    return np.sort(order[np.r_[True, ~repeated][:len(order)]])
 
 
 def _whole(places):

@@ -70,25 +70,25 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
                 lattice.without[key] = _why_none(windows)
             else:
                 rotations[key] = rotation
-        found = _mirror_phases(survey, road, rotations, samples, progress.part(i / len(roads), (i + 1) / len(roads)))
-        lattice.mirror_phases.update(found)
-        lattice.without.update({key: NO_TURNING for key in rotations if key not in found})
+        phases = _mirror_phases(survey, road, rotations, samples, progress.part(i / len(roads), (i + 1) / len(roads)))
+        lattice.mirror_phases.update(phases)
+        lattice.without.update({key: NO_TURNING for key in rotations if key not in phases})
     _report_lattice(lattice, progress)
     return lattice
 
 
 def _report_lattice(lattice, progress):
-    found, missing = lattice.mirror_phases, lattice.without
-    if found:
-        rates = sorted({f"{abs(mirror.frequency) / mirror.spacing:.2f}" for mirror in found.values()}, key=float)
-        progress.info(f"Scan lattice found for {len(found)} run(s) of a scanner: {', '.join(rates)} lines per second.")
-    if not found and not missing:
+    phases, missing = lattice.mirror_phases, lattice.without
+    if phases:
+        rates = sorted({f"{abs(mirror.frequency) / mirror.spacing:.2f}" for mirror in phases.values()}, key=float)
+        progress.info(f"Scan lattice found for {len(phases)} run(s) of a scanner: {', '.join(rates)} lines per second.")
+    if not phases and not missing:
         lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {LATTICE.min_window_points} in "
                              f"{LATTICE.rotation_window:g} s of each scanner); scanlines are made of the points near each section plane.")
         progress.warn(lattice.notes[-1])
     if missing:
-        why = ", ".join(sorted(set(missing.values())))
-        note = (f"There are no regular scan lines in {len(missing)} of {len(found) + len(missing)} run(s) of a scanner ({why}); "
+        reasons = ", ".join(sorted(set(missing.values())))
+        note = (f"There are no regular scan lines in {len(missing)} of {len(phases) + len(missing)} run(s) of a scanner ({reasons}); "
                 "there scanlines are made of the points near each section plane.")
         lattice.notes.append(note)
         progress.warn(note)
@@ -298,14 +298,14 @@ def _mounting(windows, frequency):
     total = np.zeros(LATTICE.mounting_directions, complex)
     length = LATTICE.turns_per_bin / abs(frequency)
     for w in windows:
-        some = slice(None, None, max(len(w.time) // LATTICE.max_mounting_points, 1))
-        time, seen = w.time[some], w.phasor[some]
+        rows = slice(None, None, max(len(w.time) // LATTICE.max_mounting_points, 1))
+        time, directions = w.time[rows], w.phasor[rows]
         bins = _PhasorBins(w, length)
-        first, count, since, phasor = bins.sums_of(time - bins.start, seen * np.exp(-2j * np.pi * frequency * (time - bins.start)))
+        first, count, since, phasor = bins.sums_of(time - bins.start, directions * np.exp(-2j * np.pi * frequency * (time - bins.start)))
         mirror = _mirror_phase_from_phasors(frequency, since, phasor, count, length, bins.start)
         if mirror is not None:
-            ahead = np.exp(2j * np.pi * np.sign(frequency) * mirror.turns_at(time)) * np.conj(seen)
-            real, imaginary = (np.bincount(_direction_number(seen), part, LATTICE.mounting_directions) for part in (ahead.real, ahead.imag))
+            ahead = np.exp(2j * np.pi * np.sign(frequency) * mirror.turns_at(time)) * np.conj(directions)
+            real, imaginary = (np.bincount(_direction_number(directions), part, LATTICE.mounting_directions) for part in (ahead.real, ahead.imag))
             total += real + 1j * imaginary
     # directions without points take the value of their neighbours
     near = np.array([total, np.roll(total, 1), np.roll(total, -1), np.roll(total, 2), np.roll(total, -2)]).sum(axis=0)
@@ -329,10 +329,10 @@ class _PhasorBins:
                 np.bincount(bin_of, phasor.real) + 1j * np.bincount(bin_of, phasor.imag))
 
     def add(self, first, count, since, phasor):
-        own = slice(first, first + len(count))
-        self.count[own] += count
-        self.since[own] += since
-        self.phasor[own] += phasor
+        bins = slice(first, first + len(count))
+        self.count[bins] += count
+        self.since[bins] += since
+        self.phasor[bins] += phasor
 
 
 def _stride(windows, frequency):
@@ -345,22 +345,22 @@ def _turns_between_lines(line, phase):
     """(K,) turns from one line to the next in the same sector of a turn; half turns may remain of a cloud that was thinned by its times."""
     line = line - line.min()
     turns = int(line.max()) + 1
-    seen = np.unique((phase * LATTICE.line_sectors).astype(np.int64) * turns + line)
-    return np.diff(seen)[np.diff(seen // turns) == 0]
+    lines = np.unique((phase * LATTICE.line_sectors).astype(np.int64) * turns + line)
+    return np.diff(lines)[np.diff(lines // turns) == 0]
 
 
 def _line_properties(windows, mirror):
     """`pulse`, `spacing` and `leftward` of a MirrorPhase, from the points of the windows."""
-    gaps, apart_parts, onward = [], [], 0
+    gaps, turn_parts, onward = [], [], 0
     for w in windows:
         step = np.diff(w.time)
         usual = np.median(step[step > 0])
         # the mean, since a coarse clock counts in steps as long as the pulse interval
         gaps.append(np.mean(step[(step > 0) & (step < 1.5 * usual)]))
-        apart_parts.append(_turns_between_lines(*mirror.lines_and_phase(w.time)))
+        turn_parts.append(_turns_between_lines(*mirror.lines_and_phase(w.time)))
         onward += np.sign(np.diff(w.offset)).sum()
-    apart = np.concatenate(apart_parts)
-    return dict(pulse=float(np.median(gaps) * abs(mirror.frequency)), spacing=int(np.median(apart)) if len(apart) else 1,
+    turns = np.concatenate(turn_parts)
+    return dict(pulse=float(np.median(gaps) * abs(mirror.frequency)), spacing=int(np.median(turns)) if len(turns) else 1,
                 leftward=bool(mirror.frequency < 0 if mirror.origin == "angle" else onward > 0))
 
 
@@ -416,12 +416,12 @@ class MirrorPhase:
 
 def _interpolate(x, nodes, values, rate):
     """Values at x between nodes, extrapolated linearly beyond them (at `rate` where there is one node)."""
-    found = np.interp(x, nodes, values)
+    inside = np.interp(x, nodes, values)
     before, behind = np.minimum(x - nodes[0], 0.0), np.maximum(x - nodes[-1], 0.0)
     if len(nodes) < 2:
-        return found + rate * (before + behind)
+        return inside + rate * (before + behind)
     first, last = np.diff(values[:2]) / np.diff(nodes[:2]), np.diff(values[-2:]) / np.diff(nodes[-2:])
-    return found + first * before + last * behind
+    return inside + first * before + last * behind
 
 
 def _mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.ndarray, count: np.ndarray, bin_length: float,
@@ -457,19 +457,19 @@ def _smooth_nodes(time, turns, bin_length):
     share = np.concatenate([np.arange(n) / n for n in steps])
     piece = np.repeat(np.arange(len(steps)), steps)
     fine = np.r_[time[piece] + share * np.diff(time)[piece], time[-1]]
-    found = CubicSpline(time, turns)(fine)
-    return (fine, found) if (np.diff(found) > 0).all() else (time, turns)
+    smooth = CubicSpline(time, turns)(fine)
+    return (fine, smooth) if (np.diff(smooth) > 0).all() else (time, turns)
 
 
 def _unwrap(time, phase, bin_length):
     """(K,) phases, each within half a turn of the one that the rate before it predicts."""
-    apart = np.diff(time)
+    gaps = np.diff(time)
     step = (np.diff(phase) + np.pi) % (2 * np.pi) - np.pi
-    near = apart < LATTICE.max_phase_bin_gap * bin_length
+    near = gaps < LATTICE.max_phase_bin_gap * bin_length
     if near.any() and not near.all():
         before = np.maximum.accumulate(np.where(near, np.arange(len(near)), -1))
-        rate = np.where(before >= 0, (step / apart)[before], 0.0)
-        predicted = rate * apart
+        rate = np.where(before >= 0, (step / gaps)[before], 0.0)
+        predicted = rate * gaps
         step = np.where(near, step, predicted + (np.diff(phase) - predicted + np.pi) % (2 * np.pi) - np.pi)
     return phase[0] + np.r_[0.0, np.cumsum(step)]
 
@@ -511,7 +511,7 @@ def strongest_rotation(spectra: Sequence[np.ndarray], given: float = 0.0, signed
     best = int(np.argmax(np.where(allowed, mean, -1.0)))
     near = np.abs(f - f[best]) <= LATTICE.rotation_tolerance * abs(f[best]) + 0.5
     opposite = np.abs(f + f[best]) <= LATTICE.rotation_tolerance * abs(f[best]) + 0.5
-    peak = float(np.median([one[near].max() for one in spectra]))
-    if signed and peak < LATTICE.min_direction_ratio * float(np.median([one[opposite].max() for one in spectra])):
+    peak = float(np.median([spectrum[near].max() for spectrum in spectra]))
+    if signed and peak < LATTICE.min_direction_ratio * float(np.median([spectrum[opposite].max() for spectrum in spectra])):
         return float(f[best]), 0.0
     return float(f[best]), peak

@@ -160,13 +160,13 @@ class Columns:
 
     def _slice_of_parts(self, first, end):
         """The rows from first up to end, concatenated from the parts that hold them."""
-        found, start = [], 0
+        slices, start = [], 0
         for part in self._parts or ():
             a, b = max(first - start, 0), min(end - start, len(part))
             if b > a:
-                found.append(part if b - a == len(part) else part[a:b])
+                slices.append(part if b - a == len(part) else part[a:b])
             start += len(part)
-        return Columns.concatenate(found, self.dtype)
+        return Columns.concatenate(slices, self.dtype)
 
     def __setitem__(self, name: str, values: Any) -> None:
         if self._read_only:
@@ -220,7 +220,7 @@ def columns_in_order(records: np.ndarray, order: np.ndarray) -> Columns:
     buffer = np.empty(min(len(order), ROW_CHUNK), dtype)
     for first in range(0, len(order), ROW_CHUNK):
         rows = order[first:first + ROW_CHUNK]
-        some = np.take(records, rows, out=buffer[:len(rows)], mode="clip")
+        chunk = np.take(records, rows, out=buffer[:len(rows)], mode="clip")
         for name, array in arrays.items():
-            array[first:first + len(rows)] = some[name]
+            array[first:first + len(rows)] = chunk[name]
     return Columns(arrays, dtype, len(order))

@@ -177,20 +177,20 @@ class PointSubset(DerivedStore):
         return np.flatnonzero(np.unpackbits(bits["bits"]).view(bool)) if len(bits) else np.empty(0, np.intp)
 
     def _read(self, road, section):
-        own = self._own.section(road, section)
-        if not len(own):
+        columns = self._own.section(road, section)
+        if not len(columns):
             return Columns.concatenate([], self.dtype), False
         rows = self.rows(road, section)
 
         def load(name):
             if name in self._constants:
                 return np.broadcast_to(self._constants[name], len(rows))
-            return own[name] if name in self._own.dtype.names else self.points.column(road, section, name, rows)
+            return columns[name] if name in self._own.dtype.names else self.points.column(road, section, name, rows)
 
         def load_rows(name, some):
             if name in self._constants:
                 return np.broadcast_to(self._constants[name], len(some))
-            return own[name].take(some) if name in self._own.dtype.names else self.points.column(road, section, name, rows.take(some))
+            return columns[name].take(some) if name in self._own.dtype.names else self.points.column(road, section, name, rows.take(some))
 
         return Columns({}, self.dtype, len(rows), load, load_rows=load_rows), True
 
@@ -207,20 +207,20 @@ def columns_of_roads(store: SectionStore, roads: Sequence[int], names: Sequence[
     ends = np.cumsum([0, *(len(store.section(*key)) for key in sections)])
 
     def load(name):
-        whole = np.empty(ends[-1], store.dtype[name])
+        column = np.empty(ends[-1], store.dtype[name])
         for key, first, end in zip(sections, ends[:-1].tolist(), ends[1:].tolist()):
-            whole[first:end] = store.section(*key)[name]
-        return whole
+            column[first:end] = store.section(*key)[name]
+        return column
 
     def load_rows(name, rows):
-        found = np.empty(len(rows), store.dtype[name])
+        values = np.empty(len(rows), store.dtype[name])
         order = np.argsort(rows, kind="stable")
         ascending = rows.take(order)
         bounds = np.searchsorted(ascending, ends)
         for k in np.flatnonzero(np.diff(bounds)).tolist():
-            some = slice(bounds[k], bounds[k + 1])
-            found[order[some]] = store.section(*sections[k]).column_rows(name, ascending[some] - ends[k])
-        return found
+            rows_of_section = slice(bounds[k], bounds[k + 1])
+            values[order[rows_of_section]] = store.section(*sections[k]).column_rows(name, ascending[rows_of_section] - ends[k])
+        return values
 
     dtype = store.dtype if names is None else np.dtype([(name, store.dtype[name]) for name in names])
     return Columns({}, dtype, int(ends[-1]), load, load_rows=load_rows, kept=False).read_only()

@@ -149,14 +149,14 @@ class SectionStore:
 
     def stretches(self, points: int = 0, numbers: Sequence[int] | None = None) -> list[Stretch]:
         """All sections, as stretches of road with about so many points each; every section by itself for 0. Of all roads, or of some `numbers`."""
-        found: list[Stretch] = []
+        stretches: list[Stretch] = []
         for road in self.roads() if numbers is None else numbers:
             sections = np.array(self.sections(road))
             ends = np.cumsum([self.size(road, number) for number in sections.tolist()])
             cuts = sections[np.searchsorted(ends, np.arange(points, ends[-1], points))] + 1 if points else sections
             bounds = np.unique(np.r_[sections[0], cuts, sections[-1] + 1]).tolist()
-            found += [(road, first, end) for first, end in zip(bounds[:-1], bounds[1:])]
-        return found
+            stretches += [(road, first, end) for first, end in zip(bounds[:-1], bounds[1:])]
+        return stretches
 
     def in_stretch(self, stretch: Stretch) -> list[Key]:
         """(road, number) of the sections of a stretch that have points."""
@@ -282,14 +282,14 @@ class SectionStore:
 
     def write_in_order(self, keys: Sequence[Key], folder: Path) -> StoreIndex:
         """Write sections, (road, number) each, in canonical order to a new file of a folder; this store stays as it is."""
-        found = []
+        parts = []
         with new_part(folder) as file:
             for key in keys:
                 check_cancelled()
                 stored = self._sections[key].written_in_order(file, self.finish and partial(self.finish, key[0]))
                 if stored is not None:
-                    found.append((key, True, [stored]))
-        return StoreIndex.of(found)
+                    parts.append((key, True, [stored]))
+        return StoreIndex.of(parts)
 
     def contents(self) -> dict[str, Any]:
         """What another process needs to open this store by `opened`, whose points lie in its folder then; plain values."""
@@ -479,8 +479,8 @@ def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = Non
     for names in (PLACE_KEYS, ALL_KEYS):
         if len(tied):
             places = np.union1d(tied, tied + 1)
-            some = take_rows(records, order[places])
-            keys = [some[name] for name in names]
+            tied_rows = take_rows(records, order[places])
+            keys = [tied_rows[name] for name in names]
             by_keys = np.lexsort(keys)
             order[places] = order[places[by_keys]]
             tied = places[_same_as_next(*(key[by_keys] for key in keys))]

@@ -64,13 +64,13 @@ class Packing(NamedTuple):
         low, *high = _part_views(data, self)
         for first in range(0, len(column), STORE.packing_chunk):
             chunk = column[first:first + STORE.packing_chunk]
-            some = slice(first, first + STORE.packing_chunk) if rows is None else rows[first:first + STORE.packing_chunk]
+            chunk_rows = slice(first, first + STORE.packing_chunk) if rows is None else rows[first:first + STORE.packing_chunk]
             if high:
-                np.left_shift(_values_at(high[0], some), 8 * self.widths[0], out=chunk, dtype=bits)
-                chunk |= _values_at(low, some)
+                np.left_shift(_values_at(high[0], chunk_rows), 8 * self.widths[0], out=chunk, dtype=bits)
+                chunk |= _values_at(low, chunk_rows)
                 chunk += least
             else:
-                np.add(_values_at(low, some), least, out=chunk, dtype=bits)
+                np.add(_values_at(low, chunk_rows), least, out=chunk, dtype=bits)
 
 
 def pack(column: np.ndarray) -> tuple[Packing, np.ndarray]:
@@ -146,16 +146,16 @@ class ColumnFile:
 
     def _unpack(self, stored, column, rows):
         """Fill a column from the bytes between its first and its last row that is asked for."""
-        place, packing, _ = stored
+        start, packing, _ = stored
         if packing.widths == (packing.dtype.itemsize,) and rows is None:
-            self._read(place, column)
+            self._read(start, column)
             return
         first, end = (0, packing.size) if rows is None else (int(rows.min()), int(rows.max()) + 1)
         span = packing._replace(size=end - first)
         data, begin = column_buffers.of(span.nbytes)("packed", np.uint8), 0
         for width in packing.widths:
-            self._read(place + first * width, data[begin:begin + span.size * width])
-            place, begin = place + packing.size * width, begin + span.size * width
+            self._read(start + first * width, data[begin:begin + span.size * width])
+            start, begin = start + packing.size * width, begin + span.size * width
         span.unpack(data, column, rows - first if rows is not None and first else rows)
 
     def release(self, stored: StoredColumn) -> None:
@@ -262,9 +262,9 @@ class SpillFile(ColumnFile):
     def put(self, column: np.ndarray) -> StoredColumn:
         """Write an (N,) column, N > 0, into the first free range that is large enough, or at the end."""
         packing, data = pack(column)
-        place = self._allocate(packing.nbytes)
-        self._own.write(place, data)
-        return StoredColumn(place, packing, self)
+        start = self._allocate(packing.nbytes)
+        self._own.write(start, data)
+        return StoredColumn(start, packing, self)
 
     def release(self, stored: StoredColumn) -> None:
         if not stored.packing.nbytes:
@@ -272,12 +272,12 @@ class SpillFile(ColumnFile):
         with self._lock:
             insort(self._free, (stored.place, stored.packing.nbytes))
             merged = [self._free[0]]
-            for place, nbytes in self._free[1:]:
+            for start, nbytes in self._free[1:]:
                 before, length = merged[-1]
-                if before + length == place:
+                if before + length == start:
                     merged[-1] = before, length + nbytes
                 else:
-                    merged.append((place, nbytes))
+                    merged.append((start, nbytes))
             if len(merged) > STORE.max_free_ranges:
                 merged.remove(min(merged, key=lambda free: free[1]))
             self._free = merged
@@ -286,10 +286,10 @@ class SpillFile(ColumnFile):
         if not nbytes:
             return 0
         with self._lock:
-            for k, (place, length) in enumerate(self._free):
+            for k, (start, length) in enumerate(self._free):
                 if length >= nbytes:
-                    self._free[k:k + 1] = [(place + nbytes, length - nbytes)] * (length > nbytes)
-                    return place
+                    self._free[k:k + 1] = [(start + nbytes, length - nbytes)] * (length > nbytes)
+                    return start
             self.end += nbytes
             return self.end - nbytes
 
@@ -344,11 +344,11 @@ class StoreIndex:
 
     @classmethod
     def join(cls, indexes: Sequence[StoreIndex]) -> StoreIndex:
-        indexes = [one for one in indexes if len(one.parts)] or list(indexes[:1])
-        before = np.cumsum([0, *(len(one.files) for one in indexes)])
-        parts = [one.parts + np.array([0, 0, shift, 0, 0]) for one, shift in zip(indexes, before)]
-        return cls(tuple(name for one in indexes for name in one.files), np.concatenate(parts),
-                   *(np.concatenate([getattr(one, name) for one in indexes]) for name in ("places", "least", "widths")))
+        indexes = [index for index in indexes if len(index.parts)] or list(indexes[:1])
+        before = np.cumsum([0, *(len(index.files) for index in indexes)])
+        parts = [index.parts + np.array([0, 0, shift, 0, 0]) for index, shift in zip(indexes, before)]
+        return cls(tuple(name for index in indexes for name in index.files), np.concatenate(parts),
+                   *(np.concatenate([getattr(index, name) for index in indexes]) for name in ("places", "least", "widths")))
 
     @property
     def count(self) -> int:
@@ -361,5 +361,5 @@ class StoreIndex:
         tables = (self.parts.tolist(), self.places.tolist(), self.least.tolist(), self.widths.tolist())
         for (road, section, number, count, in_order), *columns in zip(*tables):
             yield (road, section), bool(in_order), {
-                name: StoredColumn(place, Packing(dtype[name], count, least, PART_WIDTHS.get(width, (width,))), files[number])
-                for name, place, least, width in zip(dtype.names or (), *columns)}
+                name: StoredColumn(start, Packing(dtype[name], count, least, PART_WIDTHS.get(width, (width,))), files[number])
+                for name, start, least, width in zip(dtype.names or (), *columns)}

@@ -49,8 +49,8 @@ def columns_by_role(names: Sequence[str]) -> dict[str, str]:
 def candidates_by_role(names: Sequence[str]) -> dict[str, list[int]]:
     """{role: places of the columns that may be it by their names, the likeliest first}."""
     ranks = [_roles_of_name(str(name)) for name in names]
-    candidates = {role: sorted((roles[role], place) for place, roles in enumerate(ranks) if role in roles) for role in _names_by_role()}
-    return {role: [place for _, place in places] for role, places in candidates.items() if places}
+    candidates = {role: sorted((roles[role], column) for column, roles in enumerate(ranks) if role in roles) for role in _names_by_role()}
+    return {role: [column for _, column in places] for role, places in candidates.items() if places}
 
 
 @cache
@@ -73,8 +73,8 @@ def _roles_of_name(name):
     earth = bool(EARTH_CENTRED & set(every))
     roles = {}
     for role, uses in _names_by_role().items():
-        whole, usual = _is_of(role, every) or _is_of(role, [plain, *within]), plain in uses["name"]
-        if role.startswith("ecef") == earth and (whole or usual and not within):
+        matches, usual = _is_of(role, every) or _is_of(role, [plain, *within]), plain in uses["name"]
+        if role.startswith("ecef") == earth and (matches or usual and not within):
             roles[role] = uses["name"].index(plain) if usual else len(uses["name"])
     return roles
 
@@ -83,17 +83,17 @@ def _roles_of_name(name):
 def _grammar(role):
     """(pattern of what one of its words is in, pattern of what may stand with it, its words of a single letter)."""
     core, further = _names_by_role()[role]["word"], _names_by_role()[role]["with"]
-    whole = "|".join(re.escape(word) for word in core if len(word) > 1) or "(?!)"
+    cores = "|".join(re.escape(word) for word in core if len(word) > 1) or "(?!)"
     every = "|".join(re.escape(word) for word in (*core, *further) if len(word) > 1)
     letters = "".join(word for word in further if len(word) == 1)
-    return re.compile(f"(?:{every})*(?:{whole})(?:{every})*"), re.compile(f"(?:{every})+|[{letters}-]"), {word for word in core if len(word) == 1}
+    return re.compile(f"(?:{every})*(?:{cores})(?:{every})*"), re.compile(f"(?:{every})+|[{letters}-]"), {word for word in core if len(word) == 1}
 
 
 def _is_of(role, words):
     """Whether all words of a name belong to a role, and one of them says so."""
     core, further, letters = _grammar(role)
     says = [word in letters or bool(core.fullmatch(word)) for word in words]
-    return any(says) and all(said or further.fullmatch(word) for said, word in zip(says, words))
+    return any(says) and all(names_it or further.fullmatch(word) for names_it, word in zip(says, words))
 
 
 def unit_of_name(name: str) -> Unit:
@@ -130,8 +130,8 @@ def _split(text):
 def unit_named(text: str) -> Unit:
     """The Unit that a text names, maybe with a number before it, such as "0.001 s" or "1e-7 deg"; Unit() where it names none."""
     words = " ".join(text.lower().strip("[]()<> .").split())
-    behind = re.fullmatch(r"(\D+?)\s*[*x]\s*(\d[\d.]*(?:e-?\d+)?|10\^?-\d+)", words)
-    words = f"{behind[2]} {behind[1]}" if behind else words
+    factor_last = re.fullmatch(r"(\D+?)\s*[*x]\s*(\d[\d.]*(?:e-?\d+)?|10\^?-\d+)", words)
+    words = f"{factor_last[2]} {factor_last[1]}" if factor_last else words
     number = re.match(r"(\d[\d.]*(?:e-?\d+)?|10\^?-\d+)\s*\*?\s*(?=\D)", words)
     packed = next((unit for form, unit in PACKED_ANGLES if form.fullmatch(words)), None)
     unit = packed or UNIT_NAMES.get(words[number.end():] if number else words)

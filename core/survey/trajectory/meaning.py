@@ -59,16 +59,16 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
     notes: list[str] = []
     full = _filled_columns(columns)
     _prefer_geodetic(columns, full, label, notes)
-    place = {role: places[0] for role, places in full.items() if places and role not in given}
-    if "minute" in place:
-        place["minute"] = full["minute"][-1]                  # mm may be months too, which come first
-        full["time"] = [k for k in full.get("time", ()) if k != place.get("hour")]
-    times = _time_columns(columns, full, set(place.values()))
+    column_of = {role: places[0] for role, places in full.items() if places and role not in given}
+    if "minute" in column_of:
+        column_of["minute"] = full["minute"][-1]                  # mm may be months too, which come first
+        full["time"] = [k for k in full.get("time", ()) if k != column_of.get("hour")]
+    times = _time_columns(columns, full, set(column_of.values()))
     if times and "time" not in given:
-        place["time"] = times[0]
-    if "z" in place:
+        column_of["time"] = times[0]
+    if "z" in column_of:
         notes += _note_on_heights([columns[k].title for k in full["z"]], label)
-    return _Meaning(place, tuple(notes))
+    return _Meaning(column_of, tuple(notes))
 
 
 def _filled_columns(columns):
@@ -108,8 +108,8 @@ def _earth_centred(x, y, z):
     good = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
     if not good.any():
         return False
-    away = np.median(np.sqrt(x[good]**2 + y[good]**2 + z[good]**2))
-    return bool(EARTH_RADIUS[0] < away < EARTH_RADIUS[1] and np.median(np.abs(z[good])) > TRAJECTORY.highest_road)
+    radius = np.median(np.sqrt(x[good]**2 + y[good]**2 + z[good]**2))
+    return bool(EARTH_RADIUS[0] < radius < EARTH_RADIUS[1] and np.median(np.abs(z[good])) > TRAJECTORY.highest_road)
 
 
 def values_by_role(columns: Sequence[TableColumn], meaning: _Meaning, label: str, notes: list[str], doubts: list[str]) -> dict[str, np.ndarray]:
@@ -118,16 +118,16 @@ def values_by_role(columns: Sequence[TableColumn], meaning: _Meaning, label: str
     Sentences for the user and warnings are added to `notes` and `doubts`. RoadExtractionError if times are clock times of which it is not said what
     they show, or count from 1970.
     """
-    place = meaning.place
-    values = {role: columns[k].in_metres if role in "xyz" else columns[k].values for role, k in place.items() if role in ROLES[1:]}
-    values.update({role: _angle(columns, place[role], most) for role, most in (("lon", 180.0), ("lat", 90.0)) if role in place})
-    if not {"lon", "x"} & set(values) and set(FROM_CENTRE) <= set(place):
-        values.update(_from_the_centre(*(columns[place[role]].values for role in FROM_CENTRE)))
+    column_of = meaning.place
+    values = {role: columns[k].in_metres if role in "xyz" else columns[k].values for role, k in column_of.items() if role in ROLES[1:]}
+    values.update({role: _angle(columns, column_of[role], most) for role, most in (("lon", 180.0), ("lat", 90.0)) if role in column_of})
+    if not {"lon", "x"} & set(values) and set(FROM_CENTRE) <= set(column_of):
+        values.update(_from_the_centre(*(columns[column_of[role]].values for role in FROM_CENTRE)))
         notes.append(f"{label} gives earth-centred coordinates; they were converted to longitude, latitude and height above the ellipsoid.")
-    if "time" in place:
+    if "time" in column_of:
         values["time"] = _time(columns, meaning, label, notes, doubts)
     else:
-        doubts += _like_time(columns, set(place.values()), label)
+        doubts += _like_time(columns, set(column_of.values()), label)
     return values
 
 
@@ -143,8 +143,8 @@ def _angle(columns, k, most):
     signs = next((signs for signs in sides if signs is not None), None)
     if signs is None:
         return values
-    together = most < np.nanmax(np.abs(values), initial=0.0) < 100 * most
-    return np.where(signs < 0, -1.0, 1.0) * np.abs(whole_minutes(values) if together else values)
+    packed = most < np.nanmax(np.abs(values), initial=0.0) < 100 * most
+    return np.where(signs < 0, -1.0, 1.0) * np.abs(whole_minutes(values) if packed else values)
 
 
 def _degrees(column):
@@ -167,11 +167,11 @@ def _from_the_centre(x, y, z):
 
 def _time(columns, meaning, label, notes, doubts):
     """(N,) seconds of GPS time, or as the column counts."""
-    place = meaning.place
-    column = columns[place["time"]]
-    times = _written_time(columns, place, label)
+    column_of = meaning.place
+    column = columns[column_of["time"]]
+    times = _written_time(columns, column_of, label)
     if times is not None:
-        titles = " ".join(columns[place[role]].title for role in ("time", "date", "year", "hour") if role in place).lower()
+        titles = " ".join(columns[column_of[role]].title for role in ("time", "date", "year", "hour") if role in column_of).lower()
         return _gps_seconds(times, column, titles, meaning.clock, label, notes)
     if column.holds_texts:
         raise RoadExtractionError(
@@ -182,8 +182,8 @@ def _time(columns, meaning, label, notes, doubts):
         doubts.append(f"The column {_named(column)} of {label} counts seconds of UTC by its name; no leap seconds were added. If points and "
                       "lines come out shifted along the road, export the trajectory with GPS time.")
     seconds = _counted_seconds(column, label, doubts)
-    if "week" in place and place["week"] != place["time"]:
-        return with_week(seconds, columns[place["week"]].values)
+    if "week" in column_of and column_of["week"] != column_of["time"]:
+        return with_week(seconds, columns[column_of["week"]].values)
     return _from_1970(seconds, column.title, meaning.clock, label, notes)
 
 
@@ -254,12 +254,12 @@ def _clock_in_numbers(columns, place, days):
 
 def _are_packed_clocks(values, named):
     """Whether (N,) numbers are clock times hhmmss; `named` where a date or their name says so."""
-    known = values[np.isfinite(values)]
-    step = np.diff(known)
-    if not len(step) or known.min() < 0 or known.max() >= 240_000 or (known % 100 >= 60).any() or (known // 100 % 100 >= 60).any():
+    clocks = values[np.isfinite(values)]
+    step = np.diff(clocks)
+    if not len(step) or clocks.min() < 0 or clocks.max() >= 240_000 or (clocks % 100 >= 60).any() or (clocks // 100 % 100 >= 60).any():
         return False
     # from 59 s to the next minute such a number goes up by 40 more than the seconds do, and other times never do
-    over = np.diff(np.floor(known / 100)) > 0
+    over = np.diff(np.floor(clocks / 100)) > 0
     return bool((named or over.any() and not over.all()) and (step[over] > 40.0).all() and (step[~over] < 40.0).all())
 
 
@@ -271,10 +271,10 @@ def _gps_seconds(times, column, titles, clock, label, notes):
         return times.seconds
     if times.order_known and shows == "UTC" and times.dated:
         return _added_leap_seconds(times.seconds, label, notes)
-    why, advice = _unknown_clock(times, shows)
+    reason, advice = _unknown_clock(times, shows)
     raise RoadExtractionError(
         f"The column {_named(column)} of {label} holds {times.kind} such as {times.first[:TRAJECTORY.longest_name]!r}. "
-        f"GPS seconds are needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
+        f"GPS seconds are needed, and {reason}. Export the trajectory with GPS time in seconds; or {advice}.")
 
 
 def _named(column):
@@ -287,9 +287,9 @@ def _unknown_clock(times, shows):
         return "day and month cannot be distinguished", "write dates as year-month-day"
     if shows:
         return f"without a date it is not known by how many seconds {shows} differs from them", "add the date"
-    known = times.seconds[np.isfinite(times.seconds)]
-    apart = f"by {leap_seconds(known[:1])[0]:.0f} s on this day" if times.dated and len(known) else "by leap seconds"
-    return (f"it is not said whether the clock shows GPS time, UTC, which differs {apart}, or local time",
+    seconds = times.seconds[np.isfinite(times.seconds)]
+    difference = f"by {leap_seconds(seconds[:1])[0]:.0f} s on this day" if times.dated and len(seconds) else "by leap seconds"
+    return (f"it is not said whether the clock shows GPS time, UTC, which differs {difference}, or local time",
             "call the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows")
 
 
@@ -304,8 +304,8 @@ def _added_leap_seconds(utc, label, notes):
 
 def _like_time(columns, used, label):
     """A sentence for columns that increase evenly like time and are not used."""
-    likely = [f"{listed([column.title or f'column {k + 1}'])} ({column.values[known][0]:.10g} to {column.values[known][-1]:.10g})"
-              for k, column in enumerate(columns) if k not in used and _increases_evenly(column.values[known := np.isfinite(column.values)])
+    likely = [f"{listed([column.title or f'column {k + 1}'])} ({column.values[finite][0]:.10g} to {column.values[finite][-1]:.10g})"
+              for k, column in enumerate(columns) if k not in used and _increases_evenly(column.values[finite := np.isfinite(column.values)])
               and not COUNTS_OTHERS.search(column.title)]
     if not likely:
         return []
@@ -335,7 +335,7 @@ def assigned_columns(text: str, count: int, path: str | os.PathLike[str]) -> dic
     what the clock shows. RoadExtractionError if a word is no role, a role is there twice, there are more words than columns (`count`), or a place
     or the height is missing.
     """
-    place: dict[str, int] = {}
+    column_of: dict[str, int] = {}
     for column, word in enumerate(_words(text)):
         if word in LEFT_OUT:
             continue
@@ -343,15 +343,15 @@ def assigned_columns(text: str, count: int, path: str | os.PathLike[str]) -> dic
             raise RoadExtractionError(f"Columns names {word!r}, which is no part of a trajectory; use {', '.join(ASSIGNABLE)}, or - for a column "
                                       "that is left out.")
         word = "time" if word in TOLD_CLOCKS else word
-        if word in place:
-            raise RoadExtractionError(f"Columns names {word} twice, for column {place[word] + 1} and column {column + 1}. Name each once.")
-        place[word] = column
-    if max(place.values(), default=0) >= count:
-        raise RoadExtractionError(f"Columns names {max(place.values()) + 1} columns, but {path} has {count}. Name as many as there are.")
-    missing = [role for role, other in (("x", "lon"), ("y", "lat"), ("z", "z")) if role not in place and other not in place]
+        if word in column_of:
+            raise RoadExtractionError(f"Columns names {word} twice, for column {column_of[word] + 1} and column {column + 1}. Name each once.")
+        column_of[word] = column
+    if max(column_of.values(), default=0) >= count:
+        raise RoadExtractionError(f"Columns names {max(column_of.values()) + 1} columns, but {path} has {count}. Name as many as there are.")
+    missing = [role for role, geographic in (("x", "lon"), ("y", "lat"), ("z", "z")) if role not in column_of and geographic not in column_of]
     if missing:
         raise RoadExtractionError(f"Columns names no {' and no '.join(missing)}. A trajectory needs x, y (or lon, lat) and z.")
-    return place
+    return column_of
 
 
 def _words(text):
@@ -375,17 +375,17 @@ def columns_of_table(path: str | os.PathLike[str], columns: str = "", rows: int 
     """
     if is_record(Path(path)):
         raise RoadExtractionError(f"{path} is a log or a track, whose columns are known. Leave Columns empty.")
-    found, unmatched = titled_columns(read_number_table(path))
+    table, unmatched = titled_columns(read_number_table(path))
     problem, meaning = "", _Meaning({})
     try:
-        meaning = meaning_of_table(found, unmatched, Path(path), columns)
+        meaning = meaning_of_table(table, unmatched, Path(path), columns)
     except RoadExtractionError as refused:
         problem = str(refused)
     role_of = {column: role for role, column in meaning.place.items() if role in ASSIGNABLE}
     if meaning.clock:
         role_of[meaning.place["time"]] = meaning.clock.lower()
-    shown = [[f"{value:.10g}" for value in column.values[:rows]] if not column.is_text else list(column.written())[:rows] for column in found]
-    return TableColumns(tuple(column.title for column in found), tuple(role_of.get(k, "") for k in range(len(found))),
+    shown = [[f"{value:.10g}" for value in column.values[:rows]] if not column.is_text else list(column.written())[:rows] for column in table]
+    return TableColumns(tuple(column.title for column in table), tuple(role_of.get(k, "") for k in range(len(table))),
                         np.array(shown, object).T, problem)
 
 
@@ -408,20 +408,20 @@ def _meaning_by_numbers(columns, unmatched, path):
     clocks = [k for k, column in enumerate(columns) if column.holds_clock_times]
     numbers = np.setdiff1d(np.arange(len(columns)), clocks).tolist()
     try:
-        place = {role: numbers[k] for role, k in columns_from_numbers(np.stack([columns[k].values for k in numbers], axis=1), path).items()}
+        column_of = {role: numbers[k] for role, k in columns_from_numbers(np.stack([columns[k].values for k in numbers], axis=1), path).items()}
     except RoadExtractionError as refused:
         if not unmatched:
             raise RoadExtractionError(f"{refused} The first row reads {first_row(columns)}.") from refused
-        place = {}
+        column_of = {}
     # small numbers are guessed by their order alone, which names that do not fit contradict
-    guessed = "x" in place and np.nanmedian(np.abs(columns[place["x"]].values)) < TRAJECTORY.min_map_coordinate
-    if unmatched and (guessed or not place):
+    guessed = "x" in column_of and np.nanmedian(np.abs(columns[column_of["x"]].values)) < TRAJECTORY.min_map_coordinate
+    if unmatched and (guessed or not column_of):
         raise RoadExtractionError(
             f"{path} names {len(unmatched)} columns ({listed(unmatched)}), but its rows have {len(columns)}, and the numbers do not show which "
             f"is which. The first row reads {first_row(columns)}. Say which is which in Columns of Import trajectory.")
-    place = {"time": clocks[0], **place} if clocks else place
-    listing = ", ".join(f"{role} in column {place[role] + 1}" for role in (*ROLES, "lon", "lat") if role in place)
-    return _Meaning(place, (f"{path.name} has no line of names; recognised by the numbers: {listing}.",))
+    column_of = {"time": clocks[0], **column_of} if clocks else column_of
+    listing = ", ".join(f"{role} in column {column_of[role] + 1}" for role in (*ROLES, "lon", "lat") if role in column_of)
+    return _Meaning(column_of, (f"{path.name} has no line of names; recognised by the numbers: {listing}.",))
 
 
 def time_system_by_size(time: np.ndarray) -> str:

@@ -141,10 +141,10 @@ def _read_text(path, crs, columns_given):
 def _from_table(columns, meaning, given, defaults, crs, angle_unit, label, notes, preamble=()):
     """The trajectory of columns whose meaning is known."""
     doubts: list[str] = []
-    found = {**given, **values_by_role(columns, meaning, label, notes, doubts)}
-    if "z" not in found or not np.isfinite(found["z"]).any():
-        found.update(defaults)
-    trajectory = trajectory_from_columns(found, crs, angle_unit, label, notes, _stated_lengths(columns, meaning.place, preamble))
+    values = {**given, **values_by_role(columns, meaning, label, notes, doubts)}
+    if "z" not in values or not np.isfinite(values["z"]).any():
+        values.update(defaults)
+    trajectory = trajectory_from_columns(values, crs, angle_unit, label, notes, _stated_lengths(columns, meaning.place, preamble))
     trajectory = replace(trajectory, doubts=tuple(doubts))
     if "time" in meaning.place and not columns[meaning.place["time"]].unit.name and not columns[meaning.place["time"]].is_text:
         trajectory = _in_seconds(trajectory, label)
@@ -168,11 +168,11 @@ def _in_seconds(trajectory, label):
 def _stated_crs(path, preamble, projected, notes):
     """WKT of the CRS that the lines above a table state by its EPSG number, if it fits the columns; otherwise ""."""
     stated = re.search(r"EPSG\s*[:=]?\s*(\d{4,6})", " ".join(preamble), re.IGNORECASE)
-    found = parse_crs(f"EPSG:{stated.group(1)}") if stated else None
-    if found is None or horizontal_part(found).is_projected != projected:
+    crs = parse_crs(f"EPSG:{stated.group(1)}") if stated else None
+    if crs is None or horizontal_part(crs).is_projected != projected:
         return ""
-    notes.append(f"{path.name} states the CRS {found.name} (EPSG:{stated.group(1)}).")
-    return found.to_wkt()
+    notes.append(f"{path.name} states the CRS {crs.name} (EPSG:{stated.group(1)}).")
+    return crs.to_wkt()
 
 
 def _check_complete(source, columns, place, heights_needed=True):
@@ -200,15 +200,15 @@ def _farthest(values):
 
 def _plane_coordinates(columns, time, crs, label, notes):
     """x, y and their CRS; longitude and latitude in degrees where they are geographic."""
-    known = parse_crs(crs)
-    geographic = known is not None and horizontal_part(known).is_geographic
-    projected = known is not None and not geographic
+    parsed = parse_crs(crs)
+    geographic = parsed is not None and horizontal_part(parsed).is_geographic
+    projected = parsed is not None and not geographic
     if {"x", "y"} <= set(columns) and (projected or "lon" not in columns):
         x, y = columns["x"], columns["y"]
         unit = geographic_unit(x, y, time)
-        _check_map(x, y, unit, time, known, label)
+        _check_map(x, y, unit, time, parsed, label)
         if not geographic and not unit:
-            return x, y, known.to_wkt() if projected else ""
+            return x, y, parsed.to_wkt() if projected else ""
     elif {"lon", "lat"} <= set(columns):
         x, y = columns["lon"], columns["lat"]
         unit = geographic_unit(x, y, time)
@@ -219,9 +219,9 @@ def _plane_coordinates(columns, time, crs, label, notes):
         x, y = np.degrees(x), np.degrees(y)
         notes.append(f"{label} gives longitude and latitude in radians.")
     if not geographic:
-        known = parse_crs(WGS84)
+        parsed = parse_crs(WGS84)
         notes.append(f"{label} gives longitude and latitude; taken as WGS 84.")
-    return x, y, known.to_wkt()
+    return x, y, parsed.to_wkt()
 
 
 def _check_map(x, y, unit, time, known, label):
@@ -323,10 +323,10 @@ def _read_sbet(path, crs):
     notes = []
     if path.stat().st_size % (SBET_DOUBLES * 8):
         notes.append(f"{path.name} ends within a record; the last, incomplete one was left out.")
-    known = parse_crs(crs)
-    if known is not None and not horizontal_part(known).is_geographic:
+    parsed = parse_crs(crs)
+    if parsed is not None and not horizontal_part(parsed).is_geographic:
         raise RoadExtractionError(
-            f"{path} is an Applanix SBET file: its positions are geographic, but {horizontal_part(known).name} was given as their CRS. "
+            f"{path} is an Applanix SBET file: its positions are geographic, but {horizontal_part(parsed).name} was given as their CRS. "
             "Leave the CRS of the input empty or geographic, and give the projected CRS as the target.")
     true_heading = rows[:, 9] - rows[:, 10]
     columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],
@@ -373,8 +373,8 @@ def _accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray)
 def _beside(sbet):
     """The accuracy file beside an SBET, by its name; None where there is none."""
     named = re.fullmatch(r"sbet(.*)", sbet.name, re.IGNORECASE)
-    wanted = f"smrmsg{named[1]}".lower() if named else ""
-    return next((path for path in sorted(sbet.parent.iterdir()) if path.name.lower() == wanted and path.is_file()), None) if wanted else None
+    target = f"smrmsg{named[1]}".lower() if named else ""
+    return next((path for path in sorted(sbet.parent.iterdir()) if path.name.lower() == target and path.is_file()), None) if target else None
 
 
 def _records(path):

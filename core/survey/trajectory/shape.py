@@ -53,13 +53,13 @@ def _smoothed_track(trajectory: Trajectory) -> _TrackShape:
     if not trajectory.has_time:
         return _TrackShape(trajectory)
     pieces = [piece for piece in _pieces(trajectory) if _even(trajectory.time[piece])]
-    noisy = [(piece, one) for piece in pieces if (one := _noise(trajectory, piece)) > MAX_NOISE]
+    noisy = [(piece, noise) for piece in pieces if (noise := _noise(trajectory, piece)) > MAX_NOISE]
     if not noisy:
         return _TrackShape(trajectory)
     columns = {name: getattr(trajectory, name).copy() for name in "xyz"}
-    left = max(one * _smooth(columns, piece, _step(trajectory.time[piece])) for piece, one in noisy)
+    left = max(noise * _smooth(columns, piece, _step(trajectory.time[piece])) for piece, noise in noisy)
     rows = sum(piece.stop - piece.start for piece, _ in noisy)
-    worst, share = max(one for _, one in noisy), 100.0 * rows / len(trajectory)
+    worst, share = max(noise for _, noise in noisy), 100.0 * rows / len(trajectory)
     first = trajectory.time[noisy[0][0].start]
     return _TrackShape(
         replace(trajectory, **columns), left,
@@ -80,16 +80,16 @@ def _smooth(columns, piece, step):
 
 def _curved_track(trajectory: Trajectory) -> _TrackShape:
     """A trajectory with curves through its vertices where they are too far apart for its bends; as it is where they are not."""
-    found, worst, sigma, unsafe = [], (0.0, 0.0, 0), 0.0, 0
+    pieces, worst, sigma, unsafe = [], (0.0, 0.0, 0), 0.0, 0
     for piece in _pieces(trajectory):
         rows = trajectory.rows(piece)
         if len(rows) < MIN_SPLINE_ROWS:
-            found.append(rows)
+            pieces.append(rows)
             continue
         sagitta, turn, length = _sagittas(rows)
         far = (sagitta > TRAJECTORY.max_sagitta) & (length > MIN_SPACING)
         if not far.any():
-            found.append(rows)
+            pieces.append(rows)
             continue
         k = int(np.argmax(np.where(far, sagitta, 0.0)))
         worst = max(worst, (float(sagitta[k]), float(length[k]), piece.start + k))
@@ -97,17 +97,17 @@ def _curved_track(trajectory: Trajectory) -> _TrackShape:
         unsafe += np.count_nonzero(sharp)
         curved, off = _through(rows, np.where(far, np.ceil(np.sqrt(sagitta / LEFT_SAGITTA)), 1).astype(int))
         sigma = max(sigma, off, float(sagitta[sharp].max(initial=0.0)) / 2)
-        found.append(curved)
+        pieces.append(curved)
     if not worst[0]:
         return _TrackShape(trajectory)
     names = ("time", "x", "y", "z", "roll", "pitch", "heading")
-    joined = replace(trajectory, **{name: np.concatenate([getattr(rows, name) for rows in found]) for name in names})
-    place = f"x {trajectory.x[worst[2]]:.0f}, y {trajectory.y[worst[2]]:.0f}"
-    done = "Curves were laid through them" + (f", which is a guess in {unsafe} sharp turns" if unsafe else "")
+    joined = replace(trajectory, **{name: np.concatenate([getattr(rows, name) for rows in pieces]) for name in names})
+    position = f"x {trajectory.x[worst[2]]:.0f}, y {trajectory.y[worst[2]]:.0f}"
+    note = "Curves were laid through them" + (f", which is a guess in {unsafe} sharp turns" if unsafe else "")
     return _TrackShape(
         joined, sigma,
         (f"The vertices of the trajectory lie up to {worst[1]:.0f} m apart in bends, which straight lines between them miss by up to "
-         f"{worst[0]:.2f} m (near {place}). {done}; the way driven is known to about {max(100 * sigma, 1):.0f} cm. Export the trajectory with ten "
+         f"{worst[0]:.2f} m (near {position}). {note}; the way driven is known to about {max(100 * sigma, 1):.0f} cm. Export the trajectory with ten "
          "or more positions a second.",))
 
 
@@ -143,8 +143,8 @@ def _cubic_weights(rows):
     That of the middle is the largest, and the share of the variance of a row's noise that is left there.
     """
     half = rows // 2
-    away = np.arange(-half, half + 1.0)
-    return 3.0 * (3 * half**2 + 3 * half - 1 - 5 * away**2) / ((2 * half - 1) * (2 * half + 1) * (2 * half + 3))
+    offset = np.arange(-half, half + 1.0)
+    return 3.0 * (3 * half**2 + 3 * half - 1 - 5 * offset**2) / ((2 * half - 1) * (2 * half + 1) * (2 * half + 3))
 
 
 def _noise(trajectory, piece):
@@ -165,21 +165,21 @@ def _sagittas(rows):
     turn = np.abs((np.diff(way) + np.pi) % (2 * np.pi) - np.pi)
     # at an end, or where one side hardly moves, the other side's turn tells it; the smaller of two is that of the bend, not of one corner
     ends = np.r_[np.inf, turn], np.r_[turn, np.inf]
-    here = np.minimum(*ends)
+    bend = np.minimum(*ends)
     # bends begin and end between vertices: a turn at one end alone is half of a bend
-    here = np.maximum(here, 0.5 * np.maximum(*(np.where(np.isfinite(one), one, 0.0) for one in ends)))
-    return length * here / 8.0, here, length
+    bend = np.maximum(bend, 0.5 * np.maximum(*(np.where(np.isfinite(end), end, 0.0) for end in ends)))
+    return length * bend / 8.0, bend, length
 
 
 def _through(rows, parts):
     """The trajectory with so many parts between each two vertices on a spline through all, and m that the spline may be off."""
     share = np.concatenate([k + np.arange(n) / n for k, n in enumerate(parts.tolist())] + [[len(rows) - 1.0]])
-    at = np.arange(len(rows), dtype=float)
+    vertices = np.arange(len(rows), dtype=float)
     knots = rows.time if rows.has_time else np.r_[0.0, np.cumsum(np.hypot(np.diff(rows.x), np.diff(rows.y)))]
-    time = np.interp(share, at, knots)
+    time = np.interp(share, vertices, knots)
     heading = np.degrees(np.unwrap(np.radians(rows.heading)))
     new = {name: np.interp(time, knots, getattr(rows, name)) for name in ("roll", "pitch")}
-    new.update(time=np.interp(share, at, rows.time), heading=np.interp(time, knots, heading) % 360.0, z=CubicSpline(knots, rows.z)(time))
+    new.update(time=np.interp(share, vertices, rows.time), heading=np.interp(time, knots, heading) % 360.0, z=CubicSpline(knots, rows.z)(time))
     new["x"], new["y"] = _plan(knots, rows)(time).T
     half = np.unique(np.r_[np.arange(0, len(rows), 2), len(rows) - 1])
     bend = _sagittas(rows)[0].max() / 2

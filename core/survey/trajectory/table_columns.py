@@ -88,13 +88,13 @@ def _names_above(table, fields):
 
 def columns_of_rows(titles: Sequence[str], rows: Sequence[Sequence[object]]) -> list[TableColumn]:
     """The columns of a layer: a list of values for each row, None where one is missing."""
-    found = []
+    columns = []
     for k, title in enumerate(titles):
-        given = [row[k] for row in rows]
-        texts = ["" if value is None else str(value) for value in given]
-        numbers = finite_or_nan(np.array([as_number(value) for value in given], float))
-        found.append(TableColumn(title, numbers, unit_of_name(title), texts.copy, next((text for text in texts if text), "")))
-    return found
+        cells = [row[k] for row in rows]
+        texts = ["" if value is None else str(value) for value in cells]
+        numbers = finite_or_nan(np.array([as_number(value) for value in cells], float))
+        columns.append(TableColumn(title, numbers, unit_of_name(title), texts.copy, next((text for text in texts if text), "")))
+    return columns
 
 
 def first_row(columns: Sequence[TableColumn]) -> str:
@@ -122,7 +122,7 @@ def _spans(names, roles, fields):
     """(number of fields, what they are) of each name, so that all together have the fields of a row; None where that cannot be."""
     if len(names) == len(fields):
         return [(1, "")] * len(names)
-    role_of = {place: role for role, places in roles.items() for place in places}
+    role_of = {column: role for role, places in roles.items() for column in places}
 
     def following(name, start):
         if name == len(names):
@@ -140,11 +140,11 @@ def _possible_spans(role, fields):
     """(number of fields, "time", "week", "angle" or "") that a column may take, the largest first."""
     if not fields:
         return
-    together = _fields_of_a_time(fields)
+    time_fields = _fields_of_a_time(fields)
     if role == "date":
         yield 1, ""   # the clock behind it has a name of its own, unless the names are too few
-    if together > 1:
-        yield together, "time"
+    if time_fields > 1:
+        yield time_fields, "time"
     elif role == "time" and len(fields) > 1 and _week(fields[0].values) and _within(fields[1].values, 0.0, SECONDS_PER_WEEK + 1.0):
         yield 2, "week"
     elif role in ("lon", "lat"):
@@ -255,8 +255,8 @@ def _read_log(path: Path) -> list[TableColumn]:
         if novatel and novatel["name"] in SENTENCES:
             head = novatel["head"].split(",")
             # the short header of logs that end with SA has the week and seconds at its end, the long one within
-            at = 0 if line.lstrip().startswith("%") else 4
-            kept.setdefault(novatel["name"], []).append([*(head[at:at + 2] + ["", ""])[:2], *novatel["rest"].split(",")])
+            week_at = 0 if line.lstrip().startswith("%") else 4
+            kept.setdefault(novatel["name"], []).append([*(head[week_at:week_at + 2] + ["", ""])[:2], *novatel["rest"].split(",")])
     named = sorted(kept, key=lambda name: (SENTENCES[name].rank, name))
     if not named:
         raise RoadExtractionError(f"{path} is a log of a receiver, but has no sentence with positions and heights. Log GGA with RMC (NMEA) or "
@@ -275,8 +275,8 @@ def _day_of(fields):
 def _columns_of_log(rows, fields):
     """TableColumns with the names that the table of names knows."""
     offset = 1 if "clock" in fields else 2   # what stands in a row before the fields of its sentence
-    text = {what: [row[k + offset] if len(row) > k + offset else "" for row in rows] for what, k in fields.items()}
-    number = {what: np.array([as_number(value) for value in values]) for what, values in text.items()}
+    text = {role: [row[k + offset] if len(row) > k + offset else "" for row in rows] for role, k in fields.items()}
+    number = {role: np.array([as_number(value) for value in values]) for role, values in text.items()}
     time = _clock_column([row[0] for row in rows], text["clock"]) if "clock" in fields else _gps_column(rows, number)
     return [time, *_place_columns(text, number)]
 
@@ -333,7 +333,7 @@ def _read_track(path: Path) -> list[TableColumn]:
                                   "positions.")
     rows = reader.rows[kind]
     if kind == "coord":
-        rows = [[*row[:3], when] for row, when in zip(rows, reader.whens if len(reader.whens) == len(rows) else [""] * len(rows))]
+        rows = [[*row[:3], time] for row, time in zip(rows, reader.whens if len(reader.whens) == len(rows) else [""] * len(rows))]
     columns = [_column_of_track(rows, k, title, unit)
                for k, (title, unit) in enumerate((("longitude", "degrees"), ("latitude", "degrees"), ("height", "metres"), ("UTC", "")))]
     return columns if columns[3].first else columns[:3]

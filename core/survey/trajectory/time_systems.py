@@ -62,10 +62,10 @@ class ClockTimes:
 
 def hold_times(texts: Sequence[str]) -> bool:
     """Whether most texts of a column are clock times, with dates or without, or dates."""
-    some = [text for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
-    found = [_match(text) for text in some]
-    times = [match for match in found if match and (match["hour"] or match["date"] and not match["date"].isdigit())]
-    return bool(some) and len(times) >= TRAJECTORY.most_of_texts * len(some)
+    sample = [text for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
+    matches = [_match(text) for text in sample]
+    times = [match for match in matches if match and (match["hour"] or match["date"] and not match["date"].isdigit())]
+    return bool(sample) and len(times) >= TRAJECTORY.most_of_texts * len(sample)
 
 
 def _match(text):
@@ -152,12 +152,12 @@ def counted_days(values: np.ndarray, texts: Callable[[], Sequence[str]], what: s
     first = values[np.isfinite(values)][0]
     kind = next((kind for kind, begins in DAY_COUNTS.items() if _days_from(begins, FIRST_SURVEY) <= first < _days_from(begins, LAST_SURVEY)), "")
     last_decimal = SECONDS_PER_DAY * 10.0 ** -max(len(re.split("[.,]", text)[-1]) for text in texts()[:TRAJECTORY.texts_looked_at])
-    said = f"{what} goes up by {np.median(steps):.2g} from row to row as if it counted days, "
+    finding = f"{what} goes up by {np.median(steps):.2g} from row to row as if it counted days, "
     if not kind:
-        raise RoadExtractionError(f"{said}but {first:.10g} is no day of a known count (MJD, Julian days, a spreadsheet). GPS seconds are needed: "
+        raise RoadExtractionError(f"{finding}but {first:.10g} is no day of a known count (MJD, Julian days, a spreadsheet). GPS seconds are needed: "
                                   "export the trajectory with these.")
     if last_decimal / 2 > TRAJECTORY.shortest_step:   # by half of it times are rounded
-        raise RoadExtractionError(f"{said}and its last decimal is {last_decimal:.2g} s, while a vehicle drives centimetres in a thousandth of a "
+        raise RoadExtractionError(f"{finding}and its last decimal is {last_decimal:.2g} s, while a vehicle drives centimetres in a thousandth of a "
                                   "second. Export the trajectory with GPS seconds, or with 8 decimals of a day or more.")
     seconds = (values - _days_from(DAY_COUNTS[kind], GPS_EPOCH)) * SECONDS_PER_DAY
     return ClockTimes(seconds, True, "", True, kind, f"{first:.10g}")
@@ -175,21 +175,21 @@ def leap_seconds(seconds: np.ndarray) -> np.ndarray:
 
 def hold_angles(texts: Sequence[str]) -> bool:
     """Whether most texts of a column are degrees with minutes, or with a hemisphere."""
-    some = [text.strip() for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
-    return bool(some) and sum(bool((found := ANGLE.match(text)) and (found["minutes"] or found["before"] or found["after"] or "°" in text))
-                              for text in some) >= TRAJECTORY.most_of_texts * len(some)
+    sample = [text.strip() for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
+    return bool(sample) and sum(bool((match := ANGLE.match(text)) and (match["minutes"] or match["before"] or match["after"] or "°" in text))
+                                for text in sample) >= TRAJECTORY.most_of_texts * len(sample)
 
 
 def angles_of(texts: Sequence[str]) -> np.ndarray:
     """(N,) degrees of texts such as 48°12'30.5"N, 48 12 30.5, N 48° 12.5' or 48.2085°; south and west negative, NaN where a text is none."""
-    found = np.full(len(texts), np.nan)
+    degrees = np.full(len(texts), np.nan)
     for row, text in enumerate(texts):
         match = ANGLE.match(text.strip())
         if match:
             parts = [float((match[name] or "0").replace(",", ".")) for name in ("degrees", "minutes", "seconds")]
             negative = match["sign"] == "-" or (match["before"] or match["after"] or "").upper() in ("S", "W")
-            found[row] = degrees_of(*parts) * (-1.0 if negative else 1.0)
-    return found
+            degrees[row] = degrees_of(*parts) * (-1.0 if negative else 1.0)
+    return degrees
 
 
 def degrees_of(degrees: Any, minutes: Any, seconds: Any) -> np.ndarray:
@@ -230,10 +230,10 @@ LARGEST_SHIFT = TAI_TO_GPS + len(LEAP_DAYS)   # derived: s between two clocks, T
 def unwrap_time(time: np.ndarray) -> np.ndarray:
     """(N,) seconds of the week or day in driving order, continued past midnight or the end of the week; the same where neither ends."""
     time = np.asarray(time, float)
-    known = np.flatnonzero(np.isfinite(time))
-    if len(known) < 2:
+    rows = np.flatnonzero(np.isfinite(time))
+    if len(rows) < 2:
         return time
-    values = time[known]
+    values = time[rows]
     step = np.diff(values)
     for period in (SECONDS_PER_WEEK, SECONDS_PER_DAY):
         # A new start from zero is a single step back by nearly the whole period, while time increases otherwise.
@@ -241,7 +241,7 @@ def unwrap_time(time: np.ndarray) -> np.ndarray:
         if back.any() and back.sum() * 20 < len(step) + 20 and values.max() <= period * 1.001 and values.min() >= 0 \
                 and (step[~back] >= 0).mean() > 0.95:
             carried = time.copy()
-            carried[known] = values + period * np.r_[0.0, np.cumsum(back)]
+            carried[rows] = values + period * np.r_[0.0, np.cumsum(back)]
             return carried
     return time
 
@@ -294,8 +294,8 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
             f"the trajectory runs from {first:.1f} s to {last:.1f} s. {hint or tried}")
     if not offset:
         return 0.0, hint
-    said = f"The trajectory counts {TIME_SYSTEM_NAMES[name]}; {offset:+.0f} s convert it to the time of the cloud."
-    return offset, f"{said} {hint}".strip()
+    note = f"The trajectory counts {TIME_SYSTEM_NAMES[name]}; {offset:+.0f} s convert it to the time of the cloud."
+    return offset, f"{note} {hint}".strip()
 
 
 def _offsets(first, last, cloud, system):
@@ -320,8 +320,8 @@ def _period_offsets(first, last, cloud, system):
     options = []
     for name, period in (("week", SECONDS_PER_WEEK), ("day", SECONDS_PER_DAY)):
         if last <= 2 * period or system == name:
-            whole = _since_1980(cloud) if cloud > 1.5 * SECONDS_PER_WEEK else cloud
-            start = np.floor(whole / period) * period - whole + cloud
+            counted = _since_1980(cloud) if cloud > 1.5 * SECONDS_PER_WEEK else cloud
+            start = np.floor(counted / period) * period - counted + cloud
             options += [(name, start + turn * period) for turn in (0, -1, 1)]
     if cloud < 1.5 * SECONDS_PER_DAY <= first and last <= 2 * SECONDS_PER_WEEK:
         options.append(("week", -np.floor(first / SECONDS_PER_DAY) * SECONDS_PER_DAY))
@@ -364,7 +364,7 @@ def _leap_hint(first, last, cloud_first, cloud_last):
     for leap in (*gps_to_utc, *(TAI_TO_GPS + shift for shift in gps_to_utc[:3]), TAI_TO_GPS):
         for shift in (leap, -leap):
             if first + shift - cloud_first <= 0.1 and cloud_last - last - shift <= 0.1:
-                said = f"The scan begins {early:.1f} s before the trajectory" if early > late else f"The scan ends {late:.1f} s after the trajectory"
-                return (f"{said}, and {leap:.0f} s would make them agree, which is what leap seconds come to (UTC against GPS is 18 s since 2017): "
+                gap = f"The scan begins {early:.1f} s before the trajectory" if early > late else f"The scan ends {late:.1f} s after the trajectory"
+                return (f"{gap}, and {leap:.0f} s would make them agree, which is what leap seconds come to (UTC against GPS is 18 s since 2017): "
                         "if the trajectory is in UTC, export it in GPS time.")
     return ""

@@ -114,8 +114,8 @@ def clean_trajectory(trajectory: Trajectory) -> Trajectory:
 
 def refuse_standstill(trajectory: Trajectory) -> None:
     """Raise RoadExtractionError where fewer than two positions are given, or they are less than a metre of driving."""
-    there = np.isfinite(trajectory.x) & np.isfinite(trajectory.y)
-    x, y = trajectory.x[there], trajectory.y[there]
+    usable = np.isfinite(trajectory.x) & np.isfinite(trajectory.y)
+    x, y = trajectory.x[usable], trajectory.y[usable]
     length = float(np.hypot(np.diff(x), np.diff(y)).sum())
     if len(x) < 2 or length < 1.0:
         raise RoadExtractionError(
@@ -125,15 +125,15 @@ def refuse_standstill(trajectory: Trajectory) -> None:
 
 def _refuse_two_drives(trajectory, rows):
     """Refuse positions, sorted by time, of which many are at once at two places."""
-    apart = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))
-    at_once = np.r_[False, (np.diff(trajectory.time) <= 0) & (apart > TRAJECTORY.min_position_jump)] | _outlier_rows(trajectory)
+    steps = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))
+    at_once = np.r_[False, (np.diff(trajectory.time) <= 0) & (steps > TRAJECTORY.min_position_jump)] | _outlier_rows(trajectory)
     if not trajectory.has_time or at_once.sum() <= max(TRAJECTORY.most_outliers[0], TRAJECTORY.most_outliers[1] * len(rows)):
         return
     second = int(np.argmax(at_once))
     first = second - 1
     raise RoadExtractionError(
         f"The trajectory is at two places at once: row {rows[first] + 1} of its positions at {trajectory.time[first]:.3f} s and row "
-        f"{rows[second] + 1} at {trajectory.time[second]:.3f} s lie {apart[first]:.0f} m apart, and so do {at_once.sum():,} of {len(rows):,} rows. "
+        f"{rows[second] + 1} at {trajectory.time[second]:.3f} s lie {steps[first]:.0f} m apart, and so do {at_once.sum():,} of {len(rows):,} rows. "
         "Two receivers or two days seem to have been put together: give each drive its own trajectory, or times that continue.")
 
 
@@ -207,14 +207,14 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
     try:
         transformer = Transformer.from_crs(source, target, always_xy=True)
         x, y = transformer.transform(trajectory.x, trajectory.y)
-        known = np.isfinite(trajectory.x) & np.isfinite(trajectory.y)
-        if not (np.isfinite(x[known]) & np.isfinite(y[known])).all():
+        finite = np.isfinite(trajectory.x) & np.isfinite(trajectory.y)
+        if not (np.isfinite(x[finite]) & np.isfinite(y[finite])).all():
             raise ProjError("some positions lie where the projection is not defined")
     except ProjError as problem:
         raise RoadExtractionError(
             f"The trajectory is in {source.name} and cannot be brought to {target.name} ({problem}). Check the CRS of the trajectory"
             f"{', and that its longitude and latitude are not exchanged' if source.is_geographic else ''}.") from problem
-    x, y = np.where(known, x, np.nan), np.where(known, y, np.nan)
+    x, y = np.where(finite, x, np.nan), np.where(finite, y, np.nan)
     heading = _reproject_heading(trajectory, source, transformer, x, y)
     note = f"The trajectory was reprojected from {source.name} to {target.name}."
     return replace(trajectory, x=x, y=y, heading=heading, crs=target_wkt, notes=(*trajectory.notes, note))
@@ -240,35 +240,35 @@ def lengths_in_metres(crs: str, places: tuple[np.ndarray, np.ndarray, np.ndarray
     crs : WKT, "" where unknown: then they stay as they were; places : x, y and z, (N,) each, in its units, or where `stated` says one, in that
     stated : (role, "feet" or "metres") of x, y and z. RoadExtractionError if x or y are stated in feet, and the CRS is in another unit.
     """
-    known = dict(stated)
+    units_by_role = dict(stated)
     if not crs:
         return crs, places, stated
     wkt, units = in_metres(crs)
     factors = []
     for role, unit in (("x", units.across), ("y", units.across), ("z", units.up)):
-        if known.get(role) == "feet" and unit == 1.0:
+        if units_by_role.get(role) == "feet" and unit == 1.0:
             if role != "z":
                 raise RoadExtractionError(f"{label} gives positions in feet, and its CRS {horizontal_part(parse_crs(crs)).name} is not in feet. "
                                           "Give the CRS in feet that they are in: Import trajectory takes it.")
             unit = FOOT   # which one is not said; they differ by 2 mm in a kilometre of height
-        factors.append(1.0 if known.get(role) == "metres" else unit)
+        factors.append(1.0 if units_by_role.get(role) == "metres" else unit)
     return wkt, tuple(values if factor == 1.0 else values * factor for values, factor in zip(places, factors)), ()
 
 
 def _reproject_heading(trajectory, source, transformer, x, y):
     """Headings from the target's grid north: of each position, a point `heading_step` ahead is reprojected too."""
-    known = np.isfinite(trajectory.heading) & np.isfinite(x)
+    finite = np.isfinite(trajectory.heading) & np.isfinite(x)
     heading = np.full(len(x), np.nan)
-    if not known.any():
+    if not finite.any():
         return heading
-    ahead = np.radians(trajectory.heading[known])
+    ahead = np.radians(trajectory.heading[finite])
     step_x, step_y = TRAJECTORY.heading_step * np.sin(ahead), TRAJECTORY.heading_step * np.cos(ahead)
     if source.is_geographic:
-        latitude = np.radians(trajectory.y[known])
+        latitude = np.radians(trajectory.y[finite])
         per_degree_y, per_degree_x = _metres_per_degree(source.ellipsoid, latitude)
         step_x, step_y = step_x / per_degree_x, step_y / per_degree_y
-    to_x, to_y = transformer.transform(trajectory.x[known] + step_x, trajectory.y[known] + step_y)
-    heading[known] = np.degrees(np.arctan2(to_x - x[known], to_y - y[known])) % 360.0
+    to_x, to_y = transformer.transform(trajectory.x[finite] + step_x, trajectory.y[finite] + step_y)
+    heading[finite] = np.degrees(np.arctan2(to_x - x[finite], to_y - y[finite])) % 360.0
     return heading
 
 

@@ -20,9 +20,9 @@ def columns_from_numbers(values: np.ndarray, path: str | os.PathLike[str]) -> di
     sample = values[np.isfinite(values).sum(axis=1) >= 3][:TRAJECTORY.max_sample_rows]
     count = sample.shape[1]
     time = _time_column(sample) if count > 3 else None
-    others = [k for k in range(count) if k != time and not _is_counter(sample[:, k]) and np.isfinite(sample[:, k]).sum() > 0.9 * len(sample)]
-    plane, heading = _plane(sample, time, others)
-    z = None if plane is None else _height_column(sample, time, others, plane[:2], heading)
+    candidates = [k for k in range(count) if k != time and not _is_counter(sample[:, k]) and np.isfinite(sample[:, k]).sum() > 0.9 * len(sample)]
+    plane, heading = _plane(sample, time, candidates)
+    z = None if plane is None else _height_column(sample, time, candidates, plane[:2], heading)
     if plane is None or z is None:
         raise RoadExtractionError(
             f"{path} has {count} columns without names, and time, x, y and z cannot be recognised from their numbers. "
@@ -53,7 +53,7 @@ def _is_counter(column):
 
 def _time_column(sample):
     """The column that increases most evenly; a row number only where nothing else increases."""
-    best, found = np.inf, None
+    best, column = np.inf, None
     for k in range(sample.shape[1]):
         step = np.diff(sample[:, k])
         step = step[np.isfinite(step)]
@@ -64,8 +64,8 @@ def _time_column(sample):
         # a coordinate increases evenly on a straight road, but never in equal steps
         uneven += 0.1 * min(np.median(np.abs(step - usual)) / usual, 1.0)
         if uneven < best - 1e-6:
-            best, found = uneven, k
-    return found
+            best, column = uneven, k
+    return column
 
 
 def _rate(sample, time, k, percent):
@@ -113,12 +113,12 @@ def _agreeing_headings(sample, time, others, pairs):
         for h in others:
             if h in (a, b):
                 continue
-            wrong = _heading_disagreement(x, y, sample[:, h])
+            disagreement = _heading_disagreement(x, y, sample[:, h])
             # every trajectory has heights and not every one headings: of a single column that may be either it is the height
-            if wrong is not None and _height_column(sample, time, others, (a, b), h) is not None:
+            if disagreement is not None and _height_column(sample, time, others, (a, b), h) is not None:
                 # roll and pitch agree with the course of a drive due north, so a wide range of values counts more than a close fit,
                 # and so does a height of 24 m with a course of 24 degrees: roll and pitch stand before the heading
-                agreeing.append((np.nanmax(np.abs(sample[:, h])) < 15.0, a > b, not _after_roll_and_pitch(sample, h), wrong, (a, b, unit), h))
+                agreeing.append((np.nanmax(np.abs(sample[:, h])) < 15.0, a > b, not _after_roll_and_pitch(sample, h), disagreement, (a, b, unit), h))
     return agreeing
 
 
@@ -159,11 +159,11 @@ def _height_column(sample, time, others, plane, heading):
     """The slowly changing column that follows x and y, otherwise the only one left."""
     slow = [k for k in others if k not in (*plane, heading) and np.nanmax(np.abs(sample[:, k])) < TRAJECTORY.min_map_coordinate
             and _rate(sample, time, k, 90) < 20.0]
-    behind = max(plane) + 1
-    if heading == behind + 2 and _after_roll_and_pitch(sample, heading):
+    next_column = max(plane) + 1
+    if heading == next_column + 2 and _after_roll_and_pitch(sample, heading):
         slow = [k for k in slow if k not in (heading - 1, heading - 2)] or slow  # x, y, roll, pitch, heading, height
-    if behind in slow:
-        return behind
+    if next_column in slow:
+        return next_column
     # roll and pitch stay near zero, heights seldom do
     high = [k for k in slow if abs(np.nanmedian(sample[:, k])) > 8.0]
     return next((columns[0] for columns in (slow, high) if len(columns) == 1), None)
@@ -216,8 +216,8 @@ def _heading_disagreement(x: np.ndarray, y: np.ndarray, heading: np.ndarray) -> 
     # The course of a straight drive equals many a constant column: values beyond an angle's range exclude it.
     if len(rows) < 3 or np.abs(heading[good]).max() > 361.0:
         return None
-    found = min(float(np.median(angle_between(heading[good][rows] * factor, course))) for factor in (1.0, np.degrees(1.0)))
-    return found if found < TRAJECTORY.heading_tolerance else None
+    difference = min(float(np.median(angle_between(heading[good][rows] * factor, course))) for factor in (1.0, np.degrees(1.0)))
+    return difference if difference < TRAJECTORY.heading_tolerance else None
 
 
 def geographic_unit(lon: np.ndarray, lat: np.ndarray, time: np.ndarray | None = None) -> str:

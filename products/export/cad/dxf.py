@@ -30,7 +30,7 @@ class _DxfLine:
 
 def dxf_lines(source: RoadMapSource) -> list[_DxfLine]:
     """Lane borders, driving lines, marking lines by kind and pattern, road edges by what they are, outlines of markings by class."""
-    found = []
+    lines = []
     lanes = source.lanes
     seen = set()
     for k in range(len(lanes)):
@@ -38,29 +38,29 @@ def dxf_lines(source: RoadMapSource) -> list[_DxfLine]:
             key = min(border.tobytes(), border[::-1].tobytes())
             if key not in seen and np.hypot(*(border[-1] - border[0])[:2]) > 0.01:
                 seen.add(key)
-                found.append(_DxfLine(f"LANE_BORDER_{lanes.type[k].upper()}", border))
-    found += _of(source.driving_lines, lambda row: "DRIVING_LINE" + ("" if row.get("status") in (None, "measured") else f"_{row['status'].upper()}"))
-    found += _of(source.marking_lines, lambda row: "_".join(filter(None, ("MARKING", str(row.get("kind") or "line").upper(),
+                lines.append(_DxfLine(f"LANE_BORDER_{lanes.type[k].upper()}", border))
+    lines += _of(source.driving_lines, lambda row: "DRIVING_LINE" + ("" if row.get("status") in (None, "measured") else f"_{row['status'].upper()}"))
+    lines += _of(source.marking_lines, lambda row: "_".join(filter(None, ("MARKING", str(row.get("kind") or "line").upper(),
                                                                           str(row.get("pattern") or "").upper().replace("-", "_")))))
-    found += _of(source.road_edges, _edge_layer)
-    found += _of(source.markings, lambda row: f"MARKING_AREA_{str(row.get('class') or 'other').upper()}")
-    return found
+    lines += _of(source.road_edges, _edge_layer)
+    lines += _of(source.markings, lambda row: f"MARKING_AREA_{str(row.get('class') or 'other').upper()}")
+    return lines
 
 
 def _edge_layer(row: dict[str, Any]) -> str:
     """ROAD_EDGE_CURB, _DROPPED or _PAVEMENT; of layers that do not say what an edge is, ROAD_EDGE_CURB where it has a height, else ROAD_EDGE."""
-    what = row.get("edge") or ("curb" if row.get("height_m") else "")
-    return f"ROAD_EDGE_{str(what).upper()}" if what else "ROAD_EDGE"
+    edge = row.get("edge") or ("curb" if row.get("height_m") else "")
+    return f"ROAD_EDGE_{str(edge).upper()}" if edge else "ROAD_EDGE"
 
 
 def _of(layer: Features | None, name_of: Callable[[dict[str, Any]], str]) -> list[_DxfLine]:
-    found = []
+    lines = []
     for geometry, row in layer or ():
         for part in shapely.get_parts(geometry) if geometry is not None else ():
             closed = part.geom_type == "Polygon"
             places = shapely.get_coordinates(part.exterior if closed else part, include_z=True)
-            found.append(_DxfLine(name_of(row), places, closed))
-    return found
+            lines.append(_DxfLine(name_of(row), places, closed))
+    return lines
 
 
 def _colour_of(layer: str) -> str:

@@ -37,7 +37,7 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
         crs = file_wkt
         root.add("Units").add("Imperial", areaUnit="squareFoot", linearUnit=unit, volumeUnit="cubicFeet", temperatureUnit="fahrenheit",
                               pressureUnit="inHG", angularUnit="decimal degrees", directionUnit="decimal degrees")
-        alignments = [one.in_file(units) for one in alignments]
+        alignments = [alignment.in_file(units) for alignment in alignments]
     else:
         root.add("Units").add("Metric", areaUnit="squareMeter", linearUnit="meter", volumeUnit="cubicMeter", temperatureUnit="celsius",
                               pressureUnit="milliBars", angularUnit="decimal degrees", directionUnit="decimal degrees")
@@ -45,16 +45,16 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
     root.add("Project", name=name)
     root.add("Application", name="Lanewright")
     group = root.add("Alignments", name=name)
-    for one in alignments:
-        element = group.add("Alignment", name=one.name, length=one.length, staStart=0.0, desc=one.description)
+    for alignment in alignments:
+        element = group.add("Alignment", name=alignment.name, length=alignment.length, staStart=0.0, desc=alignment.description)
         geometry = element.add("CoordGeom")
-        if one.plan is None:
-            _irregular(geometry, one.places)
+        if alignment.plan is None:
+            _irregular(geometry, alignment.places)
         else:
-            for piece in elements_without_reversal(one.plan):
+            for piece in elements_without_reversal(alignment.plan):
                 _element(geometry, piece)
-        profile = element.add("Profile", name=one.name).add("ProfAlign", name=one.name)
-        for station, height in one.profile:
+        profile = element.add("Profile", name=alignment.name).add("ProfAlign", name=alignment.name)
+        for station, height in alignment.profile:
             profile.add("PVI", f"{station:.4f} {height:.4f}")
     return xml_text(root)
 
@@ -115,8 +115,8 @@ def _intersection(start, first, end, last):
     turn = np.sin(last - first)
     if abs(turn) < 1e-9:
         return (start + end) / 2
-    away = end - start
-    return start + np.array([np.cos(first), np.sin(first)]) * (away[0] * np.sin(last) - away[1] * np.cos(last)) / turn
+    chord = end - start
+    return start + np.array([np.cos(first), np.sin(first)]) * (chord[0] * np.sin(last) - chord[1] * np.cos(last)) / turn
 
 
 # Axes of roads and driving lines as elements: lines, arcs and spirals, and a profile of tangents.
@@ -150,8 +150,8 @@ class Alignment:
             return self
         per_metre = 1.0 / units.across
         plan = None if self.plan is None else PlanView(tuple(
-            replace(one, s=one.s * per_metre, x=one.x * per_metre, y=one.y * per_metre, length=one.length * per_metre,
-                    values=tuple(bend / per_metre for bend in one.values)) for one in self.plan.elements))
+            replace(element, s=element.s * per_metre, x=element.x * per_metre, y=element.y * per_metre, length=element.length * per_metre,
+                    values=tuple(bend / per_metre for bend in element.values)) for element in self.plan.elements))
         return replace(self, plan=plan, places=self.places * per_metre, profile=self.profile * per_metre)
 
     @property
@@ -164,18 +164,18 @@ def alignments_of(source: RoadMapSource, tolerance: float) -> list[Alignment]:
     """The axis of every road, and every driving line or, without these, the middles of the lanes, within a tolerance in plan and height, m."""
     draft = draft_opendrive(source, OpenDriveSettings(tolerance))
     origin = np.array(draft.map.offset[:2])
-    found = []
+    alignments = []
     for road in draft.map.roads:
         if road.junction != "-1":
             continue
         s = np.linspace(0.0, road.length, max(int(road.length / AXIS_STEP), 1) + 1)
         places = np.c_[road.plan.at(s)[0] + origin, road.elevation.at(s)]
         fitted = all(element.kind != "paramPoly3" for element in road.plan.elements)
-        found.append(Alignment(f"Road {road.id}", f"Axis of {road.name.lower()}", _moved(road.plan, origin) if fitted else None, places,
-                               _tangents(s, places[:, 2], tolerance)))
+        alignments.append(Alignment(f"Road {road.id}", f"Axis of {road.name.lower()}", _moved(road.plan, origin) if fitted else None, places,
+                                    _tangents(s, places[:, 2], tolerance)))
     for name, places in _driven(source):
-        found.append(_fitted(name, places, tolerance))
-    return found
+        alignments.append(_fitted(name, places, tolerance))
+    return alignments
 
 
 def _driven(source):
@@ -202,11 +202,11 @@ def _joined(pieces):
         grown = True
         while grown:
             grown = False
-            for k, other in enumerate(waiting):
-                if np.hypot(*(other[0] - line[-1])[:2]) < JOINT:
-                    line, grown = np.concatenate([line, other[1:]]), True
-                elif np.hypot(*(other[-1] - line[0])[:2]) < JOINT:
-                    line, grown = np.concatenate([other, line[1:]]), True
+            for k, piece in enumerate(waiting):
+                if np.hypot(*(piece[0] - line[-1])[:2]) < JOINT:
+                    line, grown = np.concatenate([line, piece[1:]]), True
+                elif np.hypot(*(piece[-1] - line[0])[:2]) < JOINT:
+                    line, grown = np.concatenate([piece, line[1:]]), True
                 if grown:
                     waiting.pop(k)
                     break
@@ -223,8 +223,8 @@ def _fitted(name, places, tolerance):
     if plan is not None:
         along = along * plan.length / along[-1]
         on, heading, _ = plan.at(along)
-        away = places[:, :2] - origin - on
-        missed = float(np.abs(away[:, 1] * np.cos(heading) - away[:, 0] * np.sin(heading)).max())
+        offsets = places[:, :2] - origin - on
+        missed = float(np.abs(offsets[:, 1] * np.cos(heading) - offsets[:, 0] * np.sin(heading)).max())
         plan = _moved(plan, origin)
     return Alignment(name, "Driving line", plan, places, _tangents(along, places[:, 2], tolerance), missed)
 
@@ -241,15 +241,15 @@ def _tangents(s, z, tolerance):
 
 def elements_without_reversal(plan: PlanView) -> list[PlanElement]:
     """The elements, with spirals that turn from left to right cut where they are straight: formats of design know none such."""
-    found = []
+    result = []
     for element in plan.elements:
         if element.kind != "spiral" or element.values[0] * element.values[1] >= 0:
-            found.append(element)
+            result.append(element)
             continue
         first, last = element.values
         cut = element.length * first / (first - last)
         place, heading, _ = element.at(np.array([cut]))
-        found.append(replace(element, length=cut, values=(first, 0.0)))
-        at = element.s + cut, float(place[0, 0]), float(place[0, 1]), float(heading[0])
-        found.append(PlanElement(*at, element.length - cut, "spiral", (0.0, last)))
-    return found
+        result.append(replace(element, length=cut, values=(first, 0.0)))
+        start = element.s + cut, float(place[0, 0]), float(place[0, 1]), float(heading[0])
+        result.append(PlanElement(*start, element.length - cut, "spiral", (0.0, last)))
+    return result

@@ -131,13 +131,13 @@ class Findings:
         same: dict[tuple[str, str], list[int]] = {}
         for k, finding in enumerate(self.found):
             same.setdefault((finding.fault, VARYING.sub("#", finding.text)), []).append(k)
-        found, row_of = [], [0] * len(self.found)
+        groups, row_of = [], [0] * len(self.found)
         for number, rows in enumerate(sorted(same.values(), key=len)):
-            some = [self.found[k] for k in rows]
-            found.append(SameFindings(max(some, key=_first_number), tuple(dict.fromkeys(one.element for one in some)), len(some)))
+            members = [self.found[k] for k in rows]
+            groups.append(SameFindings(max(members, key=_first_number), tuple(dict.fromkeys(member.element for member in members)), len(members)))
             for k in rows:
                 row_of[k] = number
-        return found, row_of
+        return groups, row_of
 
     def to_features(self) -> Features:
         """The layer MAP_FINDINGS of points, each with its row of `groups`, counted from 1."""
@@ -150,8 +150,8 @@ class Findings:
 
 
 def _first_number(finding):
-    found = NUMBER.search(finding.text)
-    return float(found[0]) if found else 0.0
+    digits = NUMBER.search(finding.text)
+    return float(digits[0]) if digits else 0.0
 
 
 def metres(value: float) -> str:

@@ -86,11 +86,11 @@ class _LaneletCheck:
                 self.findings.add("id not positive", f"{kind} {low[0]}", f"{len(low)} ids of a {kind} are 0 or below.", np.zeros(3))
         for kind, id, key in whole.tags_twice:
             self.findings.add("id twice", f"{kind} {id}", f"It has the tag {key} more than once.", np.zeros(3))
-        known = np.isfinite(whole.local).all(1)
-        if known.any() and not known.all():
-            row = int(np.flatnonzero(known != (known.mean() > 0.5))[0])
+        finite = np.isfinite(whole.local).all(1)
+        if finite.any() and not finite.all():
+            row = int(np.flatnonzero(finite != (finite.mean() > 0.5))[0])
             self.findings.add("local coordinates", f"node {whole.node_ids[row]}",
-                              f"{int(known.sum())} of {len(known)} nodes have local_x and local_y.", self.places[row])
+                              f"{int(finite.sum())} of {len(finite)} nodes have local_x and local_y.", self.places[row])
 
     def heights(self) -> None:
         missing = ~np.isfinite(self.whole.heights)
@@ -141,29 +141,29 @@ class _LaneletCheck:
         rise = step[:, 2]
         up = (np.abs(rise[:-1]) > SPIKE_RISE) & (np.abs(rise[1:]) > SPIKE_RISE) & (rise[:-1] * rise[1:] < 0)
         up &= (np.abs(rise[:-1]) > SPIKE_SLOPE * run[:-1]) & (np.abs(rise[1:]) > SPIKE_SLOPE * run[1:])
-        for found, what in ((back, "to the side"), (up, "up or down")):
-            for k in np.flatnonzero(found)[:MOST_SPIKES]:
-                self.findings.add("spike", name, f"Node {self.whole.node_ids[rows[k + 1]]} lies {what} of those beside it.", line[k + 1])
+        for spikes, direction in ((back, "to the side"), (up, "up or down")):
+            for k in np.flatnonzero(spikes)[:MOST_SPIKES]:
+                self.findings.add("spike", name, f"Node {self.whole.node_ids[rows[k + 1]]} lies {direction} of those beside it.", line[k + 1])
 
     def members(self, relation: Lanelet) -> bool:
         """Whether all members are there."""
-        missing = [(kind, id) for found in relation.members.values() for kind, id in found if id not in self.known.get(kind, ())]
+        missing = [(kind, id) for group in relation.members.values() for kind, id in group if id not in self.known.get(kind, ())]
         for kind, id in missing:
             self.findings.add("missing member", f"relation {relation.id}", f"There is no {kind} {id}.", self.place_of(relation))
         return not missing
 
     def place_of(self, relation: Lanelet) -> np.ndarray:
         """Where a relation begins."""
-        ways = [self.whole.ways[id] for found in relation.members.values() for kind, id in found if kind == "way" and id in self.whole.ways]
+        ways = [self.whole.ways[id] for group in relation.members.values() for kind, id in group if kind == "way" and id in self.whole.ways]
         return next((self.at(way) for way in ways if len(self.whole.rows(way))), np.zeros(3))
 
     def lanelet(self, lanelet: Lanelet) -> None:
         name, place, tags = f"lanelet {lanelet.id}", self.place_of(lanelet), lanelet.tags
         whole = self.members(lanelet)
         for role in ("left", "right"):
-            found = lanelet.members.get(role, ())
-            if len(found) != 1 or found[0][0] != "way":
-                has = " and ".join(kind for kind, _ in found) or "nothing"
+            members = lanelet.members.get(role, ())
+            if len(members) != 1 or members[0][0] != "way":
+                has = " and ".join(kind for kind, _ in members) or "nothing"
                 self.findings.add("border missing", name, f"It has {has} as {role}; one way is needed.", place)
         if len(lanelet.members.get("centerline", ())) > 1:
             self.findings.add("centre line", name, f"It has {len(lanelet.members['centerline'])} centre lines.", place)
@@ -201,32 +201,32 @@ class _LaneletCheck:
         odd = []
         for id in self.network.left:
             lanelet = self.whole.lanelets[id]
-            shared = [other for other in self.network.beside(id)
-                      if lanelet.way("left") in (self.whole.lanelets[other].way("left"), self.whole.lanelets[other].way("right"))]
+            shared = [neighbour for neighbour in self.network.beside(id)
+                      if lanelet.way("left") in (self.whole.lanelets[neighbour].way("left"), self.whole.lanelets[neighbour].way("right"))]
             if self.network.reversed_right[id] or self.network.reversed_left[id] and not shared:
                 odd.append(id)
-        known = len(self.network.left)
-        if known >= LEAST_HABIT and len(odd) >= USUAL_SHARE * known:
+        total = len(self.network.left)
+        if total >= LEAST_HABIT and len(odd) >= USUAL_SHARE * total:
             self.findings.add("sides swapped", f"{len(odd)} lanelets", "Nearly all borders run against their lanelets: left and right, or latitude "
                                                                       "and longitude, are swapped.", self.place_of(self.whole.lanelets[odd[0]]))
-        if len(odd) <= (1 - USUAL_SHARE) * known:
+        if len(odd) <= (1 - USUAL_SHARE) * total:
             for id in odd:
                 self.findings.add("sides swapped", f"lanelet {id}", "Its borders run against it, unlike those of the other lanelets.",
                                   self.place_of(self.whole.lanelets[id]))
 
     def joints(self) -> None:
         """Ends of lanelets that meet: they share their nodes and are driven on."""
-        for id, other in self.network.head_on():
-            if self.network.driven(id) and self.network.driven(other):
-                self.findings.add("head on", f"lanelets {id} and {other}", "Both begin or end where they meet: one of them has left and right "
-                                                                           "swapped.", self.places[self.network.ends(id)[1][0]])
+        for id, opposite in self.network.head_on():
+            if self.network.driven(id) and self.network.driven(opposite):
+                self.findings.add("head on", f"lanelets {id} and {opposite}", "Both begin or end where they meet: one of them has left and right "
+                                                                              "swapped.", self.places[self.network.ends(id)[1][0]])
         ids = [id for id in self.network.left if self.network.driven(id)]
         if ids:
             self._not_joined(ids)
 
     def _not_joined(self, ids):
         starts, stops = self.places[np.array([self.network.ends(id) for id in ids]).transpose(1, 0, 2), :2]
-        first, last = (np.array([self._heading(id, at) for id in ids]) for at in (0, -1))
+        first, last = (np.array([self._heading(id, end) for id in ids]) for end in (0, -1))
         tree = shapely.STRtree(shapely.points(starts.mean(1)))
         pairs = tree.query(shapely.buffer(shapely.points(stops.mean(1)), JOIN_DISTANCE), predicate="intersects").T
         for k, j in pairs:
@@ -278,8 +278,8 @@ class _LaneletCheck:
         self.findings.successors = sum(len(self.network.following(id)) for id in driven)
         pairs: dict[tuple[int, int], int] = defaultdict(int)
         for id in driven:
-            for other in self.network.beside(id):
-                pairs[min(id, other), max(id, other)] += 1
+            for neighbour in self.network.beside(id):
+                pairs[min(id, neighbour), max(id, neighbour)] += 1
         self.findings.neighbours = len(pairs)
 
 
@@ -334,15 +334,15 @@ def _lanelet_tags(tags: Mapping[str, str]) -> Iterator[str]:
 
 def _participant_tags(tags, walked):
     """Sentences on who may use a lanelet; `walked`: whether it is made for those on foot."""
-    found = {key[len("participant:"):]: value for key, value in tags.items() if key.startswith("participant:")}
-    for name, value in found.items():
+    participants = {key[len("participant:"):]: value for key, value in tags.items() if key.startswith("participant:")}
+    for name, value in participants.items():
         if name not in KNOWN_PARTICIPANTS:
             yield f"The participant {name!r} is not known."
         if value not in YES_OR_NO:
             yield f"participant:{name} is {value!r}."
         if walked and MOTOR.match(name) and value in YES:
             yield f"Its subtype is {tags.get('subtype')!r}, and vehicles may use it."
-    if not walked and set() < set(found.values()) <= NO:
+    if not walked and set() < set(participants.values()) <= NO:
         yield "Nobody may use it."
 
 

@@ -76,8 +76,8 @@ class _RoadCheck:
     def add(self, fault, element, text, road, s):
         place = np.zeros(3)
         if road is not None:
-            at = np.array([min(max(s, 0.0), road.plan.length)])
-            place = self.whole.placed(np.c_[road.plan.at(at)[0], road.elevation.at(at)])[0]
+            station = np.array([min(max(s, 0.0), road.plan.length)])
+            place = self.whole.placed(np.c_[road.plan.at(station)[0], road.elevation.at(station)])[0]
         self.findings.add(fault, element, text, place)
 
     def statements(self) -> None:
@@ -119,10 +119,10 @@ class _RoadCheck:
             self.add("road length", name, f"The road says {road.length:.3f} m; its geometries are {along:.3f} m.", road, along)
 
     def profile(self, road: MapRoad) -> None:
-        for cubics, fault, what in ((road.elevation, "height step", "height"), (road.superelevation, "crossfall step", "crossfall")):
+        for cubics, fault, quantity in ((road.elevation, "height step", "height"), (road.superelevation, "crossfall step", "crossfall")):
             for s, step in zip(*cubics.steps()):
                 if step > MAX_HEIGHT_STEP:
-                    self.add(fault, f"road {road.id}", f"The {what} jumps by {step:.3f} at s = {s:.2f}.", road, s)
+                    self.add(fault, f"road {road.id}", f"The {quantity} jumps by {step:.3f} at s = {s:.2f}.", road, s)
         if road.rule not in ("RHT", "LHT"):
             self.add("traffic rule", f"road {road.id}", f"The rule is {road.rule!r}.", road, 0.0)
 
@@ -157,9 +157,9 @@ class _RoadCheck:
                 self.add("road mark type", name, f"The type is {mark.type!r}.", road, start + mark.s)
         if lane.id == 0 or lane.border:
             return
-        least, where = lane.width.least(length)
+        least, station = lane.width.least(length)
         if least < -1e-6:
-            self.add("width below zero", name, f"{least:.3f} m at s = {start + where:.2f}.", road, start + where)
+            self.add("width below zero", name, f"{least:.3f} m at s = {start + station:.2f}.", road, start + station)
         for s, step in zip(*lane.width.steps()):
             if step > MAX_WIDTH_STEP:
                 self.add("width step", name, f"The width jumps by {metres(step)} at s = {start + s:.2f}.", road, start + s)
@@ -185,9 +185,9 @@ class _RoadCheck:
         for id, t in offsets.items():
             folded = np.flatnonzero(1 - bend * t <= 0)
             if len(folded):
-                at = s[folded[0]]
+                station = s[folded[0]]
                 self.add("border folds", f"road {road.id}, lane {id}",
-                         f"{abs(t[folded[0]]):.1f} m beside a curve of {1 / abs(bend[folded[0]]):.1f} m at s = {at:.2f}.", road, at)
+                         f"{abs(t[folded[0]]):.1f} m beside a curve of {1 / abs(bend[folded[0]]):.1f} m at s = {station:.2f}.", road, station)
                 return None
         driven = [id for id in offsets if id and road.sections[number].lanes[id].type in DRIVEN_TYPES]
         if not driven:
@@ -254,8 +254,8 @@ class _Links:
         self.ends: dict[tuple[LaneKey, str], tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
 
     def place(self, road: MapRoad, end: str) -> np.ndarray:
-        at = np.array([0.0 if end == "start" else road.plan.length])
-        return self.whole.placed(np.c_[road.plan.at(at)[0], road.elevation.at(at)])[0]
+        station = np.array([0.0 if end == "start" else road.plan.length])
+        return self.whole.placed(np.c_[road.plan.at(station)[0], road.elevation.at(station)])[0]
 
     def road(self, road: MapRoad) -> None:
         for end in ("start", "end"):
@@ -275,20 +275,20 @@ class _Links:
 
     def _to_road(self, road, end, link):
         """The same of its link to another road."""
-        other = self.network.roads.get(link.id)
-        if link.element != "road" or other is None:
+        linked = self.network.roads.get(link.id)
+        if link.element != "road" or linked is None:
             return "road link", f"There is no {link.element or 'element'} {link.id}."
         if link.contact not in ("start", "end"):
             return "road link", f"It touches the {link.contact or 'unnamed'} end of road {link.id}."
-        if road.junction == other.junction == "-1" and other.link(link.contact) != RoadLink("road", road.id, end):
+        if road.junction == linked.junction == "-1" and linked.link(link.contact) != RoadLink("road", road.id, end):
             return "one-sided link", f"Road {link.id} is not linked back."
         return "", ""
 
     def _is_left_by(self, junction: str, road: str) -> bool:
         """Whether a connecting road of a junction leads to a road."""
-        for other in self.whole.roads:
-            if other.junction == junction and any(link is not None and link.element == "road" and link.id == road
-                                                  for link in (other.predecessor, other.successor)):
+        for connecting in self.whole.roads:
+            if connecting.junction == junction and any(link is not None and link.element == "road" and link.id == road
+                                                       for link in (connecting.predecessor, connecting.successor)):
                 return True
         return False
 
@@ -331,18 +331,18 @@ class _Links:
         name, driven = f"road {key[0]}, section {key[1]}, lane {key[2]}", lane.type in DRIVEN_TYPES
         way = travel(road, key[2])
         for end in ("start", "end"):
-            own = self._end(key, end)
+            corners = self._end(key, end)
             touching = self.network.touching(key, end)
-            for other, there in touching:
-                target = self.network.lane(other)
-                if target is None or not other[2]:   # lane 0 is a line
-                    self.findings.add("lane link", name, f"At its {end} there is no such lane {other[2]} of road {other[0]}.", own[0])
+            for neighbour, neighbour_end in touching:
+                target = self.network.lane(neighbour)
+                if target is None or not neighbour[2]:   # lane 0 is a line
+                    self.findings.add("lane link", name, f"At its {end} there is no such lane {neighbour[2]} of road {neighbour[0]}.", corners[0])
                     continue
-                self._joined(name, key, end, own, other, there, target, driven)
-            said = end in lane.data.get(OPEN_END, "").split()
-            if self.network.is_open(key, end, self.touched) and not said and self._width(own) > LEAST_LANE:
+                self._joined(name, key, end, corners, neighbour, neighbour_end, target, driven)
+            declared = end in lane.data.get(OPEN_END, "").split()
+            if self.network.is_open(key, end, self.touched) and not declared and self._width(corners) > LEAST_LANE:
                 leaves = (end == "end") == (way > 0)
-                self.findings.add("dead end" if leaves else "no way in", name, f"At its {end} it is linked to no driven lane.", own[0])
+                self.findings.add("dead end" if leaves else "no way in", name, f"At its {end} it is linked to no driven lane.", corners[0])
 
     def _joined(self, name, key, end, own, other, there, target, driven):
         theirs = self._end(other, there)
@@ -372,8 +372,8 @@ class _Links:
 
     def _end(self, key, end):
         """(left, right) end of a lane's borders along the road, (3,) each, and (2,) the direction there."""
-        found = self.ends.get((key, end))
-        if found is None:
+        corners = self.ends.get((key, end))
+        if corners is None:
             road = self.network.roads[key[0]]
             first, last = road.sections[key[1]].s, road.section_end(key[1])
             step = min(END_STEP, (last - first) / 2)
@@ -382,10 +382,10 @@ class _Links:
             # the functions of a section hold up to its end: those of the next begin at the same s
             inner, outer = (self.whole.placed(line) for line in surface.borders(key[1], key[2], s, surface.offsets(key[1], s)))
             left, right = (inner, outer) if key[2] < 0 else (outer, inner)
-            at = 0 if end == "start" else 1
+            row = 0 if end == "start" else 1
             way = (left[1] - left[0] + right[1] - right[0])[:2]
-            found = self.ends[key, end] = left[at], right[at], way
-        return found
+            corners = self.ends[key, end] = left[row], right[row], way
+        return corners
 
     def _width(self, end):
         return float(np.hypot(*(end[0] - end[1])[:2]))
@@ -398,15 +398,15 @@ def _connection_faults(junction, connection, incoming, connecting):
     if connection.contact not in ("start", "end"):
         yield f"It touches the {connection.contact or 'unnamed'} end of road {connecting.id}."
         return
-    here = [incoming.lanes_at(end) for end in ("start", "end") if _leads_into(incoming, end, junction)]
-    if not here:
+    incoming_lanes = [incoming.lanes_at(end) for end in ("start", "end") if _leads_into(incoming, end, junction)]
+    if not incoming_lanes:
         yield f"Road {incoming.id} does not lead into this junction."
         return
     if not connection.lanes:
         yield "It links no lanes."
-    there = connecting.lanes_at(connection.contact)
+    connecting_lanes = connecting.lanes_at(connection.contact)
     for start, to in connection.lanes:
-        if to not in there or start not in set().union(*here):
+        if to not in connecting_lanes or start not in set().union(*incoming_lanes):
             yield f"There is no lane {start} or no lane {to} where it links them."
 
 
@@ -512,10 +512,10 @@ def _header(header):
 def _road(road, seen, minor):
     id, length = road.get("id"), _number(road, "length", 0.0)
     lanes = list(_lanes(road, length))
-    for found in (_records(road, length), _plan(road), _of_lanes(lanes), _of_objects(road, length, lanes, seen),
-                  (("value", "", text, 0.0) for one in _within(road) for text in _values(one, minor))):
-        for fault, what, text, s in found:
-            yield _Statement(fault, f"road {id}, {what}" if what else f"road {id}", text, id, s)
+    for records in (_records(road, length), _plan(road), _of_lanes(lanes), _of_objects(road, length, lanes, seen),
+                    (("value", "", text, 0.0) for element in _within(road) for text in _values(element, minor))):
+        for fault, part, text, s in records:
+            yield _Statement(fault, f"road {id}, {part}" if part else f"road {id}", text, id, s)
 
 
 # The statements of a road, each (fault, what, text, s).
@@ -524,7 +524,7 @@ def _records(road, length):
     for path, zero in ROAD_RECORDS:
         for text in _order(road, path, "s", length, zero):
             yield "record order", path[-1], text, 0.0
-    shapes = [(_number(one, "s", 0.0), _number(one, "t", 0.0)) for one in road.all("lateralProfile", "shape")]
+    shapes = [(_number(shape, "s", 0.0), _number(shape, "t", 0.0)) for shape in road.all("lateralProfile", "shape")]
     if shapes != sorted(shapes):
         yield "record order", "shape", "The shapes do not go on from s to s and from t to t.", 0.0
 
@@ -548,15 +548,15 @@ def _of_lanes(lanes):
 def _of_objects(road, length, lanes, seen):
     numbers = {int(_number(lane, "id", 0.0)) for _, _, lane in lanes}
     for kind in seen:
-        for one in road.all(f"{kind}s", kind):
-            for fault, text, s in _beside(one, kind, length, numbers, seen[kind]):
-                yield fault, f"{kind} {one.get('id')}", text, s
+        for element in road.all(f"{kind}s", kind):
+            for fault, text, s in _beside(element, kind, length, numbers, seen[kind]):
+                yield fault, f"{kind} {element.get('id')}", text, s
 
 
 def _plan(road):
-    for one in road.all("planView", "geometry"):
-        shapes = [child for child in one.children if child.tag in GEOMETRIES]
-        s = _number(one, "s", 0.0)
+    for geometry in road.all("planView", "geometry"):
+        shapes = [child for child in geometry.children if child.tag in GEOMETRIES]
+        s = _number(geometry, "s", 0.0)
         if len(shapes) > 1:
             yield "two at once", "geometry", f"The geometry at s = {s:g} is {' and '.join(child.tag for child in shapes)}.", s
         for child in shapes:
@@ -603,27 +603,27 @@ def _corners(one):
 
 def _junction(junction):
     name, seen = f"junction {junction.get('id')}", set()
-    for one in junction.all("connection"):
-        what = f"{name}, connection {one.get('id')}"
-        if one.get("id") in seen:
-            yield _Statement("id twice", what, "There is another connection of this id.", one.get("connectingRoad"), 0.0)
-        seen.add(one.get("id"))
-        links = [(link.get("from"), link.get("to")) for link in one.all("laneLink")]
+    for connection in junction.all("connection"):
+        label = f"{name}, connection {connection.get('id')}"
+        if connection.get("id") in seen:
+            yield _Statement("id twice", label, "There is another connection of this id.", connection.get("connectingRoad"), 0.0)
+        seen.add(connection.get("id"))
+        links = [(link.get("from"), link.get("to")) for link in connection.all("laneLink")]
         if len(set(links)) < len(links):
-            yield _Statement("connection", what, "It links the same lanes twice.", one.get("connectingRoad"), 0.0)
+            yield _Statement("connection", label, "It links the same lanes twice.", connection.get("connectingRoad"), 0.0)
 
 
 def _order(parent, path, key, length, zero):
     """Sentences on records that begin late, go back, or lie beyond the end."""
-    at = [_number(one, key, 0.0) for one in parent.all(*path)]
-    if not at:
+    stations = [_number(record, key, 0.0) for record in parent.all(*path)]
+    if not stations:
         return
-    if zero and at[0] > STATED_NEAR:
-        yield f"The first begins at {at[0]:g} m."
-    if (np.diff(at) < 0).any():
-        yield f"They begin at {', '.join(f'{one:g}' for one in at[:8])} m."
-    if min(at) < -STATED_NEAR or max(at) > length + STATED_NEAR:
-        yield f"One begins at {max(at) if max(at) > length else min(at):g} m of {length:g} m."
+    if zero and stations[0] > STATED_NEAR:
+        yield f"The first begins at {stations[0]:g} m."
+    if (np.diff(stations) < 0).any():
+        yield f"They begin at {', '.join(f'{record:g}' for record in stations[:8])} m."
+    if min(stations) < -STATED_NEAR or max(stations) > length + STATED_NEAR:
+        yield f"One begins at {max(stations) if max(stations) > length else min(stations):g} m of {length:g} m."
 
 
 def _values(one, minor):
@@ -641,10 +641,10 @@ def _within(element):
     """The elements within an element, at any depth, but for the user's own."""
     stack = list(element.children)
     while stack:
-        one = stack.pop()
-        if one.tag != "userData":
-            yield one
-            stack += one.children
+        child = stack.pop()
+        if child.tag != "userData":
+            yield child
+            stack += child.children
 
 
 def _number(element, name, missing):

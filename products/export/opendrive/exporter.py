@@ -92,7 +92,7 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     strips, lost = drafting.strips()
     if lost:
         progress.info(f"Pieces of lanes that nobody drives, within junctions: {lost}. OpenDRIVE has no place for them there, and they were left out.")
-    directions = directions_where_met([cell for strip, _ in strips for one in strip for cell in one.cells])
+    directions = directions_where_met([cell for strip, _ in strips for part in strip for cell in part.cells])
     for number, (strip, single) in enumerate(strips, start=1):
         made = drafting.road(strip, number, single, directions)
         draft.roads.append(made)
@@ -119,10 +119,10 @@ class _Drafting:
         if self.settings.traffic_side != "automatic":
             return self.settings.traffic_side == "left"
         votes = 0.0
-        for one in self.slices:
-            ways = [cell.direction for cell in one.cells if cell.direction]
+        for part in self.slices:
+            ways = [cell.direction for cell in part.cells if cell.direction]
             if 1 in ways and -1 in ways:
-                votes += one.length * (1 if ways.index(-1) < ways.index(1) else -1)
+                votes += part.length * (1 if ways.index(-1) < ways.index(1) else -1)
         if not votes:
             self.notes.append("No road has lanes in both directions; traffic was taken to keep right. Set Side of traffic where it keeps left.")
         return votes < 0
@@ -131,53 +131,53 @@ class _Drafting:
         """((slices of a road, whether it is a way through a junction), ordinary roads first; how many cells within junctions are of none)."""
         mark_junctions(self.slices, self.lanes)
         ordinary, inside = self._parted()
-        known = {id(cell) for one in inside for cell in one.cells} | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)}
-        ordinary, between = _between_junctions(ordinary, known)
+        inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)}
+        ordinary, between = _between_junctions(ordinary, inside_ids)
         inside += between
-        lost = sum(len(one.cells) for one in inside if not one.driven)
-        return _ordinary_roads(ordinary) + _ways_through([part for one in inside for part in one.ways()] + self.connectors), lost
+        lost = sum(len(part.cells) for part in inside if not part.driven)
+        return _ordinary_roads(ordinary) + _ways_through([way for part in inside for way in part.ways()] + self.connectors), lost
 
     def _parted(self) -> tuple[list[Slice], list[Slice]]:
         """(slices of ordinary roads, slices within junctions): ways through a junction are cut off from the slices in which they begin or end."""
         ordinary, inside = [], []
-        for one in self.slices:
-            if one.at_start and one.at_end and one.length < LONGEST_JUNCTION:
-                inside.append(one)
+        for part in self.slices:
+            if part.at_start and part.at_end and part.length < LONGEST_JUNCTION:
+                inside.append(part)
                 continue
             for at_end in (False, True):
-                if not (one.at_end if at_end else one.at_start):
+                if not (part.at_end if at_end else part.at_start):
                     continue
-                row = _cut_row(one, at_end)
+                row = _cut_row(part, at_end)
                 if not row:   # too short for a way and a road
-                    inside.append(one)
+                    inside.append(part)
                     break
-                first, last = one.split(row)
-                part, one = (last, first) if at_end else (first, last)
-                inside.append(part)
+                first, last = part.split(row)
+                way, part = (last, first) if at_end else (first, last)
+                inside.append(way)
             else:
-                ordinary.append(one)
+                ordinary.append(part)
         return ordinary, inside
 
     def road(self, strip: list[Slice], number: int, single: bool, directions: dict[int, float]) -> _DraftRoad:
         tolerance = self.settings.tolerance
-        centres = [centre_of(one, self.left_hand) for one in strip]
+        centres = [centre_of(part, self.left_hand) for part in strip]
         shape = shape_of(strip, centres, tolerance / 2)
-        roads = sorted({int(self.lanes.road[cell.piece]) for one in strip for cell in one.cells})
+        roads = sorted({int(self.lanes.road[cell.piece]) for part in strip for cell in part.cells})
         road = MapRoad(str(number), shape.plan.length, shape.plan, f"Road {', '.join(map(str, roads))}", rule="LHT" if self.left_hand else "RHT")
         numbers = add_lanes(road, shape, strip, centres, CURVES_SHARE * tolerance, directions)
         add_heights(road, shape, tolerance)
         status: dict[str, float] = defaultdict(float)
-        for row, (one, ids, section, centre) in enumerate(zip(strip, numbers, road.sections, centres)):
-            for k, (cell, id) in enumerate(zip(one.cells, ids)):
+        for row, (part, ids, section, centre) in enumerate(zip(strip, numbers, road.sections, centres)):
+            for k, (cell, id) in enumerate(zip(part.cells, ids)):
                 self._describe(section.lanes[id], cell)
                 section.lanes[id].heights = heights_above_road(shape, row, k)
-                section.lanes[id].marks = [self._mark_between(one, k if id > 0 else k + 1, id)]
+                section.lanes[id].marks = [self._mark_between(part, k if id > 0 else k + 1, id)]
                 status[str(self.lanes.status[cell.piece])] += cell.length
             # where lane 0 lies apart from them, the innermost border is that of the empty lane between
             apart = next((id for id in section.lanes if id and id not in ids), 0)
             section.lanes[0].marks = [RoadMark(0.0, "none")]
-            section.lanes[apart].marks = [self._mark_between(one, centre, apart)]
-            self._add_curbs(section.lanes, one, ids)
+            section.lanes[apart].marks = [self._mark_between(part, centre, apart)]
+            self._add_curbs(section.lanes, part, ids)
             section.order = sorted(section.lanes, reverse=True)
         road.data = _shares(status)
         return _DraftRoad(road, strip, numbers, single)
@@ -213,10 +213,10 @@ class _Drafting:
         """The mark of a border of a slice, which is the outer one of `lane`: of two stripes where each of the lanes beside it has its own."""
         left, right = (self._mark(cells[0], is_left) if cells else None
                        for cells, is_left in ((one.cells[:number][-1:], False), (one.cells[number:], True)))
-        own, other = (right, left) if lane >= 0 else (left, right)
-        painted = [mark for mark in filter(None, (own, other)) if mark.type != "none"]
+        lane_mark, neighbour_mark = (right, left) if lane >= 0 else (left, right)
+        painted = [mark for mark in filter(None, (lane_mark, neighbour_mark)) if mark.type != "none"]
         if not painted:
-            return next(filter(None, (own, other)), RoadMark(0.0, "none"))
+            return next(filter(None, (lane_mark, neighbour_mark)), RoadMark(0.0, "none"))
         mark = next((mark for mark in painted if " " in mark.type), painted[0])
         if len(painted) == 2 and (gap := self._gap(one.cells[number - 1], False)):
             lines = self._about(one.cells[number - 1], False)[2], self._about(one.cells[number], True)[2]
@@ -240,7 +240,7 @@ class _Drafting:
             heights = self.curb_heights.at(border[:, :2] + self.origin[:2], NEAREST_CURB)
             if np.isfinite(heights).any():
                 rise = np.array([0.0, 0.0, round(float(np.nanmedian(heights)), 3)])
-                curb.heights = rise + np.array([[at, inner, inner] for at, inner, _ in lanes[id].heights] or [[0.0, 0.0, 0.0]])
+                curb.heights = rise + np.array([[station, inner, inner] for station, inner, _ in lanes[id].heights] or [[0.0, 0.0, 0.0]])
             lanes[beyond] = curb
 
 
@@ -261,42 +261,42 @@ def _said_open_ends(whole: OpenDriveMap) -> list[str]:
 
 def _between_junctions(slices, inside):
     """(slices, those of them that are too short for a road and lie between ways through junctions)."""
-    found = []
+    between = []
     while True:
-        more = [one for one in slices if one.length < SHORTEST_WAY and _lies_within(one, inside)]
+        more = [part for part in slices if part.length < SHORTEST_WAY and _lies_within(part, inside)]
         if not more:
-            return slices, found
-        found += more
-        inside = inside | {id(cell) for one in more for cell in one.cells}
-        slices = [one for one in slices if not any(one is other for other in more)]
+            return slices, between
+        between += more
+        inside = inside | {id(cell) for part in more for cell in part.cells}
+        slices = [part for part in slices if not any(part is added for added in more)]
 
 
 def _lies_within(one, inside):
     """Whether a slice touches cells at both ends, and only those of these ids."""
-    return all(others and inside.issuperset(map(id, others)) for others in (one.beyond(False), one.beyond(True)))
+    return all(neighbours and inside.issuperset(map(id, neighbours)) for neighbours in (one.beyond(False), one.beyond(True)))
 
 
 def _ordinary_roads(slices):
     """(slices of a road, False) of the roads between junctions; a road is driven along its direction, but for those with both."""
-    owner = {id(cell): one for one in slices for cell in one.cells}
-    breaks = {(id(one), id(owner[id(other)])) for one in slices for cell in one.cells for other in cell.after if id(other) in owner
-              and any(id(near) not in owner for near in cell.after + other.before)}
+    owner = {id(cell): part for part in slices for cell in part.cells}
+    breaks = {(id(part), id(owner[id(following)])) for part in slices for cell in part.cells for following in cell.after if id(following) in owner
+              and any(id(near) not in owner for near in cell.after + following.before)}
     return [(_along_traffic(strip), False) for strip in strips_of(slices, breaks)]
 
 
 def _ways_through(parts):
     """(slices of a road, whether it is a way through a junction) of single lanes, all along their traffic."""
-    parts = [one for part in parts for one in _along_traffic([part])]
-    part_of = {id(cell): one for one in parts for cell in one.driven}
+    parts = [part for given in parts for part in _along_traffic([given])]
+    part_of = {id(cell): part for part in parts for cell in part.driven}
     # what comes from nowhere or leads nowhere is no way through
     return [([part_of[id(cell)] for cell in way], bool(way[0].before and way[-1].after))
-            for way in end_to_end([cell for one in parts for cell in one.driven])]
+            for way in end_to_end([cell for part in parts for cell in part.driven])]
 
 
 def _along_traffic(strip):
     """The slices of a road that is driven against its direction alone turned round."""
-    ways = {cell.direction for one in strip for cell in one.cells}
-    return [one.turned() for one in strip[::-1]] if -1 in ways and 1 not in ways else strip
+    ways = {cell.direction for part in strip for cell in part.cells}
+    return [part.turned() for part in strip[::-1]] if -1 in ways and 1 not in ways else strip
 
 
 def _make_double(mark, left, right, lane):
@@ -304,7 +304,7 @@ def _make_double(mark, left, right, lane):
     if " " not in mark.type and "curb" not in (left.type, right.type):
         # named from the middle of the road outwards, at lane 0 from left to right
         mark.type = f"{right.type} {left.type}" if lane > 0 else f"{left.type} {right.type}"
-        dashed = next((one for one in ((right, left) if lane >= 0 else (left, right)) if one.dash), RoadMark(0.0, "none"))
+        dashed = next((stripe for stripe in ((right, left) if lane >= 0 else (left, right)) if stripe.dash), RoadMark(0.0, "none"))
         mark.dash, mark.gap = dashed.dash, dashed.gap
 
 
@@ -358,15 +358,15 @@ class _Touch(NamedTuple):
 
 def _link_roads(whole: OpenDriveMap, drafts: list[_DraftRoad]) -> list[str]:
     """Fill in the links of lanes and roads, and the junctions; sentences on what OpenDRIVE cannot say."""
-    places = [(cell, _Place(k, j, number)) for k, draft in enumerate(drafts) for j, (one, ids) in enumerate(zip(draft.strip, draft.numbers))
-              for cell, number in zip(one.cells, ids)]
-    place = {id(cell): here for cell, here in places}
+    places = [(cell, _Place(k, j, number)) for k, draft in enumerate(drafts) for j, (part, ids) in enumerate(zip(draft.strip, draft.numbers))
+              for cell, number in zip(part.cells, ids)]
+    place_of = {id(cell): place for cell, place in places}
     touches: dict[tuple[int, str], list[_Touch]] = defaultdict(list)
-    for cell, here in places:
-        for end, others in (("end", cell.after), ("start", cell.before)):
-            for other in others:
-                if id(other) in place:
-                    _link(drafts, touches, here, end, place[id(other)], _end_towards(other, cell))
+    for cell, place in places:
+        for end, neighbours in (("end", cell.after), ("start", cell.before)):
+            for neighbour in neighbours:
+                if id(neighbour) in place_of:
+                    _link(drafts, touches, place, end, place_of[id(neighbour)], _end_towards(neighbour, cell))
     junction = _clusters(drafts, touches)
     notes = []
     for k, end in touches:
@@ -403,37 +403,38 @@ def _clusters(drafts, touches):
             k = parent[k]
         return k
 
-    for (k, _), found in touches.items():
-        together = [touch.other for touch in found if touch.other in parent] + ([k] if k in parent else [])
-        for other in together[1:]:
-            parent[root(other)] = root(together[0])
+    for (k, _), touched in touches.items():
+        together = [touch.other for touch in touched if touch.other in parent] + ([k] if k in parent else [])
+        for way in together[1:]:
+            parent[root(way)] = root(together[0])
     roots = sorted({root(k) for k in parent})
     return {k: roots.index(root(k)) for k in parent}
 
 
 def _end_link(drafts, k, end, touches, junction):
     """Link one end of a road; sentences on what cannot be linked."""
-    found = touches[k, end]
-    ways = [touch.other for touch in found if touch.other in junction]
+    touched = touches[k, end]
+    ways = [touch.other for touch in touched if touch.other in junction]
     if ways and k not in junction:
         setattr(drafts[k].road, LINK_AT[end], RoadLink("junction", _junction_id(drafts, junction[ways[0]])))
         return []
     # a junction lies between this road and those whose ends are linked to it
-    found = [touch for touch in found if k in junction or not any(one.other in junction for one in touches.get((touch.other, touch.other_end), ()))]
-    return _road_link(drafts, drafts[k].road, end, found) if found else []
+    touched = [touch for touch in touched
+               if k in junction or not any(back.other in junction for back in touches.get((touch.other, touch.other_end), ()))]
+    return _road_link(drafts, drafts[k].road, end, touched) if touched else []
 
 
 def _road_link(drafts, road, end, found):
     """Link one end of a road to the road of its touches with the most lanes there: OpenDRIVE has one link an end."""
     lanes = Counter((touch.other, touch.other_end) for touch in found)
     ends = sorted(lanes, key=lambda way: (-lanes[way], way))
-    other, other_end = ends[0]
-    setattr(road, LINK_AT[end], RoadLink("road", drafts[other].road.id, other_end))
+    neighbour, neighbour_end = ends[0]
+    setattr(road, LINK_AT[end], RoadLink("road", drafts[neighbour].road.id, neighbour_end))
     for touch in found:
         if (touch.other, touch.other_end) == ends[0]:
             road.lanes_at(end)[touch.lane].links(end).append(touch.other_lane)
     if len(ends) > 1:
-        return [f"Road {road.id} touches {len(ends)} roads at its {end} without a connector; it is linked to road {drafts[other].road.id} alone."]
+        return [f"Road {road.id} touches {len(ends)} roads at its {end} without a connector; it is linked to road {drafts[neighbour].road.id} alone."]
     return []
 
 
@@ -443,21 +444,21 @@ def _junction_id(drafts: list[_DraftRoad], number: int) -> str:
 
 
 def _connections(whole, drafts, touches, junction):
-    found = {number: Junction(_junction_id(drafts, number)) for number in sorted(set(junction.values()))}
+    junctions = {number: Junction(_junction_id(drafts, number)) for number in sorted(set(junction.values()))}
     for k, number in junction.items():
-        drafts[k].road.junction = found[number].id
+        drafts[k].road.junction = junctions[number].id
     for (k, end), touched in sorted(touches.items()):
         road = drafts[k].road
         if k in junction:
             continue
         lanes = _incoming(road, end, touched, junction)
-        for (other, other_end), links in sorted(lanes.items()):
-            connections = found[junction[other]].connections
-            connections.append(Connection(str(len(connections)), road.id, drafts[other].road.id, other_end, links))
-    whole.junctions = [one for one in found.values() if one.connections]
-    known = {one.id for one in whole.junctions}
+        for (way, way_end), links in sorted(lanes.items()):
+            connections = junctions[junction[way]].connections
+            connections.append(Connection(str(len(connections)), road.id, drafts[way].road.id, way_end, links))
+    whole.junctions = [formed for formed in junctions.values() if formed.connections]
+    ids = {formed.id for formed in whole.junctions}
     for draft in drafts:
-        _forget_junctions(draft.road, known)
+        _forget_junctions(draft.road, ids)
 
 
 def _incoming(road, end, touched, junction):
@@ -512,9 +513,9 @@ def _painted_shapes(markings: Features | None) -> Iterator[tuple[str, str, np.nd
         across = np.array([-way[1], way[0], 0.0]) / max(float(np.hypot(*way[:2])), 1e-6) * STOP_LINE_HALF
         yield "roadMark", "stop line", np.array([line[0] - across, line[1] - across, line[1] + across, line[0] + across])
     for geometry, row in markings if markings is not None else ():
-        known = next((name for start, name in NAME_OF_CLASS.items() if str(row.get("class")).startswith(start)), "")
-        for part in shapely.get_parts(geometry) if known and geometry is not None and not geometry.is_empty else ():
-            yield "roadMark", known, shapely.get_coordinates(shapely.simplify(part, SIMPLER).exterior, include_z=True)[:-1]
+        label = next((name for start, name in NAME_OF_CLASS.items() if str(row.get("class")).startswith(start)), "")
+        for part in shapely.get_parts(geometry) if label and geometry is not None and not geometry.is_empty else ():
+            yield "roadMark", label, shapely.get_coordinates(shapely.simplify(part, SIMPLER).exterior, include_z=True)[:-1]
 
 
 def _places(roads: list[MapRoad]) -> tuple[shapely.STRtree, np.ndarray, np.ndarray]:
@@ -528,16 +529,16 @@ def _places(roads: list[MapRoad]) -> tuple[shapely.STRtree, np.ndarray, np.ndarr
 def _object(number: int, kind: str, name: str, corners: np.ndarray, road: MapRoad, near: float) -> dict[str, Any]:
     """The attributes of an object; its outline is told along the road, or beside its own place where it reaches beyond the road's end."""
     s, t = road.plan.feet(corners[:, :2], np.full(len(corners), near))
-    at, aside = float(np.clip(s.mean(), 0.0, road.length)), float(t.mean())
+    station, aside = float(np.clip(s.mean(), 0.0, road.length)), float(t.mean())
     local = bool(s.min() < 0.0 or s.max() > road.length)
     if local:
-        (place,), (heading,), _ = road.plan.at(np.array([at]))
+        (place,), (heading,), _ = road.plan.at(np.array([station]))
         way = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
         u, v = ((corners[:, :2] - place) @ way).T
-        outline = np.c_[u, v - aside, corners[:, 2] - road.elevation.at(at)]
+        outline = np.c_[u, v - aside, corners[:, 2] - road.elevation.at(station)]
     else:
         outline = np.c_[s, t, corners[:, 2] - road.elevation.at(s)]
     outline[:, 2] = np.round(outline[:, 2], 4)
     length, width = (max(float(size), THINNEST) for size in np.ptp(outline[:, :2], axis=0))
-    return {"id": str(number), "type": kind, "subtype": "", "name": name, "orientation": "none", "s": at, "t": aside, "zOffset": 0.0,
+    return {"id": str(number), "type": kind, "subtype": "", "name": name, "orientation": "none", "s": station, "t": aside, "zOffset": 0.0,
             "length": length, "width": width, "hdg": 0.0, "height": 0.0, "corners": outline, "local": local}

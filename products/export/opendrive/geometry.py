@@ -74,8 +74,8 @@ class Cubics:
         ds = np.c_[np.zeros(len(span)), span, np.where(inside, turning, 0.0)]
         value = a[:, None] + ds * (b[:, None] + ds * (c[:, None] + ds * d[:, None]))
         value[span < 0] = np.inf
-        piece, at = np.unravel_index(np.argmin(value), value.shape)
-        return float(value[piece, at]), float(start[piece] + ds[piece, at])
+        piece, column = np.unravel_index(np.argmin(value), value.shape)
+        return float(value[piece, column]), float(start[piece] + ds[piece, column])
 
 
 def _on_spirals(u, x, y, heading, bend, change):
@@ -116,7 +116,7 @@ class PlanElement:
         powers = np.stack([np.ones_like(p), p, p**2, p**3])
         slopes = np.stack([np.zeros_like(p), np.ones_like(p), 2 * p, 3 * p**2])
         bends = np.stack([np.zeros_like(p), np.zeros_like(p), 2 * np.ones_like(p), 6 * p])
-        (along, across), (du, dv), (ddu, ddv) = ((a @ some, b @ some) for some in (powers, slopes, bends))
+        (along, across), (du, dv), (ddu, ddv) = ((a @ terms, b @ terms) for terms in (powers, slopes, bends))
         c, s = np.cos(self.heading), np.sin(self.heading)
         places = np.c_[self.x + along * c - across * s, self.y + along * s + across * c]
         return places, self.heading + np.arctan2(dv, du), (du * ddv - dv * ddu) / np.maximum(du**2 + dv**2, 1e-12) ** 1.5
@@ -206,14 +206,14 @@ class PlanView:
 
         gap, kink : metres and radians from which it counts
         """
-        found = []
-        for one, other in zip(self.elements[:-1], self.elements[1:]):
-            x, y, heading = one.end()
-            turn = (other.heading - heading + np.pi) % (2 * np.pi) - np.pi
-            away = float(np.hypot(other.x - x, other.y - y))
-            if away > gap or abs(turn) > kink:
-                found.append((other.s, away, abs(turn)))
-        return found
+        jumps = []
+        for before, after in zip(self.elements[:-1], self.elements[1:]):
+            x, y, heading = before.end()
+            turn = (after.heading - heading + np.pi) % (2 * np.pi) - np.pi
+            distance = float(np.hypot(after.x - x, after.y - y))
+            if distance > gap or abs(turn) > kink:
+                jumps.append((after.s, distance, abs(turn)))
+        return jumps
 
     def lengthened(self, before: float, after: float) -> PlanView:
         """The same line, which goes on with the curvature of its ends by metres before its start and after its end."""
@@ -225,7 +225,7 @@ class PlanView:
                 start = [replace(first, x=x, y=y, heading=heading - np.pi, length=first.length + before)]
             else:
                 start = [_bent(0.0, x, y, heading - np.pi, before, bend), replace(first, s=before)]
-            elements = (*start, *(replace(one, s=one.s + before) for one in elements[1:]))
+            elements = (*start, *(replace(element, s=element.s + before) for element in elements[1:]))
         if after > LEAST_ELEMENT:
             last = elements[-1]
             _, _, (bend,) = last.at(np.array([last.length]))
@@ -270,13 +270,14 @@ def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: flo
     list of Cubics, `start` counted as 0
     """
     knots, straight = np.array([start, end]), np.array([broken])
-    s, values = [np.asarray(one, float) for one in s], [np.asarray(one, float) for one in values]
+    s, values = [np.asarray(x, float) for x in s], [np.asarray(x, float) for x in values]
     while True:
-        fitted = [_hermite(one, value, knots, given, straight) for one, value, given in zip(s, values, slopes or [(np.nan, np.nan)] * len(s))]
+        fitted = [_hermite(x, value, knots, given, straight) for x, value, given in zip(s, values, slopes or [(np.nan, np.nan)] * len(s))]
         bad = (_missed(s, values, fitted, knots) > tolerance) & ~straight
         if not bad.any():
-            at = (knots[:-1, None] + np.diff(knots)[:, None] * np.array([0.25, 0.5, 0.75])).ravel()
-            bad = (_missed([at] * len(s), [np.interp(at, one, value) for one, value in zip(s, values)], fitted, knots) > tolerance) & ~straight
+            quarters = (knots[:-1, None] + np.diff(knots)[:, None] * np.array([0.25, 0.5, 0.75])).ravel()
+            bad = (_missed([quarters] * len(s), [np.interp(quarters, x, value) for x, value in zip(s, values)],
+                           fitted, knots) > tolerance) & ~straight
         if not bad.any():
             return _pieces(s, values, knots, fitted, straight)
         inner = [(knots[k] + knots[k + 1]) / 2 for k in np.flatnonzero(bad) if len(knots) <= MOST_PIECES
@@ -291,8 +292,8 @@ def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: flo
 def _missed(s, values, fitted, knots):
     """(pieces,) by how much the functions miss their values at most."""
     worst = np.zeros(len(knots) - 1)
-    for one, value, (levels, rates) in zip(s, values, fitted):
-        np.maximum.at(worst, _piece_of(one, knots), np.abs(_evaluated(one, knots, levels, rates) - value))
+    for x, value, (levels, rates) in zip(s, values, fitted):
+        np.maximum.at(worst, _piece_of(x, knots), np.abs(_evaluated(x, knots, levels, rates) - value))
     return worst
 
 
@@ -326,7 +327,7 @@ def risen(s: np.ndarray) -> np.ndarray:
 
 
 def _places_within(s, first, last):
-    return max(int(((one > first) & (one < last)).sum()) for one in s)
+    return max(int(((x > first) & (x < last)).sum()) for x in s)
 
 
 def _basis(u: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -340,10 +341,10 @@ def _hermite(s, values, knots, ends, straight):
     straight : (K - 1,) pieces that are led from place to place instead; at their knots the line is met
     """
     count, met = len(knots), np.append(straight, False) | np.append(False, straight)
-    known = np.full(2 * count, np.nan)
-    known[::2][met] = np.interp(knots[met], s, values)
-    known[[0, -2]], known[[1, -1]] = _at_ends(s, values, knots), ends
-    known[1::2][np.append(straight, True) & np.append(True, straight)] = 0.0   # no cubic begins or ends there
+    prescribed = np.full(2 * count, np.nan)
+    prescribed[::2][met] = np.interp(knots[met], s, values)
+    prescribed[[0, -2]], prescribed[[1, -1]] = _at_ends(s, values, knots), ends
+    prescribed[1::2][np.append(straight, True) & np.append(True, straight)] = 0.0   # no cubic begins or ends there
     if straight.any():
         smooth = ~straight[_piece_of(s, knots)]
         s, values = s[smooth], values[smooth]
@@ -351,28 +352,28 @@ def _hermite(s, values, knots, ends, straight):
     fit = np.stack(_basis((s - knots[k]) / h[k], h[k]), axis=1)
     # bending of every piece: the integral of the squared second derivative, by its values at both ends
     bending = [np.stack([a / h**2, b / h, c / h**2, d / h], axis=1)[j] for a, b, c, d in ((-6, -4, 6, -2), (6, 2, -6, 4))]
-    weights = np.concatenate([fit, *(STIFFNESS * one for one in bending)])
+    weights = np.concatenate([fit, *(STIFFNESS * block for block in bending)])
     columns = 2 * np.concatenate([k, j, j])[:, None] + np.arange(4)   # level and slope of a knot lie side by side, so that the system has a band
-    fixed = np.isfinite(known)
-    target = np.append(values, np.zeros(2 * len(j))) - (weights * np.where(fixed, known, 0.0)[columns]).sum(1)
+    fixed = np.isfinite(prescribed)
+    target = np.append(values, np.zeros(2 * len(j))) - (weights * np.where(fixed, prescribed, 0.0)[columns]).sum(1)
     weights = np.where(fixed[columns], 0.0, weights)
     size, side = 2 * count, np.arange(4)
-    place = (BAND + side[:, None] - side) * size + columns[:, None, :]   # of each product of two weights in the band
+    index = (BAND + side[:, None] - side) * size + columns[:, None, :]   # of each product of two weights in the band
     products = weights[:, :, None] * weights[:, None, :]
-    band = np.bincount(place.ravel(), products.ravel(), (2 * BAND + 1) * size).reshape(-1, size)
-    right = np.where(fixed, known, 0.0) + np.bincount(columns.ravel(), (weights * target[:, None]).ravel(), size)
+    band = np.bincount(index.ravel(), products.ravel(), (2 * BAND + 1) * size).reshape(-1, size)
+    right = np.where(fixed, prescribed, 0.0) + np.bincount(columns.ravel(), (weights * target[:, None]).ravel(), size)
     band[BAND, fixed] = 1.0
-    found = solve_banded((BAND, BAND), band, right)
-    return found[::2], found[1::2]
+    solution = solve_banded((BAND, BAND), band, right)
+    return solution[::2], solution[1::2]
 
 
 def _at_ends(s, values, knots):
     """Values at the first and last knot, by the straight line through the outermost two places."""
-    found = []
-    for at, (i, j) in ((knots[0], (0, 1)), (knots[-1], (-1, -2))):
+    levels = []
+    for knot, (i, j) in ((knots[0], (0, 1)), (knots[-1], (-1, -2))):
         run = s[i] - s[j]
-        found.append(float(values[i] + ((values[i] - values[j]) / run * (at - s[i]) if abs(run) > 1e-6 else 0.0)))
-    return found
+        levels.append(float(values[i] + ((values[i] - values[j]) / run * (knot - s[i]) if abs(run) > 1e-6 else 0.0)))
+    return levels
 
 
 def _evaluated(s, knots, levels, slopes):
@@ -391,12 +392,12 @@ def _pieces(s, values, knots, fitted, straight):
         d = (slopes[:-1] + slopes[1:] - 2 * rise / h) / h**2
         rows_of.append(np.c_[knots[:-1] - knots[0], levels[:-1], slopes[:-1], c, d])
     for k in np.flatnonzero(straight)[::-1]:
-        places = np.unique(np.concatenate([one[(one > knots[k] + LEAST_STEP) & (one < knots[k + 1] - LEAST_STEP)] for one in s]))
-        at = np.concatenate([[knots[k]], places, [knots[k + 1]]])
-        there = np.array([[levels[k], *np.interp(places, one, value), levels[k + 1]] for one, value, (levels, _) in zip(s, values, fitted)])
-        run, rise = np.diff(at), np.diff(there, axis=1)
-        kept = (run > STEP_RUN) | (np.abs(rise) < run).all(0) | (at[:-1] == knots[0])   # up to a step the piece before goes on
+        places = np.unique(np.concatenate([x[(x > knots[k] + LEAST_STEP) & (x < knots[k + 1] - LEAST_STEP)] for x in s]))
+        breaks = np.concatenate([[knots[k]], places, [knots[k + 1]]])
+        ordinates = np.array([[levels[k], *np.interp(places, x, value), levels[k + 1]] for x, value, (levels, _) in zip(s, values, fitted)])
+        run, rise = np.diff(breaks), np.diff(ordinates, axis=1)
+        kept = (run > STEP_RUN) | (np.abs(rise) < run).all(0) | (breaks[:-1] == knots[0])   # up to a step the piece before goes on
         for number, rows in enumerate(rows_of):
-            lines = np.c_[at[:-1] - knots[0], there[number, :-1], rise[number] / run, np.zeros((len(run), 2))][kept]
+            lines = np.c_[breaks[:-1] - knots[0], ordinates[number, :-1], rise[number] / run, np.zeros((len(run), 2))][kept]
             rows_of[number] = np.concatenate([rows[:k], lines, rows[k + 1:]])
     return [Cubics(rows) for rows in rows_of]

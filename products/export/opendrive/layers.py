@@ -34,21 +34,21 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     Sidewalks are no lanes of ours: where one begins there is an edge.
     """
     rows: list[dict[str, Any]] = []
-    found, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
+    layers, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
     numbers, faults = _road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):
         surface = RoadSurface(road)
         faults.jumps += [(road.id, *jump) for jump in surface.jumps() if jump[1] > BORDER_JUMP]
         for number, section in enumerate(road.sections):
             if road.section_end(number) - section.s > SHORTEST_SECTION:
-                _add_section(rows, found.lines, whole, network, surface, number, numbers[road.id], faults)
+                _add_section(rows, layers.lines, whole, network, surface, number, numbers[road.id], faults)
         progress.report((count + 1) / len(whole.roads))
-    found.lanes = Lanes.of_pieces(_existing(rows), crs)
+    layers.lanes = Lanes.of_pieces(_existing(rows), crs)
     if whole.problems:
         line, text = whole.problems[0]
-        found.notes.append(f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
-    found.notes += faults.said()
-    return found
+        layers.notes.append(f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
+    layers.notes += faults.said()
+    return layers
 
 
 @dataclass
@@ -63,19 +63,19 @@ class _Faults:
     negative: list[tuple[str, int, float, float]] = field(default_factory=list)
 
     def said(self) -> list[str]:
-        found = []
+        sentences = []
         if self.jumps:
-            found.append(self._said_jumps())
+            sentences.append(self._said_jumps())
         if self.folds:
             road, lane, place = self.folds[0]
-            found.append(f"{len(self.folds)} borders of lanes fold back over themselves, as a curve is tighter there than the border is far from "
-                         f"the reference line. The folds were cut off. The first is of road {road}, lane {lane}, near x {place[0]:.1f}, "
-                         f"y {place[1]:.1f}.")
+            sentences.append(f"{len(self.folds)} borders of lanes fold back over themselves, as a curve is tighter there than the border is far from "
+                             f"the reference line. The folds were cut off. The first is of road {road}, lane {lane}, near x {place[0]:.1f}, "
+                             f"y {place[1]:.1f}.")
         if self.negative:
             road, lane, width, s = self.negative[0]
-            found.append(f"{len(self.negative)} lanes have a width below 0, which was taken as 0. The first is lane {lane} of road {road} with "
-                         f"{width:.2f} m at s {s:.1f} m. Correct them where the map was made.")
-        return found
+            sentences.append(f"{len(self.negative)} lanes have a width below 0, which was taken as 0. The first is lane {lane} of road {road} with "
+                             f"{width:.2f} m at s {s:.1f} m. Correct them where the map was made.")
+        return sentences
 
     def _said_jumps(self) -> str:
         """Every road with gaps or kinks, those with the largest first."""
@@ -127,7 +127,7 @@ def _lane(network, surface, number, id, s, inner, outer):
     """The values of a lane, its borders in the direction of travel."""
     road, lanes = surface.road, surface.road.sections[number].lanes
     way, driven = travel(road, id), lanes[id].type in DRIVEN_TYPES
-    sides = [(border, _kind(lanes, one), _pattern(lanes, one)) for border, one in ((inner, surface.inside(number, id)), (outer, id))]
+    sides = [(border, _kind(lanes, lane), _pattern(lanes, lane)) for border, lane in ((inner, surface.inside(number, id)), (outer, id))]
     left, right = sides[::-1] if id > 0 else sides
     if driven and way < 0:
         left, right = ((border[::-1], kind, pattern) for border, kind, pattern in (right, left))
@@ -140,12 +140,12 @@ def _lane(network, surface, number, id, s, inner, outer):
 
 def _following(network, key, passed=()):
     """The lanes that a lane leads to, those beyond sections that are too short to be shown."""
-    for other in network.following(key):
-        road = network.roads[other[0]]
-        if road.section_end(other[1]) - road.sections[other[1]].s > SHORTEST_SECTION:
-            yield other
-        elif other not in passed:
-            yield from _following(network, other, (*passed, other))
+    for following in network.following(key):
+        road = network.roads[following[0]]
+        if road.section_end(following[1]) - road.sections[following[1]].s > SHORTEST_SECTION:
+            yield following
+        elif following not in passed:
+            yield from _following(network, following, (*passed, following))
 
 
 def _curb(surface, number, id, s, inner, road_number):
@@ -161,9 +161,9 @@ def _curb(surface, number, id, s, inner, road_number):
 
 def _existing(rows):
     """Successors that were no lanes of ours are dropped."""
-    known = {row["lane_id"] for row in rows}
+    lane_ids = {row["lane_id"] for row in rows}
     for row in rows:
-        row["successors"] = [name for name in row["successors"] if name in known]
+        row["successors"] = [name for name in row["successors"] if name in lane_ids]
     return rows
 
 
@@ -207,13 +207,13 @@ def _pattern(lanes, id):
 
 def _painted(number: int, lane: MapLane, start: float, s: np.ndarray, points: np.ndarray, kind: str) -> list[MapLine]:
     """The outer border of a lane, (N, 3) points at s, cut where its paint changes."""
-    found = []
+    lines = []
     cuts = [max(mark.s + start, s[0]) for mark in lane.marks] + [s[-1]]
     for mark, first, last in zip(lane.marks, cuts[:-1], cuts[1:]):
         if mark.type not in PATTERN_OF_MARK or last - first < LEAST_WIDTH:
             continue
-        at = np.concatenate([[first], s[(s > first + 1e-6) & (s < last - 1e-6)], [last]])
-        piece = without_repeats(np.stack([np.interp(at, s, values) for values in points.T], axis=1))
+        stations = np.concatenate([[first], s[(s > first + 1e-6) & (s < last - 1e-6)], [last]])
+        piece = without_repeats(np.stack([np.interp(stations, s, values) for values in points.T], axis=1))
         if len(piece) > 1:
-            found.append(MapLine(number, "marking", kind, PATTERN_OF_MARK[mark.type], piece, mark.width))
-    return found
+            lines.append(MapLine(number, "marking", kind, PATTERN_OF_MARK[mark.type], piece, mark.width))
+    return lines

@@ -202,13 +202,13 @@ class LaneNetwork:
                 for connection in self.connections[link.id, road.id] for start, to in connection.lanes if start == key[2]]
 
     def _at(self, road: str, contact: str, number: int) -> LaneKey:
-        known = self.roads.get(road)
-        return road, len(known.sections) - 1 if contact == "end" and known is not None else 0, number
+        linked = self.roads.get(road)
+        return road, len(linked.sections) - 1 if contact == "end" and linked is not None else 0, number
 
     def touched(self) -> set[tuple[LaneKey, str]]:
         """(lane, which of its ends) of all that any lane is linked to."""
         lanes = [(road.id, number, id) for road in self.roads.values() for number, section in enumerate(road.sections) for id in section.lanes if id]
-        return {found for key in lanes for end in ("start", "end") for found in self.touching(key, end)}
+        return {lane_end for key in lanes for end in ("start", "end") for lane_end in self.touching(key, end)}
 
     def is_open(self, key: LaneKey, end: str, touched: set[tuple[LaneKey, str]]) -> bool:
         """Whether a driven lane is linked to no driven lane at an end, although its road goes on there.
@@ -216,7 +216,7 @@ class LaneNetwork:
         touched : as above; roads that leave a junction are named by its connecting roads alone
         """
         road, touching = self.roads[key[0]], self.touching(key, end)
-        if not self.driven(key) or any(self.driven(other) for other, _ in touching) or not touching and (key, end) in touched:
+        if not self.driven(key) or any(self.driven(neighbour) for neighbour, _ in touching) or not touching and (key, end) in touched:
             return False
         link = road.link(end)
         return 0 <= key[1] + STEP[end] < len(road.sections) or link is not None and (
@@ -226,8 +226,8 @@ class LaneNetwork:
         """The driven lanes that a driven lane leads to, in the direction of travel."""
         end = "end" if travel(self.roads[key[0]], key[2]) > 0 else "start"
         # what ends where ours ends is no way on
-        return [other for other, there in self.touching(key, end)
-                if self.driven(other) and there == ("start" if travel(self.roads[other[0]], other[2]) > 0 else "end")]
+        return [neighbour for neighbour, neighbour_end in self.touching(key, end)
+                if self.driven(neighbour) and neighbour_end == ("start" if travel(self.roads[neighbour[0]], neighbour[2]) > 0 else "end")]
 
     def driven(self, key: LaneKey) -> bool:
         """Whether there is a lane of a key, and vehicles use it."""
@@ -267,9 +267,9 @@ class RoadSurface:
         bend = np.abs(road.plan.at(np.linspace(first, last, max(int((last - first) / step), 1) + 1))[2]).max()
         step = min(step, max(float(np.sqrt(8 * SAGITTA / max(bend, 1e-9))), LEAST_BORDER_STEP))
         even = np.linspace(first, last, max(int(np.ceil((last - first) / step - 1e-9)), 1) + 1)
-        own = [rows[:, 0] + first for lane in road.sections[number].lanes.values() for rows in (lane.width.rows, lane.heights)]
+        changes = [rows[:, 0] + first for lane in road.sections[number].lanes.values() for rows in (lane.width.rows, lane.heights)]
         heights = road.elevation.rows[:, 0], road.superelevation.rows[:, 0], road.shape[:, 0]
-        knots = np.concatenate([even, [element.s for element in road.plan.elements], road.lane_offset.rows[:, 0], *heights, *own])
+        knots = np.concatenate([even, [element.s for element in road.plan.elements], road.lane_offset.rows[:, 0], *heights, *changes])
         knots = np.unique(knots[(knots >= first) & (knots <= last)])
         keep = np.append(True, np.diff(knots) > STEP_RUN) & (knots < last - STEP_RUN)
         keep[0] = True
@@ -303,15 +303,15 @@ class RoadSurface:
         """(N,) metres left of the reference line of every lane's outer border, and of lane 0, by lane number."""
         section = self.road.sections[number]
         centre = self.road.lane_offset.at(s)
-        found = {0: centre}
+        offsets = {0: centre}
         for side in (1, -1):
             outer = centre
             for id in sorted((id for id in section.lanes if id * side > 0), key=abs):
                 lane = section.lanes[id]
                 value = lane.width.at(s - section.s)
                 outer = side * np.abs(value) if lane.border else outer + side * np.maximum(value, 0.0)
-                found[id] = outer
-        return found
+                offsets[id] = outer
+        return offsets
 
     def places(self, s: np.ndarray, t: np.ndarray, height: np.ndarray | float = 0.0) -> np.ndarray:
         """(N, 3) coordinates of the file at s and t: the t axis rolled by the superelevation, the shape laid on it."""
@@ -333,21 +333,21 @@ class RoadSurface:
     def jumps(self) -> list[tuple[float, float, int]]:
         """(s, metres, lane) of every gap or kink of the reference line, with the jump of the farthest border there and its lane, and of every step
         of a width or height."""
-        road, found = self.road, []
+        road, result = self.road, []
         starts = [section.s for section in road.sections]
         for s, gap, turn in road.plan.jumps(GAP, KINK):
             number = int(np.searchsorted(starts, s, side="right")) - 1
             if number >= 0:
                 farthest, lane = max((abs(float(t[0])), id) for id, t in self.offsets(number, np.array([s])).items())
-                found.append((s, gap + 2 * farthest * float(np.sin(turn / 2)), lane))
-        found += [(s, size, 0) for s, size in zip(*road.elevation.steps())]
-        found += [(s, size, 0) for s, size in zip(*road.lane_offset.steps()) if s not in starts]   # where lanes begin lane 0 may lie elsewhere
-        return found + [(section.s + s, size, lane.id) for section in road.sections for lane in section.lanes.values()
-                        for s, size in zip(*lane.width.steps())]
+                result.append((s, gap + 2 * farthest * float(np.sin(turn / 2)), lane))
+        result += [(s, size, 0) for s, size in zip(*road.elevation.steps())]
+        result += [(s, size, 0) for s, size in zip(*road.lane_offset.steps()) if s not in starts]   # where lanes begin lane 0 may lie elsewhere
+        return result + [(section.s + s, size, lane.id) for section in road.sections for lane in section.lanes.values()
+                         for s, size in zip(*lane.width.steps())]
 
     def inside(self, number: int, id: int) -> int:
         """The lane next to one on the side of lane 0, which is never missing."""
-        return max((other for other in self.road.sections[number].lanes if other * id >= 0 and abs(other) < abs(id)), key=abs, default=0)
+        return max((lane for lane in self.road.sections[number].lanes if lane * id >= 0 and abs(lane) < abs(id)), key=abs, default=0)
 
     def lifts(self, number: int, id: int, s: np.ndarray) -> np.ndarray:
         """(2, N) metres that the inner and the outer border of a lane lie above the road."""
@@ -396,9 +396,9 @@ def _crossing(points, a, b):
         return None
     # the outermost crossing takes all smaller loops with it
     i, j = min(((before[p], after[q]) for p, q in pairs.T), key=lambda pair: (pair[0], -pair[1]))
-    place = shapely.get_coordinates(shapely.intersection(lines[i], lines[j]))[0]
-    share = np.hypot(*(place - points[i, :2])) / max(float(np.hypot(*(points[i + 1] - points[i])[:2])), 1e-12)
-    return i, j, np.append(place, points[i, 2] + share * (points[i + 1, 2] - points[i, 2]))
+    point = shapely.get_coordinates(shapely.intersection(lines[i], lines[j]))[0]
+    share = np.hypot(*(point - points[i, :2])) / max(float(np.hypot(*(points[i + 1] - points[i])[:2])), 1e-12)
+    return i, j, np.append(point, points[i, 2] + share * (points[i + 1, 2] - points[i, 2]))
 
 
 def shape_height(shape: np.ndarray, s: np.ndarray, t: np.ndarray) -> np.ndarray:

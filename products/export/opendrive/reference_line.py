@@ -64,10 +64,10 @@ def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None
         last = back.farthest(0, back.pose(0), back.last)
         if last is None:
             return None
-        place, element, pose = last
-        if place < back.last:
+        reached, element, pose = last
+        if reached < back.last:
             pose = pose._replace(heading=pose.heading + np.pi)
-            points = np.concatenate([points[:back.last - place], [pose[:2]]])
+            points = np.concatenate([points[:back.last - reached], [pose[:2]]])
             fit = _Fit(points, tolerance, (ends[0], pose.heading), turn_tolerance)
             after = PlanElement(0.0, pose.x, pose.y, pose.heading, element.length, element.kind, tuple(-value for value in element.values[::-1]))
     elements = fit.run()
@@ -89,18 +89,18 @@ class _Fit:
 
     def run(self):
         """The elements in order, None where even short ones miss the points."""
-        elements, here, pose = [], 0, self.pose(0)
+        elements, start, pose = [], 0, self.pose(0)
         starts = sorted(self.straight)
-        while here < self.last:
-            end = self.straight.get(here)
+        while start < self.last:
+            end = self.straight.get(start)
             if end is not None:
-                found = end, *self._line(pose, end)
+                reached = end, *self._line(pose, end)
             else:
-                limit = next((k for k in starts if k > here), self.last)
-                found = self.farthest(here, pose, limit)
-            if found is None:
+                limit = next((k for k in starts if k > start), self.last)
+                reached = self.farthest(start, pose, limit)
+            if reached is None:
                 return None
-            here, element, pose = found
+            start, element, pose = reached
             elements.append(element)
         return elements
 
@@ -113,12 +113,12 @@ class _Fit:
         if spiral[0] < limit and length < LEAST_PIECE:
             return None
         nearer = int(np.searchsorted(self.along, self.along[here] + PLAINER_REACH * length))
-        for there in (spiral[0], nearer):
-            if there == limit or self.along[there] - self.along[here] >= LEAST_PIECE <= self.along[limit] - self.along[there]:
+        for end in (spiral[0], nearer):
+            if end == limit or self.along[end] - self.along[here] >= LEAST_PIECE <= self.along[limit] - self.along[end]:
                 for plainer in (self._line, self._arc):
-                    found = self._good(plainer, here, pose, there)
-                    if found is not None:
-                        return there, *found
+                    fitted = self._good(plainer, here, pose, end)
+                    if fitted is not None:
+                        return end, *fitted
         return spiral
 
     def _reach(self, here, pose, limit):
@@ -126,11 +126,11 @@ class _Fit:
         good, bad, step = None, limit + 1, FIRST_STEP
         tried = min(int(np.searchsorted(self.along, self.along[here] + LEAST_PIECE)), limit)
         while True:
-            found = self._good(self._spiral, here, pose, tried)
-            if found is None:
+            fitted = self._good(self._spiral, here, pose, tried)
+            if fitted is None:
                 bad = tried
             else:
-                good = tried, *found
+                good = tried, *fitted
                 if tried == limit:
                     return good
             if good is None:
@@ -145,25 +145,25 @@ class _Fit:
                 break
         if self.along[limit] - self.along[good[0]] < LEAST_PIECE:
             back = int(np.searchsorted(self.along, (self.along[here] + self.along[limit]) / 2))
-            found = self._good(self._spiral, here, pose, back) if here < back < limit else None
-            return (back, *found) if found is not None else good
+            fitted = self._good(self._spiral, here, pose, back) if here < back < limit else None
+            return (back, *fitted) if fitted is not None else good
         return good
 
     def _good(self, make, here, pose, there):
         """(element, pose at its end) if no place between misses it by more than the tolerance, else None."""
-        found = make(pose, there)
-        if found is None:
+        fitted = make(pose, there)
+        if fitted is None:
             return None
-        element, end = found
+        element, end = fitted
         places = self.points[here:there + 1]
         u = (self.along[here:there + 1] - self.along[here]) * (element.length / (self.along[there] - self.along[here]))
         for _ in range(2):
             on, heading, bend = element.at(u)
-            away = places - on
+            offsets = places - on
             c, s = np.cos(heading), np.sin(heading)
-            offset = away[:, 1] * c - away[:, 0] * s
-            u = u + (away[:, 0] * c + away[:, 1] * s) / np.clip(1 - bend * offset, 0.2, 5.0)
-        return found if np.abs(offset).max() <= self.tolerance and (u[1:] > u[:-1] - self.tolerance).all() else None
+            offset = offsets[:, 1] * c - offsets[:, 0] * s
+            u = u + (offsets[:, 0] * c + offsets[:, 1] * s) / np.clip(1 - bend * offset, 0.2, 5.0)
+        return fitted if np.abs(offset).max() <= self.tolerance and (u[1:] > u[:-1] - self.tolerance).all() else None
 
     # elements from a pose to a place
 
@@ -228,10 +228,10 @@ class _Fit:
 
     def _local(self, k, window):
         """(pose, standard deviation, largest distance) of a cubic through the places around a point."""
-        here = self.along[k]
-        first = min(self.along.searchsorted(here - window), max(k - FEWEST_PLACES // 2, 0))
-        last = max(self.along.searchsorted(here + window + 1e-9), min(k + FEWEST_PLACES // 2 + 1, self.last + 1))
-        s, away, count = self.along[first:last] - here, self.points[first:last] - self.points[k], last - first
+        station = self.along[k]
+        first = min(self.along.searchsorted(station - window), max(k - FEWEST_PLACES // 2, 0))
+        last = max(self.along.searchsorted(station + window + 1e-9), min(k + FEWEST_PLACES // 2 + 1, self.last + 1))
+        s, offsets, count = self.along[first:last] - station, self.points[first:last] - self.points[k], last - first
         degree = min(3, count - 2) if count > 2 else 1
         s /= max(-s[0], s[-1], 1e-9)
         powers = np.ones((degree + 1, count))
@@ -239,36 +239,36 @@ class _Fit:
             powers[power] = powers[power - 1] * s
         square = powers @ powers.T
         square.flat[::degree + 2] += np.finfo(float).eps * count   # places may coincide
-        found = np.linalg.solve(square, powers @ away)
-        dx, dy = found[1]
+        coefficients = np.linalg.solve(square, powers @ offsets)
+        dx, dy = coefficients[1]
         aside = np.array([-dy, dx]) / max(np.hypot(dx, dy), 1e-12)
-        missed = away @ aside - (found @ aside) @ powers
+        missed = offsets @ aside - (coefficients @ aside) @ powers
         spread = float(np.sqrt(missed @ missed / max(count - degree - 1, 1)))
-        return (*(self.points[k] + found[0]), float(np.arctan2(dy, dx))), spread, float(np.abs(missed).max())
+        return (*(self.points[k] + coefficients[0]), float(np.arctan2(dy, dx))), spread, float(np.abs(missed).max())
 
     def _straight_lines(self):
         """{first place: last place} of long straight lines, whose places get a pose on them."""
-        found, here = {}, 0
-        while here < self.last:
-            if self.along[self.last] - self.along[here] < LEAST_STRAIGHT:
+        lines, start = {}, 0
+        while start < self.last:
+            if self.along[self.last] - self.along[start] < LEAST_STRAIGHT:
                 break
-            least = int(np.searchsorted(self.along, self.along[here] + LEAST_STRAIGHT))
-            if not self._is_straight(here, least):
-                here = max(here + 1, int(np.searchsorted(self.along, self.along[here] + LEAST_STRAIGHT / 8)))
+            least = int(np.searchsorted(self.along, self.along[start] + LEAST_STRAIGHT))
+            if not self._is_straight(start, least):
+                start = max(start + 1, int(np.searchsorted(self.along, self.along[start] + LEAST_STRAIGHT / 8)))
                 continue
-            good, bad, step = least, self.last + 1, least - here
+            good, bad, step = least, self.last + 1, least - start
             while good < self.last and bad - good > 1:
                 tried = min(good + step, self.last) if bad > self.last else (good + bad) // 2
-                if self._is_straight(here, tried):
+                if self._is_straight(start, tried):
                     good, step = tried, 2 * step
                 else:
                     bad = tried
-            first = here if here == 0 else int(np.searchsorted(self.along, self.along[here] + TRIMMED))
+            first = start if start == 0 else int(np.searchsorted(self.along, self.along[start] + TRIMMED))
             last = good if good == self.last else int(np.searchsorted(self.along, self.along[good] - TRIMMED))
             if self.along[last] - self.along[first] >= LEAST_STRAIGHT / 2 and self._lay_on_line(first, last):
-                found[first] = last
-            here = good + 1
-        return found
+                lines[first] = last
+            start = good + 1
+        return lines
 
     def _is_straight(self, first, last):
         return bool(np.abs(_beside_line(self.points[first:last + 1])[0]).max() <= max(STRAIGHT_SHARE * self.tolerance, NOISE_TIMES * self.noise))
@@ -282,18 +282,18 @@ class _Fit:
                 if abs(wrapped(given - heading)) > self.turn_tolerance:
                     return False
         places = [middle + way * ((self.points[k] - middle) @ way) for k in (first, last)]
-        for k, place in zip((first, last), places):
-            self.known[k] = _Pose(float(place[0]), float(place[1]), heading)
+        for k, point in zip((first, last), places):
+            self.known[k] = _Pose(float(point[0]), float(point[1]), heading)
         return True
 
 
 def _beside_line(points):
     """((N,) metres of places beside the straight line through them, a place of it, its direction)."""
     middle = points.mean(0)
-    away = points - middle
-    _, vectors = np.linalg.eigh(away.T @ away)
+    offsets = points - middle
+    _, vectors = np.linalg.eigh(offsets.T @ offsets)
     way = vectors[:, 1] * (1.0 if (points[-1] - points[0]) @ vectors[:, 1] > 0 else -1.0)
-    return away[:, 1] * way[0] - away[:, 0] * way[1], middle, way
+    return offsets[:, 1] * way[0] - offsets[:, 0] * way[1], middle, way
 
 
 def _spiral_between(start, end):
@@ -331,16 +331,16 @@ def _element(pose, length, first, last):
 
 def _in_order(elements):
     """The elements with their s; neighbours that are one line as one."""
-    found: list[PlanElement] = []
+    result: list[PlanElement] = []
     s = 0.0
-    for one in elements:
-        before = found[-1] if found else None
-        if before is not None and before.kind == one.kind == "line" and abs(wrapped(before.heading - one.heading)) < 1e-9:
-            found[-1] = PlanElement(before.s, before.x, before.y, before.heading, before.length + one.length)
+    for element in elements:
+        before = result[-1] if result else None
+        if before is not None and before.kind == element.kind == "line" and abs(wrapped(before.heading - element.heading)) < 1e-9:
+            result[-1] = PlanElement(before.s, before.x, before.y, before.heading, before.length + element.length)
         else:
-            found.append(PlanElement(s, one.x, one.y, one.heading, one.length, one.kind, one.values))
-        s += one.length
-    return tuple(found)
+            result.append(PlanElement(s, element.x, element.y, element.heading, element.length, element.kind, element.values))
+        s += element.length
+    return tuple(result)
 
 
 def polynomial_reference(points: np.ndarray) -> PlanView:

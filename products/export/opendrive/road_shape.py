@@ -74,7 +74,7 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> _RoadS
     guide, index = _guide(strip, centres)
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     if along[-1] < LEAST_GUIDE:
-        guide, index = _guide(strip, [int(np.argmax([np.hypot(*np.diff(line[:, :2], axis=0).T).sum() for line in one.borders()])) for one in strip])
+        guide, index = _guide(strip, [int(np.argmax([np.hypot(*np.diff(line[:, :2], axis=0).T).sum() for line in part.borders()])) for part in strip])
         along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     keep = np.append(True, np.diff(np.floor(along / GUIDE_STEP)) > 0)
     keep[np.flatnonzero(keep)[-1] if keep.sum() > 1 else -1] = False
@@ -84,7 +84,7 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> _RoadS
         plan, follows = _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
         shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
         if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
-            shown, near = (list(values) for values in zip(*(_finer(one, s) for one, s in zip(strip, near))))
+            shown, near = (list(values) for values in zip(*(_finer(part, s) for part, s in zip(strip, near))))
         for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
             s_all, t_all = _frame(plan, shown, near)
             before, after = _beyond_ends(strip, s_all, plan.length)
@@ -97,7 +97,7 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> _RoadS
     strip = shown
     for s in s_all:
         _square_steps(s)
-    z_all, lifts = (list(values) for values in zip(*(one.levels(centre) for one, centre in zip(strip, centres))))
+    z_all, lifts = (list(values) for values in zip(*(part.levels(centre) for part, centre in zip(strip, centres))))
     starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
     courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
     return _RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses)
@@ -107,15 +107,15 @@ def _finer(one, s):
     """A slice with vertices every BEND_STEP at least, and their s from (n,) metres of its own."""
     gaps = max((np.hypot(*np.diff(border[:, :2], axis=0).T) for border in one.borders()), key=np.sum)
     parts = np.maximum(np.ceil(gaps / BEND_STEP), 1).astype(int)
-    at = np.append(np.repeat(np.arange(len(gaps)), parts) + (np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)) / np.repeat(
+    indices = np.append(np.repeat(np.arange(len(gaps)), parts) + (np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)) / np.repeat(
         parts, parts), len(gaps))
 
     def line(places):
-        return np.stack([np.interp(at, np.arange(len(s)), values) for values in places.T], axis=1)
+        return np.stack([np.interp(indices, np.arange(len(s)), values) for values in places.T], axis=1)
 
     cells = [replace(cell, left=line(cell.left), right=line(cell.right), left_nodes=(cell.left_nodes[0], cell.left_nodes[-1]),
                      right_nodes=(cell.right_nodes[0], cell.right_nodes[-1])) for cell in one.cells]
-    return replace(one, cells=cells), np.interp(at, np.arange(len(s)), s)
+    return replace(one, cells=cells), np.interp(indices, np.arange(len(s)), s)
 
 
 def _square_steps(s):
@@ -126,12 +126,12 @@ def _square_steps(s):
 
 def _frame(plan, strip, near):
     """(s, t) of the vertices of every slice, (borders, n) metres each; near : for each slice (n,) metres along the road."""
-    found: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
-    for one, along in zip(strip, near):
-        places = np.stack(one.borders())[..., :2]
-        for values, new in zip(found, plan.feet(places.reshape(-1, 2), np.tile(along, len(places)))):
+    frame: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    for part, along in zip(strip, near):
+        places = np.stack(part.borders())[..., :2]
+        for values, new in zip(frame, plan.feet(places.reshape(-1, 2), np.tile(along, len(places)))):
             values.append(new.reshape(places.shape[:2]))
-    return found
+    return frame
 
 
 def _beyond_ends(strip, s, length):
@@ -147,15 +147,15 @@ def _meets(one, at_end):
 
 def _cuts(strip, centres, s):
     """Metres at which sections begin after the first: at lane 0, but before borders that begin there and after those that end."""
-    found = [0.0]
+    cuts = [0.0]
     for k in range(1, len(strip)):
-        at = float((s[k - 1][centres[k - 1], -1] + s[k][centres[k], 0]) / 2)
+        cut = float((s[k - 1][centres[k - 1], -1] + s[k][centres[k], 0]) / 2)
         ending, beginning = [nodes[-1] for nodes in strip[k - 1].nodes()], [nodes[0] for nodes in strip[k].nodes()]
         least = max((float(s[k - 1][j, -1]) for j, node in enumerate(ending) if node not in beginning), default=-np.inf)
         most = min((float(s[k][j, 0]) for j, node in enumerate(beginning) if node not in ending), default=np.inf)
-        at = (least + most) / 2 if least > most else min(max(at, least), most)
-        found.append(max(at, found[-1] + LEAST_STEP))
-    return found[1:]
+        cut = (least + most) / 2 if least > most else min(max(cut, least), most)
+        cuts.append(max(cut, cuts[-1] + LEAST_STEP))
+    return cuts[1:]
 
 
 def _course(strip, k, j, frame, ends):
@@ -164,52 +164,52 @@ def _course(strip, k, j, frame, ends):
         return np.stack([values[number][border] for values in frame])
 
     parts = [vertices(k, j)]
-    for way, here, there in ((-1, 0, -1), (1, -1, 0)):
+    for way, row, next_row in ((-1, 0, -1), (1, -1, 0)):
         number, border = k, j
         while 0 <= number + way < len(strip) and (parts[0][0, 0] > ends[0] - SLOPE_REACH if way < 0 else parts[-1][0, -1] < ends[1] + SLOPE_REACH):
-            node = strip[number].nodes()[border][here]
-            same = [other for other, nodes in enumerate(strip[number + way].nodes()) if nodes[there] == node]
+            node = strip[number].nodes()[border][row]
+            same = [index for index, nodes in enumerate(strip[number + way].nodes()) if nodes[next_row] == node]
             if len(same) != 1:
                 break
             number, border = number + way, same[0]
             parts.insert(0 if way < 0 else len(parts), vertices(number, border))
     line = np.concatenate(parts, axis=1)
     line = line[:, risen(line[0])]
-    for end, at in ((0, ends[0]), (-1, ends[1])):
-        if line.shape[1] > 1 and (line[0, 0] > at if end == 0 else line[0, -1] < at):
+    for end, station in ((0, ends[0]), (-1, ends[1])):
+        if line.shape[1] > 1 and (line[0, 0] > station if end == 0 else line[0, -1] < station):
             reach = np.flatnonzero(np.abs(line[0] - line[0, end]) >= LEAST_CHORD)
-            other = 0 if end else -1
-            other = int(reach[0 if end == 0 else -1]) if len(reach) else other
-            slope = (line[1:, end] - line[1:, other]) / (line[0, end] - line[0, other])
-            place = np.r_[at, line[1:, end] + slope * (at - line[0, end])]
-            line = np.insert(line, 0 if end == 0 else line.shape[1], place, axis=1)
+            index = 0 if end else -1
+            index = int(reach[0 if end == 0 else -1]) if len(reach) else index
+            slope = (line[1:, end] - line[1:, index]) / (line[0, end] - line[0, index])
+            vertex = np.r_[station, line[1:, end] + slope * (station - line[0, end])]
+            line = np.insert(line, 0 if end == 0 else line.shape[1], vertex, axis=1)
     return line
 
 
 def _guide(strip, centres):
     """((N, 2) places, rows of them for each slice) along lane 0 without its jumps, from the longest slice outwards."""
-    lines = [one.borders()[centre][:, :2] for one, centre in zip(strip, centres)]
-    first = int(np.argmax([one.length for one in strip]))
+    lines = [part.borders()[centre][:, :2] for part, centre in zip(strip, centres)]
+    first = int(np.argmax([part.length for part in strip]))
     placed = {first: lines[first]}
     for k in range(first + 1, len(strip)):
         placed[k] = _beside(lines[k], placed[k - 1][-1], 0)
     for k in range(first - 1, -1, -1):
         placed[k] = _beside(lines[k], placed[k + 1][0], -1)
-    rows, at = [], 0
+    rows, start = [], 0
     for k in range(len(strip)):
-        rows.append(np.arange(at, at + len(lines[k])))
-        at += len(lines[k]) - 1
+        rows.append(np.arange(start, start + len(lines[k])))
+        start += len(lines[k]) - 1
     return np.concatenate([placed[0], *(placed[k][1:] for k in range(1, len(strip)))]), rows
 
 
 def _reach(strip, index, guide):
     """(N, 2) metres from the guide to the rightmost border (negative) and to the leftmost one."""
-    found = np.zeros((len(guide), 2))
-    for one, rows in zip(strip, index):
-        for side, border, sign in ((0, one.cells[-1].right, -1), (1, one.cells[0].left, 1)):
-            away = sign * np.hypot(*(border[:, :2] - guide[rows]).T)
-            found[rows, side] = np.minimum(found[rows, side], away) if sign < 0 else np.maximum(found[rows, side], away)
-    return found
+    reach = np.zeros((len(guide), 2))
+    for part, rows in zip(strip, index):
+        for side, border, sign in ((0, part.cells[-1].right, -1), (1, part.cells[0].left, 1)):
+            distances = sign * np.hypot(*(border[:, :2] - guide[rows]).T)
+            reach[rows, side] = np.minimum(reach[rows, side], distances) if sign < 0 else np.maximum(reach[rows, side], distances)
+    return reach
 
 
 def _reference(points, tolerance, ends, turn_tolerance, reach):
@@ -248,27 +248,27 @@ def _smoothed(points, width):
 def _end_headings(strip, guide, square):
     """((start, end) headings square to the ends at which the road meets another, or to all if `square`, None where they are cut obliquely;
     metres, its width)."""
-    found, widest = [], 0.0
+    headings, widest = [], 0.0
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
-    near, far = (int(np.clip(np.searchsorted(along, at), 1, len(guide) - 1)) for at in (END_CHORD, along[-1] - END_CHORD))
-    for one, row, way, meets in ((strip[0], 0, guide[near] - guide[0], _meets(strip[0], False)),
-                                 (strip[-1], -1, guide[-1] - guide[far - 1], _meets(strip[-1], True))):
-        across = (one.cells[0].left[row] - one.cells[-1].right[row])[:2]
+    near, far = (int(np.clip(np.searchsorted(along, distance), 1, len(guide) - 1)) for distance in (END_CHORD, along[-1] - END_CHORD))
+    for part, row, way, meets in ((strip[0], 0, guide[near] - guide[0], _meets(strip[0], False)),
+                                  (strip[-1], -1, guide[-1] - guide[far - 1], _meets(strip[-1], True))):
+        across = (part.cells[0].left[row] - part.cells[-1].right[row])[:2]
         widest = max(widest, float(np.hypot(*across)))
         heading, along = float(np.arctan2(-across[0], across[1])), float(np.arctan2(way[1], way[0]))
         oblique = abs((heading - along + np.pi) % (2 * np.pi) - np.pi)
-        found.append(heading if (meets or square) and np.hypot(*across) > LEAST_END and oblique < MOST_OBLIQUE else None)
-    return tuple(found), widest
+        headings.append(heading if (meets or square) and np.hypot(*across) > LEAST_END and oblique < MOST_OBLIQUE else None)
+    return tuple(headings), widest
 
 
 def _beside(line, place, end):
     """A line moved aside as far as its end lies from a place."""
-    away = place - line[end]
-    if np.hypot(*away) < NEAREST_POINTS:
+    offset = place - line[end]
+    if np.hypot(*offset) < NEAREST_POINTS:
         return line
     way = np.gradient(line, axis=0)
     normal = np.c_[-way[:, 1], way[:, 0]] / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
-    return line + normal * (away @ normal[end])
+    return line + normal * (offset @ normal[end])
 
 
 def add_lanes(road: MapRoad, shape: _RoadShape, strip: list[Slice], centres: list[int], tolerance: float,
@@ -290,11 +290,11 @@ def add_lanes(road: MapRoad, shape: _RoadShape, strip: list[Slice], centres: lis
             functions = fit_cubics([s[0]] * len(s), _untangled(s, t, centre), start, end, tolerance, broken=True)
         sections.append(functions)
     offsets, numbers = [], []
-    lines = _lines_of_lane_0(sections, centres, np.diff(shape.starts), int(np.argmax([one.length for one in strip])))
-    for start, one, centre, functions, line in zip(shape.starts, strip, centres, sections, lines):
+    lines = _lines_of_lane_0(sections, centres, np.diff(shape.starts), int(np.argmax([part.length for part in strip])))
+    for start, part, centre, functions, line in zip(shape.starts, strip, centres, sections, lines):
         section = LaneSection(float(start))
         section.lanes[0] = MapLane(0, "none")
-        ids = [centre - j if j < centre else centre - j - 1 for j in range(len(one.cells))]
+        ids = [centre - j if j < centre else centre - j - 1 for j in range(len(part.cells))]
         if line is not functions[centre]:   # between lane 0 and the lanes beside it there is nothing
             side = -1 if centre == 0 else 1
             section.lanes[side] = MapLane(side, "none", width=simplified(difference(*((line, functions[0]) if side < 0 else (functions[-1], line)))))
@@ -316,20 +316,20 @@ def _lines_of_lane_0(sections, centres, lengths, first):
     """
     lines = {first: sections[first][centres[first]]}
     for way in (1, -1):
-        here, there = (-1, 0) if way > 0 else (0, -1)
+        before_end, line_start = (-1, 0) if way > 0 else (0, -1)
         for k in range(first + way, len(sections) if way > 0 else -1, way):
-            own, before = sections[k][centres[k]], lines[k - way]
-            value, met = float(before.at(lengths[k - way] * -here)), float(own.at(lengths[k] * -there))
+            line, before = sections[k][centres[k]], lines[k - way]
+            value, met = float(before.at(lengths[k - way] * -before_end)), float(line.at(lengths[k] * -line_start))
             aside = before is not sections[k - way][centres[k - way]]
             if abs(met - value) <= (MOST_LEAD if aside else SAME_LINE):
-                lines[k] = own
+                lines[k] = line
                 if aside:   # lead there
                     ends = (float(before.at(0.0)), met) if way > 0 else (met, float(before.at(lengths[k - way])))
                     lines[k - way] = _straight(before, *ends, lengths[k - way])
             else:
-                straight = _straight(own, value, value, lengths[k])
-                room = difference(straight, own) if centres[k] == 0 else difference(own, straight) if centres[k] == len(sections[k]) - 1 else None
-                lines[k] = straight if room is not None and room.least(lengths[k])[0] >= 0.0 else own
+                straight = _straight(line, value, value, lengths[k])
+                room = difference(straight, line) if centres[k] == 0 else difference(line, straight) if centres[k] == len(sections[k]) - 1 else None
+                lines[k] = straight if room is not None and room.least(lengths[k])[0] >= 0.0 else line
     return [lines[k] for k in range(len(sections))]
 
 
@@ -348,8 +348,8 @@ def _slope_at(place, course):
     sides = [(s >= place - SLOPE_REACH) & (s < place - LEAST_STEP), (s > place + LEAST_STEP) & (s <= place + SLOPE_REACH)]
     if min(int(side.sum()) for side in sides) < 2:
         return np.nan
-    at = np.interp(place, s, t)
-    before, after = (float((s[side] - place) @ (t[side] - at) / ((s[side] - place) @ (s[side] - place))) for side in sides)
+    offset = np.interp(place, s, t)
+    before, after = (float((s[side] - place) @ (t[side] - offset) / ((s[side] - place) @ (s[side] - place))) for side in sides)
     return (before + after) / 2 if abs(after - before) < MOST_TURN else np.nan
 
 
@@ -357,11 +357,11 @@ def _slopes_where_met(shape, strip, directions, at_end):
     """The slope of every border at an end of the road, as the borders of the roads that it meets have it; NaN where it meets none."""
     row = -1 if at_end else 0
     _, (heading,), (bend,) = shape.plan.at(np.array([shape.plan.length if at_end else 0.0]))
-    found = []
+    slopes = []
     for nodes, t in zip(strip[row].nodes(), shape.t[row][:, row]):
         turn = (directions.get(nodes[row], np.nan) - heading + np.pi / 2) % np.pi - np.pi / 2
-        found.append(float(np.tan(turn) * (1 - bend * t)) if abs(turn) < MOST_TURN else np.nan)
-    return found
+        slopes.append(float(np.tan(turn) * (1 - bend * t)) if abs(turn) < MOST_TURN else np.nan)
+    return slopes
 
 
 def _within(start, end, s, values):
@@ -377,7 +377,7 @@ def _crossing(functions, length):
 
 def _untangled(s, t, centre):
     """Offsets that never cross, from lane 0 outwards, at the places of the first border."""
-    levels = np.array([np.interp(s[0], one, value) for one, value in zip(s, t)])
+    levels = np.array([np.interp(s[0], x, value) for x, value in zip(s, t)])
     levels[centre::-1] = np.maximum.accumulate(levels[centre::-1])
     levels[centre:] = np.minimum.accumulate(levels[centre:])
     return list(levels)
@@ -435,24 +435,24 @@ def heights_above_road(shape: _RoadShape, number: int, cell: int) -> np.ndarray:
     """(N, 3) metres from the start of a slice's section, heights of the inner and outer border of one of its lanes above the road."""
     lift, s = shape.lifts[number][cell], shape.s[number][cell:cell + 2].mean(0) - shape.starts[number]
     rows = [(0.0, lift[0])]
-    for at, value in zip(s, lift):
+    for station, value in zip(s, lift):
         if abs(value - rows[-1][1]) > LEAST_CURB:
-            rows.append((max(float(at), 0.0), value))
-    return np.array([(at, value, value) for at, value in rows]) if lift.any() else np.empty((0, 3))
+            rows.append((max(float(station), 0.0), value))
+    return np.array([(station, value, value) for station, value in rows]) if lift.any() else np.empty((0, 3))
 
 
 def _at_reference(profiles, s):
     """(N,) heights at the reference line; where lanes lie on one side of it alone, those before and after it: the shape has the rest."""
     height = np.array([_height(profile, np.zeros(1))[0] for profile in profiles])
-    there = np.array([profile.t[0] - SAME_T <= 0.0 <= profile.t[-1] + SAME_T for profile in profiles])
-    if not there.any():
+    inside = np.array([profile.t[0] - SAME_T <= 0.0 <= profile.t[-1] + SAME_T for profile in profiles])
+    if not inside.any():
         return np.array([profile.z[np.argmin(np.abs(profile.t))] for profile in profiles])
-    return np.where(there, height, np.interp(s, s[there], height[there]))
+    return np.where(inside, height, np.interp(s, s[inside], height[inside]))
 
 
 def _profiles(shape, more):
     """A cross-section wherever the lanes have vertices, at both ends of every slice, and at (N,) more s, in order; of two at one place one."""
-    found = []
+    profiles = []
     for number, (first, last) in enumerate(zip(shape.starts[:-1], shape.starts[1:])):
         places = np.sort(np.append(shape.s[number].mean(0), more))
         places = places[risen(places)]
@@ -462,10 +462,10 @@ def _profiles(shape, more):
         order = np.argsort(t, axis=0, kind="stable")
         t, z = np.take_along_axis(t, order, 0), np.take_along_axis(z, order, 0)
         made = [_Profile(float(s), t[:, k], z[:, k]) for k, s in enumerate(places)]
-        if found:
-            made[0] = _joined(found.pop(), made[0])
-        found += made
-    return [_apart(profile) for profile in found]
+        if profiles:
+            made[0] = _joined(profiles.pop(), made[0])
+        profiles += made
+    return [_apart(profile) for profile in profiles]
 
 
 def _joined(one, other):

@@ -65,7 +65,7 @@ class Slice:
 
     def beyond(self, at_end: bool) -> list[Cell]:
         """The cells that touch its start or its end."""
-        return [other for cell in self.cells for other in cell.beyond(at_end)]
+        return [neighbour for cell in self.cells for neighbour in cell.beyond(at_end)]
 
     def mark(self, at_start: bool) -> None:
         """Note that ways through a junction begin or end within the slice, at its start or its end."""
@@ -94,9 +94,9 @@ class Slice:
             first, last = (Cell(cell.piece, cell.left[rows], cell.right[rows], cell.left_nodes[rows], cell.right_nodes[rows], cell.direction)
                            for rows in (slice(0, row + 1), slice(row, None)))
             first.before, first.after, last.before, last.after = cell.before, [last], [first], cell.after
-            for others, new in ((cell.before, first), (cell.after, last)):
-                for other in others:
-                    for links in (other.before, other.after):
+            for neighbours, new in ((cell.before, first), (cell.after, last)):
+                for neighbour in neighbours:
+                    for links in (neighbour.before, neighbour.after):
                         links[:] = [new if link is cell else link for link in links]
             parts[0].append(first)
             parts[1].append(last)
@@ -129,17 +129,17 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
     cells, first_of, last_of = [], {}, {}
     for k in range(len(lanes)):
         a, b = lanes.start[k], lanes.start[k + 1] - 1
-        at = [*_rows_to_cut(a, b, left, right, cuts), b] if ordinary[a] else [a, b]
+        bounds = [*_rows_to_cut(a, b, left, right, cuts), b] if ordinary[a] else [a, b]
         made = []
-        for first, last in zip(at[:-1], at[1:]):
+        for first, last in zip(bounds[:-1], bounds[1:]):
             rows = slice(first, last + 1)
             sides = [(lanes.left[rows], tuple(left[rows])), (lanes.right[rows], tuple(right[rows]))]
             direction = int(lanes.direction[k]) if ordinary[a] else 1
             if direction < 0:
                 sides = [(line[::-1], nodes[::-1]) for line, nodes in sides[::-1]]
             made.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], direction))
-        for one, following in zip(made[:-1], made[1:]):
-            _link(one, following)
+        for cell, following in zip(made[:-1], made[1:]):
+            _link(cell, following)
         first_of[lanes.lane_id[k]], last_of[lanes.lane_id[k]] = made[0], made[-1]
         cells += made
     for k, names in enumerate(lanes.successors):
@@ -151,11 +151,11 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
 
 def _rows_to_cut(a, b, left, right, cuts):
     """The row a, and those before b at which a lane is cut: where both borders stand still there is nothing to cut off."""
-    at = [a]
+    rows = [a]
     for row in range(a + 1, b):
-        if (left[row] in cuts or right[row] in cuts) and all((left[row], right[row]) != (left[end], right[end]) for end in (at[-1], b)):
-            at.append(row)
-    return at
+        if (left[row] in cuts or right[row] in cuts) and all((left[row], right[row]) != (left[end], right[end]) for end in (rows[-1], b)):
+            rows.append(row)
+    return rows
 
 
 def is_connector(cell: Cell, lanes: Lanes) -> bool:
@@ -165,20 +165,20 @@ def is_connector(cell: Cell, lanes: Lanes) -> bool:
 
 def _link(one: Cell, following: Cell) -> None:
     """Join two cells in the direction of travel; what is before and after is told along the road."""
-    for cell, other, ahead in ((one, following, True), (following, one, False)):
+    for cell, neighbour, ahead in ((one, following, True), (following, one, False)):
         side = cell.after if ahead == (cell.direction >= 0) else cell.before
-        if not any(known is other for known in side):
-            side.append(other)
+        if not any(linked is neighbour for linked in side):
+            side.append(neighbour)
 
 
 def _link_undriven(cells):
     """Cells that nobody drives follow each other where they share their ends."""
     starts = {(cell.left_nodes[0], cell.right_nodes[0]): cell for cell in cells if cell.direction == 0}
     for cell in cells:
-        other = starts.get((cell.left_nodes[-1], cell.right_nodes[-1])) if cell.direction == 0 else None
-        if other is not None and other is not cell and not cell.after:
-            cell.after.append(other)
-            other.before.append(cell)
+        following = starts.get((cell.left_nodes[-1], cell.right_nodes[-1])) if cell.direction == 0 else None
+        if following is not None and following is not cell and not cell.after:
+            cell.after.append(following)
+            following.before.append(cell)
 
 
 def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
@@ -186,35 +186,35 @@ def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
     ordinary = [cell for cell in cells if not is_connector(cell, lanes)]
     by_left = {cell.left_nodes: cell for cell in ordinary if len(set(cell.left_nodes)) > 1}
     right_of = {id(cell): by_left.get(cell.right_nodes) for cell in ordinary}
-    has_left = {id(other) for other in right_of.values() if other is not None}
-    found = []
+    has_left = {id(right) for right in right_of.values() if right is not None}
+    slices = []
     for cell in ordinary:
         if id(cell) in has_left:
             continue
         row: list[Cell] = [cell]
-        while (beside := right_of[id(row[-1])]) is not None and not any(beside is known for known in row):
-            row.append(beside)
-        found.append(Slice(row))
-    return found
+        while (neighbour := right_of[id(row[-1])]) is not None and not any(neighbour is member for member in row):
+            row.append(neighbour)
+        slices.append(Slice(row))
+    return slices
 
 
 def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tuple[list[Slice], list[Slice]]:
     """(a slice for every connector with what nobody drives beside it, the slices that are left)."""
-    undriven = [one for one in slices if not one.driven]
-    by_left = {one.cells[0].left_nodes: one for one in undriven}
-    by_right = {one.cells[-1].right_nodes: one for one in undriven}
+    undriven = [part for part in slices if not part.driven]
+    by_left = {part.cells[0].left_nodes: part for part in undriven}
+    by_right = {part.cells[-1].right_nodes: part for part in undriven}
     used = set()
 
     def beside(same, turned, nodes):
-        for one, against in ((same.get(nodes), False), (turned.get(nodes[::-1]), True)):
-            if one is not None and id(one) not in used:
-                used.add(id(one))
-                return (one.turned() if against else one).cells
+        for part, against in ((same.get(nodes), False), (turned.get(nodes[::-1]), True)):
+            if part is not None and id(part) not in used:
+                used.add(id(part))
+                return (part.turned() if against else part).cells
         return []
 
-    found = [Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)])
-             for cell in cells if is_connector(cell, lanes)]
-    return found, [one for one in slices if id(one) not in used]
+    connectors = [Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)])
+                  for cell in cells if is_connector(cell, lanes)]
+    return connectors, [part for part in slices if id(part) not in used]
 
 
 def directions_where_met(cells: list[Cell]) -> dict[int, float]:
@@ -225,23 +225,23 @@ def directions_where_met(cells: list[Cell]) -> dict[int, float]:
     for cell in cells:
         for line, nodes in ((cell.left, cell.left_nodes), (cell.right, cell.right_nodes)):
             for step in (1, -1):
-                away = (line[::step, :2] - line[::step, :2][0])[1:]
-                near = np.hypot(*away.T) <= SLOPE_REACH
+                offsets = (line[::step, :2] - line[::step, :2][0])[1:]
+                near = np.hypot(*offsets.T) <= SLOPE_REACH
                 near[0] = True
-                way = away[near].sum(0)
+                way = offsets[near].sum(0)
                 if (length := float(np.hypot(*way))) > SAME_VERTEX:
                     ways[nodes[::step][0]][nodes[::step][1]] = way / length
-    found = {}
+    directions = {}
     for node, all_ways in ways.items():
-        first, *_ = some = np.array(list(all_ways.values()))
-        ahead, behind = some[some @ first > 0], -some[some @ first <= 0]
+        first, *_ = vectors = np.array(list(all_ways.values()))
+        ahead, behind = vectors[vectors @ first > 0], -vectors[vectors @ first <= 0]
         if not len(behind):
             continue
         way = ahead.mean(0) + behind.mean(0)
-        turned = np.abs(np.arctan2(*np.array([[way[0] * one[1] - way[1] * one[0], way @ one] for one in (*ahead, *behind)]).T))
+        turned = np.abs(np.arctan2(*np.array([[way[0] * vector[1] - way[1] * vector[0], way @ vector] for vector in (*ahead, *behind)]).T))
         if turned.max() < MOST_TURN / 2:
-            found[node] = float(np.arctan2(way[1], way[0]))
-    return found
+            directions[node] = float(np.arctan2(way[1], way[0]))
+    return directions
 
 
 def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
@@ -250,11 +250,11 @@ def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
     Where lanes beside each other go on in lanes that are no longer beside each other, there is a junction too: a road has one successor.
     """
     _mark_partings(slices)
-    for one in slices:
+    for part in slices:
         for at_end in (False, True):
             # a connector that this slice touches lies beyond its end: beside the slices beyond
-            touching = {id(other) for other in one.beyond(at_end)}
-            if any(is_connector(other, lanes) for other in one.beyond(at_end)):
+            touching = {id(cell) for cell in part.beyond(at_end)}
+            if any(is_connector(cell, lanes) for cell in part.beyond(at_end)):
                 for beyond in slices:
                     if not touching.isdisjoint(map(id, beyond.cells)):
                         beyond.mark(at_end)
@@ -262,29 +262,29 @@ def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
 
 def _mark_partings(slices):
     owner = _owners(slices)
-    for one in slices:
+    for part in slices:
         for at_end in (False, True):
-            ends = _ends_beyond(one, at_end, owner)
+            ends = _ends_beyond(part, at_end, owner)
             for number, at_start in ends if len(ends) > 1 else ():
                 slices[number].mark(at_start)
 
 
 def _owners(slices):
     """{id of a cell: number of its slice}."""
-    return {id(cell): k for k, one in enumerate(slices) for cell in one.cells}
+    return {id(cell): k for k, part in enumerate(slices) for cell in part.cells}
 
 
 def _ends_beyond(one, at_end, owner):
     """{(number of a slice, whether at its start)} that the driven cells of a slice touch at one end."""
-    return {(owner[id(other)], any(cell is back for back in other.before)) for cell in one.driven for other in cell.beyond(at_end)
-            if id(other) in owner}
+    return {(owner[id(neighbour)], any(cell is back for back in neighbour.before)) for cell in one.driven for neighbour in cell.beyond(at_end)
+            if id(neighbour) in owner}
 
 
 def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Slice]]:
     """Slices end to end, each with one before and one after, in order along the road; (id, id of the next) in `breaks` end a strip."""
     owner = _owners(slices)
-    pairs = {(k, owner[id(other)]) for k, one in enumerate(slices) for cell in one.cells for other in cell.after
-             if id(other) in owner and other.direction * cell.direction >= 0}
+    pairs = {(k, owner[id(following)]) for k, part in enumerate(slices) for cell in part.cells for following in cell.after
+             if id(following) in owner and following.direction * cell.direction >= 0}
     after, before = (Counter(pair[side] for pair in pairs) for side in (0, 1))
     follows = {k: j for k, j in pairs if after[k] == before[j] == 1 and (id(slices[k]), id(slices[j])) not in breaks}
     return _chained(slices, follows)
@@ -293,37 +293,37 @@ def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Sl
 def _chained(slices, follows):
     """Slices end to end, by {number of a slice: number of the next}."""
     leads = set(follows.values())
-    found, used = [], set()
+    strips, used = [], set()
     for k in [k for k in range(len(slices)) if k not in leads] + list(range(len(slices))):
         strip = []
-        here: int | None = k
-        while here is not None and here not in used:
-            used.add(here)
-            strip.append(slices[here])
-            here = follows.get(here)
+        number: int | None = k
+        while number is not None and number not in used:
+            used.add(number)
+            strip.append(slices[number])
+            number = follows.get(number)
         if strip:
-            found.append(strip)
-    return found
+            strips.append(strip)
+    return strips
 
 
 def end_to_end(cells: list[Cell]) -> list[list[Cell]]:
     """Single lanes, all in the direction of travel, that follow each other without a fork."""
-    found, free = [], {id(cell) for cell in cells}
+    rows, free = [], {id(cell) for cell in cells}
     for cell in cells:
         if id(cell) not in free:
             continue
         row = [cell]
         free.remove(id(cell))
         for ahead in (True, False):
-            while (other := _only_one(row[-1] if ahead else row[0], ahead)) is not None and id(other) in free:
-                free.remove(id(other))
-                row.insert(len(row) if ahead else 0, other)
-        found.append(row)
-    return found
+            while (neighbour := _only_one(row[-1] if ahead else row[0], ahead)) is not None and id(neighbour) in free:
+                free.remove(id(neighbour))
+                row.insert(len(row) if ahead else 0, neighbour)
+        rows.append(row)
+    return rows
 
 
 def _only_one(cell: Cell, ahead: bool) -> Cell | None:
     """The cell that one cell touches ahead or behind, where both touch no other there."""
-    others = cell.beyond(ahead)
-    back = others[0].beyond(not ahead) if len(others) == 1 and others[0] is not cell else []
-    return others[0] if len(back) == 1 and back[0] is cell else None
+    neighbours = cell.beyond(ahead)
+    back = neighbours[0].beyond(not ahead) if len(neighbours) == 1 and neighbours[0] is not cell else []
+    return neighbours[0] if len(back) == 1 and back[0] is cell else None

@@ -25,40 +25,40 @@ def read_opendrive(path: str, progress: Progress = Progress()) -> OpenDriveMap:
     Raises RoadExtractionError if the file is no OpenDRIVE, hostile, or has no road that can be read.
     """
     root = read_xml(path, "OpenDRIVE", XODR_KIND, progress)
-    found = _opendrive_of(root)
-    if not found.roads:
-        why = f" Line {found.problems[0][0]}: {found.problems[0][1]}" if found.problems else ""
+    whole = _opendrive_of(root)
+    if not whole.roads:
+        why = f" Line {whole.problems[0][0]}: {whole.problems[0][1]}" if whole.problems else ""
         raise RoadExtractionError(f"{path} has no road that can be read.{why} Choose a file with roads and their geometry.")
-    length = sum(road.plan.length for road in found.roads)
+    length = sum(road.plan.length for road in whole.roads)
     if length > LONGEST_MAP:
         raise RoadExtractionError(f"The roads of {path} are {length / 1000:,.0f} km long; at most {LONGEST_MAP / 1000:,.0f} km are read at once. "
                                   "Export the map again, or in parts.")
-    return found
+    return whole
 
 
 def _opendrive_of(root: XmlElement) -> OpenDriveMap:
     """The map of the element <OpenDRIVE>."""
-    found = OpenDriveMap(tree=root)
+    whole = OpenDriveMap(tree=root)
     header = root.find("header")
     if header is None:
-        found.problems.append((root.line, "there is no <header>."))
+        whole.problems.append((root.line, "there is no <header>."))
     else:
-        found.version = (int(header.number("revMajor", 1.0)), int(header.number("revMinor", 0.0)))
-        found.name = header.get("name")
+        whole.version = (int(header.number("revMajor", 1.0)), int(header.number("revMinor", 0.0)))
+        whole.name = header.get("name")
         sides = [header.number(name, 0.0) for name in ("west", "south", "east", "north") if name in header.attributes]
-        found.bounds = (sides[0], sides[1], sides[2], sides[3]) if len(sides) == 4 else None
+        whole.bounds = (sides[0], sides[1], sides[2], sides[3]) if len(sides) == 4 else None
         reference, offset = header.find("geoReference"), header.find("offset")
-        found.reference = reference.text if reference is not None else ""
+        whole.reference = reference.text if reference is not None else ""
         if offset is not None:
-            found.offset = (offset.number("x", 0.0), offset.number("y", 0.0), offset.number("z", 0.0), offset.number("hdg", 0.0))
+            whole.offset = (offset.number("x", 0.0), offset.number("y", 0.0), offset.number("z", 0.0), offset.number("hdg", 0.0))
     for element in root.all("road"):
         try:
-            found.roads.append(_road_of(element, found.problems))
+            whole.roads.append(_road_of(element, whole.problems))
         except RoadExtractionError as problem:
-            found.problems.append((element.line, f"road {element.get('id')} cannot be read: {problem}"))
+            whole.problems.append((element.line, f"road {element.get('id')} cannot be read: {problem}"))
     for element in root.all("junction"):
-        found.junctions.append(_junction(element))
-    return found
+        whole.junctions.append(_junction(element))
+    return whole
 
 
 def _road_of(element, problems):
@@ -81,11 +81,11 @@ def _road_of(element, problems):
 
 
 def _geometry(element):
-    place = [element.number(name) for name in ("s", "x", "y", "hdg", "length")]
+    numbers = [element.number(name) for name in ("s", "x", "y", "hdg", "length")]
     for child in element.children:
         if child.tag in GEOMETRIES:
             values = tuple(child.number(name) for name in GEOMETRIES[child.tag])
-            return PlanElement(*place, child.tag, values, child.tag == "paramPoly3" and child.get("pRange", "normalized") == "normalized")
+            return PlanElement(*numbers, child.tag, values, child.tag == "paramPoly3" and child.get("pRange", "normalized") == "normalized")
     raise RoadExtractionError(f"line {element.line}: a geometry is none of line, arc, spiral, poly3 and paramPoly3.")
 
 
@@ -143,13 +143,13 @@ def _mark(element):
 
 
 def _object(element):
-    found = {name: element.get(name) for name in ("id", "type", "subtype", "name", "orientation")}
+    texts = {name: element.get(name) for name in ("id", "type", "subtype", "name", "orientation")}
     numbers = {name: element.number(name, 0.0) for name in ("s", "t", "zOffset", "length", "width", "hdg", "height")}
     outline = element.find("outlines", "outline") or element.find("outline")
     corners = [[corner.number(name, 0.0) for name in (("s", "t", "dz") if corner.tag == "cornerRoad" else ("u", "v", "z"))]
                for corner in (outline.children if outline is not None else ()) if corner.tag in ("cornerRoad", "cornerLocal")]
     local = outline is not None and outline.find("cornerLocal") is not None
-    return {**found, **numbers, "corners": np.array(corners, float).reshape(-1, 3), "local": local}
+    return {**texts, **numbers, "corners": np.array(corners, float).reshape(-1, 3), "local": local}
 
 
 def _junction(element):
@@ -217,11 +217,11 @@ def _road_element(road: MapRoad, minor: int) -> XmlElement:
 
 def _plan(elements: tuple[PlanElement, ...]) -> XmlElement:
     plan = XmlElement("planView")
-    for one in elements:
-        child = plan.add("geometry", s=one.s, x=one.x, y=one.y, hdg=one.heading, length=one.length)
-        shape = child.append(XmlElement(one.kind, dict(zip(GEOMETRIES[one.kind], one.values))))
-        if one.kind == "paramPoly3":
-            shape.attributes["pRange"] = "normalized" if one.normalized else "arcLength"
+    for element in elements:
+        child = plan.add("geometry", s=element.s, x=element.x, y=element.y, hdg=element.heading, length=element.length)
+        shape = child.append(XmlElement(element.kind, dict(zip(GEOMETRIES[element.kind], element.values))))
+        if element.kind == "paramPoly3":
+            shape.attributes["pRange"] = "normalized" if element.normalized else "arcLength"
     return plan
 
 

@@ -67,12 +67,12 @@ class Chain:
         """Its measured pieces and, between them, of status bridged and from the last upright before to the first after it, what was not seen of it;
         where it is seen to be open there is none."""
         gaps = np.flatnonzero(np.diff(self.members.slice) > TOLD_GAP)
-        found = []
+        pieces = []
         for first, last in zip([0, *(gaps + 1)], [*gaps, len(self.d) - 1]):
-            found.append(("measured", self.part(np.arange(first, last + 1))))
+            pieces.append(("measured", self.part(np.arange(first, last + 1))))
             if last < len(self.d) - 1 and self.empty[last] < TOLD_GAP:
-                found.append(("bridged", self.part(np.arange(last, last + 2))))
-        return found
+                pieces.append(("bridged", self.part(np.arange(last, last + 2))))
+        return pieces
 
 
 def find_chains(uprights: Uprights, road: int, side: int, max_gap: float, min_length: float,
@@ -95,12 +95,12 @@ def find_chains(uprights: Uprights, road: int, side: int, max_gap: float, min_le
         gaps = gaps[(gaps.last - gaps.first + 1 < reach) | gaps.covered]
         hidden[gaps.before], empty[gaps.before] = gaps.hidden, gaps.empty
         pairs = np.concatenate([pairs, np.c_[gaps.before, gaps.after]])
-    found = []
+    chains = []
     for rows in _groups(uprights, pairs):
-        for own in _filled(rows, uprights.slice[rows], hidden[rows], empty[rows], min_length):
-            members = uprights[own]
-            found.append(Chain(road, side, members, *along_the_chain(members), empty[own]))
-    return found
+        for kept in _filled(rows, uprights.slice[rows], hidden[rows], empty[rows], min_length):
+            members = uprights[kept]
+            chains.append(Chain(road, side, members, *along_the_chain(members), empty[kept]))
+    return chains
 
 
 def along_the_chain(members: Uprights) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -134,22 +134,23 @@ def _gaps(uprights, groups, lags):
 
 def _middles(uprights, rows, place):
     """Uprights at one end of pieces, with the median offset and heights of the last ones there."""
-    ends = uprights[np.array([some[place] for some in rows])]
-    ends.d, ends.ground, ends.top = (np.array([np.median(values[some]) for some in rows]) for values in (uprights.d, uprights.ground, uprights.top))
+    ends = uprights[np.array([members[place] for members in rows])]
+    ends.d, ends.ground, ends.top = (np.array([np.median(values[members]) for members in rows])
+                                     for values in (uprights.d, uprights.ground, uprights.top))
     return ends
 
 
 def _filled(rows, slices, hidden, empty, min_length):
     """Those rows of a chain, or of its parts between openings, that fill what was seen of it."""
     count = int(slices[-1] - slices[0] + 1)
-    seen = count - int(hidden[:-1].sum())
-    if count * UPRIGHT_SLICE >= min_length and len(rows) >= MIN_CHAIN_FILLED * max(seen, min_length / UPRIGHT_SLICE):
+    visible = count - int(hidden[:-1].sum())
+    if count * UPRIGHT_SLICE >= min_length and len(rows) >= MIN_CHAIN_FILLED * max(visible, min_length / UPRIGHT_SLICE):
         return [rows]
     cuts = np.flatnonzero(empty[:-1] >= TOLD_GAP) + 1
     if not len(cuts):
         return []
     parts = zip(*(np.split(values, cuts) for values in (rows, slices, hidden, empty)))
-    return [own for part in parts for own in _filled(*part, min_length)]
+    return [kept for part in parts for kept in _filled(*part, min_length)]
 
 
 def _linked(ends, begins, lags):
@@ -159,24 +160,24 @@ def _linked(ends, begins, lags):
     taken_next, taken_before = np.zeros(len(ends), bool), np.zeros(len(begins), bool)
     pairs = [np.empty((0, 2), np.int64)]
     for lag in lags:
-        one = np.flatnonzero(~taken_next)
-        wanted = (ends.slice[one] + lag) * 1e4 + ends.d[one]
+        before = np.flatnonzero(~taken_next)
+        wanted = (ends.slice[before] + lag) * 1e4 + ends.d[before]
         right = np.clip(np.searchsorted(key, wanted), 0, len(key) - 1)
         left = np.maximum(right - 1, 0)
-        other = np.where(np.abs(key[left] - wanted) <= np.abs(key[right] - wanted), left, right)
-        apart = np.abs(key[other] - wanted)
-        lower, higher = np.minimum(ends.top[one], begins.top[other]), np.maximum(ends.top[one], begins.top[other])
-        level = np.abs(begins.top[other] + begins.ground[other] - ends.top[one] - ends.ground[one])
+        after = np.where(np.abs(key[left] - wanted) <= np.abs(key[right] - wanted), left, right)
+        apart = np.abs(key[after] - wanted)
+        lower, higher = np.minimum(ends.top[before], begins.top[after]), np.maximum(ends.top[before], begins.top[after])
+        level = np.abs(begins.top[after] + begins.ground[after] - ends.top[before] - ends.ground[before])
         steady = (apart < STEADY_OFFSET + STEADY_PER_SLICE * (lag - 1)) & (np.minimum(higher - lower, level) < SAME_TOP)
         fits = np.where(lower > HEWN, apart < STEADY_TALL, steady)
-        fits &= (begins.slice[other] == ends.slice[one] + lag) & ~taken_before[other]
-        one, other, apart = one[fits], other[fits], apart[fits]
+        fits &= (begins.slice[after] == ends.slice[before] + lag) & ~taken_before[after]
+        before, after, apart = before[fits], after[fits], apart[fits]
         # of several that want the same successor the nearest has it
-        order = np.lexsort((apart, other))
-        first = np.r_[True, np.diff(other[order]) > 0] if len(order) else np.empty(0, bool)
-        one, other = one[order][first], other[order][first]
-        taken_next[one], taken_before[other] = True, True
-        pairs.append(np.c_[one, other])
+        order = np.lexsort((apart, after))
+        first = np.r_[True, np.diff(after[order]) > 0] if len(order) else np.empty(0, bool)
+        before, after = before[order][first], after[order][first]
+        taken_next[before], taken_before[after] = True, True
+        pairs.append(np.c_[before, after])
     return np.concatenate(pairs)
 
 
@@ -222,9 +223,9 @@ class Gaps(Rows):
 
 def _gaps_between(uprights: Uprights, ends: list[np.ndarray], begins: list[np.ndarray]) -> Gaps:
     """Gaps between pieces of lines."""
-    sides = [[_end(uprights[rows]) for rows in some] for some in (ends, begins)]
+    sides = [[_end(uprights[rows]) for rows in pieces] for pieces in (ends, begins)]
     d, low, high, points, behind = np.array(sides, float).reshape(2, len(ends), 5).transpose(2, 1, 0)
-    before, after = (np.array([rows[k] for rows in some], np.int64) for some, k in ((ends, -1), (begins, 0)))
+    before, after = (np.array([rows[k] for rows in pieces], np.int64) for pieces, k in ((ends, -1), (begins, 0)))
     points, behind = points.sum(axis=1), behind.sum(axis=1)
     none = np.zeros(len(ends), np.int64)
     return Gaps(before, after, uprights.slice[before] + 1, uprights.slice[after] - 1, d, low, high, points / np.maximum(points + behind, 1.0),
@@ -240,11 +241,11 @@ def _end(uprights):
 def gaps_by_window(gaps: Gaps, length: float) -> dict[int, list[int]]:
     """Rows of the gaps of which the points of windows may tell, by the number of the window, of a length in m, counted from station 0."""
     first, last = (gaps.first - 1) * UPRIGHT_SLICE - SIGHT_REACH, (gaps.last + 2) * UPRIGHT_SLICE + SIGHT_REACH
-    found: dict[int, list[int]] = {}
+    result: dict[int, list[int]] = {}
     for k, (a, b) in enumerate(zip(first // length, last // length)):
         for window in range(int(a), int(b) + 1):
-            found.setdefault(window, []).append(k)
-    return found
+            result.setdefault(window, []).append(k)
+    return result
 
 
 def pulses_at(gaps: Gaps, side: int, s: np.ndarray, d: np.ndarray, h: np.ndarray, across: np.ndarray, up: np.ndarray) -> np.ndarray:
@@ -270,18 +271,18 @@ def pulses_at(gaps: Gaps, side: int, s: np.ndarray, d: np.ndarray, h: np.ndarray
         near = slice(*np.searchsorted(s, (s0 - SIGHT_REACH, s1 + SIGHT_REACH)))
         ds, dd = s1 - s0, float(gaps.d[k, 1] - gaps.d[k, 0])
         ahead, left = across[:, near]
-        away = (s[near] - s0) * dd - (d[near] - gaps.d[k, 0]) * ds
+        cross = (s[near] - s0) * dd - (d[near] - gaps.d[k, 0]) * ds
         with np.errstate(divide="ignore", invalid="ignore"):
-            part = -away / (ahead * dd - left * ds)   # of the way from the point to the scanner, where it crosses the line
-        place = s[near] + part * ahead
-        row = np.floor(place / UPRIGHT_SLICE)
-        share = (place - s0) / ds
+            part = -cross / (ahead * dd - left * ds)   # of the way from the point to the scanner, where it crosses the line
+        station = s[near] + part * ahead
+        row = np.floor(station / UPRIGHT_SLICE)
+        share = (station - s0) / ds
         height = h[near] + part * up[near]
         low, high = (ends[k, 0] + share * (ends[k, 1] - ends[k, 0]) for ends in (gaps.low, gaps.high))
-        there = (row >= gaps.first[k]) & (row <= gaps.last[k]) & (height > low) & (height < high)
-        beyond = -side * away / np.hypot(ds, dd)
+        inside = (row >= gaps.first[k]) & (row <= gaps.last[k]) & (height > low) & (height < high)
+        beyond = -side * cross / np.hypot(ds, dd)
         for kind, of in enumerate(((beyond > BEHIND[0]) & (part < 1.0), np.abs(beyond) <= BEHIND[0], (beyond < -BEHIND[0]) & (part < 0.0))):
-            slices = row[there & of].astype(np.int64) - gaps.first[k]
+            slices = row[inside & of].astype(np.int64) - gaps.first[k]
             counts[kind, start[k]:start[k] + length[k]] += np.bincount(slices, minlength=length[k])
     return counts
 
@@ -295,8 +296,8 @@ def judged(gaps: Gaps, parts: Iterable[tuple[list[int], np.ndarray]]) -> Gaps:
     owner = np.repeat(np.arange(len(gaps)), length)
     start = np.cumsum(length) - length
     passed, met, stopped = counts = np.zeros((3, len(owner)), np.int64)
-    for rows, some in parts:
-        counts[:, np.concatenate([start[k] + np.arange(length[k]) for k in rows])] += some
+    for rows, pulses in parts:
+        counts[:, np.concatenate([start[k] + np.arange(length[k]) for k in rows])] += pulses
     odds = np.clip(gaps.share, 0.05, 0.95)[owner]
     expected = passed * odds / (1.0 - odds)
     empty = (passed >= MIN_PASSED) & (expected >= EXPECTED) & (met < FEWER * expected)
@@ -401,14 +402,14 @@ def things_of(chain: Chain, min_length: float) -> list[tuple[str, Chain]]:
     cuts = [0, *_cuts(_sections(chain), chain.members.slice, 0, len(chain.members), min_length), len(chain.members)]
     kinds = [kind_of(chain.part(np.arange(a, b))) for a, b in zip(cuts[:-1], cuts[1:])]
     first = np.flatnonzero([k == 0 or kind != kinds[k - 1] for k, kind in enumerate(kinds)])
-    found = []
+    things = []
     for k, after in zip(first, [*first[1:], len(kinds)]):
         whole = chain.part(np.arange(cuts[k], cuts[after]))
         # joined again, a row of cars shows that it is one
         kind = kind_of(whole) if after - k > 1 else kinds[k]
         if kind is not None:
-            found.append((kind, whole))
-    return found
+            things.append((kind, whole))
+    return things
 
 
 def _sections(chain):
@@ -421,18 +422,18 @@ def _sections(chain):
 def _cuts(sections, slices, first, last, min_length):
     """Where the members from `first` to `last` are divided, rising."""
     least = int(np.ceil(min_length / UPRIGHT_SLICE))
-    at = np.arange(first + 1, last)
-    at = at[(slices[at - 1] - slices[first] + 1 >= least) & (slices[last - 1] - slices[at] + 1 >= least)]
-    if not len(at):
+    rows = np.arange(first + 1, last)
+    rows = rows[(slices[rows - 1] - slices[first] + 1 >= least) & (slices[last - 1] - slices[rows] + 1 >= least)]
+    if not len(rows):
         return []
-    own = sections[first:last]
-    sums, squares = (np.vstack([np.zeros(own.shape[1]), np.cumsum(values, axis=0)]) for values in (own, own**2))
-    left, right = (at - first)[:, None], (last - at)[:, None]
-    before, after = sums[at - first] / left, (sums[-1] - sums[at - first]) / right
+    members = sections[first:last]
+    sums, squares = (np.vstack([np.zeros(members.shape[1]), np.cumsum(values, axis=0)]) for values in (members, members**2))
+    left, right = (rows - first)[:, None], (last - rows)[:, None]
+    before, after = sums[rows - first] / left, (sums[-1] - sums[rows - first]) / right
     gain = ((after - before) ** 2 * left * right / (left + right)).sum(axis=1)
     k = int(gain.argmax())
-    scatter = np.sqrt(np.maximum(squares[-1] - before[k] ** 2 * left[k] - after[k] ** 2 * right[k], 0.0) / len(own))
+    scatter = np.sqrt(np.maximum(squares[-1] - before[k] ** 2 * left[k] - after[k] ** 2 * right[k], 0.0) / len(members))
     if not (np.abs(after[k] - before[k]) > np.maximum(1.0, scatter)).any():
         return []
-    cut = int(at[k])
+    cut = int(rows[k])
     return [*_cuts(sections, slices, first, cut, min_length), cut, *_cuts(sections, slices, cut, last, min_length)]

@@ -41,13 +41,13 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
     layers : BorderLayers; without them what is more than 2 m from a track counts as beside the road
     """
     borders = RoadBorders(layers, survey.frame, country(settings.country))
-    found = Roadside([], {}, {}, survey.frame, survey.crs, settings)
+    roadside = Roadside([], {}, {}, survey.frame, survey.crs, settings)
     level = level_views(survey)
     unknown = 0.0
     roads = survey.store.roads()
     for k, road in enumerate(roads):
-        edges = found.edges[road] = _edges_of(survey, road, borders)
-        found.poles[road] = []
+        edges = roadside.edges[road] = _edges_of(survey, road, borders)
+        roadside.poles[road] = []
         parts: dict[tuple[str, int], list[Uprights]] = {}
         first, last = survey.store.span(road)
         windows = np.arange(np.floor(first / ROADSIDE_WINDOW), np.ceil(last / ROADSIDE_WINDOW))
@@ -56,26 +56,26 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
             return _look(survey, road, window * ROADSIDE_WINDOW, edges, settings, level)
 
         for uprights, poles in ordered_map(look, windows.tolist(), progress.part(k / len(roads), (k + 1) / len(roads))):
-            found.poles[road] += poles
-            for key, some in uprights.items():
-                parts.setdefault(key, []).append(some)
-        for (what, side), some in sorted(parts.items()):
-            into = partial(_look_into, survey, road, side, edges, settings.reach) if what == "line" else None
-            chains = find_chains(Uprights.joined(some), road, side, settings.max_gap, settings.min_length, into)
+            roadside.poles[road] += poles
+            for key, stretches in uprights.items():
+                parts.setdefault(key, []).append(stretches)
+        for (sort, side), stretches in sorted(parts.items()):
+            into = partial(_look_into, survey, road, side, edges, settings.reach) if sort == "line" else None
+            chains = find_chains(Uprights.joined(stretches), road, side, settings.max_gap, settings.min_length, into)
             unknown += sum(chain.length for chain in chains if chain.members.above_view.mean() > 0.5)
-            if what == "gutter":
-                things = [("gutter", chain) for chain in chains]
+            if sort == "gutter":
+                classified = [("gutter", chain) for chain in chains]
             else:
-                things = along_faces([thing for chain in chains for thing in things_of(chain, settings.min_length)])
-            for kind, part in things:
-                found.lines.append(SideLine(kind, part, float(np.median(part.members.foot))))
+                classified = along_faces([piece for chain in chains for piece in things_of(chain, settings.min_length)])
+            for kind, part in classified:
+                roadside.lines.append(SideLine(kind, part, float(np.median(part.members.foot))))
     if unknown:
-        found.notes.append(f"{unknown:.0f} m of what stands beside the road are as high as the scanner, which sees hardly higher, as heads of many "
-                           "beams do. They are left out, for house fronts look the same to it.")
-    found.lines, found.poles = told_once(found)
-    found.lines.sort(key=lambda line: (line.chain.road, -line.chain.side, float(line.chain.s[0])))
-    _report(found, progress)
-    return found
+        roadside.notes.append(f"{unknown:.0f} m of what stands beside the road are as high as the scanner, which sees hardly higher, as heads of "
+                              "many beams do. They are left out, for house fronts look the same to it.")
+    roadside.lines, roadside.poles = told_once(roadside)
+    roadside.lines.sort(key=lambda line: (line.chain.road, -line.chain.side, float(line.chain.s[0])))
+    _report(roadside, progress)
+    return roadside
 
 
 def _report(found: Roadside, progress: Progress) -> None:
@@ -83,8 +83,8 @@ def _report(found: Roadside, progress: Progress) -> None:
     lengths: dict[str, float] = {}
     for line in found.lines:
         lengths[line.kind] = lengths.get(line.kind, 0.0) + sum(piece.length for _, piece in line.chain.pieces())
-    told = ", ".join(f"{length:.0f} m of {kind.replace('_', ' ')}" for kind, length in sorted(lengths.items())) or "no lines"
-    progress.info(f"Beside the road: {told}; {sum(map(len, found.poles.values()))} poles, signs and trunks.")
+    text = ", ".join(f"{length:.0f} m of {kind.replace('_', ' ')}" for kind, length in sorted(lengths.items())) or "no lines"
+    progress.info(f"Beside the road: {text}; {sum(map(len, found.poles.values()))} poles, signs and trunks.")
     if not any(edges.known for edges in found.edges.values()):
         found.notes.append("Without road edges, marking lines, driving lines or lanes everything more than "
                            f"{BEYOND_TRACK:.0f} m from the track counts as beside the road, parked cars "
@@ -99,12 +99,12 @@ def _edges_of(survey, road, borders):
     track = [p.at_station(s)[0] for p in survey.frame.passes_of(road)]
     widest = np.min(track, axis=0) - BEYOND_TRACK, np.max(track, axis=0) + BEYOND_TRACK
     sides = []
-    for seen, beyond in zip(np.array([borders.outer(road, float(at)) for at in s]).T, widest):
-        known = np.isfinite(seen)
-        if known.any():
+    for offsets, beyond in zip(np.array([borders.outer(road, float(station)) for station in s]).T, widest):
+        finite = np.isfinite(offsets)
+        if finite.any():
             # an edge goes on where it is not drawn for a while
-            away = np.abs(s[:, None] - s[known]).min(axis=1)
-            sides.append(np.where(away < MAX_EDGE_GAP, np.interp(s, s[known], seen[known]), beyond))
+            distance = np.abs(s[:, None] - s[finite]).min(axis=1)
+            sides.append(np.where(distance < MAX_EDGE_GAP, np.interp(s, s[finite], offsets[finite]), beyond))
         else:
             sides.append(beyond)
     return SideEdges(s, *sides, borders.given)
@@ -127,8 +127,8 @@ def _seen(survey, road, start, side, edges, number, rows):
     """(number of the pass that drove nearest to a side of a window, those of the rows that it measured; all where it measured none)."""
     middle = np.array([start + 0.5 * ROADSIDE_WINDOW])
     nearest = int(survey.frame.nearest_pass(road, middle, edges.of(side, middle))[0])
-    own = rows[number[rows] == nearest]
-    return nearest, own if len(own) else rows
+    measured = rows[number[rows] == nearest]
+    return nearest, measured if len(measured) else rows
 
 
 def _look_into(survey, road, side, edges, reach, gaps):
@@ -142,10 +142,10 @@ def _look_into(survey, road, side, edges, reach, gaps):
         start = window * ROADSIDE_WINDOW
         points = survey.window(road, start, start + ROADSIDE_WINDOW)
         beyond = side * (points.d - edges.of(side, points.s))
-        number, own = _seen(survey, road, start, side, edges, points.pass_number, np.flatnonzero((beyond > -BEFORE_EDGE) & (beyond < reach)))
-        s, d = points.s[own], points.d[own]
-        h = points.z[own] - survey.road_height(road, s)
-        sight = lines_of_sight(survey, road, number, s, d, h, points.time[own])
+        number, rows = _seen(survey, road, start, side, edges, points.pass_number, np.flatnonzero((beyond > -BEFORE_EDGE) & (beyond < reach)))
+        s, d = points.s[rows], points.d[rows]
+        h = points.z[rows] - survey.road_height(road, s)
+        sight = lines_of_sight(survey, road, number, s, d, h, points.time[rows])
         return windows[window], pulses_at(above[windows[window]], side, s, d, h, *sight)
 
     return judged(gaps, ordered_map(look, sorted(windows)))
@@ -163,21 +163,21 @@ def _look(survey, road, start, edges, settings, level):
     h = z - survey.road_height(road, s)
     ground = local_ground(s, d, h, wide[0], int(round(wide[1] - wide[0])), (_down(d.min()), float(d.max()) + 1e-3))
     above = h - ground.at(s, d)
-    found, poles = {}, []
+    result, poles = {}, []
     slices = int(round(start / UPRIGHT_SLICE)), int(round((start + ROADSIDE_WINDOW) / UPRIGHT_SLICE))
     for side in (1, -1):
         beyond = side * (d - edges.of(side, s))
-        known = (beyond < settings.reach) & np.isfinite(above)
-        about = np.flatnonzero(known & (beyond > -INSIDE_EDGE - ABOUT_POLE))
-        upright = find_poles(s[about], d[about], above[about], (z - above)[about], (start, start + ROADSIDE_WINDOW), settings.min_pole_height)
+        within = (beyond < settings.reach) & np.isfinite(above)
+        around = np.flatnonzero(within & (beyond > -INSIDE_EDGE - ABOUT_POLE))
+        upright = find_poles(s[around], d[around], above[around], (z - above)[around], (start, start + ROADSIDE_WINDOW), settings.min_pole_height)
         poles += [pole for pole in upright if side * (pole.d - float(edges.of(side, np.array(pole.s)))) > -INSIDE_EDGE]
-        beside = np.flatnonzero(known & (beyond > -INSIDE_EDGE))
-        own = beside[(s[beside] >= start) & (s[beside] < start + ROADSIDE_WINDOW)]
-        nearest, seen = _seen(survey, road, start, side, edges, number, own)
-        across, up = lines_of_sight(survey, road, nearest, s[seen], d[seen], h[seen], time[seen])
+        outside = np.flatnonzero(within & (beyond > -INSIDE_EDGE))
+        window_rows = outside[(s[outside] >= start) & (s[outside] < start + ROADSIDE_WINDOW)]
+        nearest, rows = _seen(survey, road, start, side, edges, number, window_rows)
+        across, up = lines_of_sight(survey, road, nearest, s[rows], d[rows], h[rows], time[rows])
         sight = up / np.maximum(-side * across[1], LEAST_ACROSS)
-        uprights = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side, sight, settings.min_height)
-        found["line", side] = replace(uprights, above_view=_above_view(survey, road, uprights, level.get(nearest)))
+        uprights = find_uprights(s[rows], d[rows], above[rows], (z - above)[rows], slices, side, sight, settings.min_height)
+        result["line", side] = replace(uprights, above_view=_above_view(survey, road, uprights, level.get(nearest)))
         if edges.known:
-            found["gutter", side] = find_gutters(survey, road, start, int(round(ROADSIDE_WINDOW / SLICE_LENGTH)), side, partial(edges.of, side))
-    return found, sorted(poles, key=lambda pole: (pole.s, pole.d))
+            result["gutter", side] = find_gutters(survey, road, start, int(round(ROADSIDE_WINDOW / SLICE_LENGTH)), side, partial(edges.of, side))
+    return result, sorted(poles, key=lambda pole: (pole.s, pole.d))

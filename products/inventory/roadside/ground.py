@@ -46,11 +46,11 @@ class _LocalGround:
     def at(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) heights of the ground at (N,) stations and offsets; NaN where it is not known."""
         i = np.clip(np.floor((s - self.start) / GROUND_SLICE).astype(np.int64), 0, self.height.shape[0] - 1)
-        at = np.clip((d - self.origin) / GROUND_CELL - 0.5, 0.0, self.height.shape[1] - 1.0)
-        j = np.minimum(at.astype(np.int64), self.height.shape[1] - 2)
+        column = np.clip((d - self.origin) / GROUND_CELL - 0.5, 0.0, self.height.shape[1] - 1.0)
+        j = np.minimum(column.astype(np.int64), self.height.shape[1] - 2)
         low, high = self.height[i, j], self.height[i, j + 1]
-        both = low + (at - j) * (high - low)
-        return np.where(np.isfinite(both), both, np.where(np.isfinite(low), low, high))
+        between = low + (column - j) * (high - low)
+        return np.where(np.isfinite(between), between, np.where(np.isfinite(low), low, high))
 
 
 def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int, offsets: tuple[float, float]) -> _LocalGround:
@@ -64,29 +64,29 @@ def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slic
     columns = max(int(np.ceil((offsets[1] - offsets[0]) / GROUND_CELL)), 2)
     i, j = np.floor((s - start) / GROUND_SLICE).astype(np.int64), np.floor((d - offsets[0]) / GROUND_CELL).astype(np.int64)
     inside = np.flatnonzero((i >= 0) & (i < slices) & (j >= 0) & (j < columns))
-    place, h = (i * columns + j)[inside], h[inside]
-    order = order_by(np.rint((h + 100.0) * 1e3).astype(np.int32), place)
-    place, h = place[order], h[order]
-    _, first, count = lowest_layers(place, h, GROUND_JUMP)
-    solid = _supported(place[first], h[first], count, (slices, columns))
+    cell, h = (i * columns + j)[inside], h[inside]
+    order = order_by(np.rint((h + 100.0) * 1e3).astype(np.int32), cell)
+    cell, h = cell[order], h[order]
+    _, first, count = lowest_layers(cell, h, GROUND_JUMP)
+    solid = _supported(cell[first], h[first], count, (slices, columns))
     first, count = first[solid], count[solid]
     low, least = np.full((2, slices, columns), np.nan)
-    low.flat[place[first]] = h[first + np.rint(GROUND_SHARE * (count - 1)).astype(np.int64)]
-    least.flat[place[first]] = h[first + np.minimum(count, MIN_GROUND_POINTS) - 1]
+    low.flat[cell[first]] = h[first + np.rint(GROUND_SHARE * (count - 1)).astype(np.int64)]
+    least.flat[cell[first]] = h[first + np.minimum(count, MIN_GROUND_POINTS) - 1]
     face = np.zeros((slices, columns), bool)
-    face.flat[place[first]] = h[first + count - 1] - h[first] > RIM_STEP
+    face.flat[cell[first]] = h[first + count - 1] - h[first] > RIM_STEP
     low = _feet_in_shadow(_feet_beside(low, face), least)
     filled = _filled(low)
     low = _let_down(filled, _rims(low) | _rims(filled))
-    known = np.isfinite(low)
-    if not known.any():
+    finite = np.isfinite(low)
+    if not finite.any():
         return _LocalGround(start, offsets[0], low)
     # beyond what is known the ground neither rises nor falls
-    level = np.where(known, low, np.inf)
+    level = np.where(finite, low, np.inf)
     cells = int(round(STANDING_WIDTH / GROUND_CELL)) | 1
-    smooth = median_filter(np.where(known, level, 1e3), size=(3, 1), mode="nearest")
+    smooth = median_filter(np.where(finite, level, 1e3), size=(3, 1), mode="nearest")
     opened = grey_opening(np.where(smooth > 500.0, level.clip(max=1e3), smooth), size=(1, cells), mode="nearest")
-    ground = np.where(known & (opened < 500.0), opened, np.nan)
+    ground = np.where(finite & (opened < 500.0), opened, np.nan)
     return _LocalGround(start, offsets[0], _let_down(ground, smooth - ground > RIM_STEP))
 
 
@@ -96,8 +96,8 @@ def _supported(place, height, count, shape):
     number.flat[place], lowest.flat[place] = count, height
     number, lowest = np.pad(number, ((1, 1), (0, 0))), np.pad(lowest, ((1, 1), (0, 0)), constant_values=np.nan)
     support = number[1:-1].copy()
-    for beside in (slice(None, -2), slice(2, None)):
-        support += np.where(np.abs(lowest[beside] - lowest[1:-1]) < GROUND_JUMP, number[beside], 0.0)
+    for neighbour in (slice(None, -2), slice(2, None)):
+        support += np.where(np.abs(lowest[neighbour] - lowest[1:-1]) < GROUND_JUMP, number[neighbour], 0.0)
     return support.flat[place] >= MIN_GROUND_POINTS
 
 
@@ -108,12 +108,12 @@ def _feet_beside(low, face):
 
 def _feet_in_shadow(low, least):
     """Heights where the foot of a face that a shadow hides, as of a parked car, is the least that nearby slices see of it."""
-    beside = np.pad(low, ((0, 0), (1, 1)), constant_values=np.nan)
-    right, left = beside[:, :-2], beside[:, 2:]
+    padded = np.pad(low, ((0, 0), (1, 1)), constant_values=np.nan)
+    right, left = padded[:, :-2], padded[:, 2:]
     with np.errstate(invalid="ignore"):
         shadowed = np.isnan(right) & ~(left - low < RIM_STEP) | np.isnan(left) & ~(right - low < RIM_STEP)
-    seen = np.where(np.isnan(low), np.inf, np.where(shadowed, least, low))
-    foot = minimum_filter1d(seen, 2 * SHADOW_SLICES + 1, axis=0, mode="constant", cval=np.inf)
+    lowest = np.where(np.isnan(low), np.inf, np.where(shadowed, least, low))
+    foot = minimum_filter1d(lowest, 2 * SHADOW_SLICES + 1, axis=0, mode="constant", cval=np.inf)
     return np.where(shadowed & (low - foot > GROUND_JUMP), foot, low)
 
 
@@ -128,8 +128,8 @@ def _filled(low):
 
 def _let_down(low, standing):
     """Heights where what stands has that of the ground beside it; the cells beside it may hold the foot of its face, and are let down too."""
-    beside = np.pad(standing, ((0, 0), (1, 1)))
-    standing = (standing | beside[:, :-2] | beside[:, 2:]) & np.isfinite(low)
+    padded = np.pad(standing, ((0, 0), (1, 1)))
+    standing = (standing | padded[:, :-2] | padded[:, 2:]) & np.isfinite(low)
     return np.where(standing, _continued(np.where(standing, np.nan, low), STANDING_WIDTH), low)
 
 
@@ -137,8 +137,8 @@ def _continued(low, reach):
     """Gaps across take the height of the nearest cell within `reach` (m), of two as near the lower one."""
     low = low.copy()
     for _ in range(int(round(reach / GROUND_CELL))):
-        beside = np.pad(low, ((0, 0), (1, 1)), constant_values=np.nan)
-        low = np.where(np.isnan(low), np.fmin(beside[:, :-2], beside[:, 2:]), low)
+        padded = np.pad(low, ((0, 0), (1, 1)), constant_values=np.nan)
+        low = np.where(np.isnan(low), np.fmin(padded[:, :-2], padded[:, 2:]), low)
     return low
 
 
@@ -146,7 +146,7 @@ def _rims(low):
     """(I, J) narrow tops beyond which nothing was seen, as of a wall that hides what lies behind it."""
     rows, columns = low.shape
     cells = np.column_stack([np.full(rows, np.nan), low]).ravel()   # a gap between the rows
-    known = np.isfinite(cells)
+    finite = np.isfinite(cells)
     step = np.diff(cells, append=np.nan)
     with np.errstate(invalid="ignore"):
         breaks = ~(np.abs(step) < RIM_STEP)          # after a cell: a step, or nothing known on one side
@@ -154,10 +154,10 @@ def _rims(low):
     group = np.cumsum(np.r_[True, breaks[:-1]]) - 1
     first = np.flatnonzero(np.r_[True, breaks[:-1]])
     last = np.r_[first[1:] - 1, len(cells) - 1]
-    unseen = ~known
+    unseen = ~finite
     before, after = np.maximum(first - 1, 0), np.minimum(last + 1, len(cells) - 1)
     rim = up[before] & unseen[after] | down[last] & unseen[before]
-    standing = rim & known[first] & ((last - first + 1) * GROUND_CELL < STANDING_WIDTH)
+    standing = rim & finite[first] & ((last - first + 1) * GROUND_CELL < STANDING_WIDTH)
     return standing[group].reshape(rows, columns + 1)[:, 1:]
 
 
@@ -204,12 +204,12 @@ def level_views(survey: Survey) -> dict[int, float]:
             points = survey.window(road, start, start + VIEW_SAMPLE_LENGTH)
             h = points.z - survey.road_height(road, points.s)
             for number in np.unique(points.pass_number).tolist():
-                own = points.pass_number == number
-                across, up = lines_of_sight(survey, road, number, points.s[own], points.d[own], h[own], points.time[own])
-                away = np.hypot(*across)
-                slope = -up / np.maximum(away, 1e-3)
+                rows = points.pass_number == number
+                across, up = lines_of_sight(survey, road, number, points.s[rows], points.d[rows], h[rows], points.time[rows])
+                distance = np.hypot(*across)
+                slope = -up / np.maximum(distance, 1e-3)
                 slopes.setdefault(number, []).append(slope)
-                far.setdefault(number, []).append(slope[away > LEAST_RANGE])
+                far.setdefault(number, []).append(slope[distance > LEAST_RANGE])
     return {number: float(survey.sensor_height.get(number, READING.default_sensor_height)) for number in slopes if _is_level(
         np.concatenate(far[number]), np.concatenate(slopes[number]), survey.frame.has_time)}
 
@@ -244,31 +244,31 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
     Uprights whose `top` is how deep the gutter lies below its outer side; one for each UPRIGHT_SLICE
     """
     s = start + (np.arange(slices) + 0.5) * SLICE_LENGTH
-    at = edge(s)
-    ends = np.array([at - side * (GUTTER_INSIDE + INNER_REACH), at + side * READ_BEYOND])
+    edges = edge(s)
+    ends = np.array([edges - side * (GUTTER_INSIDE + INNER_REACH), edges + side * READ_BEYOND])
     grid = surface_grid(survey, road, start, slices, (float(np.floor(ends.min() / CROSS_CELL) * CROSS_CELL), float(ends.max())))
     if not len(grid.groups):
         return Uprights.none()
     profile = smoothed(_mean(grid))
-    u = side * (grid.d - at[:, None])
+    u = side * (grid.d - edges[:, None])
     looked = (u > -GUTTER_INSIDE) & (u < GUTTER_OUTSIDE) & np.isfinite(profile)
     lowest = np.where(looked, profile, np.inf)
     j = np.argmin(lowest, axis=1)
     rows = np.arange(slices)
-    low, place = lowest[rows, j], u[rows, j]
-    beyond = u - place[:, None]
+    low, offset = lowest[rows, j], u[rows, j]
+    beyond = u - offset[:, None]
     outer, inner = (np.where((beyond * way > 0) & (beyond * way < reach) & np.isfinite(profile), profile, -np.inf).max(axis=1)
                     for way, reach in ((1, OUTER_REACH), (-1, INNER_REACH)))
     # water stays where the ground rises outward from the lowest point on: a verge that falls on is none
     falls_on = np.where((beyond > 0) & (beyond < OUTER_REACH) & np.isfinite(profile), profile, np.inf).min(axis=1) < low
-    found = np.flatnonzero(np.isfinite(low) & (outer - low > OUTER_RISE) & (inner - low > INNER_RISE) & ~falls_on)
+    gutters = np.flatnonzero(np.isfinite(low) & (outer - low > OUTER_RISE) & (inner - low > INNER_RISE) & ~falls_on)
     # a slice of the surface holds several of those along which lines are followed
     times = int(round(SLICE_LENGTH / UPRIGHT_SLICE))
-    found = np.repeat(found, times)
-    number = np.floor(s[found] / SLICE_LENGTH).astype(np.int64) * times + np.tile(np.arange(times), len(found) // times)
-    zero = np.zeros(len(found))
-    return Uprights(number, grid.d[j[found]], low[found] + grid.line(s[found]), (outer - low)[found], zero, np.zeros((len(found), TOP_BINS)),
-                    zero, zero, zero + 1.0, zero, zero > 0, zero)
+    gutters = np.repeat(gutters, times)
+    number = np.floor(s[gutters] / SLICE_LENGTH).astype(np.int64) * times + np.tile(np.arange(times), len(gutters) // times)
+    zero = np.zeros(len(gutters))
+    return Uprights(number, grid.d[j[gutters]], low[gutters] + grid.line(s[gutters]), (outer - low)[gutters], zero,
+                    np.zeros((len(gutters), TOP_BINS)), zero, zero, zero + 1.0, zero, zero > 0, zero)
 
 
 def _mean(grid: SurfaceGrid) -> np.ndarray:

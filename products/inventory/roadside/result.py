@@ -80,11 +80,11 @@ def told_once(found: Roadside) -> tuple[list[SideLine], dict]:
 
 def _lines(found):
     shapes = [shapely.linestrings(np.stack(found.frame.to_map(line.chain.road, line.chain.s, line.chain.d), axis=1)) for line in found.lines]
-    away = [_away(found, line.chain.road, line.chain.s, line.chain.d, line.chain.side) for line in found.lines]
+    distances = [_away(found, line.chain.road, line.chain.s, line.chain.d, line.chain.side) for line in found.lines]
     kept = []
     for k, line in enumerate(found.lines):
-        nearer = [shapes[j] for j, other in enumerate(found.lines) if other.kind == line.kind != "gutter" and other.chain.road != line.chain.road
-                  and (away[j], other.chain.road) < (away[k], line.chain.road)]
+        nearer = [shapes[j] for j, twin in enumerate(found.lines) if twin.kind == line.kind != "gutter" and twin.chain.road != line.chain.road
+                  and (distances[j], twin.chain.road) < (distances[k], line.chain.road)]
         if nearer:
             free = shapely.distance(shapely.points(shapely.get_coordinates(shapes[k])), shapely.union_all(nearer)) > SAME_THING
             kept += [replace(line, chain=part) for part in _parts(line.chain, free, found.settings.min_length)]
@@ -99,20 +99,21 @@ def _parts(chain, free, min_length):
         return [chain]
     cuts = np.r_[0, np.flatnonzero(np.diff(free.astype(int))) + 1, len(free)]
     rows = [np.arange(a, b) for a, b in zip(cuts[:-1], cuts[1:]) if free[a] and chain.s[b - 1] - chain.s[a] >= min_length]
-    return [chain.part(own) for own in rows]
+    return [chain.part(stretch) for stretch in rows]
 
 
 def _poles(found):
     rows = [(road, pole) for road, poles in found.poles.items() for pole in poles]
     if len(found.poles) < 2 or not rows:
         return found.poles
-    place = np.array([np.r_[found.frame.to_map(road, np.array([pole.s]), np.array([pole.d]))] for road, pole in rows]).reshape(len(rows), 2)
-    away = np.array([min(_away(found, road, np.array([pole.s]), np.array([pole.d]), side) for side in (1, -1)) for road, pole in rows])
+    places = np.array([np.r_[found.frame.to_map(road, np.array([pole.s]), np.array([pole.d]))] for road, pole in rows]).reshape(len(rows), 2)
+    distances = np.array([min(_away(found, road, np.array([pole.s]), np.array([pole.d]), side) for side in (1, -1)) for road, pole in rows])
     number = np.array([road for road, _ in rows])
-    one, other = shapely.STRtree(shapely.points(place)).query(shapely.points(place), predicate="dwithin", distance=SAME_THING)
-    farther = (number[one] != number[other]) & ((away[one] > away[other]) | (away[one] == away[other]) & (number[one] > number[other]))
-    twins = set(one[farther].tolist())
-    return {road: [pole for k, (own, pole) in enumerate(rows) if own == road and k not in twins] for road in found.poles}
+    first, second = shapely.STRtree(shapely.points(places)).query(shapely.points(places), predicate="dwithin", distance=SAME_THING)
+    farther = (number[first] != number[second]) & (
+        (distances[first] > distances[second]) | (distances[first] == distances[second]) & (number[first] > number[second]))
+    twins = set(first[farther].tolist())
+    return {road: [pole for k, (pole_road, pole) in enumerate(rows) if pole_road == road and k not in twins] for road in found.poles}
 
 
 def _away(found, road, s, d, side):
@@ -128,14 +129,14 @@ def along_faces(things: list[tuple[str, Chain]]) -> list[tuple[str, Chain]]:
     things : kinds and chains of one side of a road
     Returns the same, in order of station; where two are joined, the uprights nearer to the road are kept
     """
-    found: list[tuple[str, Chain]] = []
+    result: list[tuple[str, Chain]] = []
     for kind, chain in sorted(things, key=lambda thing: int(thing[1].members.slice[0])):
-        twin = next((k for k, (other, before) in enumerate(found) if other == kind and _beside(before, chain)), None)
+        twin = next((k for k, (other_kind, before) in enumerate(result) if other_kind == kind and _beside(before, chain)), None)
         if twin is None:
-            found.append((kind, chain))
+            result.append((kind, chain))
         else:
-            found[twin] = kind, _joined(found[twin][1], chain)
-    return found
+            result[twin] = kind, _joined(result[twin][1], chain)
+    return result
 
 
 def _beside(one, other):

@@ -105,20 +105,20 @@ def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.nd
     for lag in range(1, BODY_CELLS + 1):
         peak[:, lag:] &= order[:, lag:] > order[:, :-lag]
         peak[:, :-lag] &= order[:, :-lag] > order[:, lag:]
-    at = np.argwhere(peak)
-    if not len(at):
+    peaks = np.argwhere(peak)
+    if not len(peaks):
         return Uprights.none()
     owner = np.full((rows, columns), -1)
     for lag in sorted(range(-BODY_CELLS, BODY_CELLS + 1), key=abs, reverse=True):
-        beside = at[:, 1] + lag
-        fits = (beside >= 0) & (beside < columns)
-        owner[at[fits, 0], beside[fits]] = np.flatnonzero(fits)
+        column = peaks[:, 1] + lag
+        fits = (column >= 0) & (column < columns)
+        owner[peaks[fits, 0], column[fits]] = np.flatnonzero(fits)
     body = np.flatnonzero(inside & (above >= FIRST_BIN * HEIGHT_BIN))
-    own = owner[i[body], j[body]]
-    body, own = body[own >= 0], own[own >= 0]
+    upright = owner[i[body], j[body]]
+    body, upright = body[upright >= 0], upright[upright >= 0]
     if not len(body):
         return Uprights.none()
-    return _described(at, own, u[body], above[body], (i[inside], u[inside], above[inside], ground[inside], sight[inside]), slices[0], side)
+    return _described(peaks, upright, u[body], above[body], (i[inside], u[inside], above[inside], ground[inside], sight[inside]), slices[0], side)
 
 
 def _described(at, own, u, above, everything, first, side):
@@ -198,8 +198,8 @@ def _ground_at(at, middle, i, u, ground):
     """(N,) median local z of the ground at the uprights."""
     key = i * 1e4 + u
     order = np.argsort(key, kind="stable")
-    place = np.clip(np.searchsorted(key[order], at[:, 0] * 1e4 + middle), 0, len(key) - 1)
-    return ground[order[place]]
+    index = np.clip(np.searchsorted(key[order], at[:, 0] * 1e4 + middle), 0, len(key) - 1)
+    return ground[order[index]]
 
 
 def _behind(at, middle, tops, i, u, z, sight):
@@ -280,7 +280,7 @@ def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarr
     # a plate or a branch beside the shaft fills some of the levels alone
     levels_about = ndimage.maximum_filter(filled, size=(3, 3, 1)).mean(axis=2)
     label, _ = ndimage.label(filled.any(axis=2) & (levels_about >= MIN_SHAFT_FILLED), np.ones((3, 3)))
-    found = []
+    poles = []
     for number, box in enumerate(ndimage.find_objects(label), 1):
         size = [(side.stop - side.start) * POLE_CELL for side in box]
         if max(size) > MAX_FOOTPRINT or filled[box][label[box] == number].any(axis=0).mean() < MIN_SHAFT_FILLED:
@@ -288,8 +288,8 @@ def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarr
         rows = low[(label[i, j] == number)]
         pole = _pole(rows, s, d, above, ground, min_height)
         if pole is not None and own[0] <= pole.s < own[1]:
-            found.append(pole)
-    return found
+            poles.append(pole)
+    return poles
 
 
 def _pole(rows, s, d, above, ground, min_height):
@@ -299,9 +299,9 @@ def _pole(rows, s, d, above, ground, min_height):
     if len(rows) < MIN_POLE_POINTS:
         return None
     stands = float(above[rows].min()) < foot + POLE_BIN
-    place = np.c_[s[rows], d[rows]]
-    centre, radius = _circle(place)
-    miss = np.abs(np.hypot(*(place - centre).T) - radius)
+    shaft = np.c_[s[rows], d[rows]]
+    centre, radius = _circle(shaft)
+    miss = np.abs(np.hypot(*(shaft - centre).T) - radius)
     if np.median(miss) > MAX_CIRCLE_MISS or 2 * radius > MAX_FOOTPRINT:
         return None
     near = np.flatnonzero((np.abs(s - centre[0]) < HEAD_REACH) & (np.abs(d - centre[1]) < HEAD_REACH))
@@ -310,8 +310,8 @@ def _pole(rows, s, d, above, ground, min_height):
     # people are slender at the head alone
     if height < max(min_height, SLENDER * 2 * radius) or height < AS_LOW_AS_CARS and not stands:
         return None
-    beside = (above[near] > SHAFT[0]) & (above[near] < height) & (ring > radius + FREE_ABOUT[0]) & (ring < radius + FREE_ABOUT[1])
-    if height < AS_LOW_AS_CARS and beside.sum() > MAX_BESIDE * len(rows):
+    around = (above[near] > SHAFT[0]) & (above[near] < height) & (ring > radius + FREE_ABOUT[0]) & (ring < radius + FREE_ABOUT[1])
+    if height < AS_LOW_AS_CARS and around.sum() > MAX_BESIDE * len(rows):
         return None
     head = near[(above[near] > SHAFT[1] - 0.5) & (above[near] < height + HEAD_REACH) & (ring < HEAD_REACH) & (ring > 2 * radius)]
     kind = _head_kind(_linked(np.c_[s[head], d[head]] - centre, radius), 2 * radius)
@@ -336,8 +336,8 @@ def _linked(head, radius):
     cell = np.floor(head / HEAD_CELL + 0.5).astype(np.int64) + middle
     filled = np.zeros((2 * middle + 1,) * 2, bool)
     filled[cell[:, 0], cell[:, 1]] = True
-    own = int(np.ceil(radius / HEAD_CELL))
-    filled[middle - own:middle + own + 1, middle - own:middle + own + 1] = True
+    half = int(np.ceil(radius / HEAD_CELL))
+    filled[middle - half:middle + half + 1, middle - half:middle + half + 1] = True
     label, _ = ndimage.label(filled, np.ones((3, 3)))
     return head[label[cell[:, 0], cell[:, 1]] == label[middle, middle]]
 

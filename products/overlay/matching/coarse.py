@@ -93,13 +93,13 @@ def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bound
             rough += first.peaks(turn, size, bounds, _PEAKS, sign)
     rough = _distinct(rough, step * half, _KEPT)
     second = _Round(photo, paint, cell, middle_size, _CELLS[1])
-    found: list[Place] = []
+    refined: list[Place] = []
     for number, place in enumerate(rough):
         progress.report(0.7 + 0.3 * number / len(rough))
         for span in _FINER:
             place = second.best_about(place, span * step)
-        found.append(place)
-    return _distinct(found, half, len(found))
+        refined.append(place)
+    return _distinct(refined, half, len(refined))
 
 
 def _steps(start, end, step):
@@ -111,8 +111,8 @@ def _distinct(places, half, count):
     """The best `count` places of which no two are the same within some metres, at the ends of the photo too."""
     kept: list[Place] = []
     for place in sorted(places, key=lambda one: -one.score):
-        if all(np.hypot(place.x - other.x, place.y - other.y) + half * abs(np.angle(np.exp(1j * (place.turn - other.turn)))) > _APART
-               for other in kept):
+        if all(np.hypot(place.x - better.x, place.y - better.y) + half * abs(np.angle(np.exp(1j * (place.turn - better.turn)))) > _APART
+               for better in kept):
             kept.append(place)
         if len(kept) == count:
             break
@@ -152,7 +152,7 @@ class _Round:
         norm = float(np.sqrt((canvas * canvas).sum())) or 1.0
         across, down, far = self._middles(shape, side, bounds)
         product[far] = 0.0
-        found = []
+        peaks = []
         values = product if sign > 0 else -product
         around = int(np.ceil(_APART / self.cell))
         for _ in range(count):
@@ -161,9 +161,9 @@ class _Round:
             if not score > _WORTH * self._best:
                 break
             self._best = max(self._best, score)
-            found.append(Place(float(across[column]), float(down[row]), float(turn), float(size), sign, score))
+            peaks.append(Place(float(across[column]), float(down[row]), float(turn), float(size), sign, score))
             values[max(0, row - around):row + around + 1, max(0, column - around):column + around + 1] = 0.0
-        return found
+        return peaks
 
     def best_about(self, place, span):
         """The best place of those turned and scaled by a span or not at all, with the correlation where both are known as its score."""
@@ -192,8 +192,8 @@ class _Round:
         ours = self.paint[rows, columns]
         theirs = canvas[rows.start - row:rows.stop - row, columns.start - column:columns.stop - column]
         theirs = np.where(ours == 0, 0.0, theirs)
-        both = float(np.sqrt((ours * ours).sum() * (theirs * theirs).sum()))
-        return place._replace(score=place.sign * float((ours * theirs).sum()) / both if both else 0.0)
+        norm = float(np.sqrt((ours * ours).sum() * (theirs * theirs).sum()))
+        return place._replace(score=place.sign * float((ours * theirs).sum()) / norm if norm else 0.0)
 
 
 def _shifts(length, most):
@@ -229,19 +229,19 @@ def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace
         raise RoadExtractionError(
             f"{image.path} covers {ground:.0f} m by its pixel size of {rough.size:.3g} m; images of up to {MOST_GROUND:.0f} m are "
             "matched. Give the single photo or a part of the mosaic, or the right pixel size.")
-    known = bool(np.isfinite(rough.reach))
-    far = 0.5 * float(np.hypot(image.width, image.height)) * rough.size * (1.0 + rough.size_range) + (rough.reach if known else 0.0)
+    placed = bool(np.isfinite(rough.reach))
+    far = 0.5 * float(np.hypot(image.width, image.height)) * rough.size * (1.0 + rough.size_range) + (rough.reach if placed else 0.0)
     sides = intensity.width * intensity.cell_size, intensity.height * intensity.cell_size
-    if not known and max(sides) > MOST_SEARCHED:
+    if not placed and max(sides) > MOST_SEARCHED:
         raise RoadExtractionError(
             f"The intensity image is {max(sides):.0f} m long; without any position an image is looked for within {MOST_SEARCHED:.0f} m. Give two "
             "points or a world file, or cut the intensity image.")
-    paint = read_paint(intensity, (rough.x - far, rough.y - far, rough.x + far, rough.y + far) if known else None)
+    paint = read_paint(intensity, (rough.x - far, rough.y - far, rough.x + far, rough.y + far) if placed else None)
     if not paint.known.any():
         raise RoadExtractionError(_no_overlap(image, intensity, rough, sides))
     turns = (rough.turn - rough.turn_range, rough.turn + rough.turn_range)
     sizes = (rough.size / (1.0 + rough.size_range), rough.size * (1.0 + rough.size_range))
-    x, y = (rough.x - paint.left, rough.y - paint.top) if known else (0.0, 0.0)
+    x, y = (rough.x - paint.left, rough.y - paint.top) if placed else (0.0, 0.0)
     return paint, Bounds(float(x), float(y), rough.reach, turns, sizes)
 
 
@@ -249,8 +249,8 @@ def _no_overlap(image, intensity, rough, sides):
     west, north = intensity.geotransform[0], intensity.geotransform[3]
     x = np.clip(rough.x, west, west + sides[0]) - rough.x
     y = np.clip(rough.y, north - sides[1], north) - rough.y
-    away = float(np.hypot(x, y))
-    where = f"{away / 1000:,.1f} km" if away >= 1000 else f"{away:.0f} m"
+    distance = float(np.hypot(x, y))
+    text = f"{distance / 1000:,.1f} km" if distance >= 1000 else f"{distance:.0f} m"
     return (f"{image.path} and the intensity image do not overlap: by {rough.source} the middle of the image lies at {rough.x:.0f}, {rough.y:.0f}, "
-            f"{where} from the intensity image's border, and no road was surveyed there. Is it an image of another road, or its position in "
+            f"{text} from the intensity image's border, and no road was surveyed there. Is it an image of another road, or its position in "
             "another CRS?")

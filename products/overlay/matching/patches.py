@@ -54,10 +54,10 @@ def find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarra
     Found, without patches that lie too near the border, hold no paint, or were found at the border of their window
     """
     margin = max(2, round(search / cell))
-    other = max(2, round(_OTHER_PEAK * half / cell))
+    exclusion = max(2, round(_OTHER_PEAK * half / cell))
     rows: list[tuple[float, ...]] = []
     for at_x, at_y, match in zip(x, y, correlation_maps(paint, drawn, cell, x, y, half, search)):
-        best = None if match is None else _peak(match, other)
+        best = None if match is None else _peak(match, exclusion)
         if best is not None:
             right, down, score, second, sharpness = best
             rows.append((at_x, at_y, (right - margin) * cell, -(down - margin) * cell, score, second, sharpness / cell**2))

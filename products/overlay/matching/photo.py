@@ -80,9 +80,9 @@ def read_paint(image: IntensityImage, box: tuple[float, float, float, float] | N
 def _means(pixels, step):
     """Means of step x step pixels over those that are known."""
     blocks = pixels.reshape(len(pixels) // step, step, pixels.shape[1] // step, step)
-    known = np.isfinite(blocks)
-    count = known.sum(axis=(1, 3))
-    total = np.where(known, blocks, 0.0).sum(axis=(1, 3))
+    finite = np.isfinite(blocks)
+    count = finite.sum(axis=(1, 3))
+    total = np.where(finite, blocks, 0.0).sum(axis=(1, 3))
     return np.divide(total, count, out=np.full(count.shape, np.nan, np.float32), where=count > 0)
 
 
@@ -119,10 +119,10 @@ def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
         luminance = np.zeros((rows, columns), np.float32)
         for number, weight in zip(colours, weights):
             luminance += np.float32(weight) * read(dataset.GetRasterBand(number), gdal.GRIORA_Average)
-        seen = read(dataset.GetRasterBand(1).GetMaskBand(), gdal.GRIORA_NearestNeighbour, gdal.GDT_Byte, np.uint8)
+        mask = read(dataset.GetRasterBand(1).GetMaskBand(), gdal.GRIORA_NearestNeighbour, gdal.GDT_Byte, np.uint8)
     except RuntimeError as problem:
         raise RoadExtractionError(f"{image.path} cannot be read as an image ({problem}). Export it anew as a TIFF or JPEG.") from problem
-    luminance[(seen < 128) | ~np.isfinite(luminance)] = np.nan
+    luminance[(mask < 128) | ~np.isfinite(luminance)] = np.nan
     return Photo(_paint_contrast(luminance, size * factor), luminance, factor)
 
 
@@ -136,13 +136,13 @@ _RANGE = (1.0, 99.5)  # percentiles of the values taken for black and white
 
 def _paint_contrast(values: np.ndarray, pixel_size: float) -> np.ndarray:
     """How much brighter each pixel is than its surroundings, -1 to 1, as a logarithm, so that sun and shadow look alike; 0 where unknown."""
-    known = np.isfinite(values)
-    if not known.any():
+    finite = np.isfinite(values)
+    if not finite.any():
         return np.zeros(values.shape, np.float32)
-    low, high = np.percentile(values[known][:: max(1, int(known.sum()) // 1_000_000)], _RANGE)
-    share = (np.where(known, values, low) - low) / max(float(high - low), 1e-9)
+    low, high = np.percentile(values[finite][:: max(1, int(finite.sum()) // 1_000_000)], _RANGE)
+    share = (np.where(finite, values, low) - low) / max(float(high - low), 1e-9)
     logarithm = np.log(np.clip(share, 0.0, 1.0) + _DARKEST).astype(np.float32)
-    weight = known.astype(np.float32)
+    weight = finite.astype(np.float32)
     around = SURROUNDINGS / pixel_size
     mean = _smooth(logarithm * weight, around) / np.maximum(_smooth(weight, around), 1e-3)
     return np.clip((logarithm - mean) / FULL_CONTRAST, -1.0, 1.0) * weight

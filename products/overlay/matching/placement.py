@@ -59,9 +59,9 @@ class Placement:
         x, y, pixel, line : (N,)
         Returns (N, 2) m, to first order
         """
-        at = np.column_stack(self.pixels(x, y))
+        placed = np.column_stack(self.pixels(x, y))
         slope = self.polynomial.jacobian(x, y)
-        return np.linalg.solve(slope, (np.column_stack([pixel, line]) - at)[..., None])[..., 0]
+        return np.linalg.solve(slope, (np.column_stack([pixel, line]) - placed)[..., None])[..., 0]
 
     def drawn(self, values: np.ndarray, photo: Photo, cell: float, shape: tuple[int, ...], corner: tuple[int, int] = (0, 0),
               reduction: int = 1) -> np.ndarray:
@@ -86,7 +86,7 @@ class Placement:
         x, y = np.meshgrid((corner[0] + across) * cell, -(corner[1] + down) * cell)
         pixel, line = (axis.reshape(x.shape) for axis in self.pixels(x.ravel(), y.ravel()))
         factor = photo.factor * reduction
-        nodes = [(at / factor - 0.5).astype(np.float32) for at in (pixel, line)]
+        nodes = [(position / factor - 0.5).astype(np.float32) for position in (pixel, line)]
         # of the middles of the cells: linear between the nodes
         wanted = np.meshgrid((np.arange(width) + 0.5) * (len(across) - 1) / width, (np.arange(height) + 0.5) * (len(down) - 1) / height)
         maps = [cv2.remap(node, *(axis.astype(np.float32) for axis in wanted), cv2.INTER_LINEAR) for node in nodes]
@@ -211,6 +211,6 @@ def left_out_residuals(x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np
     Returns (N,) m
     """
     fit = fit_image_polynomial(pixel[used], line[used], x[used], y[used], order)
-    away = np.column_stack([x, y]) - np.column_stack(fit.polynomial.to_map(pixel, line))
-    away[used] = fit.left_out
-    return np.hypot(*away.T)
+    residuals = np.column_stack([x, y]) - np.column_stack(fit.polynomial.to_map(pixel, line))
+    residuals[used] = fit.left_out
+    return np.hypot(*residuals.T)

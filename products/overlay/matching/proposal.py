@@ -142,7 +142,7 @@ def corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
     Returns (N,) correlation of the best place within some decimetres; NaN outside the photo
     """
     maps = _maps(placement, paint, photo, x, y, _OFF)
-    return np.array([np.nan if one is None else one.max() for one in maps])
+    return np.array([np.nan if match is None else match.max() for match in maps])
 
 
 def nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
@@ -152,7 +152,7 @@ def nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np
     Returns _Rival, None where no corner lies in the photo
     """
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
-    maps = [cv2.dilate(one, near) for one in _maps(placement, paint, photo, x, y, _AROUND) if one is not None]
+    maps = [cv2.dilate(match, near) for match in _maps(placement, paint, photo, x, y, _AROUND) if match is not None]
     if not maps:
         return None
     votes = np.maximum(maps, 0.0)

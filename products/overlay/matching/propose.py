@@ -57,8 +57,8 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
             pairs = _pair_corners(chosen.placement, paint, photo, x, y, settings)
             if pairs is not None:
                 middle = _middle_on_map(chosen.placement, image)
-                rivals = [rival_elsewhere(chosen.scores, other.scores, tuple((_middle_on_map(other.placement, image) - middle).tolist()))
-                          for other in tried if other is not chosen]
+                rivals = [rival_elsewhere(chosen.scores, candidate.scores, tuple((_middle_on_map(candidate.placement, image) - middle).tolist()))
+                          for candidate in tried if candidate is not chosen]
                 near = nearby_rival(pairs.placement, paint, photo, x, y)
                 rival = min([*rivals, *([near] if near else [])], key=lambda one: one.margin, default=None)
                 return _proposal(image, intensity, rough, settings, pairs, rival, paint)
@@ -76,7 +76,7 @@ def _followed(image, photo, paint, bounds, sign, x, y, progress):
         progress.check_cancelled()
         start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, (image.width / 2, image.height / 2), place.sign)
         placement = _align(start, paint, photo, progress)
-        if placement is not None and not any(_same(placement, other.placement, x, y) for other in tried):
+        if placement is not None and not any(_same(placement, candidate.placement, x, y) for candidate in tried):
             tried.append(_Tried(placement, corner_scores(placement, paint, photo, x, y)))
     progress.report(1.0)
     return sorted(tried, key=lambda one: -one.total)
@@ -132,8 +132,8 @@ def _middle_on_map(placement, image):
     polynomial = placement.polynomial
     centre = np.array([polynomial.centre])
     slope = polynomial.jacobian(centre[:, 0], centre[:, 1])[0]
-    at = np.column_stack(polynomial.to_map(centre[:, 0], centre[:, 1]))[0]
-    return polynomial.centre + np.linalg.solve(slope, np.array([0.5 * image.width, 0.5 * image.height]) - at)
+    centre_pixel = np.column_stack(polynomial.to_map(centre[:, 0], centre[:, 1]))[0]
+    return polynomial.centre + np.linalg.solve(slope, np.array([0.5 * image.width, 0.5 * image.height]) - centre_pixel)
 
 
 def _same(one, other, x, y):
@@ -143,9 +143,9 @@ def _same(one, other, x, y):
 
 def _range(rough, bounds):
     """What was searched, in words."""
-    where = f"within {rough.reach:.0f} m of where {rough.source} put it" if np.isfinite(rough.reach) else "everywhere"
+    area = f"within {rough.reach:.0f} m of where {rough.source} put it" if np.isfinite(rough.reach) else "everywhere"
     turns = "in all directions" if rough.turn_range >= np.pi else f"turned by up to {np.degrees(rough.turn_range):.0f}°"
-    return f"{where}, {turns}, with pixels of {bounds.sizes[0]:.3f} to {bounds.sizes[1]:.3f} m"
+    return f"{area}, {turns}, with pixels of {bounds.sizes[0]:.3f} to {bounds.sizes[1]:.3f} m"
 
 
 # Corners of paint in the intensity image: ends of dashes, corners of arrows, bars and stop lines.
@@ -170,10 +170,10 @@ def _paint_corners(paint: np.ndarray, known: np.ndarray, cell: float, count: int
     smooth = cv2.GaussianBlur(np.maximum(paint - _PAINT, 0.0), (0, 0), _SMOOTHING / cell)
     border = 2 * round(_BORDER / cell) + 1
     inside = cv2.erode(known.astype(np.uint8), np.ones((border, border), np.uint8), borderType=cv2.BORDER_CONSTANT, borderValue=0)
-    found = cv2.goodFeaturesToTrack(smooth, count, _LEAST, _APART / cell, mask=inside, blockSize=2 * round(_WINDOW / cell / 2) + 1)
-    if found is None:
+    corners = cv2.goodFeaturesToTrack(smooth, count, _LEAST, _APART / cell, mask=inside, blockSize=2 * round(_WINDOW / cell / 2) + 1)
+    if corners is None:
         return np.empty(0), np.empty(0)
-    column, row = found[:, 0].T.astype(float)
+    column, row = corners[:, 0].T.astype(float)
     return (column + 0.5) * cell, -(row + 0.5) * cell
 
 
@@ -196,9 +196,9 @@ def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: P
         drawn = placement.sign * placement.drawn(photo.contrast, photo, now, small.shape, reduction=placement.reduction(photo, now))
         height, width = (n * now for n in small.shape)
         x, y = (axis.ravel() for axis in np.meshgrid(np.arange(half / 2, width, half), -np.arange(half / 2, height, half)))
-        found = find_patches(small, drawn, now, x, y, half, search)
-        found = found.where((found.score > _LEAST_SCORE) & (found.second < _MOST_SECOND_OF_PATCHES))
-        fitted = robust_placement(placement, found.x, found.y, np.column_stack([found.dx, found.dy]), tolerance, found.score, 2)
+        patches = find_patches(small, drawn, now, x, y, half, search)
+        patches = patches.where((patches.score > _LEAST_SCORE) & (patches.second < _MOST_SECOND_OF_PATCHES))
+        fitted = robust_placement(placement, patches.x, patches.y, np.column_stack([patches.dx, patches.dy]), tolerance, patches.score, 2)
         if fitted is None:
             return None
         placement = fitted[0]
@@ -248,22 +248,22 @@ def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
     for search, times in _ROUNDS:
         drawn = placement.sign * placement.drawn(photo.contrast, photo, paint.cell, paint.contrast.shape,
                                                  reduction=placement.reduction(photo, paint.cell))
-        found = find_patches(paint.contrast, drawn, paint.cell, x, y, _PATCH, search)
-        found = found.where(found.score > _LISTED_SCORE)
-        alike = (found.score >= settings.min_score) & (found.second <= _MOST_SECOND)
-        moved = np.column_stack([found.dx, found.dy])
-        fitted = robust_placement(placement, found.x[alike], found.y[alike], moved[alike], times * settings.tolerance, found.score[alike], 2)
+        patches = find_patches(paint.contrast, drawn, paint.cell, x, y, _PATCH, search)
+        patches = patches.where(patches.score > _LISTED_SCORE)
+        alike = (patches.score >= settings.min_score) & (patches.second <= _MOST_SECOND)
+        moved = np.column_stack([patches.dx, patches.dy])
+        fitted = robust_placement(placement, patches.x[alike], patches.y[alike], moved[alike], times * settings.tolerance, patches.score[alike], 2)
         if fitted is None or fitted[1].sum() < max(LEAST_PAIRS, _LEAST_SHARE * alike.sum()):
             return None
-        pixel, line = placement.pixels(found.x + found.dx, found.y + found.dy)
+        pixel, line = placement.pixels(patches.x + patches.dx, patches.y + patches.dy)
         placement = fitted[0]
-        used = np.zeros(len(found.x), dtype=bool)
+        used = np.zeros(len(patches.x), dtype=bool)
         used[np.flatnonzero(alike)[fitted[1]]] = True
-    order = highest_order(found.x[used], found.y[used], 2)
+    order = highest_order(patches.x[used], patches.y[used], 2)
     if order == 0:
         return None
-    residual = left_out_residuals(found.x, found.y, pixel, line, used, order)
+    residual = left_out_residuals(patches.x, patches.y, pixel, line, used, order)
     spread = float(np.median(residual[used])) / _MEDIAN_LENGTH
     fits = residual <= min(settings.tolerance, max(_SIGMAS * spread, _FINEST))
-    why = np.select([found.score < settings.min_score, found.second > _MOST_SECOND, ~fits | ~used], [WEAK, REPEATS, AWAY], "")
-    return Pairs(placement, order, found.x, found.y, pixel, line, found.score, residual, why)
+    why = np.select([patches.score < settings.min_score, patches.second > _MOST_SECOND, ~fits | ~used], [WEAK, REPEATS, AWAY], "")
+    return Pairs(placement, order, patches.x, patches.y, pixel, line, patches.score, residual, why)
