@@ -70,8 +70,8 @@ class PointCloudsWidget(QWidget):
 
     def set_value(self, value) -> None:
         """Replace the names by one text or several; layers give the files they show."""
-        given = value if isinstance(value, (list, tuple)) else [value] if value else []
-        self.names.setText(f"{SEPARATOR} ".join(_source(one) for one in given))
+        clouds = value if isinstance(value, (list, tuple)) else [value] if value else []
+        self.names.setText(f"{SEPARATOR} ".join(_source(cloud) for cloud in clouds))
 
     def add(self, names: list[str]) -> None:
         """Further names after those that are there."""
@@ -160,8 +160,8 @@ def described(given: list[str]) -> str:
         return tr("There is no file {name}.").format(name=missing[0])
     size = sum(path.stat().st_size for path in files) / MEGABYTE
     mb = f"{size:,.1f}" if size < 10 else f"{size:,.0f}"
-    said = tr("1 file, {size} MB").format(size=mb) if len(files) == 1 else tr("{count} files, {size} MB").format(count=len(files), size=mb)
-    return ", ".join([said, *_of_headers(files)])
+    summary = tr("1 file, {size} MB").format(size=mb) if len(files) == 1 else tr("{count} files, {size} MB").format(count=len(files), size=mb)
+    return ", ".join([summary, *_of_headers(files)])
 
 
 def _of_headers(files):

@@ -80,7 +80,7 @@ class ColumnsWidget(QWidget):
             self._show_nothing()
             return
         try:
-            found = columns_of_table(self.path, self.value(), ROWS)
+            columns = columns_of_table(self.path, self.value(), ROWS)
         except RoadExtractionError as problem:
             # an SBET has no columns to assign
             self.table.hide()
@@ -89,11 +89,11 @@ class ColumnsWidget(QWidget):
             except RoadExtractionError:
                 self._say(told(str(problem)), wrong=True)
             return
-        self._fill(found)
+        self._fill(columns)
         try:
             self._say(described(facts_of(read_trajectory(self.path, columns=self.value()))))
         except RoadExtractionError as problem:
-            self._say(told(found.problem or str(problem)), wrong=True)
+            self._say(told(columns.problem or str(problem)), wrong=True)
 
     def _fill(self, found):
         count = len(found.roles)

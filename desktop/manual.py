@@ -47,8 +47,8 @@ class ManualWindow(QMainWindow):
 
 def page_path(name, language=""):
     """The file of a page in a language, by default that of QGIS; in English where it is not translated, the contents where there is no such page."""
-    own = PAGES / (language or chosen_language())[:2]
-    pages = [folder / f"{page}.md" for page in (name, "index") for folder in (own, PAGES)]
+    translated = PAGES / (language or chosen_language())[:2]
+    pages = [folder / f"{page}.md" for page in (name, "index") for folder in (translated, PAGES)]
     return next(page for page in pages if page.is_file())
 
 

@@ -140,10 +140,10 @@ class Menu(QObject):
 
     def _road_maps(self):
         """The road maps of the project; where there are none, a word on that."""
-        found = road_maps(QgsProject.instance(), self.iface.activeLayer())
-        if not found:
+        maps = road_maps(QgsProject.instance(), self.iface.activeLayer())
+        if not maps:
             say(self.iface, tr("There is no road map in this project yet: run Road map, or drop the GeoPackage of one into the project."))
-        return found
+        return maps
 
     def _show_section(self, place):
         """The section at a doubtful place, where its window is open."""
@@ -152,28 +152,28 @@ class Menu(QObject):
 
     def run_again(self, road_map, corrections):
         """Road map with all that a road map was made from, and the corrections made in it."""
-        clouds, gone = clouds_of(road_map, QgsProject.instance())
-        self.open_road_map(**{**road_map.values, **({} if gone else {"POINT_CLOUDS": clouds}), "CORRECTIONS": corrections.id()})
+        clouds, missing = clouds_of(road_map, QgsProject.instance())
+        self.open_road_map(**{**road_map.values, **({} if missing else {"POINT_CLOUDS": clouds}), "CORRECTIONS": corrections.id()})
 
     def _fill_layer_menu(self, menu):
         """"Run this stage again" for a layer of ours."""
         from .dialogs.stage_inputs import stage_again
 
         layer = self.iface.layerTreeView().currentLayer()
-        again = None if layer is None else stage_again(layer, QgsProject.instance())
-        if again is not None:
-            menu.addAction(QIcon(str(ICON)), tr("Run this stage again…"), lambda: self.open_algorithm(*again))
+        stage = None if layer is None else stage_again(layer, QgsProject.instance())
+        if stage is not None:
+            menu.addAction(QIcon(str(ICON)), tr("Run this stage again…"), lambda: self.open_algorithm(*stage))
 
     def open_report(self):
         """The report written last, in the user's web browser."""
         path = last_report()
         if not path:
-            said = tr("No report has been written since QGIS was started.")
+            message = tr("No report has been written since QGIS was started.")
         elif QDesktopServices.openUrl(QUrl.fromLocalFile(path)):
             return
         else:
-            said = tr("No web browser could be started. The report is the file {path}.").format(path=path)
-        say(self.iface, said)
+            message = tr("No web browser could be started. The report is the file {path}.").format(path=path)
+        say(self.iface, message)
 
     def open_table(self):
         """What the runs since QGIS was started gave, in a window."""
@@ -235,6 +235,6 @@ class Menu(QObject):
 
 def unused_name(project, name):
     """The name, numbered where the project has a layout of that name."""
-    taken = {layout.name() for layout in project.layoutManager().printLayouts()}
-    names = (name if number == 1 else f"{name} {number}" for number in range(1, len(taken) + 2))
-    return next(free for free in names if free not in taken)
+    used = {layout.name() for layout in project.layoutManager().printLayouts()}
+    names = (name if number == 1 else f"{name} {number}" for number in range(1, len(used) + 2))
+    return next(free for free in names if free not in used)

@@ -74,7 +74,7 @@ def _show(canvas, extent):
 
 
 def _say(iface, text, level, *buttons):
-    said = iface.messageBar().createMessage("Lanewright", text)
+    message = iface.messageBar().createMessage("Lanewright", text)
     for shown in buttons:
-        said.layout().addWidget(shown)
-    iface.messageBar().pushWidget(said, level, LONG)
+        message.layout().addWidget(shown)
+    iface.messageBar().pushWidget(message, level, LONG)

@@ -40,10 +40,10 @@ class SampleRun:
         if not fine:
             self._failed(made)
             return
-        wanted = {name: _loaded(self.folder / "road_map.gpkg", name.lower()) for name in LAYERS}
+        layers = {name: _loaded(self.folder / "road_map.gpkg", name.lower()) for name in LAYERS}
         self.running = BackgroundRun("roadmap", dict(
             POINT_CLOUDS=[made.parameters["POINT_CLOUD"]], TRAJECTORY=made.parameters["TRAJECTORY"],
-            INTENSITY_IMAGE=_loaded(self.folder / "intensity.tif"), REPORT=str(self.folder / "report.html"), **wanted), self._mapped)
+            INTENSITY_IMAGE=_loaded(self.folder / "intensity.tif"), REPORT=str(self.folder / "report.html"), **layers), self._mapped)
 
     def _mapped(self, mapped, fine):
         from processing.core.ProcessingResults import resultsList

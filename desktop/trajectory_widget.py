@@ -72,10 +72,10 @@ class TrajectoryWrapper(DialogWrapper):
 
 def trajectory_of(project: QgsProject, active: QgsMapLayer | None = None) -> QgsMapLayer | None:
     """The layer of a project that looks like a trajectory: the active one, else the only one."""
-    found = [layer for layer in project.mapLayers().values() if looks_like_a_trajectory(layer)]
-    if active in found:
+    layers = [layer for layer in project.mapLayers().values() if looks_like_a_trajectory(layer)]
+    if active in layers:
         return active
-    return found[0] if len(found) == 1 else None
+    return layers[0] if len(layers) == 1 else None
 
 
 def trajectory_beside(clouds: list[str]) -> str:

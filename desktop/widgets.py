@@ -15,11 +15,11 @@ LAST_INPUT, LAST_OUTPUT = "/Processing/LastInputPath", "/Processing/LastOutputPa
 
 def button(text: str, what: Callable[[], object] | None = None, tip: str = "") -> QPushButton:
     """A button that calls a function without arguments."""
-    made = QPushButton(text)
-    made.setToolTip(tip)
+    push_button = QPushButton(text)
+    push_button.setToolTip(tip)
     if what is not None:
-        made.clicked.connect(lambda checked=False: what())
-    return made
+        push_button.clicked.connect(lambda checked=False: what())
+    return push_button
 
 
 def wrapped(text: str = "") -> QLabel:
@@ -41,13 +41,13 @@ def choices(items: Iterable[tuple[str, object]], changed: Callable[[], object] |
 
 def row(*widgets: QWidget | None) -> QHBoxLayout:
     """Widgets beside each other; None takes the width that is left, else texts and boxes share it."""
-    made = QHBoxLayout()
+    layout = QHBoxLayout()
     for widget in widgets:
         if widget is None:
-            made.addStretch()
+            layout.addStretch()
         else:
-            made.addWidget(widget, 0 if None in widgets or isinstance(widget, QPushButton) else 1)
-    return made
+            layout.addWidget(widget, 0 if None in widgets or isinstance(widget, QPushButton) else 1)
+    return layout
 
 
 def answers(dialog: QDialog, *others: QPushButton) -> QDialogButtonBox:
@@ -55,8 +55,8 @@ def answers(dialog: QDialog, *others: QPushButton) -> QDialogButtonBox:
     box = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
     box.accepted.connect(dialog.accept)
     box.rejected.connect(dialog.reject)
-    for other in others:
-        box.addButton(other, QDialogButtonBox.ButtonRole.ResetRole)
+    for push_button in others:
+        box.addButton(push_button, QDialogButtonBox.ButtonRole.ResetRole)
     return box
 
 

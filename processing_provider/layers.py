@@ -103,7 +103,7 @@ class QgisSource(VectorSource):
             yield wkb, [_value(value) for value in feature.attributes()]
 
     def kind_label(self, kind):
-        return QgsWkbTypes.geometryDisplayString(next(geometry_type for geometry_type, ours in KINDS.items() if ours == kind))
+        return QgsWkbTypes.geometryDisplayString(next(geometry_type for geometry_type, name in KINDS.items() if name == kind))
 
 
 def _wkb(geometry, measures):

@@ -54,7 +54,7 @@ _LEAVES = np.array([62.0, 92.0, 44.0])
 def plates(scene: Scene, camera: Camera) -> list[tuple[float, float, float]]:
     """Signalised plates along both borders of the image, off the carriageway: (x, y, rotation) of each, m, local, and radians."""
     count = max(3, int(round(camera.width * GROUND_PIXEL / _PLATE_EVERY)) + 1)
-    found = []
+    result = []
     for share in np.linspace(0.025, 0.975, count):
         for inward in (1, -1):
             # from the border inward to the first place without an obstacle
@@ -64,8 +64,8 @@ def plates(scene: Scene, camera: Camera) -> list[tuple[float, float, float]]:
             free = np.flatnonzero(_is_free(scene, x, y, PLATE_SIDE) & ((d > scene.left.edge + PLATE_SIDE) | (d < -scene.right.edge - PLATE_SIDE)))
             if len(free):
                 k = free[0]
-                found.append((float(x[k]), float(y[k]), float(scene.axis.heading(s[k:k + 1])[0])))
-    return found
+                result.append((float(x[k]), float(y[k]), float(scene.axis.heading(s[k:k + 1])[0])))
+    return result
 
 
 def seen_from_above(survey: SampleSurvey) -> tuple[Scene, Camera]:
@@ -140,8 +140,8 @@ def uav_control_points(survey: SampleSurvey) -> Features:
     layer = Features("PointZ", CONTROL_POINTS, crs=survey.crs)
     checks = set(order[[k < len(x) - len(laid) for k in order]][::_EVERY_CHECK].tolist())
     for number, k in enumerate(order, 1):
-        place = np.array([x[k] + surveyed[0, k], y[k] + surveyed[1, k], z[k]]) + origin
-        layer.add(Point(place), point=number, role="check" if k in checks else "control",
+        xyz = np.array([x[k] + surveyed[0, k], y[k] + surveyed[1, k], z[k]]) + origin
+        layer.add(Point(xyz), point=number, role="check" if k in checks else "control",
                   pixel=pixel[k] + pointed[0, k], line=line[k] + pointed[1, k], kind=kinds[k])
     return layer
 
@@ -186,8 +186,8 @@ class _StreetColours:
         rough = np.where(label == LABEL["verge"], 0.16, 0.055)
         light = 1.0 + rough * fine + 0.045 * broad
         for start, end, right, left, factor in scene.repairs:
-            there = (s >= start) & (s <= end) & (d >= right) & (d <= left) & (label == LABEL["road"])
-            light[there] *= 1.0 - 0.35 * (1.0 - factor)
+            repaired = (s >= start) & (s <= end) & (d >= right) & (d <= left) & (label == LABEL["road"])
+            light[repaired] *= 1.0 - 0.35 * (1.0 - factor)
         # joints between slabs of one metre
         walk = np.flatnonzero(label == LABEL["sidewalk"])
         light[walk[(s[walk] % 1.0) < 0.03]] *= 0.80

@@ -199,36 +199,36 @@ class SampleSurvey:
         origin, direction, times, angles = scanner.pulses(drive, lines)
         station = float(drive.station(times[len(times) // 2]))
         hits = cast(scene, origin, direction, station, rng, settings.reach)
-        found = np.flatnonzero(np.isfinite(hits.distance) & (hits.cosine > 0))
-        label = label_hits(scene, hits, found)
-        distance, cosine = hits.distance[found], hits.cosine[found]
-        start, way = origin[:, found], direction[:, found]
-        s, d = hits.station[found], hits.offset[found]
-        standing = np.flatnonzero(hits.strip[found] == OBSTACLE)
-        place = start[:, standing] + distance[standing] * way[:, standing]
-        s[standing], d[standing] = scene.located(place[0], place[1], station)
-        strength = received(brightness_of(scene, label, s, d, hits.brightness[found]), distance, cosine, scanner.gain)
+        returns = np.flatnonzero(np.isfinite(hits.distance) & (hits.cosine > 0))
+        label = label_hits(scene, hits, returns)
+        distance, cosine = hits.distance[returns], hits.cosine[returns]
+        start, way = origin[:, returns], direction[:, returns]
+        s, d = hits.station[returns], hits.offset[returns]
+        standing = np.flatnonzero(hits.strip[returns] == OBSTACLE)
+        xyz = start[:, standing] + distance[standing] * way[:, standing]
+        s[standing], d[standing] = scene.located(xyz[0], xyz[1], station)
+        strength = received(brightness_of(scene, label, s, d, hits.brightness[returns]), distance, cosine, scanner.gain)
         inside = scene.surveyed(s, d, settings.reach)
         true_range = distance
         if noise:
-            normal = rng.standard_normal((3, len(found)), dtype=np.float32)
-            chance = rng.random((3, len(found)), dtype=np.float32)
+            normal = rng.standard_normal((3, len(returns)), dtype=np.float32)
+            chance = rng.random((3, len(returns)), dtype=np.float32)
             distance = distance + _RANGE_NOISE * normal[0]
             stray = chance[0] < _STRAY
             distance[stray] = 1.5 + (distance[stray] - 1.5) * chance[2][stray]
             label[stray] = LABEL["stray"]
             strength = strength * (1.0 + _SPECKLE * normal[1]) + _COUNT_NOISE * normal[2]
             inside &= chance[1] > _LOST + 0.5 * np.exp2(-np.maximum(strength, 0.0) / _WEAK_SIGNAL)
-        place = start + distance * way
+        xyz = start + distance * way
         if noise:
             grass = np.flatnonzero(label == LABEL["verge"])
-            place[2, grass] += _VERGE_NOISE * np.abs(normal[2, grass])
+            xyz[2, grass] += _VERGE_NOISE * np.abs(normal[2, grass])
         points = np.zeros(int(inside.sum()), dtype=SAMPLE_POINT)
         for axis, name in enumerate("xyz"):
-            points[name] = place[axis, inside] + settings.origin[axis]
-        points["time"] = drive.start_time + times[found][inside]
+            points[name] = xyz[axis, inside] + settings.origin[axis]
+        points["time"] = drive.start_time + times[returns][inside]
         points["intensity"] = np.clip(np.rint(strength[inside]), 1, 65535)
-        points["scan_angle"] = angles[found][inside]
+        points["scan_angle"] = angles[returns][inside]
         points["scanner"], points["pass"] = scanner.number, number + 1
         points["label"], points["range"] = label[inside], true_range[inside]
         points["station"], points["offset"] = s[inside], d[inside]

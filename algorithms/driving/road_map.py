@@ -126,9 +126,9 @@ class RoadMap(Algorithm):
         road_map.road_points.close()
         if road_map.image is None:
             call.drop_file("INTENSITY_IMAGE")
-        made = {}
+        layers = {}
         for name, attribute, geometry, fields, _ in LAYERS:
-            layer = made[attribute] = road_map.layer(attribute)
+            layer = layers[attribute] = road_map.layer(attribute)
             call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
         if call.wants("PASSES"):
             from ...core.survey.frame.placement import passes_to_features
@@ -140,4 +140,4 @@ class RoadMap(Algorithm):
 
             call.text("REPORT", road_map_report(road_map, image_path))
         return road_map_numbers([road.length for road in road_map.frame.roads],
-                                *(made[name] for name in ("edges", "marking_lines", "driving_lines", "markings")), road_map.corrections)
+                                *(layers[name] for name in ("edges", "marking_lines", "driving_lines", "markings")), road_map.corrections)

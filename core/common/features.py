@@ -60,7 +60,7 @@ class Features:
 
     @cached_property
     def _fields(self) -> dict[str, Field]:
-        return {field.name: field for field in self.schema}
+        return {attribute.name: attribute for attribute in self.schema}
 
     def __len__(self) -> int:
         return len(self.rows)

@@ -84,33 +84,34 @@ class LayerRows(Rows):
 
     def to_features(self, frame: Any = None) -> Features:
         """The layer in map coordinates, in the same order. `frame` : RoadFrame."""
-        columns = {column.field.name: column.written(getattr(self, name)) for name, column in _columns(type(self)).items()}
+        columns = {attribute.field.name: attribute.written(getattr(self, name)) for name, attribute in _columns(type(self)).items()}
         derived = self.derived(frame)
-        columns.update({column.name: [column.value(value) for value in derived[column.name]] for column in self.SCHEMA if column.name in derived})
+        columns.update({attribute.name: [attribute.value(value) for value in derived[attribute.name]]
+                        for attribute in self.SCHEMA if attribute.name in derived})
         rows = [dict(zip(columns, row)) for row in zip(*columns.values())]
         return Features(self.GEOMETRY_TYPE, list(self.SCHEMA), list(self.on_map(frame)), rows, self.crs)
 
     @classmethod
     def read_columns(cls, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         """Arrays by attribute of rows of the layer, whose fields may be missing."""
-        return {name: column.array([None if (value := row.get(column.field.name)) == "" else value for row in rows])
-                for name, column in _columns(cls).items()}
+        return {name: attribute.array([None if (value := row.get(attribute.field.name)) == "" else value for row in rows])
+                for name, attribute in _columns(cls).items()}
 
     @classmethod
     def gathered(cls, things: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         """Arrays by attribute of things of which each is a dict of attribute to value; what is missing is unknown."""
-        return {name: column.array([entry.get(name) for entry in things]) for name, column in _columns(cls).items()}
+        return {name: attribute.array([entry.get(name) for entry in things]) for name, attribute in _columns(cls).items()}
 
     @classmethod
     def array_of(cls, name: str, values: Any) -> np.ndarray:
         """The array of an attribute, of the type of its field."""
-        column = _columns(cls).get(name)
-        return np.asarray(values, None if column is None else column.kind)
+        attribute = _columns(cls).get(name)
+        return np.asarray(values, None if attribute is None else attribute.kind)
 
     @classmethod
     def filled(cls: type[AnyLayerRows], count: int, crs: str = "", **values: Any) -> AnyLayerRows:
         """`count` entries: of each attribute an array, or a value that all share; what is not given is unknown."""
-        values = {**{name: column.unknown for name, column in _columns(cls).items()}, **values}
+        values = {**{name: attribute.unknown for name, attribute in _columns(cls).items()}, **values}
         return cls(*(np.array(np.broadcast_to(cls.array_of(name, values.get(name, np.nan)), count)) for name in cls.names()), crs=crs)  # type: ignore[call-arg]
 
     @classmethod

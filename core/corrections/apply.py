@@ -91,17 +91,17 @@ def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections:
 
 def _replaced(kind, pieces, spans, correction):
     """Pieces without the stretches, or with the stretches accepted."""
-    of: dict[int, list[tuple[float, float]]] = {}
+    spans_of: dict[int, list[tuple[float, float]]] = {}
     for k, a, b in spans:
-        of.setdefault(k, []).append((a, b))
+        spans_of.setdefault(k, []).append((a, b))
     result = []
     for k, piece in enumerate(pieces):
-        if k not in of:
+        if k not in spans_of:
             result.append(piece)
             continue
         line = kind.columns(piece)
         length = float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum())
-        parts = pieces_of(length, of[k])
+        parts = pieces_of(length, spans_of[k])
         for a, b, along in parts:
             stretch = piece if len(parts) == 1 else kind.part(piece, a, b)
             if not along:
@@ -293,9 +293,9 @@ class _Lines(LineKind):
         widths = [piece["width"] for piece in pieces if np.isfinite(piece["width"])]
         blank = dict(road=correction.road, line=free, kind="", pattern=USUAL_PATTERN, station=correction.station, end=correction.station,
                      width=float(np.median(widths)) if widths else np.nan)
-        given = {name: value for name, value in (("kind", correction.kind), ("pattern", correction.pattern)) if value}
+        attributes = {name: value for name, value in (("kind", correction.kind), ("pattern", correction.pattern)) if value}
         u, _ = fit.curve.project(places[[0, -1], 0], places[[0, -1], 1])
-        piece = dict(blank if like is None else like, **given, status=DRAWN, curve=fit.curve, arc=u, rmse=np.nan,
+        piece = dict(blank if like is None else like, **attributes, status=DRAWN, curve=fit.curve, arc=u, rmse=np.nan,
                      offset=correction.offset, places=places)
         return self.with_stations(piece, places)
 

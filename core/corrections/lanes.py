@@ -125,8 +125,8 @@ def _taken(correction, pieces, frame):
         x, y = road.to_map(s, d + offset - np.median(d))
         order = np.argsort(s * way)
         drawn = replace(correction, action="draw", places=np.c_[x, y, correction.places[:, 2]][order], offset=offset, width=width)
-        same = [piece["places"] for piece in pieces if piece["direction"] == way]
-        length = sum(last - first for _, first, last in spans_along(same, replace(drawn, action="accept"), CORRECTING.taken_reach))
+        same_way = [piece["places"] for piece in pieces if piece["direction"] == way]
+        length = sum(last - first for _, first, last in spans_along(same_way, replace(drawn, action="accept"), CORRECTING.taken_reach))
         if length >= CORRECTING.taken_share * np.hypot(*np.diff(drawn.places[:, :2], axis=0).T).sum():
             # what the estimate made is accepted, and not deleted with the lane beside it
             result = [part for part in result if part.action != "delete"]
@@ -168,8 +168,8 @@ def _lanes_of(pieces, frame, crs):
         first, last = d if piece["direction"] >= 0 else d[::-1]
         piece.update(first=float(first), last=float(last), width=float(2 * np.median(half)), left=middle[:, 3:6], right=middle[:, 6:9])
         piece.setdefault("successors", ())
-    gone = before - {piece["lane_id"] for piece in pieces}
-    roads = {road for road, _ in changed} | {piece["road"] for piece in pieces if gone & set(piece["successors"])}
+    lost_ids = before - {piece["lane_id"] for piece in pieces}
+    roads = {road for road, _ in changed} | {piece["road"] for piece in pieces if lost_ids & set(piece["successors"])}
     for road in sorted(roads):
         follow([piece for piece in pieces if piece["road"] == road])
     ids = {piece["lane_id"] for piece in pieces}
@@ -186,9 +186,9 @@ def _remaining(elements: CurveElements, before: list[dict[str, Any]], after: lis
     keep = np.ones(len(elements), bool)
     for k in range(len(elements)):
         lane = (elements.road[k], elements.lane[k])
-        held, left = (sum(max(min(elements.end[k], row["end"]) - max(elements.station[k], row["station"]), 0.0) for row in rows
-                          if (row["road"], row["lane"]) == lane and row["status"] != DRAWN) for rows in (before, after))
-        keep[k] = left >= (1 - CORRECTING.most_lost) * held
+        covered, left = (sum(max(min(elements.end[k], row["end"]) - max(elements.station[k], row["station"]), 0.0) for row in rows
+                             if (row["road"], row["lane"]) == lane and row["status"] != DRAWN) for rows in (before, after))
+        keep[k] = left >= (1 - CORRECTING.most_lost) * covered
     rows = np.flatnonzero(keep)
     arrays = {field.name: getattr(elements, field.name)[rows] for field in fields(elements) if isinstance(getattr(elements, field.name), np.ndarray)}
     return replace(elements, **arrays, arc=[elements.arc[k] for k in rows])

@@ -62,7 +62,7 @@ class _SplineBasis:
         band = 4 * columns[:, second] + (SPLINE_DEGREE - (second - first)).astype(np.int32)
         self._products = csc_matrix(((values[:, first] * values[:, second]).ravel(), band.ravel(), ten), (4 * whole, size))
         scale = self.sizes / np.maximum(lengths, 1e-6) * np.array([b for _, b in blocks]) ** 6 / steps**5
-        self._penalty = np.concatenate([_roughness(count) * by for count, by in zip(self.counts.tolist(), scale.tolist())])
+        self._penalty = np.concatenate([_roughness(count) * factor for count, factor in zip(self.counts.tolist(), scale.tolist())])
 
     def robustly_solved(self, values: np.ndarray, residuals_of: Callable[[np.ndarray, np.ndarray], np.ndarray],
                         rounds: int) -> list[Any]:

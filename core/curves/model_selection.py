@@ -73,10 +73,10 @@ def _ellipse(x, y):
     check_cancelled()
     rows = PointGroups([len(x)]).subsampled(FITS.coarse_points)
     try:
-        few = fit_ellipse(x[rows], y[rows], MAX_MISFIT)
+        coarse = fit_ellipse(x[rows], y[rows], MAX_MISFIT)
         if len(rows) == len(x):
-            return few
-        return fit_ellipse(x, y) if few.residual_p95 <= MAX_MISFIT else None
+            return coarse
+        return fit_ellipse(x, y) if coarse.residual_p95 <= MAX_MISFIT else None
     except RoadExtractionError:
         return None
 

@@ -185,35 +185,35 @@ def _levenberg_marquardt(problem, found, scale, f_scale, state, exact, max_misfi
     results = None
     lines, rows = np.arange(len(found)), slice(None)
     residuals, state = problem.evaluate(found, state)
-    now, damping, steps = _cost(problem, residuals, f_scale), np.full(len(found), 1e-3), np.zeros(len(found), int)
+    cost, damping, steps = _cost(problem, residuals, f_scale), np.full(len(found), 1e-3), np.zeros(len(found), int)
     while True:
         check_cancelled()
         groups = problem.groups
         owner = groups.owner
         weight = 1.0 / np.sqrt(1.0 + (residuals / f_scale[owner]) ** 2)
-        by = problem.jacobian(found, state)
+        jacobian = problem.jacobian(found, state)
         # by the second derivative of soft L1, which is the weight's cube: the weight itself takes three times the steps
-        weighted = by * weight**3
+        weighted = jacobian * weight**3
         normal = np.empty((len(found), size, size))
-        normal[:, above, below] = normal[:, below, above] = groups.sums(by[above] * weighted[below]).T
+        normal[:, above, below] = normal[:, below, above] = groups.sums(jacobian[above] * weighted[below]).T
         normal *= scale[:, :, None] * scale[:, None, :]
-        right = groups.sums(by * (weight * residuals)).T * scale
+        right = groups.sums(jacobian * (weight * residuals)).T * scale
         normal[:, diagonal, diagonal] += damping[:, None] * (normal[:, diagonal, diagonal] + 1e-12)
         step = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
         proposed = found - scale * step
         tried, new = problem.evaluate(proposed, state)
-        then = _cost(problem, tried, f_scale)
-        better, small = then <= now, np.abs(step).max(axis=1) < exact
+        new_cost = _cost(problem, tried, f_scale)
+        better, small = new_cost <= cost, np.abs(step).max(axis=1) < exact
         steps += better
-        gain = now - then
-        given_up = (gain <= FITS.stalled_gain * now) & (then > groups.counts * max_misfit**2)
-        over = np.where(better, (gain <= 1e-4 * exact * now) & small | given_up | (steps >= FITS.max_steps), (damping > FITS.max_damping) | small)
+        gain = cost - new_cost
+        given_up = (gain <= FITS.stalled_gain * cost) & (new_cost > groups.counts * max_misfit**2)
+        over = np.where(better, (gain <= 1e-4 * exact * cost) & small | given_up | (steps >= FITS.max_steps), (damping > FITS.max_damping) | small)
         damping = np.where(better, np.maximum(damping / 8, 1e-10), damping * 8)
         if better.all():
-            found, residuals, state, now = proposed, tried, new, then
+            found, residuals, state, cost = proposed, tried, new, new_cost
         else:
             members = better[owner]
-            found, now = np.where(better[:, None], proposed, found), np.where(better, then, now)
+            found, cost = np.where(better[:, None], proposed, found), np.where(better, new_cost, cost)
             residuals = np.where(members, tried, residuals)
             state = tuple(np.where(members, a, b) for a, b in zip(new, state))
         if not over.any():
@@ -233,7 +233,7 @@ def _levenberg_marquardt(problem, found, scale, f_scale, state, exact, max_misfi
         problem = problem.subset(left, members)
         lines, rows = lines[left], rows[members]
         found, scale, f_scale, exact = found[left], scale[left], f_scale[left], exact[left]
-        now, damping, steps = now[left], damping[left], steps[left]
+        cost, damping, steps = cost[left], damping[left], steps[left]
         residuals, state = residuals[members], tuple(values[members] for values in state)
 
 

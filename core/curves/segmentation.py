@@ -119,6 +119,6 @@ class _Costs:
         for kind, sums in enumerate((self.whole, self.less, self.less)):
             size = kind + 2
             right = sums[begun, :size] * scale[:, :size]
-            by = np.linalg.solve(normal[:, :size, :size], right[:, :, None])[:, :, 0]
-            costs[:, kind] = sums[begun, -1] - (by * right).sum(axis=1)
+            solution = np.linalg.solve(normal[:, :size, :size], right[:, :, None])[:, :, 0]
+            costs[:, kind] = sums[begun, -1] - (solution * right).sum(axis=1)
         return np.maximum(costs, 0.0) / self.sigma**2

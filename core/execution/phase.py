@@ -305,19 +305,19 @@ def _state(value):
 def _value(tree, arrays):
     if not isinstance(tree, dict):
         return tree
-    kind, held = next(iter(tree.items()))
+    kind, content = next(iter(tree.items()))
     if kind == "number":
-        return np.dtype(held[0]).type(held[1])
+        return np.dtype(content[0]).type(content[1])
     if kind == "array":
-        return arrays[held]
+        return arrays[content]
     if kind == "scalar":
-        return arrays[held][()]
+        return arrays[content][()]
     if kind == "dict":
-        return {_value(key, arrays): _value(item, arrays) for key, item in held}
+        return {_value(key, arrays): _value(item, arrays) for key, item in content}
     if kind in ("list", "tuple"):
-        items = [_value(item, arrays) for item in held]
+        items = [_value(item, arrays) for item in content]
         return items if kind == "list" else tuple(items)
-    return _object(named(held), {name: _value(item, arrays) for name, item in tree["state"]})
+    return _object(named(content), {name: _value(item, arrays) for name, item in tree["state"]})
 
 
 def _object(kind, state):

@@ -211,9 +211,9 @@ def _remove_after(folder):
         patience = float(beat.read_text(encoding="utf-8"))
         while time.monotonic() - since < patience:
             # clocks of two machines differ, so the time of the file is only compared with itself
-            now = beat.stat().st_mtime_ns
-            if now != last:
-                last, since = now, time.monotonic()
+            modified = beat.stat().st_mtime_ns
+            if modified != last:
+                last, since = modified, time.monotonic()
             time.sleep(EXECUTION.watch_time)
         shutil.rmtree(folder, ignore_errors=True)
     except (OSError, ValueError):

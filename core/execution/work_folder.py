@@ -56,12 +56,12 @@ class WorkFolder:
 
     def discard(self) -> None:
         """Remove this folder, at once for others, and what is in it."""
-        gone = self.path.with_name(f"{self.path.name}.{uuid4().hex}.part")
+        renamed = self.path.with_name(f"{self.path.name}.{uuid4().hex}.part")
         try:
-            os.replace(self.path, gone)
+            os.replace(self.path, renamed)
         except OSError:
             return   # Windows, while somebody reads in it: it stays
-        shutil.rmtree(gone, ignore_errors=True)
+        shutil.rmtree(renamed, ignore_errors=True)
 
     def finished(self, name: str) -> tuple[Path, list[tuple[str, str]]] | None:
         """The folder and the messages that were kept under a name; None where there are none, or not all as they were written."""
@@ -108,11 +108,11 @@ class KeptResults(Executor):
             folder.mkdir(exist_ok=True)
             for file in missing:   # what the failing power left of a file
                 file.unlink(missing_ok=True)
-            made = self.executor.run(phase, list(missing.values()), progress, list(missing))
+            results = self.executor.run(phase, list(missing.values()), progress, list(missing))
             for file in files:
                 if file in missing:
                     del missing[file]   # a later item may be the same
-                    result = next(made)
+                    result = next(results)
                     if not file.exists():
                         write_plain(file, result)
                 else:

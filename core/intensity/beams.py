@@ -227,8 +227,8 @@ class Beams:
             rows = np.flatnonzero(points.scanner == scanner)
             bins = self.models[scanner].elevation_bin(points[rows])
             rows, bins = rows[bins >= 0], bins[bins >= 0]
-            by = corrections[self.beam[scanner][bins]]
-            value[rows] = np.maximum(value[rows] + by, 0.0) if self.added[scanner] else value[rows] * by
+            correction = corrections[self.beam[scanner][bins]]
+            value[rows] = np.maximum(value[rows] + correction, 0.0) if self.added[scanner] else value[rows] * correction
         return value
 
     @property
@@ -252,9 +252,9 @@ def _samples(road_points: RoadPoints, frame: RoadFrame, scanners: int) -> dict[i
 def _samples_of_window(road_points, road, s, scanners):
     """[(scanner, Points)] of the window that begins at station s."""
     points, result = road_points.window(road, s, s + BEAMS.sample_window), []
-    of = points.scanner
+    scanner_of_point = points.scanner
     for scanner in range(scanners):
-        rows = np.flatnonzero(of == scanner)
+        rows = np.flatnonzero(scanner_of_point == scanner)
         if len(rows) >= ASPHALT.min_asphalt_points:
             records = points[rows[::-(-len(rows) // BEAMS.max_sample_points)]].records
             # copies of the columns, so that the memory of the sections is freed

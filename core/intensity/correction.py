@@ -299,9 +299,9 @@ def corrected_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequ
             batch = points[first:first + ASPHALT.points_at_once]
             distances = distances_of(batch, kinds)
             distance: Any = distances[0] if len(distances) == 1 else np.where(table.distance_kind[batch.scanner] == ACROSS_TRACK, *distances)
-            by, intensity = table.corrections(lookup, batch.scanner, distance), beams.equalised(batch) if beams else batch.intensity
-            np.add(intensity, by, out=by) if table.logarithmic else np.multiply(intensity, by, out=by)
-            corrected[first:first + ASPHALT.points_at_once] = by
+            correction, intensity = table.corrections(lookup, batch.scanner, distance), beams.equalised(batch) if beams else batch.intensity
+            np.add(intensity, correction, out=correction) if table.logarithmic else np.multiply(intensity, correction, out=correction)
+            corrected[first:first + ASPHALT.points_at_once] = correction
         sample = _stripes(Points(records.with_columns(corrected=corrected)), step)
         counts.append(histograms.count(sample.scanner, distances_of(sample, kinds), sample.corrected, kinds))
         sections.append((key[1], corrected))

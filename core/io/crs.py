@@ -188,8 +188,8 @@ def _refuse_degrees(files, trajectory_crs):
 
 def _bounds(files):
     """(3,) least and (3,) greatest coordinates of the clouds."""
-    held = [file for file in files if file.count]
-    return np.min([file.minimum for file in held], axis=0), np.max([file.maximum for file in held], axis=0)
+    filled = [file for file in files if file.count]
+    return np.min([file.minimum for file in filled], axis=0), np.max([file.maximum for file in filled], axis=0)
 
 
 def _in_degrees(files):
@@ -516,12 +516,12 @@ def _with_metres(content):
         return [_with_metres(item) for item in content]
     if not isinstance(content, dict):
         return content
-    made = {key: _with_metres(value) for key, value in content.items()}
+    result = {key: _with_metres(value) for key, value in content.items()}
     unit = content.get("unit")
     if isinstance(unit, dict) and unit.get("type") == "LinearUnit":
-        made["unit"] = "metre"
+        result["unit"] = "metre"
         if "value" in content:
-            made["value"] = content["value"] * unit["conversion_factor"]
+            result["value"] = content["value"] * unit["conversion_factor"]
     if "coordinate_system" in content or content.get("type") == "CompoundCRS":
-        made.pop("id", None)
-    return made
+        result.pop("id", None)
+    return result

@@ -275,18 +275,18 @@ class Extent:
         """
         files = read_headers(paths, given=crs or trajectory.crs)
         trajectory = reproject_trajectory(trajectory, check_projected(files, crs, trajectory.crs))
-        held = [file for file in files if file.count]
-        points = sum(file.count for file in held)
+        filled = [file for file in files if file.count]
+        points = sum(file.count for file in filled)
         places = np.column_stack([trajectory.x, trajectory.y])
-        low, high = (np.array([getattr(file, name)[:2] for file in held]).reshape(-1, 2) for name in ("minimum", "maximum"))
+        low, high = (np.array([getattr(file, name)[:2] for file in filled]).reshape(-1, 2) for name in ("minimum", "maximum"))
         within = ((places > low.min(axis=0, initial=np.inf) - CORRIDOR) & (places < high.max(axis=0, initial=-np.inf) + CORRIDOR)).all(axis=1)
         driven = np.hypot(*np.diff(places, axis=0).T)[within[1:]].sum()
-        return cls(points / 1e6, float(driven) / 1e3, sum(file.count for file in held if file.chunk == 1) / max(points, 1))
+        return cls(points / 1e6, float(driven) / 1e3, sum(file.count for file in filled if file.chunk == 1) / max(points, 1))
 
     def cost(self, name: str, method: str) -> float:
         """Relative run time of a stage, with the given method of boundary detection."""
         if name == "curbs":
-            return sum(self.cost(one, method) for one in ("profiles", "scanlines") if method in (one, "both"))
+            return sum(self.cost(detection, method) for detection in ("profiles", "scanlines") if method in (detection, "both"))
         of_points, of_length = STAGE_COSTS[name]
         if name == "survey":
             of_points *= LAZ_READ_COST + self.plain * (LAS_READ_COST - LAZ_READ_COST)

@@ -88,7 +88,7 @@ EXTRA_FIELDS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", Non
 CORRECTED_FIELD = ("intensity_corrected", "float32", "Intensity, range corrected", None)
 CLUSTER_FIELD = ("cluster", "int32", "Cluster of paint", None)
 SPACING_FIELD = ("spacing", "uint16", "Spacing across the road", MILLIMETRE)
-COPIED_FIELDS = {"time": "gps_time", "intensity": "intensity", "source": "point_source_id", "pass_number": "pass"}
+COPIED_FIELDS = {"time": "gps_time", "intensity": "intensity", "source": "point_source_id", "pass_number": "pass"}   # nosec B105
 SCALED_FIELDS = (("s", "station_m", COORDINATE_SCALE), ("d", "offset_m", COORDINATE_SCALE), ("half_width", "half_width", MILLIMETRE),
                  ("spacing", "spacing", MILLIMETRE))
 REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")

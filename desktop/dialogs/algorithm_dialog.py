@@ -85,15 +85,15 @@ class LanewrightDialog(AlgorithmDialog):
             survey = survey_name(cloud_files(clouds or [], tr("Point clouds")))
         except RoadExtractionError:  # not yet whole
             return
-        of = {layer.customProperty(SURVEY): layer.id() for layer in reversed(corrections_layers(QgsProject.instance()))}
+        layer_by_survey = {layer.customProperty(SURVEY): layer.id() for layer in reversed(corrections_layers(QgsProject.instance()))}
         chosen = self.mainWidget().wrappers["CORRECTIONS"].parameterValue()
-        if survey in of or chosen in of.values():
-            self.setParameters({"CORRECTIONS": of.get(survey)})
+        if survey in layer_by_survey or chosen in layer_by_survey.values():
+            self.setParameters({"CORRECTIONS": layer_by_survey.get(survey)})
 
     def _button(self, text, tip):
-        made = button(text, tip=tip)
-        self.buttonBox().addButton(made, QDialogButtonBox.ButtonRole.ResetRole)
-        return made
+        push_button = button(text, tip=tip)
+        self.buttonBox().addButton(push_button, QDialogButtonBox.ButtonRole.ResetRole)
+        return push_button
 
     # -- everything to one place ----------------------------------------------------------------
 
@@ -106,9 +106,9 @@ class LanewrightDialog(AlgorithmDialog):
         """Set the destinations of all results that are made by default."""
         places = destinations(self.algorithm(), folder)
         self.setParameters(places)
-        there = Path(folder) / f"{self.algorithm().name()}.gpkg"
+        geopackage = Path(folder) / f"{self.algorithm().name()}.gpkg"
         self._say(tr("The {count} results go to {folder}.").format(count=len(places), folder=folder)
-                  + (" " + tr("Those of the earlier run in {file} will be replaced.").format(file=there.name) if there.exists() else ""))
+                  + (" " + tr("Those of the earlier run in {file} will be replaced.").format(file=geopackage.name) if geopackage.exists() else ""))
 
     def choose_database(self) -> None:
         dialog = self.database = DatabaseDialog(self)
@@ -139,9 +139,9 @@ class LanewrightDialog(AlgorithmDialog):
 
     def load_preset(self, name: str) -> None:
         """Set what the preset holds; a setting that the algorithm no longer has is passed over."""
-        known = {definition.name() for definition in self.algorithm().parameterDefinitions()}
+        names = {definition.name() for definition in self.algorithm().parameterDefinitions()}
         values = presets_of(self.algorithm().name())[name]
-        self.setParameters({setting: value for setting, value in values.items() if setting in known})
+        self.setParameters({setting: value for setting, value in values.items() if setting in names})
         self._say(tr("Preset {name}: {count} settings.").format(name=name, count=len(values)))
 
     def remove_preset(self, name: str) -> None:

@@ -60,11 +60,11 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
 
     def add_surveys(self, folder: str) -> None:
         """A row for each survey in a folder and below, with its trajectory where one lies beside it."""
-        found, panel = surveys_in(folder), self.mainWidget()
+        surveys, panel = surveys_in(folder), self.mainWidget()
         row = panel.batchRowCount()
         while row > 0 and not panel.wrappers[row - 1][panel.parameter_to_column[CLOUDS]].parameterValue():
             row -= 1  # rows that are empty are filled first
-        for clouds in found:
+        for clouds in surveys:
             if row >= panel.batchRowCount():
                 panel.addRow(1)
             panel.wrappers[row][panel.parameter_to_column[CLOUDS]].setParameterValue(clouds, self.processingContext())
@@ -73,7 +73,7 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
                 panel.wrappers[row][panel.parameter_to_column["TRAJECTORY"]].setParameterValue(drive, self.processingContext())
             row += 1
         self.messageBar().clearWidgets()
-        self.messageBar().pushMessage("", tr("{count} surveys in {folder}.").format(count=len(found), folder=folder), level=Qgis.MessageLevel.Info)
+        self.messageBar().pushMessage("", tr("{count} surveys in {folder}.").format(count=len(surveys), folder=folder), level=Qgis.MessageLevel.Info)
 
     def choose_folder(self) -> None:
         folder = folder_for_results(self)
@@ -84,8 +84,8 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
         """Set the destinations of the rows that have an input."""
         names = self.surveys()
         for row, name in enumerate(names):
-            for output, place in destinations(self.algorithm(), folder, name).items():
-                self._place(row, output).setValue(place)
+            for output, path in destinations(self.algorithm(), folder, name).items():
+                self._place(row, output).setValue(path)
         self.messageBar().clearWidgets()
         self.messageBar().pushMessage("", tr("The results of {count} rows go to {folder}: {names}.").format(
             count=len(names), folder=folder, names=", ".join(names)), level=Qgis.MessageLevel.Info)
@@ -95,7 +95,7 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
         panel, names = self.mainWidget(), []
         for row in range(panel.batchRowCount()):
             name = self._survey(row).replace("/", "_") or f"{self.algorithm().name()}_{row + 1}"
-            alike = sum(other == name or other.rsplit("_", 1)[0] == name and other.rsplit("_", 1)[1].isdigit() for other in names)
+            alike = sum(earlier == name or earlier.rsplit("_", 1)[0] == name and earlier.rsplit("_", 1)[1].isdigit() for earlier in names)
             names.append(f"{name}_{alike + 1}" if alike else name)
         return names
 
@@ -103,9 +103,9 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
         column = self.mainWidget().parameter_to_column.get(CLOUDS)
         if column is None:
             return ""
-        given = self.mainWidget().wrappers[row][column].parameterValue() or []
+        clouds = self.mainWidget().wrappers[row][column].parameterValue() or []
         try:
-            return survey_name(cloud_files([given] if isinstance(given, str) else list(given), tr("Point clouds")))
+            return survey_name(cloud_files([clouds] if isinstance(clouds, str) else list(clouds), tr("Point clouds")))
         except RoadExtractionError:
             return ""
 
@@ -120,15 +120,15 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
             if isinstance(output, QgsProcessingOutputHtml) and results.get(output.name()):
                 file = Path(results[output.name()])
                 temporary = file.is_relative_to(QgsProcessingUtils.tempFolder())
-                said = num + 1 if temporary else f"{file.parent.name}/{file.stem}"
-                resultsList.addResult(self.algorithm().icon(), f"{output.description()} [{said}]", time.localtime(), str(file))
+                title = num + 1 if temporary else f"{file.parent.name}/{file.stem}"
+                resultsList.addResult(self.algorithm().icon(), f"{output.description()} [{title}]", time.localtime(), str(file))
 
     def runAlgorithm(self) -> None:
         """Run all rows; one that names no destination makes temporary layers, as in the dialog of a single run."""
         outputs = [definition.name() for definition in self.algorithm().destinationParameterDefinitions()]
-        made = [definition.name() for definition in outputs_by_default(self.algorithm())]
+        names = [definition.name() for definition in outputs_by_default(self.algorithm())]
         for row in range(self.mainWidget().batchRowCount()):
             if not any(self._place(row, output).getValue() for output in outputs):
-                for output in made:
+                for output in names:
                     self._place(row, output).setValue(QgsProcessing.TEMPORARY_OUTPUT)
         super().runAlgorithm()

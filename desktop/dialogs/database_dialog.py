@@ -73,14 +73,14 @@ class DatabaseDialog(QDialog):
 
 def database_destinations(algorithm: QgsProcessingAlgorithm, connection: str, schema: str, prefix: str = "") -> dict[str, str]:
     """Where each layer goes: a table of a schema, with the connection as QGIS knows it."""
-    known, found = _connection(connection), {}
+    database, result = _connection(connection), {}
     for definition in outputs_by_default(algorithm):
         if definition.type() == "sink":
-            place = QgsDataSourceUri(known.uri())
-            place.setDataSource(schema, prefix + table_name(definition), GEOMETRY if definition.dataType() in WITH_GEOMETRY else "")
+            uri = QgsDataSourceUri(database.uri())
+            uri.setDataSource(schema, prefix + table_name(definition), GEOMETRY if definition.dataType() in WITH_GEOMETRY else "")
             # a password that QGIS keeps apart stays there
-            found[definition.name()] = f"{PROVIDER}://{place.uri(False)}"
-    return found
+            result[definition.name()] = f"{PROVIDER}://{uri.uri(False)}"
+    return result
 
 
 def _connection(name):

@@ -24,12 +24,12 @@ def destinations(algorithm: QgsProcessingAlgorithm, folder: str, survey: str = "
 
     Where several surveys share the folder, the GeoPackage is called like the survey, and names of other files begin with that.
     """
-    found = {}
+    result = {}
     for definition in outputs_by_default(algorithm):
         table = table_name(definition)
         if definition.type() == "sink":
-            found[definition.name()] = table_of(Path(folder) / f"{survey or algorithm.name()}.gpkg", table)
+            result[definition.name()] = table_of(Path(folder) / f"{survey or algorithm.name()}.gpkg", table)
         else:
             name = f"{survey}_{table}" if survey else table
-            found[definition.name()] = str(Path(folder) / f"{name}.{definition.defaultFileExtension()}")
-    return found
+            result[definition.name()] = str(Path(folder) / f"{name}.{definition.defaultFileExtension()}")
+    return result

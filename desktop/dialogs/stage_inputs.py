@@ -23,11 +23,11 @@ STAGES = {"CURB_POINTS": "detectcurbs", "ROAD_EDGES": "detectboundaries", "ROAD_
 def layers_for(algorithm: QgsProcessingAlgorithm, road_map: RoadMap) -> dict[str, Any]:
     """{parameter: id of a layer, or the trajectory of the run} for those inputs of an algorithm that a road map has."""
     inputs = [definition for definition in algorithm.parameterDefinitions() if definition.type() in LAYER_INPUTS and not definition.isDestination()]
-    found = {definition.name(): road_map.layer(definition.name()).id() for definition in inputs if road_map.layer(definition.name()) is not None}
+    values = {definition.name(): road_map.layer(definition.name()).id() for definition in inputs if road_map.layer(definition.name()) is not None}
     driven = road_map.values.get(TRAJECTORY)
-    if found and algorithm.parameterDefinition(TRAJECTORY) is not None and isinstance(driven, str) and _is_there(driven):
-        found[TRAJECTORY] = driven
-    return found
+    if values and algorithm.parameterDefinition(TRAJECTORY) is not None and isinstance(driven, str) and _is_there(driven):
+        values[TRAJECTORY] = driven
+    return values
 
 
 def _is_there(source):
@@ -52,12 +52,12 @@ def stage_again(layer: QgsMapLayer, project: QgsProject) -> tuple[str, dict[str,
     algorithm = QgsApplication.processingRegistry().createAlgorithmById(f"lanewright:{stage}")
     if algorithm is None:
         return None
-    known = {definition.name() for definition in algorithm.parameterDefinitions()}
+    names = {definition.name() for definition in algorithm.parameterDefinitions()}
     values = {**road_map.values, **origin.provenance.values, **layers_for(algorithm, road_map)}
-    clouds, gone = clouds_of(road_map, project)
-    if clouds and not gone:
+    clouds, missing = clouds_of(road_map, project)
+    if clouds and not missing:
         values[CLOUDS] = clouds
-    return algorithm.id(), {name: value for name, value in values.items() if name in known}
+    return algorithm.id(), {name: value for name, value in values.items() if name in names}
 
 
 class NamesWithSurvey(QIdentityProxyModel):
@@ -69,11 +69,11 @@ class NamesWithSurvey(QIdentityProxyModel):
         self.of = {layer.id(): run.name for run in runs_of(project) for layer in (*run.layers, *run.older)}
 
     def data(self, index: QModelIndex, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
-        said = super().data(index, role)
-        if role != Qt.ItemDataRole.DisplayRole or not said:
-            return said
+        value = super().data(index, role)
+        if role != Qt.ItemDataRole.DisplayRole or not value:
+            return value
         layer_id = super().data(index, int(QgsMapLayerModel.CustomRole.LayerId))
-        return f"{said} – {self.of[layer_id]}" if layer_id in self.of else said
+        return f"{value} – {self.of[layer_id]}" if layer_id in self.of else value
 
 
 def layer_lists(window: QWidget) -> list[QComboBox]:

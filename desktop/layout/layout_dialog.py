@@ -45,8 +45,8 @@ class LayoutDialog(QDialog):
         self.scale = choices([(tr("The largest at which the road fits; long roads on several pages"), 0),
                               *((f"1 : {scale}", scale) for scale in SCALES)])
         self.below = choices([(tr("Nothing"), ""), *((layer.name(), layer.id()) for layer in layers_below(project, maps))])
-        seen = [layer.id() for layer in project.layerTreeRoot().checkedLayers()]
-        self.below.setCurrentIndex(next((row for row in range(1, self.below.count()) if self.below.itemData(row) in seen), 0))
+        visible = [layer.id() for layer in project.layerTreeRoot().checkedLayers()]
+        self.below.setCurrentIndex(next((row for row in range(1, self.below.count()) if self.below.itemData(row) in visible), 0))
         self.credit = QLineEdit()
         self.credit.setToolTip(tr("Whose data lie below, as their licence wants it said; stands in the lower left corner of the map"))
         self.below.currentIndexChanged.connect(lambda row: self._suggest_credit())

@@ -57,12 +57,12 @@ def classes_of(layer: QgsMapLayer) -> set[str]:
     context.expressionContext().appendScopes(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
     renderer = layer.renderer().clone()
     renderer.startRender(context, layer.fields())
-    found: set[str] = set()
+    keys: set[str] = set()
     for feature in layer.getFeatures():
         context.expressionContext().setFeature(feature)  # classes may be distinguished by an expression
-        found |= set(renderer.legendKeysForFeature(feature, context))
+        keys |= set(renderer.legendKeysForFeature(feature, context))
     renderer.stopRender(context)
-    return found
+    return keys
 
 
 def legend_height(layers: list[QgsMapLayer]) -> float:
@@ -114,9 +114,9 @@ def _size(layout, legend):
 
 
 def _leave_out_empty_classes(legend, node: QgsLayerTreeLayer, layer):
-    found = classes_of(layer)
+    classes = classes_of(layer)
     key = QgsLayerTreeModelLegendNode.LegendNodeRoles.RuleKeyRole
-    order = [row for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)) if str(entry.data(key)) in found]
+    order = [row for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)) if str(entry.data(key)) in classes]
     if order:
         QgsMapLayerLegendUtils.setLegendNodeOrder(node, order)
         legend.model().refreshLayerLegend(node)
@@ -136,6 +136,6 @@ def _print_as_it_stands(legend, node, layer):
 def _set_sizes(legend, title, entry, symbol):
     legend.setSymbolHeight(symbol)
     for style in STYLES:
-        one = legend.style(style)
-        one.setTextFormat(text_format(entry if style == QgsLegendStyle.Style.SymbolLabel else title))
-        legend.setStyle(style, one)
+        legend_style = legend.style(style)
+        legend_style.setTextFormat(text_format(entry if style == QgsLegendStyle.Style.SymbolLabel else title))
+        legend.setStyle(style, legend_style)

@@ -106,8 +106,8 @@ def road_map_layout(project: QgsProject, layers: list[QgsMapLayer], title: str, 
 
 def map_crs(layers: list[QgsMapLayer], project: QgsProject) -> QgsCoordinateReferenceSystem:
     """The CRS that the map is drawn in: that of the first layer with a projected one, whatever the project shows."""
-    known = [layer.crs() for layer in layers if layer.isSpatial() and layer.crs().isValid()]
-    return next((crs for crs in known if not crs.isGeographic()), known[0] if known else project.crs())
+    all_crs = [layer.crs() for layer in layers if layer.isSpatial() and layer.crs().isValid()]
+    return next((crs for crs in all_crs if not crs.isGeographic()), all_crs[0] if all_crs else project.crs())
 
 
 def lie_of_the_road(layers: list[QgsMapLayer], crs: QgsCoordinateReferenceSystem | None = None,
@@ -134,7 +134,7 @@ def _on_the_map(layer, crs, project, of=QgsGeometry) -> list[QgsGeometry]:
     transform = None
     if crs is not None and layer.crs().isValid() and layer.crs() != crs:
         transform = QgsCoordinateTransform(layer.crs(), crs, project or QgsProject.instance())
-    found = []
+    result = []
     for feature in layer.getFeatures():
         if not feature.hasGeometry():
             continue
@@ -144,8 +144,8 @@ def _on_the_map(layer, crs, project, of=QgsGeometry) -> list[QgsGeometry]:
                 geometry.transform(transform)
             except QgsCsException:
                 continue
-        found.append(geometry)
-    return found
+        result.append(geometry)
+    return result
 
 
 def _lines(layers, crs, project) -> list[QgsGeometry]:

@@ -36,9 +36,9 @@ def pages_along(lines: list[QgsGeometry], width: float, height: float) -> list[M
         parts = [part for part in left.asGeometryCollection() if part.length() > (SHORTEST_REST * width if pages else 0.0)]
         if not parts:
             break
-        found = _walk(max(parts, key=lambda part: part.length()), width, height)
-        pages += found[:MOST_PAGES - len(pages)]
-        left = left.difference(QgsGeometry.unaryUnion([page.outline for page in found]))
+        new_pages = _walk(max(parts, key=lambda part: part.length()), width, height)
+        pages += new_pages[:MOST_PAGES - len(pages)]
+        left = left.difference(QgsGeometry.unaryUnion([page.outline for page in new_pages]))
     return pages
 
 

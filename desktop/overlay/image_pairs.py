@@ -102,10 +102,10 @@ class ImagePairs:
         if not rows:
             return tr("not looked for yet") if self.rough is None else tr("two points given, not looked for yet")
         residuals = [row["residual"] for row in rows if row["accepted"] and row["residual"] not in (None, NULL)]
-        said = tr("{accepted} of {count} pairs accepted").format(accepted=sum(bool(row["accepted"]) for row in rows), count=len(rows))
+        summary = tr("{accepted} of {count} pairs accepted").format(accepted=sum(bool(row["accepted"]) for row in rows), count=len(rows))
         if residuals:
-            said += tr(", RMSE {rmse:.1f} cm, each left out in turn").format(rmse=100.0 * float(np.sqrt(np.mean(np.square(residuals)))))
-        return f"{said}\n{self.placed}" if self.placed else said
+            summary += tr(", RMSE {rmse:.1f} cm, each left out in turn").format(rmse=100.0 * float(np.sqrt(np.mean(np.square(residuals)))))
+        return f"{summary}\n{self.placed}" if self.placed else summary
 
     def pictures(self, intensity_path: str) -> list[QPixmap]:
         """Both cut-outs of each pair side by side, in the order of the rows."""
@@ -119,9 +119,9 @@ class ImagePairs:
 def pair_text(row) -> str:
     """Number, likeness and residual of a pair."""
     residual = row["residual"]
-    away = tr("{residual:.1f} cm off").format(residual=100.0 * residual) if residual not in (None, NULL) else "–"
+    distance = tr("{residual:.1f} cm off").format(residual=100.0 * residual) if residual not in (None, NULL) else "–"
     why = "" if row["accepted"] or row["why"] in (None, NULL, "") else f"\n{_words(row['why'])}"
-    return tr("{number}: likeness {score:.2f}, {away}").format(number=row["point"], score=row["score"], away=away) + why
+    return tr("{number}: likeness {score:.2f}, {away}").format(number=row["point"], score=row["score"], away=distance) + why
 
 
 def _words(why):

@@ -114,9 +114,9 @@ class PairsDialog(QDialog):
 
     def _prefer_intensity(self):
         """Choose the intensity image of the last road map, where there is one."""
-        ours = (run.layer("INTENSITY_IMAGE") for run in runs_of(QgsProject.instance()))
+        images = (run.layer("INTENSITY_IMAGE") for run in runs_of(QgsProject.instance()))
         called = (layer for layer in QgsProject.instance().mapLayers().values() if "intensity" in Path(layer.source()).stem.lower())
-        likely = next((layer for layer in (*ours, *called) if layer is not None), None)
+        likely = next((layer for layer in (*images, *called) if layer is not None), None)
         if likely is not None:
             self.intensity.setLayer(likely)
 
@@ -128,9 +128,9 @@ class PairsDialog(QDialog):
 
     def add(self, paths: list[str]) -> None:
         """Add images to the list."""
-        known = {one.path for one in self.images}
+        listed = {image.path for image in self.images}
         for path in paths:
-            if path not in known:
+            if path not in listed:
                 self.images.append(ImagePairs(path))
                 self.list.addItem("")
         self._tell()
@@ -152,8 +152,8 @@ class PairsDialog(QDialog):
 
     def _tell(self):
         """The state of every image in the list, that of the current one below its pairs."""
-        for number, one in enumerate(self.images):
-            self.list.item(number).setText(f"{one.name}\n{one.summary()}")
+        for number, image in enumerate(self.images):
+            self.list.item(number).setText(f"{image.name}\n{image.summary()}")
         if self.current is not None:
             self.told.setText(f"{self.current.name}: {self.current.summary()}")
         self._enable()
@@ -162,7 +162,7 @@ class PairsDialog(QDialog):
         idle = self._run is None
         self.propose_button.setEnabled(idle and bool(self.images) and self.intensity.currentLayer() is not None)
         self.rough_button.setEnabled(idle and self.current is not None and self.intensity.currentLayer() is not None)
-        self.place_button.setEnabled(idle and any(one.order for one in self.images))
+        self.place_button.setEnabled(idle and any(image.order for image in self.images))
         self.bar.setVisible(not idle)
 
     # -- pairs ------------------------------------------------------------------------------------
@@ -170,14 +170,14 @@ class PairsDialog(QDialog):
     def _show_pairs(self):
         self._filling = True
         self.pairs.clear()
-        one, intensity = self.current, self.intensity.currentLayer()
-        if one is not None and intensity is not None and one.layer is not None:
+        image, intensity = self.current, self.intensity.currentLayer()
+        if image is not None and intensity is not None and image.layer is not None:
             try:
-                pictures = one.pictures(intensity.source())
+                pictures = image.pictures(intensity.source())
             except RoadExtractionError as problem:
                 pictures = []
                 self.told.setText(str(problem))
-            for pair, picture in zip(one.rows(), pictures):
+            for pair, picture in zip(image.rows(), pictures):
                 item = QListWidgetItem(QIcon(picture), "")
                 item.setData(_ID, pair.id())
                 item.setFlags(item.flags() | Qt.ItemFlag.ItemIsUserCheckable)
@@ -215,8 +215,8 @@ class PairsDialog(QDialog):
         layer = self.current.layer if self.current is not None else None
         if layer is None:
             return
-        at: QgsPointXY = layer.getFeature(item.data(_ID)).geometry().asPoint()
-        show_extent(self.iface.mapCanvas(), QgsRectangle.fromCenterAndSize(at, 2 * NEAR, 2 * NEAR), layer.crs())
+        point: QgsPointXY = layer.getFeature(item.data(_ID)).geometry().asPoint()
+        show_extent(self.iface.mapCanvas(), QgsRectangle.fromCenterAndSize(point, 2 * NEAR, 2 * NEAR), layer.crs())
 
     # -- runs -------------------------------------------------------------------------------------
 
@@ -224,8 +224,8 @@ class PairsDialog(QDialog):
         """Look for pairs in every image that has none yet, one image after the other."""
         inputs = {"INTENSITY_IMAGE": self.intensity.currentLayer().id(), "PIXEL_SIZE": self.size.value()}
         output = {"CONTROL_POINTS": QgsProcessingOutputLayerDefinition("TEMPORARY_OUTPUT", QgsProject.instance())}
-        self._waiting = [("proposecontrolpoints", one, {"IMAGE": one.path, "ROUGH_POINTS": one.rough, **inputs, **output})
-                         for one in self.images if one.layer is None]
+        self._waiting = [("proposecontrolpoints", image, {"IMAGE": image.path, "ROUGH_POINTS": image.rough, **inputs, **output})
+                         for image in self.images if image.layer is None]
         self._next()
 
     def point(self) -> None:
@@ -235,8 +235,8 @@ class PairsDialog(QDialog):
         except RoadExtractionError as problem:
             self.told.setText(str(problem))
             return
-        one, dialog = self.current, self.two_points
-        dialog.finished.connect(lambda result: self._pointed(one, dialog, result))
+        image, dialog = self.current, self.two_points
+        dialog.finished.connect(lambda result: self._pointed(image, dialog, result))
         dialog.open()
 
     def _pointed(self, one, dialog, result):
@@ -248,9 +248,9 @@ class PairsDialog(QDialog):
 
     def place(self) -> None:
         """Georeference every image that has enough accepted pairs, and put it into the project."""
-        self._waiting = [("georeferenceimage", one, {
-            "IMAGE": one.path, "GCPS": one.layer.id(), "ORDER": one.order,
-            "OUTPUT": QgsProcessingOutputLayerDefinition(_free_name(one.path), QgsProject.instance())}) for one in self.images if one.order]
+        self._waiting = [("georeferenceimage", image, {
+            "IMAGE": image.path, "GCPS": image.layer.id(), "ORDER": image.order,
+            "OUTPUT": QgsProcessingOutputLayerDefinition(_free_name(image.path), QgsProject.instance())}) for image in self.images if image.order]
         self._next()
 
     def _next(self):
@@ -258,11 +258,11 @@ class PairsDialog(QDialog):
             self._run = None
             self._show_pairs()
             return
-        name, one, inputs = self._waiting.pop(0)
-        self._run = BackgroundRun(name, inputs, lambda run, fine: self._ended(one, run, fine))
+        name, image, inputs = self._waiting.pop(0)
+        self._run = BackgroundRun(name, inputs, lambda run, fine: self._ended(image, run, fine))
         self._run.feedback.progressChanged.connect(lambda share: self.bar.setValue(int(share)))
         self.bar.setValue(0)
-        self.told.setText(f"{one.name}: {self._run.algorithm.declaration.title()}…")
+        self.told.setText(f"{image.name}: {self._run.algorithm.declaration.title()}…")
         self._enable()
 
     def _ended(self, one, run, fine):

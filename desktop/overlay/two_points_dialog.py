@@ -81,29 +81,29 @@ class TwoPointsDialog(QDialog):
         self._tell()
 
     def _tell(self):
-        seen, known = (len(self.places[view]) for view in self.views)
-        ready = seen == known == NEEDED
+        in_image, in_intensity = (len(self.places[view]) for view in self.views)
+        ready = in_image == in_intensity == NEEDED
         self.buttons.button(QDialogButtonBox.StandardButton.Ok).setEnabled(ready)
         self.told.setText(tr("Good: the places may be off by some metres.") if ready else tr(
             "Click two places far apart in the image on the left, and the same two in the same order in the intensity image on the right. The wheel "
-            "comes nearer. In the image: {seen}, in the intensity image: {known}.").format(seen=seen, known=known))
+            "comes nearer. In the image: {seen}, in the intensity image: {known}.").format(seen=in_image, known=in_intensity))
 
     @property
     def layer(self) -> QgsVectorLayer | None:
         """A point layer with the fields pixel and line; None where points are missing."""
         if any(len(places) < NEEDED for places in self.places.values()):
             return None
-        made = QgsVectorLayer("Point?field=pixel:double&field=line:double", "rough points", "memory")
-        made.setCrs(self.intensity.crs())
+        points = QgsVectorLayer("Point?field=pixel:double&field=line:double", "rough points", "memory")
+        points.setCrs(self.intensity.crs())
         features = []
-        for seen, known in zip(*(self.places[view] for view in self.views)):
-            feature = QgsFeature(made.fields())
-            feature.setGeometry(QgsGeometry.fromPointXY(known))
-            feature.setAttributes(list(self._pixel(seen)))
+        for image_point, map_point in zip(*(self.places[view] for view in self.views)):
+            feature = QgsFeature(points.fields())
+            feature.setGeometry(QgsGeometry.fromPointXY(map_point))
+            feature.setAttributes(list(self._pixel(image_point)))
             features.append(feature)
-        made.dataProvider().addFeatures(features)
-        made.updateExtents()
-        return made
+        points.dataProvider().addFeatures(features)
+        points.updateExtents()
+        return points
 
     def _pixel(self, place):
         """Pixel and line of a place as QGIS shows the image."""

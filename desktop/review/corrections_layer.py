@@ -48,8 +48,9 @@ def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle
     extent, crs : where it lies
     """
     for layer in corrections_layers(project):
-        of = layer.customProperty(SURVEY)
-        if of == survey or not of and layer.featureCount() > 0 and brought_to(extent, crs, layer.crs()).intersects(layer.extent()):
+        layer_survey = layer.customProperty(SURVEY)
+        if layer_survey == survey or not layer_survey and layer.featureCount() > 0 \
+                and brought_to(extent, crs, layer.crs()).intersects(layer.extent()):
             return layer
     return None
 
@@ -95,7 +96,7 @@ def lay_above(layer: QgsVectorLayer, road_map: RoadMap, project: QgsProject) -> 
     """Move corrections to the top of the layer tree where a road map lies above them: its image and surface would hide them."""
     root = project.layerTreeRoot()
     order = [node.layerId() for node in root.findLayers()]
-    if order.index(layer.id()) > min(order.index(one.id()) for one in road_map.layers):
+    if order.index(layer.id()) > min(order.index(map_layer.id()) for map_layer in road_map.layers):
         node = root.findLayer(layer.id())
         root.insertChildNode(0, node.clone())
         node.parent().removeChildNode(node)

@@ -104,14 +104,14 @@ class DoubtDock(QDockWidget):
 
     def _button(self, text, tip, what, key=""):
         """A button; `key` presses it while the window has the focus."""
-        made = button(text, what, f"{tip} ({key})" if key else tip)
+        push_button = button(text, what, f"{tip} ({key})" if key else tip)
         if key:
             action = QAction(tip, self)
             action.setShortcut(QKeySequence(key))
             action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
-            action.triggered.connect(lambda checked=False: made.click())
+            action.triggered.connect(lambda checked=False: push_button.click())
             self.addAction(action)
-        return made
+        return push_button
 
     def remove(self) -> None:
         """Take the window out of QGIS."""
@@ -139,9 +139,9 @@ class DoubtDock(QDockWidget):
         """Show the next place of a road map, or the one before; after the last comes the first."""
         if road_map is None:
             return
-        of = [(layer.id(), layer.featureCount()) for layer in road_map.vectors]
-        if of != self._of:
-            self._of, self.road_map = of, road_map
+        counts = [(layer.id(), layer.featureCount()) for layer in road_map.vectors]
+        if counts != self._of:
+            self._of, self.road_map = counts, road_map
             self._list_places()
         self.show()
         self.raise_()
@@ -159,8 +159,8 @@ class DoubtDock(QDockWidget):
 
     def _list_places(self):
         kind = self.kinds.currentData()
-        found = doubts_of(self.road_map, [kind] if kind else [])
-        self.places, self.at = sorted(found, key=lambda place: -place.doubt) if self.order.currentData() else found, -1
+        doubts = doubts_of(self.road_map, [kind] if kind else [])
+        self.places, self.at = sorted(doubts, key=lambda place: -place.doubt) if self.order.currentData() else doubts, -1
 
     def _begin_again(self):
         """The first place of another choice or order."""
@@ -191,8 +191,8 @@ class DoubtDock(QDockWidget):
         """What was decided about a piece and not yet run; "" for nothing."""
         if not piece.target:
             return WORDS["action"]["accept"] if piece.key in self._seen() else ""
-        found = self._former(piece)
-        return "" if found is None else str(WORDS["action"].get(found["action"], found["action"]))
+        correction = self._former(piece)
+        return "" if correction is None else str(WORDS["action"].get(correction["action"], correction["action"]))
 
     def _former(self, piece):
         """The correction that was made of a piece, None where there is none."""
@@ -283,9 +283,9 @@ class DoubtDock(QDockWidget):
             add_correction(layer, piece.line, place.crs, self._former(piece), **{
                 "action": action, "target": piece.target, "road": piece.road, "station_m": piece.station, "offset_m": piece.offset,
                 "note": self.note.text() or None, **reading})
-        seen = [piece.key for piece in pieces if not piece.target]
-        if seen:
-            self.road_map.layers[0].setCustomProperty(SEEN, "\n".join([*filter(None, self._seen()), *seen]))
+        keys = [piece.key for piece in pieces if not piece.target]
+        if keys:
+            self.road_map.layers[0].setCustomProperty(SEEN, "\n".join([*filter(None, self._seen()), *keys]))
         self.note.clear()
         self._go_on(max(place.pieces.index(piece) for piece in pieces))
 
@@ -325,9 +325,9 @@ class DoubtDock(QDockWidget):
         action, target, piece = self._pending or ("", "", None)
         layer = self._layer_to_write() if action else None
         if layer is not None:
-            of = {} if piece is None else dict(road=piece.road, station_m=piece.station, offset_m=piece.offset)
+            location = {} if piece is None else dict(road=piece.road, station_m=piece.station, offset_m=piece.offset)
             add_correction(layer, line, self.iface.mapCanvas().mapSettings().destinationCrs(), None if piece is None else self._former(piece),
-                           action=action, target=target, note=self.note.text() or None, **of)
+                           action=action, target=target, note=self.note.text() or None, **location)
             self.note.clear()
         self._stop_drawing()
         if piece is not None and layer is not None and piece in self.place.pieces:

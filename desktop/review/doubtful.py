@@ -56,32 +56,33 @@ def doubts_of(road_map: RoadMap, kinds: Iterable[str] = ()) -> list[Doubt]:
     """
     pieces = [piece for output in ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES") for piece in _doubtful_rows(road_map, output)]
     # a lane is looked at once: its area only where its driving line says nothing
-    seen = [(piece.road, piece.station) for piece in pieces if piece.kind == "lane"]
-    if road_map.layer("DRIVING_LINES") is None or not seen:
+    lanes = [(piece.road, piece.station) for piece in pieces if piece.kind == "lane"]
+    if road_map.layer("DRIVING_LINES") is None or not lanes:
         pieces += _doubtful_rows(road_map, "LANES")
-    for found in (missing_edges(road_map), grown_surface(road_map), lane_ends(road_map), warned_places(road_map)):
-        pieces += found
-    wanted = set(kinds)
+    for extra in (missing_edges(road_map), grown_surface(road_map), lane_ends(road_map), warned_places(road_map)):
+        pieces += extra
+    kept_kinds = set(kinds)
     crs = road_map.vectors[0].crs()
-    return _gathered(sorted((piece for piece in pieces if not wanted or piece.kind in wanted), key=lambda piece: (piece.road, piece.station)), crs)
+    return _gathered(sorted((piece for piece in pieces if not kept_kinds or piece.kind in kept_kinds),
+                            key=lambda piece: (piece.road, piece.station)), crs)
 
 
 def _doubtful_rows(road_map, output):
     layer = road_map.layer(output)
     names = [] if layer is None else [field.name() for field in layer.fields()]
-    found = []
+    result = []
     for feature in layer.getFeatures() if {"station_m", "road"} <= set(names) else ():
         row = dict(zip(names, feature.attributes()))
         why = reason(row)
         if why and not feature.geometry().isEmpty():
             target = TARGETS[output]
-            other = str(row.get("other") or "")
-            if other:
-                why += tr("; almost as likely: {reading}").format(reading=second_reading(other))
-            found.append(DoubtfulPiece(f"{title_of(layer, feature)}: {why}", target, course_of(feature.geometry()),
-                                       int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0,
-                                       (_number(row.get("length_m")) or 0.0) * _share_wrong(row), target, _number(row.get("offset_m")), other))
-    return found
+            reading = str(row.get("other") or "")
+            if reading:
+                why += tr("; almost as likely: {reading}").format(reading=second_reading(reading))
+            result.append(DoubtfulPiece(f"{title_of(layer, feature)}: {why}", target, course_of(feature.geometry()),
+                                        int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0,
+                                        (_number(row.get("length_m")) or 0.0) * _share_wrong(row), target, _number(row.get("offset_m")), reading))
+    return result
 
 
 def reason(row: dict) -> str:
@@ -131,7 +132,7 @@ def _gathered(pieces, crs):
     for piece in pieces:
         first = groups[-1][0] if groups else None
         if first is not None and first.road == piece.road and piece.station - first.station <= SAME_PLACE:
-            if piece.kind != "warning" or piece.text not in [other.text for other in groups[-1]]:
+            if piece.kind != "warning" or piece.text not in [earlier.text for earlier in groups[-1]]:
                 groups[-1].append(piece)
         else:
             groups.append([piece])

@@ -84,11 +84,11 @@ def lane_ends(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
         direction = feature["direction"]
         if feature["type"] != "driving" or direction not in (1, -1) or feature["successors"] not in (None, NULL, ""):
             continue
-        at, left = (end, roads[road][1] - end) if direction == 1 else (start, start - roads[road][0])
-        line = along(road_map, road, at - 1.0, at + 1.0) if left > ROAD_END else None
+        station, left = (end, roads[road][1] - end) if direction == 1 else (start, start - roads[road][0])
+        line = along(road_map, road, station - 1.0, station + 1.0) if left > ROAD_END else None
         if line is not None:
             text = tr("Lane {lane} ends here, {left:.0f} m before the end of the road").format(lane=feature["lane"], left=left)
-            yield DoubtfulPiece(text, "lane", line, road, at, LIKELY_WRONG["lane_end"])
+            yield DoubtfulPiece(text, "lane", line, road, station, LIKELY_WRONG["lane_end"])
 
 
 def warned_places(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
@@ -131,9 +131,9 @@ def _rows(layer: QgsMapLayer | None, *needed: str) -> Iterator[tuple[QgsFeature,
     """(feature, road, first and last station) of a layer that has these fields; rows that do not say where they lie are passed over."""
     names = set() if layer is None else {field.name() for field in layer.fields()}
     for feature in layer.getFeatures() if {"road", "station_m", "end_m", *needed} <= names else ():
-        place = [feature["road"], feature["station_m"], feature["end_m"]]
-        if not any(value in (None, NULL) for value in place) and not feature.geometry().isEmpty():
-            yield feature, int(place[0]), min(place[1:]), max(place[1:])
+        location = [feature["road"], feature["station_m"], feature["end_m"]]
+        if not any(value in (None, NULL) for value in location) and not feature.geometry().isEmpty():
+            yield feature, int(location[0]), min(location[1:]), max(location[1:])
 
 
 def _value(feature, name):
@@ -143,20 +143,20 @@ def _value(feature, name):
 
 def _roads(road_map):
     """{road: (first, last station)} that what is drawn of it covers; passes begin before the first points and end behind the last."""
-    found: dict[int, tuple[float, float]] = {}
+    extents: dict[int, tuple[float, float]] = {}
     for output in (*ALONG[1:], "ROAD_SURFACE", "LANES"):
         for _, road, start, end in _rows(road_map.layer(output)):
-            known = found.get(road, (start, end))
-            found[road] = min(known[0], start), max(known[1], end)
-    return found
+            extent = extents.get(road, (start, end))
+            extents[road] = min(extent[0], start), max(extent[1], end)
+    return extents
 
 
 def _uncovered(covered, start, end):
     """Gaps of intervals between two stations."""
-    at = start
+    reached = start
     for first, last in sorted(covered):
-        if first > at:
-            yield at, min(first, end)
-        at = max(at, last)
-    if end > at:
-        yield at, end
+        if first > reached:
+            yield reached, min(first, end)
+        reached = max(reached, last)
+    if end > reached:
+        yield reached, end

@@ -93,7 +93,7 @@ def section_at(x: float, y: float, layers: Iterable[QgsVectorLayer]) -> Section 
 
     It looks along the road, so that its left is the left of the layers' fields, whichever way the traffic of the nearest lane goes.
     """
-    here = QgsGeometry.fromPointXY(QgsPointXY(x, y))
+    point = QgsGeometry.fromPointXY(QgsPointXY(x, y))
     for output in LEADING:
         nearest, azimuth = REACH, None
         for layer in layers:
@@ -101,10 +101,10 @@ def section_at(x: float, y: float, layers: Iterable[QgsVectorLayer]) -> Section 
                 continue
             for feature in layer.getFeatures(QgsRectangle(x - REACH, y - REACH, x + REACH, y + REACH)):
                 geometry = feature.geometry()
-                distance = geometry.distance(here)
+                distance = geometry.distance(point)
                 if distance < nearest:
-                    at = geometry.lineLocatePoint(here)
-                    nearest, azimuth = distance, math.degrees(geometry.interpolateAngle(at)) + (180.0 if _against_the_road(feature) else 0.0)
+                    along = geometry.lineLocatePoint(point)
+                    nearest, azimuth = distance, math.degrees(geometry.interpolateAngle(along)) + (180.0 if _against_the_road(feature) else 0.0)
         if azimuth is not None:
             return Section(x, y, azimuth % 360.0)
     return None
@@ -117,31 +117,31 @@ def _against_the_road(feature):
 
 def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossing]:
     """Lines that cross the section, from left to right."""
-    line, found = section.line(), []
+    line, result = section.line(), []
     for layer in layers:
         colour = DRAWN.get(output_of(layer))
         if colour is None or layer.geometryType() != Qgis.GeometryType.Line:
             continue
         for feature in layer.getFeatures(line.boundingBox()):
-            met = feature.geometry().intersection(line)
-            for vertex in met.vertices() if not met.isEmpty() else ():
+            intersection = feature.geometry().intersection(line)
+            for vertex in intersection.vertices() if not intersection.isEmpty() else ():
                 z = _height(feature.geometry(), vertex)
-                found.append(Crossing(section.offset(vertex.x(), vertex.y()), z, title_of(layer, feature), colour, z + _curb_height(feature)))
-    return sorted(found, key=lambda crossing: -crossing.offset)
+                result.append(Crossing(section.offset(vertex.x(), vertex.y()), z, title_of(layer, feature), colour, z + _curb_height(feature)))
+    return sorted(result, key=lambda crossing: -crossing.offset)
 
 
 def corners(section: Section, layers: Iterable[QgsVectorLayer], along: float = CORNERS_WITHIN) -> list[tuple[float, float, str]]:
     """(offset, z, part) of the corners of curbs, bottom and top, that lie within `along` m of the section; of layers of curb points."""
-    found, box = [], section.line().boundingBox().buffered(along)
+    result, box = [], section.line().boundingBox().buffered(along)
     for layer in layers:
         if output_of(layer) not in CORNERS or layer.geometryType() != Qgis.GeometryType.Point:
             continue
         for feature in layer.getFeatures(box):
-            place = feature.geometry()
-            point = place.constGet()
+            geometry = feature.geometry()
+            point = geometry.constGet()
             if abs((point.x() - section.x) * section.ahead[0] + (point.y() - section.y) * section.ahead[1]) <= along and point.is3D():
-                found.append((section.offset(point.x(), point.y()), point.z(), str(feature.attribute("part") or "bottom")))
-    return found
+                result.append((section.offset(point.x(), point.y()), point.z(), str(feature.attribute("part") or "bottom")))
+    return result
 
 
 def middle_of(found: Iterable[Crossing]) -> float:
@@ -163,9 +163,9 @@ def _curb_height(feature):
 
 def _height(geometry, vertex):
     """z of a line at a place on it; NaN where it has none."""
-    at = geometry.lineLocatePoint(QgsGeometry(QgsPoint(vertex.x(), vertex.y())))
-    place = geometry.interpolate(at)  # its point lives no longer than it
-    point = place.constGet()
+    along = geometry.lineLocatePoint(QgsGeometry(QgsPoint(vertex.x(), vertex.y())))
+    on_line = geometry.interpolate(along)  # its point lives no longer than it
+    point = on_line.constGet()
     return point.z() if point is not None and point.is3D() else math.nan
 
 
@@ -173,6 +173,6 @@ def title_of(layer: QgsVectorLayer, feature: QgsFeature) -> str:
     """What a feature is: in the words of the result that its layer is, else by the display expression of the layer."""
     context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
     context.setFeature(feature)
-    own = title_expression(output_of(layer), {field.name() for field in layer.fields()})
-    said = QgsExpression(own or layer.displayExpression()).evaluate(context)
-    return str(said) if said else layer.name()
+    expression = title_expression(output_of(layer), {field.name() for field in layer.fields()})
+    title = QgsExpression(expression or layer.displayExpression()).evaluate(context)
+    return str(title) if title else layer.name()

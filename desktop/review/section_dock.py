@@ -96,10 +96,10 @@ class SectionDock(QDockWidget):
         for road_map in road_maps(QgsProject.instance(), self.iface.activeLayer()):
             layers = road_map.vectors
             try:
-                here = QgsCoordinateTransform(crs, layers[0].crs(), QgsProject.instance()).transform(point)
+                on_layer = QgsCoordinateTransform(crs, layers[0].crs(), QgsProject.instance()).transform(point)
             except QgsCsException:
                 continue
-            section = section_at(here.x(), here.y(), layers)
+            section = section_at(on_layer.x(), on_layer.y(), layers)
             if section is not None:
                 self._show(section, road_map)
                 return
@@ -129,10 +129,10 @@ class SectionDock(QDockWidget):
 
     def _clouds(self, road_map):
         """The point clouds of a road map; the user is asked once where they are, where they are no longer where they were."""
-        clouds, gone = clouds_of(road_map, QgsProject.instance())
-        if gone and road_map.name not in self._asked:
+        clouds, missing = clouds_of(road_map, QgsProject.instance())
+        if missing and road_map.name not in self._asked:
             self._asked.add(road_map.name)
-            folder = self.ask_for_folder(gone)
+            folder = self.ask_for_folder(missing)
             if folder:
                 clouds_lie_in(road_map, folder, QgsProject.instance())
                 clouds, _ = clouds_of(road_map, QgsProject.instance())
@@ -148,9 +148,9 @@ class SectionDock(QDockWidget):
     def _read(self, clouds):
         """Read the points about the section in the background."""
         self.view.show_section(np.empty((0, 3)), [], tr("Reading points…"))
-        place = (clouds, self.section.x, self.section.y)
-        task = QgsTask.fromFunction(tr("Points of a cross-section"), _points, clouds, place[1], place[2],
-                                    on_finished=lambda error, found=None: self._ready(task, place, error, found))
+        key = (clouds, self.section.x, self.section.y)
+        task = QgsTask.fromFunction(tr("Points of a cross-section"), _points, clouds, key[1], key[2],
+                                    on_finished=lambda error, found=None: self._ready(task, key, error, found))
         self.task = task  # QGIS keeps no reference
         QgsApplication.taskManager().addTask(task)
 
@@ -174,10 +174,10 @@ class SectionDock(QDockWidget):
             return
         points = self.section.cut(self._kept, self.thickness.value()) if self._kept_at is not None and not message else np.empty((0, 3))
         layers = self.road_map.vectors
-        found = crossings(self.section, layers)
-        middle = middle_of(found)
+        lines = crossings(self.section, layers)
+        middle = middle_of(lines)
         scanline = [line + (middle, 0.0) for line in slice_lines(points[:, 0] - middle, points[:, 1], 2 * HALF_WIDTH)]
-        self.view.show_section(points, found, message or tr("No points lie here."), scanline, corners(self.section, layers))
+        self.view.show_section(points, lines, message or tr("No points lie here."), scanline, corners(self.section, layers))
 
     # -- the line on the map --------------------------------------------------------------------------
 

@@ -75,13 +75,13 @@ class SectionView(QWidget):
     def _fit_heights(self):
         """The heights of the road: of the lines on it where there are any, else of the lowest points."""
         inside = np.abs(self.points[:, 0] - self.centre) <= self.half if len(self.points) else np.empty(0, bool)
-        known = [crossing.z for crossing in self._shown() if math.isfinite(crossing.z)]
-        if known:
-            self.low, self.high = min(known) - HEIGHT_BELOW, max(known) + HEIGHT_ABOVE
+        heights = [crossing.z for crossing in self._shown() if math.isfinite(crossing.z)]
+        if heights:
+            self.low, self.high = min(heights) - HEIGHT_BELOW, max(heights) + HEIGHT_ABOVE
             boxes = self._label_boxes(self._shown(), self._frame(), QFontMetricsF(self._small(), self))
             # titles of many lines take more rows: they stay above the road
             share = min(max(box.bottom() - TOP for box in boxes) / self._frame().height(), MOST_TITLES)
-            self.high = max(self.high, (max(known) - share * self.low) / (1.0 - share))
+            self.high = max(self.high, (max(heights) - share * self.low) / (1.0 - share))
         elif inside.any():
             low = float(np.percentile(self.points[inside, 1], 2))
             self.low, self.high = low - HEIGHT_BELOW, low + HEIGHT_ABOVE + LEAST_HEIGHT
@@ -179,7 +179,7 @@ class SectionView(QWidget):
             width, height = metrics.horizontalAdvance(crossing.title) + 6, metrics.height()
             left = max(frame.left(), x + 3 if x + 3 + width <= frame.right() else x - 3 - width)
             rows = (QRectF(left, frame.top() + 2 + row * height, width, height) for row in range(len(boxes) + 1))
-            boxes.append(next(box for box in rows if not any(box.intersects(other) for other in boxes)))
+            boxes.append(next(box for box in rows if not any(box.intersects(earlier) for earlier in boxes)))
         return boxes
 
     def _draw_corners(self, painter):
@@ -187,11 +187,11 @@ class SectionView(QWidget):
         painter.setPen(QPen(PAPER, 1))
         painter.setBrush(CORNER)
         for offset, z, part in self.corners:
-            at = QPointF(*self._at(offset, z))
+            centre = QPointF(*self._at(offset, z))
             if part == "top":
-                painter.drawPolygon(QPolygonF([at + QPointF(-5, 5), at + QPointF(5, 5), at + QPointF(0, -4)]))
+                painter.drawPolygon(QPolygonF([centre + QPointF(-5, 5), centre + QPointF(5, 5), centre + QPointF(0, -4)]))
             else:
-                painter.drawEllipse(at, 4, 4)
+                painter.drawEllipse(centre, 4, 4)
 
     # -- the mouse ----------------------------------------------------------------------------------------
 

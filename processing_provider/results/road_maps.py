@@ -89,13 +89,13 @@ def road_map_of(layer: QgsMapLayer, project: QgsProject) -> RoadMap | None:
 def runs_of(project: QgsProject) -> list[RoadMap]:
     """All runs of this program of which a project has layers, newest first."""
     nodes = [node for node in project.layerTreeRoot().findLayers() if node.layer() is not None]
-    ours = [(node, origin) for node in nodes if (origin := origin_of(node.layer())) is not None]
+    placed = [(node, origin) for node in nodes if (origin := origin_of(node.layer())) is not None]
     whole: dict[Any, Any] = {}  # group of the layer tree -> run in one call whose layers it holds
-    for node, origin in ours:
+    for node, origin in placed:
         if origin.provenance.algorithm in _whole_maps() and node.parent() is not project.layerTreeRoot():
             whole.setdefault(_id(node.parent()), _run_key(origin))
     runs: dict[Any, list] = {}
-    for node, origin in ours:
+    for node, origin in placed:
         in_one_call = origin.provenance.algorithm in _whole_maps()
         key = _run_key(origin) if in_one_call else whole.get(_id(node.parent())) or _place_key(node, project)
         runs.setdefault(key, []).append((node, origin))
@@ -164,12 +164,12 @@ def clouds_of(road_map: RoadMap, project: QgsProject) -> tuple[list[str], list[s
     moved = next((str(layer.customProperty(MOVED)).split("\n") for layer in road_map.layers if layer.customProperty(MOVED)), None)
     named = moved or _named(road_map.provenance)
     folders = [folder for folder in {project.absolutePath(), *_folders(road_map.layers)} if folder]
-    present, gone = [], []
+    present, missing = [], []
     for name in named:
-        places = [Path(name), *(Path(folder) / part for folder in sorted(folders) for part in (name, Path(name).name))]
-        file = next((place for place in places if place.is_file() and (place.is_absolute() or folders)), None)
-        (gone.append(name) if file is None else present.append(str(file.absolute())))
-    return present, gone
+        paths = [Path(name), *(Path(folder) / part for folder in sorted(folders) for part in (name, Path(name).name))]
+        file = next((path for path in paths if path.is_file() and (path.is_absolute() or folders)), None)
+        (missing.append(name) if file is None else present.append(str(file.absolute())))
+    return present, missing
 
 
 def _folders(layers: Iterable[QgsMapLayer]):
@@ -182,8 +182,8 @@ def _folders(layers: Iterable[QgsMapLayer]):
 
 def clouds_lie_in(road_map: RoadMap, folder: str, project: QgsProject) -> list[str]:
     """Look for the point clouds of a road map in a folder and below, and remember those that are found; the names of those that are not."""
-    present, gone = clouds_of(road_map, project)
-    path_by_name = {name: next((str(path) for path in sorted(Path(folder).rglob(Path(name).name)) if path.is_file()), "") for name in gone}
+    present, missing = clouds_of(road_map, project)
+    path_by_name = {name: next((str(path) for path in sorted(Path(folder).rglob(Path(name).name)) if path.is_file()), "") for name in missing}
     for layer in road_map.layers if any(path_by_name.values()) else ():
         layer.setCustomProperty(MOVED, "\n".join([*present, *(path or name for name, path in path_by_name.items())]))
     return [name for name, path in path_by_name.items() if not path]

@@ -90,12 +90,12 @@ def _entered(body: _Body, o: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.
     incoming, outgoing = toward < 0, toward > 0
     enter = np.where(incoming, t, -np.inf)
     plane = np.argmax(enter, axis=0)
-    each = np.arange(v.shape[1])
-    start = enter[plane, each]
+    rays = np.arange(v.shape[1])
+    start = enter[plane, rays]
     leave = np.where(outgoing, t, np.inf).min(axis=0)
     outside = ((~incoming) & (~outgoing) & (clearance < 0)).any(axis=0)
     hit = (start > 0) & (start <= leave) & ~outside
-    return np.where(hit, start, np.inf), np.where(hit, -toward[plane, each], 0.0)
+    return np.where(hit, start, np.inf), np.where(hit, -toward[plane, rays], 0.0)
 
 
 def body(faces: Sequence[Sequence[float]], brightness: float, transparency: float = 0.0) -> _Body:

@@ -45,10 +45,10 @@ class PaintedLine:
 
     def covers(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) bool, places within the marking, at (N,) stations and offsets."""
-        there = (np.abs(d - np.interp(s, *np.transpose(self.places))) <= self.width / 2) & (s >= self.start) & (s <= self.end)
+        inside = (np.abs(d - np.interp(s, *np.transpose(self.places))) <= self.width / 2) & (s >= self.start) & (s <= self.end)
         if self.dash is not None:
-            there &= (s - self.start) % sum(self.dash) <= self.dash[0]
-        return there
+            inside &= (s - self.start) % sum(self.dash) <= self.dash[0]
+        return inside
 
     def outlines(self) -> list[np.ndarray]:
         """Outlines of its painted pieces, (n, 2) m of station and offset each."""
@@ -85,13 +85,13 @@ class PaintedFigure:
 
     def covers(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) bool, places within the marking, at (N,) stations and offsets."""
-        there = np.zeros(len(s), dtype=bool)
+        inside = np.zeros(len(s), dtype=bool)
         near = np.flatnonzero((s >= self.start) & (s <= self.end))
         for polygon in self.polygons:
             (s0, d0), (s1, d1) = polygon.min(0), polygon.max(0)
             local = near[(s[near] >= s0) & (s[near] <= s1) & (d[near] >= d0) & (d[near] <= d1)]
-            there[local] |= _inside(polygon, s[local], d[local])
-        return there
+            inside[local] |= _inside(polygon, s[local], d[local])
+        return inside
 
     def outlines(self) -> list[np.ndarray]:
         """Outlines of its painted pieces, (n, 2) m of station and offset each."""
@@ -103,8 +103,8 @@ def _inside(polygon, s, d):
     a, b = polygon, np.roll(polygon, -1, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         crosses = (a[:, 1] > d[:, None]) != (b[:, 1] > d[:, None])
-        at = a[:, 0] + (d[:, None] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
-    return (np.sum(crosses & (s[:, None] < at), axis=1) % 2).astype(bool)
+        crossing = a[:, 0] + (d[:, None] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
+    return (np.sum(crosses & (s[:, None] < crossing), axis=1) % 2).astype(bool)
 
 
 def rectangle(start: float, end: float, right: float, left: float) -> np.ndarray:

@@ -109,11 +109,11 @@ class Scanner:
         share, along = self.line()
         x, y, z, roll, pitch, heading = drive.pose(np.append(lines, lines[-1] + 1) / self.rotation_rate)
         turn = attitude(roll, pitch, heading)
-        place = np.stack([x, y, z], axis=1) + turn @ np.array(self.lever_arm)
+        centre = np.stack([x, y, z], axis=1) + turn @ np.array(self.lever_arm)
         # within one turn (5 ms) motion and rotation are linear to a few micrometres
-        change, moved = np.diff(turn, axis=0), np.diff(place, axis=0)
+        change, moved = np.diff(turn, axis=0), np.diff(centre, axis=0)
         direction = np.einsum("lij,jn->iln", turn[:-1], along) + np.einsum("lij,jn->iln", change, along * share)
-        origin = place[:-1].T[:, :, None] + moved.T[:, :, None] * share
+        origin = centre[:-1].T[:, :, None] + moved.T[:, :, None] * share
         times = (lines[:, None] + share) / self.rotation_rate
         angle = np.where(share < 0.5, share, share - 1.0) * 360.0
         return origin.reshape(3, -1), direction.reshape(3, -1), times.ravel(), np.tile(angle, len(lines))
@@ -145,8 +145,8 @@ def brightness_of(scene: SurveyedScene, label: np.ndarray, s: np.ndarray, d: np.
     patchy = 1.0 + 0.07 * texture.at(at_s, at_d, 1.7) + 0.08 * texture.at(at_s, at_d, 0.06)
     patchy *= scene.repaired(at_s, at_d)
     bright[asphalt] *= np.maximum(patchy, 0.4)
-    other = np.flatnonzero((label == LABEL["paint"]) | (label >= LABEL["gutter"]))
-    bright[other] *= np.maximum(1.0 + 0.10 * texture.at(s[other], d[other], 0.05), 0.4)
+    textured = np.flatnonzero((label == LABEL["paint"]) | (label >= LABEL["gutter"]))
+    bright[textured] *= np.maximum(1.0 + 0.10 * texture.at(s[textured], d[textured], 0.05), 0.4)
     return bright
 
 

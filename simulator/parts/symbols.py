@@ -35,7 +35,7 @@ def bicycle(start: float, offset: float, direction: int, length: float = 1.4, wi
     """A bicycle seen from the side, drawn across the way it is read; parameters and result as of `bus_word`."""
     import shapely
 
-    wheels = [shapely.Point(place).buffer(_RADIUS).exterior.buffer(_BREADTH / 2) for place in _WHEELS]
+    wheels = [shapely.Point(hub).buffer(_RADIUS).exterior.buffer(_BREADTH / 2) for hub in _WHEELS]
     frame = [shapely.LineString(stroke).buffer(_BREADTH / 2, cap_style="flat", join_style="mitre") for stroke in _STROKES]
     return _painted(shapely.union_all([*wheels, *frame]).simplify(0.5), start, offset, direction, length, width)
 

@@ -150,15 +150,15 @@ class PlanBuilder:
         heights = [np.where(has_curb[number], curb_heights(ring, curb_height, lowered), 0.0) for ring, number in zip(rings, numbers)]
         ground = Ground(terrain_over((west, south, east, north), height), rings, heights, profiles, numbers, shapely.buffer(self.area, _FRAME))
         edges = [np.where(has_curb[number], np.where(tall < _DROPPED, "dropped", "curb"), "pavement") for tall, number in zip(heights, numbers)]
-        where = [np.asarray(where_at(ring, k)) for k, ring in enumerate(rings)]
-        scene = PlanScene(self.name, ground, carriageway, self.area, where, edges, PlanPaint(self.markings, self.texture), self.texture,
+        kinds = [np.asarray(where_at(ring, k)) for k, ring in enumerate(rings)]
+        scene = PlanScene(self.name, ground, carriageway, self.area, kinds, edges, PlanPaint(self.markings, self.texture), self.texture,
                           self.lanes, [(Track(path, ground), haste) for path, haste in passes], [], self.patches, self.factors,
                           np.array(self.manholes).reshape(-1, 3), gutter, self.rails)
         for kind, place, heading, shape in self.objects:
-            here = ground.at(place[:1], place[1:])
-            x, y, z = float(place[0]), float(place[1]), float(here.z[0])
+            surface = ground.at(place[:1], place[1:])
+            x, y, z = float(place[0]), float(place[1]), float(surface.z[0])
             if kind == "rail":
-                slope = float(here.slope_x[0] * np.cos(heading) + here.slope_y[0] * np.sin(heading))
+                slope = float(surface.slope_x[0] * np.cos(heading) + surface.slope_y[0] * np.sin(heading))
                 scene.obstacles.append(Rail(x, y, z, heading, shape[0], slope))
             else:
                 scene.obstacles += standing(kind, x, y, z, heading, shape)

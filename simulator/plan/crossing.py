@@ -55,8 +55,8 @@ def crossing(length: float, seed: int, radius: float, curb_height: float, gutter
     carriageway = shapely.buffer(shapely.buffer(bare, _CORNER, quad_segs=64), -_CORNER, quad_segs=64)
 
     def height(places):
-        away = [np.abs(path.locate(places)[1]) for path in (east, north)]
-        return 0.010 * places[:, 0] + 0.006 * places[:, 1] - _FALL * np.minimum(*away)
+        distances = [np.abs(path.locate(places)[1]) for path in (east, north)]
+        return 0.010 * places[:, 0] + 0.006 * places[:, 1] - _FALL * np.minimum(*distances)
 
     def where(ring, k):
         out = np.max([path.locate(ring)[0] for path in arms], axis=0)
@@ -70,8 +70,8 @@ def crossing(length: float, seed: int, radius: float, curb_height: float, gutter
 
 def _leftward(arms, places):
     """Whether places lie left of the arm that they are farthest out on."""
-    found = np.array([path.locate(places) for path in arms])
-    return np.take_along_axis(found[:, 1], found[:, 0].argmax(axis=0)[None], axis=0)[0] > 0
+    located = np.array([path.locate(places) for path in arms])
+    return np.take_along_axis(located[:, 1], located[:, 0].argmax(axis=0)[None], axis=0)[0] > 0
 
 
 def _paint(road, number, path, arm):

@@ -135,12 +135,12 @@ class Ground:
         rows, columns = self._shape
         column = np.clip(((x - self.terrain.corner[0]) / _LOOKUP).astype(np.intp), 0, columns - 1)
         row = np.clip(((y - self.terrain.corner[1]) / _LOOKUP).astype(np.intp), 0, rows - 1)
-        here = self._nearest[row * columns + column]
-        best = self._to_segment(here, x, y)
-        other = self._to_segment(self._before[here], x, y)
-        nearer = other[0] < best[0]
-        square, dx, dy, along = (np.where(nearer, b, a) for a, b in zip(best, other))
-        segment = np.where(nearer, self._before[here], here)
+        nearest = self._nearest[row * columns + column]
+        best = self._to_segment(nearest, x, y)
+        previous = self._to_segment(self._before[nearest], x, y)
+        nearer = previous[0] < best[0]
+        square, dx, dy, along = (np.where(nearer, b, a) for a, b in zip(best, previous))
+        segment = np.where(nearer, self._before[nearest], nearest)
         way_x, way_y = self._way[segment, 0], self._way[segment, 1]
         # right of the segment is beyond the edge
         aside = way_y * dx - way_x * dy
@@ -163,22 +163,22 @@ class Ground:
     def at(self, x: np.ndarray, y: np.ndarray) -> Surface:
         """The ground at (N,) places."""
         z, slope_x, slope_y = self.terrain.at(x, y)
-        away, outward, curb, profile = self.beyond_edge(x, y)
+        distance, outward, curb, profile = self.beyond_edge(x, y)
         strip = np.zeros(len(x), dtype=np.int16)
-        beside = np.flatnonzero(away > 0)
+        off_road = np.flatnonzero(distance > 0)
         for number, side in enumerate(self.profiles):
-            there = beside[profile[beside] == number] if len(self.profiles) > 1 else beside
-            if len(there) == 0:
+            rows = off_road[profile[off_road] == number] if len(self.profiles) > 1 else off_road
+            if len(rows) == 0:
                 continue
-            far = np.minimum(away[there], side.borders[-1])
+            far = np.minimum(distance[rows], side.borders[-1])
             k = np.clip(np.searchsorted(side.borders, far, side="right") - 1, 0, len(side.strips) - 1)
-            inner = side.rises[k] + side.on_curb[k] * curb[there]
-            steep = (side.rises[k + 1] + side.on_curb[k + 1] * curb[there] - inner) / (side.borders[k + 1] - side.borders[k])
-            z[there] += inner + steep * (far - side.borders[k])
-            slope_x[there] += steep * outward[0, there]
-            slope_y[there] += steep * outward[1, there]
-            strip[there] = self._first_strip[number] + k
-        return Surface(z, slope_x, slope_y, away, strip)
+            inner = side.rises[k] + side.on_curb[k] * curb[rows]
+            steep = (side.rises[k + 1] + side.on_curb[k + 1] * curb[rows] - inner) / (side.borders[k + 1] - side.borders[k])
+            z[rows] += inner + steep * (far - side.borders[k])
+            slope_x[rows] += steep * outward[0, rows]
+            slope_y[rows] += steep * outward[1, rows]
+            strip[rows] = self._first_strip[number] + k
+        return Surface(z, slope_x, slope_y, distance, strip)
 
     def height(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Height at (N,) places, m."""

@@ -51,8 +51,8 @@ def line_mark(kind: str, line: int, path: Path, spans: Sequence[tuple[float, flo
         left, right = path.at(s, offset + width / 2), path.at(s, offset - width / 2)
         outlines.append(np.concatenate([right, left[::-1]]))
         for first in range(0, len(s) - 1, _PIECE):
-            some = slice(first, first + _PIECE + 1)
-            pieces.append(np.concatenate([right[some], left[some][::-1]]))
+            rows = slice(first, first + _PIECE + 1)
+            pieces.append(np.concatenate([right[rows], left[rows][::-1]]))
     return Mark(kind, line, "dashed" if dashed else "solid", width, tuple(outlines), tuple(pieces), wear)
 
 
@@ -115,6 +115,6 @@ class Areas:
         column = np.clip(((x - self._corner[0]) / _CELL).astype(np.intp), 0, columns - 1)
         row = np.clip(((y - self._corner[1]) / _CELL).astype(np.intp), 0, rows - 1)
         near = np.flatnonzero(self._near[row, column])
-        place, polygon = self._tree.query(shapely.points(x[near], y[near]), predicate="intersects")
-        number[near[place]] = self._numbers[polygon]
+        point, polygon = self._tree.query(shapely.points(x[near], y[near]), predicate="intersects")
+        number[near[point]] = self._numbers[polygon]
         return number

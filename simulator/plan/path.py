@@ -58,10 +58,10 @@ class Path:
         s = self._nodes[self._tree.query(places)[1]]
         for _ in range(2):
             ahead = self._ahead(np.clip(s, self.start, self.end))
-            away = places - self.at(s)
-            s = s + np.clip((away * ahead).sum(axis=1), -_SPACING, _SPACING)
-        away = places - self.at(s)
-        return s, ahead[:, 0] * away[:, 1] - ahead[:, 1] * away[:, 0]
+            offset = places - self.at(s)
+            s = s + np.clip((offset * ahead).sum(axis=1), -_SPACING, _SPACING)
+        offset = places - self.at(s)
+        return s, ahead[:, 0] * offset[:, 1] - ahead[:, 1] * offset[:, 0]
 
     def reversed(self) -> Path:
         """The same line the other way, its first station 0."""

@@ -62,11 +62,11 @@ def roundabout(length: float, seed: int, radius: float, curb_height: float, gutt
         road.tree(4.2 * np.array([np.cos(angle), np.sin(angle)]))
 
     def height(places):
-        away = np.hypot(*places.T)
+        radial = np.hypot(*places.T)
         # the ring falls outward; the arms fall to both sides, more and more beyond the ring
         aside = np.min([np.abs(path.locate(places)[1]) for path in arms[:2]], axis=0)
-        share = np.clip((away - _RING) / 12.0, 0.0, 1.0)
-        return 0.008 * places[:, 0] - 0.005 * places[:, 1] - 0.02 * (1 - share) * away - share * (0.02 * _RING + 0.02 * aside)
+        share = np.clip((radial - _RING) / 12.0, 0.0, 1.0)
+        return 0.008 * places[:, 0] - 0.005 * places[:, 1] - 0.02 * (1 - share) * radial - share * (0.02 * _RING + 0.02 * aside)
 
     grass = Side(1, np.array([0.0, 0.025, 0.175, 1.4, 24.0]), np.array([0.0, 0.0, 0.003, 0.03, 1.2]), np.array([0.0, 1.0, 1.0, 1.0, 1.0]),
                  ("curb face", "curb stone", "verge", "verge"), curb_height)

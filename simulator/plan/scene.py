@@ -122,12 +122,12 @@ class PlanScene:
         count = len(distance)
         hits = Hits(distance, np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count, dtype=np.int16),
                     np.zeros(count, dtype=np.uint8), np.zeros(count))
-        met = np.flatnonzero(np.isfinite(distance))
-        x, y, _ = origin[:, met] + distance[met] * direction[:, met]
-        here = self.ground.at(x, y)
-        hits.station[met], hits.offset[met], hits.strip[met] = x, y, here.strip
-        facing = here.slope_x * direction[0, met] + here.slope_y * direction[1, met] - direction[2, met]
-        hits.cosine[met] = facing / np.sqrt(1.0 + here.slope_x**2 + here.slope_y**2)
+        returns = np.flatnonzero(np.isfinite(distance))
+        x, y, _ = origin[:, returns] + distance[returns] * direction[:, returns]
+        surface = self.ground.at(x, y)
+        hits.station[returns], hits.offset[returns], hits.strip[returns] = x, y, surface.strip
+        facing = surface.slope_x * direction[0, returns] + surface.slope_y * direction[1, returns] - direction[2, returns]
+        hits.cosine[returns] = facing / np.sqrt(1.0 + surface.slope_x**2 + surface.slope_y**2)
         return hits
 
     def labels(self, strip: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -176,16 +176,16 @@ _LEAST = 4       # vertices of an edge that is worth a line
 
 def _boundaries(scene, on_map):
     """Bottoms and tops of curbs, and edges of the pavement, in pieces of one kind."""
-    for ring, height, where, edge in zip(scene.ground.rings, scene.ground.heights, scene.where, scene.edges):
-        for some in _runs(ring, where, edge, scene.area):
-            bottom, tall = ring[some], height[some]
+    for ring, height, kinds, edge in zip(scene.ground.rings, scene.ground.heights, scene.where, scene.edges):
+        for rows in _runs(ring, kinds, edge, scene.area):
+            bottom, tall = ring[rows], height[rows]
             side = _side(scene, bottom[len(bottom) // 2])
             lines = [("bottom", on_map(bottom))]
-            if edge[some[0]] != "pavement":
-                top = bottom + _FACE * _outward(ring)[some]
+            if edge[rows[0]] != "pavement":
+                top = bottom + _FACE * _outward(ring)[rows]
                 lines.append(("top", np.column_stack([on_map(top)[:, :2], lines[0][1][:, 2] + tall])))
             for part, places in lines:
-                yield places, dict(side=side, part=part, kind=str(where[some[0]]), edge=str(edge[some[0]]), height_m=float(np.median(tall)))
+                yield places, dict(side=side, part=part, kind=str(kinds[rows[0]]), edge=str(edge[rows[0]]), height_m=float(np.median(tall)))
 
 
 def _outward(ring):
@@ -198,7 +198,7 @@ def _runs(ring, where, edge, area):
     """Indices of neighbouring vertices in the area with one kind of edge; where two kinds meet, both have the vertex between."""
     count = len(ring)
     inside = shapely.contains_xy(area, ring)
-    name = np.array([f"{a}|{b}" if here else "" for a, b, here in zip(where, edge, inside)])
+    name = np.array([f"{a}|{b}" if in_area else "" for a, b, in_area in zip(where, edge, inside)])
     changes = np.flatnonzero(name != np.roll(name, 1))
     if len(changes) == 0:
         return [np.append(np.arange(count), 0)] if inside.all() else []

@@ -22,13 +22,13 @@ _GRAZING = 0.02       # least sine of the angle towards the steepest ground
 
 def trace(ground: Ground, origin: np.ndarray, direction: np.ndarray, farthest: float) -> np.ndarray:
     """(N,) m at which pulses, (3, N) local origins, m, and unit directions, meet the ground within `farthest` m over it; inf where they do not."""
-    found = np.full(direction.shape[1], np.inf)
+    distance = np.full(direction.shape[1], np.inf)
     flat = np.hypot(direction[0], direction[1])
     steepest = ground.terrain.steepest
     ray = np.flatnonzero(steepest * flat - direction[2] > _GRAZING)
-    limit = np.full(len(found), np.inf)
+    limit = np.full(len(distance), np.inf)
     limit[ray] = np.minimum(farthest / np.maximum(flat[ray], 1e-6), 4.0 * farthest)
-    t = np.zeros(len(found))
+    t = np.zeros(len(distance))
     live = ray
     for _ in range(_STEPS):
         x, y, z = origin[:, live] + t[live] * direction[:, live]
@@ -40,7 +40,7 @@ def trace(ground: Ground, origin: np.ndarray, direction: np.ndarray, farthest: f
         if len(live) == 0:
             break
     live = ray[t[ray] < limit[ray]]
-    return _follow(ground, origin, direction, t, live, limit, flat, found)
+    return _follow(ground, origin, direction, t, live, limit, flat, distance)
 
 
 def _follow(ground, origin, direction, t, live, limit, flat, found):
@@ -49,13 +49,13 @@ def _follow(ground, origin, direction, t, live, limit, flat, found):
     below, under = np.full(len(t), np.nan), np.zeros(len(t))
     for _ in range(_STEPS):
         x, y, z = origin[:, live] + t[live] * direction[:, live]
-        here = ground.at(x, y)
-        gap = z - here.z
+        surface = ground.at(x, y)
+        gap = z - surface.z
         hit = gap <= 0
         below[live[hit]], under[live[hit]] = t[live[hit]], gap[hit]
-        live, gap, away = live[~hit], gap[~hit], np.abs(here.away[~hit])
+        live, gap, distance = live[~hit], gap[~hit], np.abs(surface.away[~hit])
         before[live], above[live] = t[live], gap
-        over = np.clip(0.9 * away, _NEAREST, np.where(here.away[~hit] > 0, _FARTHEST, np.inf)) / np.maximum(flat[live], 1e-6)
+        over = np.clip(0.9 * distance, _NEAREST, np.where(surface.away[~hit] > 0, _FARTHEST, np.inf)) / np.maximum(flat[live], 1e-6)
         fall = 1.02 * (gap + 0.005) / np.maximum(-direction[2, live], _GRAZING)
         t[live] += np.minimum(over, fall)
         live = live[t[live] < limit[live]]

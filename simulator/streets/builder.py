@@ -77,20 +77,20 @@ class SceneBuilder:
 
     def parked_cars(self, start: float, end: float, curb_offset: float, taken: float = 0.75) -> None:
         """Add a row of cars beside the curb at `curb_offset`, with some places empty."""
-        sign, at = np.sign(curb_offset), start
-        while at + 5.2 < min(end, self.length):
+        sign, station = np.sign(curb_offset), start
+        while station + 5.2 < min(end, self.length):
             length, width = self.random.uniform(3.9, 4.8), self.random.uniform(1.70, 1.86)
             gap, brightness, height = self.random.uniform(0.15, 0.40), self.random.uniform(0.10, 0.55), self.random.uniform(1.42, 1.62)
             if self.random.random() < taken:
-                self.objects.append(("car", at + 2.6, curb_offset - sign * (gap + width / 2), (length, width, height, brightness)))
-            at += length + self.random.uniform(0.8, 2.0)
+                self.objects.append(("car", station + 2.6, curb_offset - sign * (gap + width / 2), (length, width, height, brightness)))
+            station += length + self.random.uniform(0.8, 2.0)
 
     def trees(self, start: float, end: float, offset: float, spacing: float, crown: tuple[float, float] = (1.5, 2.2)) -> None:
         """Add a row of trees whose crowns have radii in a range, m."""
         for station in np.arange(start, min(end, self.length), spacing):
-            place = offset + self.random.uniform(-0.2, 0.2)
+            tree_offset = offset + self.random.uniform(-0.2, 0.2)
             shape = (self.random.uniform(0.10, 0.17), self.random.uniform(*crown), self.random.uniform(1.2, 1.7), self.random.uniform(3.6, 4.4))
-            self.objects.append(("tree", station + self.random.uniform(-1.0, 1.0), place, shape))
+            self.objects.append(("tree", station + self.random.uniform(-1.0, 1.0), tree_offset, shape))
 
     def poles(self, start: float, end: float, offset: float, spacing: float, height: float = 6.0) -> None:
         """Add a row of poles."""

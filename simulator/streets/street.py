@@ -151,9 +151,9 @@ class Scene:
         t = (rays.oz - self.grade_line(station)) / -rays.vz
         s, d = rays.at(t, np.full(len(t), station), steps=2)
         # only pulses that reach the ground on the surveyed stretch are traced further
-        there = (t < LONGEST) & (s > -4.0) & (s < self.length + 4.0)
-        there &= np.abs(d) < reach + 25.0
-        rays, down, t, s, d = rays.some(there), down[there], t[there], s[there], d[there]
+        on_road = (t < LONGEST) & (s > -4.0) & (s < self.length + 4.0)
+        on_road &= np.abs(d) < reach + 25.0
+        rays, down, t, s, d = rays.some(on_road), down[on_road], t[on_road], s[on_road], d[on_road]
         for _ in range(3):
             # Newton step; the slope of the road along the ray follows from its grade and cross slope
             error = rays.oz + t * rays.vz - self.carriageway(s, d)
@@ -180,8 +180,8 @@ class Scene:
         label[road] = self.carriageway_labels(s[road], d[road])
         for side in (self.left, self.right):
             names = np.array([0] + [LABEL[name] for name in side.strips], dtype=np.uint8)
-            beside = strip * side.sign > 0
-            label[beside] = names[np.abs(strip[beside])]
+            off_road = strip * side.sign > 0
+            label[off_road] = names[np.abs(strip[off_road])]
         return label
 
     def repaired(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
@@ -228,33 +228,33 @@ def _beyond_edge(scene, side, rays, t, s, d):
 
     Returns t, s, d and the signed number of the strip; t is inf where a pulse passes the last border above the ground.
     """
-    found_t, found_s, found_d = np.full(len(t), np.inf), s.copy(), d.copy()
-    found_strip = np.zeros(len(t), dtype=np.int8)
+    hit_t, hit_s, hit_d = np.full(len(t), np.inf), s.copy(), d.copy()
+    hit_strip = np.zeros(len(t), dtype=np.int8)
     outward = side.sign * (rays.vy * rays.cos - rays.vx * rays.sin)
     live = np.flatnonzero(outward > 0.02)
-    t, s, away, ray = t[live], s[live], side.sign * d[live], rays.some(live)
-    t, s, away = ray.reach(side, side.edge, t, s, away, times=3)
-    on = np.flatnonzero((t > 0) & (np.abs(away - side.edge) < 0.01))
-    live, ray, t, s, away = live[on], ray.some(on), t[on], s[on], away[on]
+    t, s, distance, ray = t[live], s[live], side.sign * d[live], rays.some(live)
+    t, s, distance = ray.reach(side, side.edge, t, s, distance, times=3)
+    passing = np.flatnonzero((t > 0) & (np.abs(distance - side.edge) < 0.01))
+    live, ray, t, s, distance = live[passing], ray.some(passing), t[passing], s[passing], distance[passing]
     above = ray.oz + t * ray.vz - scene.edge_height(side, s)
     for k in range(1, len(side.borders)):
-        next_t, next_s, next_away = ray.reach(side, side.borders[k], t, s, away, times=2 if k < 3 else 3)
+        next_t, next_s, next_distance = ray.reach(side, side.borders[k], t, s, distance, times=2 if k < 3 else 3)
         # in a bend a few pulses run along a border without passing it; they are left out
-        passed = (next_t >= t) & (np.abs(next_away - side.borders[k]) < 0.01)
+        passed = (next_t >= t) & (np.abs(next_distance - side.borders[k]) < 0.01)
         ground = scene.edge_height(side, next_s) + side.border_rise(k, next_s)
         next_above = ray.oz + next_t * ray.vz - ground
-        met = np.flatnonzero(passed & (next_above <= 0))
-        if len(met):
-            at = live[met]
-            found_t[at], found_s[at], found_d[at] = _within_strip(
-                scene, side, k - 1, ray.some(met), (t[met], above[met]), (next_t[met], next_above[met]), s[met])
-            found_strip[at] = side.sign * k
-        on = np.flatnonzero(passed & (next_above > 0))
-        live, ray = live[on], ray.some(on)
-        t, s, away, above = next_t[on], next_s[on], next_away[on], next_above[on]
+        landing = np.flatnonzero(passed & (next_above <= 0))
+        if len(landing):
+            hits = live[landing]
+            hit_t[hits], hit_s[hits], hit_d[hits] = _within_strip(
+                scene, side, k - 1, ray.some(landing), (t[landing], above[landing]), (next_t[landing], next_above[landing]), s[landing])
+            hit_strip[hits] = side.sign * k
+        passing = np.flatnonzero(passed & (next_above > 0))
+        live, ray = live[passing], ray.some(passing)
+        t, s, distance, above = next_t[passing], next_s[passing], next_distance[passing], next_above[passing]
         if len(live) == 0:
             break
-    return found_t, found_s, found_d, found_strip
+    return hit_t, hit_s, hit_d, hit_strip
 
 
 def _within_strip(scene, side, strip, rays, near, far, s):
@@ -337,9 +337,9 @@ def _boundaries(scene, on_map):
             s = _stations(start, end)
             height = float(np.median(side.curb(s)))
             parts = [("bottom", side.borders[0]), ("top", side.borders[1])]
-            for part, away in parts[:1] if edge == "pavement" else parts:
-                yield on_map(s, side.sign * away), dict(side=name, part=part, kind="main", edge=edge, station_m=float(start), end_m=float(end),
-                                                        height_m=height)
+            for part, distance in parts[:1] if edge == "pavement" else parts:
+                yield on_map(s, side.sign * distance), dict(side=name, part=part, kind="main", edge=edge, station_m=float(start), end_m=float(end),
+                                                            height_m=height)
 
 
 def _edge_pieces(side, length):
@@ -385,7 +385,7 @@ def _lanes(scene, on_map):
 
 def _roadside(scene, origin):
     """Walls, fences and the like; buildings are none of what is looked for along a road."""
-    for thing in scene.running:
-        if thing.kind != "building":
-            offset = scene.axis.locate(*thing.foot[:1, :2].T, np.array([thing.stations[0]]), steps=3)[1]
-            yield thing.foot + origin, dict(side="left" if offset[0] > 0 else "right", **thing.about())
+    for structure in scene.running:
+        if structure.kind != "building":
+            offset = scene.axis.locate(*structure.foot[:1, :2].T, np.array([structure.stations[0]]), steps=3)[1]
+            yield structure.foot + origin, dict(side="left" if offset[0] > 0 else "right", **structure.about())
