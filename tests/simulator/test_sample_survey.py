@@ -228,7 +228,7 @@ def test_worn_paint_is_gone_in_the_share_the_truth_states():
     points = sample.points(noise=False)
     for number, (_, row) in enumerate(sample.truth_markings):
         marking = sample.scene.paint.markings[number]
-        on = points[np.abs(points["offset"] - marking.offset) < 0.05]
+        on = points[np.abs(points["offset"] - marking.places[0][1]) < 0.05]
         worn = np.count_nonzero(on["label"] == LABEL["worn paint"])
         assert len(on) > 500
         assert worn / len(on) == pytest.approx(row["wear"], abs=0.08)
