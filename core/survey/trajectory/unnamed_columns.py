@@ -185,7 +185,9 @@ def _after_roll_and_pitch(sample, k):
 def rough_metres(x: np.ndarray, y: np.ndarray, crs: str) -> tuple[np.ndarray, np.ndarray]:
     """(N,) x and y in metres, of longitude and latitude as far as speeds and courses need it; an unknown CRS is taken to be metric."""
     if crs and horizontal_part(parse_crs(crs)).is_geographic:
-        return x * np.cos(np.radians(np.nanmedian(y))) * TRAJECTORY.metres_per_degree, y * TRAJECTORY.metres_per_degree
+        latitudes = y[np.isfinite(y)]
+        middle = np.median(latitudes) if len(latitudes) else 0.0
+        return x * np.cos(np.radians(middle)) * TRAJECTORY.metres_per_degree, y * TRAJECTORY.metres_per_degree
     return x, y
 
 

@@ -1,6 +1,7 @@
 """Reading trajectories in the dress they come in."""
 
 import time
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.trajectory.columns import columns_by_role
 from lanewright.core.survey.trajectory.reader import read_trajectory, trajectory_from_columns
 from lanewright.core.survey.trajectory.trajectory import Trajectory, reproject_trajectory
+from lanewright.core.survey.trajectory.unnamed_columns import rough_metres
 
 COLUMNS = ("time", "x", "y", "z", "roll", "pitch", "heading")
 FORMAT = {"time": "%.6f", "x": "%.4f", "y": "%.4f", "z": "%.4f", "roll": "%.6f", "pitch": "%.6f", "heading": "%.6f"}
@@ -397,3 +399,10 @@ def test_headings_of_rows_without_a_place_say_nothing_of_their_unit(tmp_path):
     found = read_trajectory(path)
     assert len(found) == 3 and np.isnan(found.x + found.y).all()
     np.testing.assert_array_equal(found.heading, [90.0, 92.9, 94.3])
+
+
+def test_places_of_which_no_latitude_is_a_number_have_no_length_in_metres():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        _, north = rough_metres(np.array([8.4, 8.5]), np.array([np.nan, np.nan]), "EPSG:4326")
+    assert np.isnan(north).all()
