@@ -12,6 +12,7 @@ if ! cmp -s requirements-lint.txt "$stamp"; then
 fi
 "$lint/bin/ruff" check --quiet .
 "$lint/bin/codespell"
+! git grep -nE '^(<{7}|>{7}) ' || exit 1  # left by a merge
 git ls-files -z '*.py' '*.md' ':!docs/manual/de' | xargs -0 "$PY" tools/unwritten_words.py
 "$lint/bin/mypy" --no-error-summary --python-executable "$LANEWRIGHT_BUILD/venv/bin/python"
 # what is gone from Qt 6 or QGIS 4; QGS105: the interface is handed on, so that a test can hand on another

@@ -1,6 +1,6 @@
 """Finds words that the project does not write: those of the second table of docs/words.md, in the files named as arguments.
 
-Each cell of the table's left column holds words separated by commas; a word matches with any ending in a letter, and in names of code, too.
+Each cell of the table's left column holds words separated by commas. Whole words match, small or capital, and as parts of names of code.
 """
 
 import re
