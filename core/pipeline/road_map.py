@@ -163,7 +163,6 @@ def _map_of(survey, image_path, settings, stages, corrections):
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
     waiting = stages.progress.part(stages.done, stages.done)   # the bar stands meanwhile
     density = cube_densities(road_points, waiting)
-    survey.store.clear_cache()
     result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
                      density=density, country=settings.driving.country, corrections=map_corrections)
@@ -210,8 +209,6 @@ def _paint(result, image_path, settings, stages, executor):
                         result.road_points, image, frame, settings.markings)
     executor.forget()
     image.close()
-    # road points are not read until lines are fitted
-    result.road_points.store.clear_cache()
     result.image = IntensityImage.open(image_path)
     result.counts["marking_points"] = len(points)
     if len(points):

@@ -134,8 +134,8 @@ def test_tiles_in_any_order_give_the_same_map(sample, cloud, road_map, tmp_path)
         assert_same(road_map, make_road_map(order, sample.trajectory, tmp_path / "intensity.tif"))
 
 
-def test_section_length_memory_and_block_size_do_not_show(sample, cloud, road_map, tmp_path):
-    settings = RoadMapSettings(survey=SurveySettings(section_length=7.0, memory_limit=2**20, block=33_333))
+def test_section_length_and_block_size_do_not_show(sample, cloud, road_map, tmp_path):
+    settings = RoadMapSettings(survey=SurveySettings(section_length=7.0, block=33_333))
     assert_same(road_map, make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif", settings))
 
 
@@ -175,6 +175,6 @@ def test_a_run_that_is_broken_off_gives_back_the_disk_of_its_points(sample, clou
     monkeypatch.setattr(chain, "open_survey", lambda *given, **named: opened.append(open_survey(*given, **named)) or opened[0])
     monkeypatch.setattr(chain, stage, broken_off)
     with pytest.raises(Cancelled):
-        make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif", RoadMapSettings(survey=SurveySettings(memory_limit=2**20)))
+        make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif")
     assert not opened[0].store.roads()
     assert opened[0].counts["kept"] > 0
