@@ -455,7 +455,7 @@ class _NoisyWeights:
     dash_width: float = 0.40   # m, most
     view_ring: tuple[int, int] = 3, 8   # cells from a piece: asphalt that it is compared with in each view
     view_length: float = 0.5   # m of the vehicle's way: points measured from farther apart are different views
-    min_views: int = 4
+    min_views: int = 4   # of a piece, so that the scatter among them says how well their mean is known
     min_view_sigmas: float = 3.0   # standard errors by which a piece is brighter than its surroundings in the mean of the views
 
 

@@ -145,7 +145,7 @@ class _LatticeWeights:
     rotation_window: float = 0.5   # s of scanning whose points are compared
     rotation_tolerance: float = 0.02   # share of a frequency within which it may vary
     min_direction_ratio: float = 1.5   # of the peak against that of the opposite rotation
-    min_rotation_peak: float = 0.5
+    min_rotation_peak: float = 0.5   # of the spectrum at the rotation: 1 of points that all lie on scan lines, near 0 of shuffled times
 
 
 LATTICE = _LatticeWeights()
