@@ -49,6 +49,7 @@ class _FitWeights:
     cost_margin: float = 1.0   # of cost, beyond all rounding
     min_ellipse_turn: float = np.radians(60.0)   # on a shorter arc an ellipse cannot be distinguished from a circle
     polynomial_reweightings: int = 15   # of a polynomial, a fit of which takes no time
+    heading_base: float = 0.5   # m to either side over which the direction of a line is measured: vertices a decimetre apart are noisy
 
 
 FITS = _FitWeights()

@@ -597,3 +597,16 @@ class _LaneWeights:
 
 
 LANES = _LaneWeights()
+
+
+@dataclass(frozen=True)
+class _OutlierWeights:
+    """Outliers among the points of paint."""
+
+    window: float = 20.0   # m of station that one limit is taken from
+    band: float = 3.0   # m of offset likewise
+    min_points_per_band: int = 30   # points of a window whose deviation is still reliable
+    sparseness_factor: float = 3.0   # times the distance that is usual among a point's own neighbours
+
+
+OUTLIERS = _OutlierWeights()
