@@ -13,13 +13,7 @@ import numpy as np
 
 from ..execution.phase import Recipe
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
-<<<<<<< HEAD
 from ..survey.store.array_file import ArrayFile, opened
-=======
-from ..survey.store.spill_file import PART_WIDTHS, ColumnFile, Packing, SpillFile, StoredColumn
-
-TILE_MEMORY = 64 * 2**20   # cost: bytes of pixels kept in memory; the tiles that follow go to a temporary file
->>>>>>> main
 
 
 class _StoredTile(NamedTuple):

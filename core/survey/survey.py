@@ -17,11 +17,7 @@ from .las.reader import CloudHeader
 from .store.records import Points, road_of
 from .store.section_store import SectionStore, opened_store
 from .survey_reader import Finishing, UnorderedPoints
-<<<<<<< HEAD
-from .weights import LAS, READING
-=======
-from .weights import FRAME, LAS, READING, STORE
->>>>>>> main
+from .weights import FRAME, LAS, READING
 
 if TYPE_CHECKING:
     from .adjustment.register import PassCorrections

@@ -16,15 +16,9 @@ from scipy.linalg import solveh_banded
 from ...common.arrays import order_by
 from ...common.progress import Progress
 from ...execution.phase import Phase
-<<<<<<< HEAD
-from ...survey.frame.road import CORRIDOR
 from ...survey.store.array_file import ArrayFile
 from ...survey.store.records import COORDINATE_SCALE, Points
-=======
-from ...survey.store.records import COORDINATE_SCALE, Points
-from ...survey.store.spill_file import SpillFile, StoredColumn
 from ...survey.weights import FRAME
->>>>>>> main
 from ..common.sides import ahead_of_vehicle
 from ..weights import SURFACE
 

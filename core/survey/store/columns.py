@@ -7,13 +7,7 @@ from typing import Any
 
 import numpy as np
 
-<<<<<<< HEAD
-ROW_CHUNK = 1 << 14    # rows that are split into columns at a time: they fit the processor's cache
-=======
-from ..weights import STORE
-
 ROW_CHUNK = 1 << 14    # cost: rows that are split into columns at a time: they fit the processor's cache
->>>>>>> main
 
 
 class Columns:
