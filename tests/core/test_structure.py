@@ -24,7 +24,7 @@ NUMBERS = {
     "core/countries": 15,
     "core/io": 5,
     "core/curves": 9,
-    "core/survey": 76,
+    "core/survey": 74,
     "core/road": 20,
     "core/intensity": 12,
     "core/markings": 71,
