@@ -346,6 +346,12 @@ CELL_NAMES = ("height", "rough", "count")   # what is known of the cells: the br
 Wanted = tuple[int, bool, bool]   # first row of a window, and whether its cells and its profiles are to be measured
 
 
+def windows_of(survey: Survey, road: int) -> list[int]:
+    """First rows of the windows that cover a road."""
+    first, end = (station / SURFACE.row_length / SURFACE.window_rows for station in survey.store.span(road))
+    return [SURFACE.window_rows * k for k in range(int(np.floor(first)), int(np.ceil(end)))]
+
+
 class MeasuredGround:
     """Ground cells and surface profiles of windows of SURFACE.window_rows rows, kept in a temporary file, however long the road is."""
 
@@ -353,6 +359,11 @@ class MeasuredGround:
         self.survey = survey
         self._file: SpillFile | None = None
         self._kept: tuple[dict[tuple[int, int], StoredColumn], ...] = {}, {}   # of cells and of profiles, by road and first row
+
+    def cells(self, road: int, progress: Progress = Progress()) -> GroundCells:
+        """The GroundCells of a whole road."""
+        rows = windows_of(self.survey, road)
+        return self.windows(road, rows, [False] * len(rows), progress)[0]
 
     def windows(self, road: int, rows: Sequence[int], profiled: Sequence[bool],
                 progress: Progress = Progress()) -> tuple[GroundCells, SurfaceProfiles | None]:
