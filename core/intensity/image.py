@@ -28,7 +28,7 @@ from .weights import IMAGE
 
 # Inverse distance weighting on the map's lattice of cells: every point weighs on all cells within the search radius.
 
-# multiplications of a matrix product; OpenBLAS starts threads of its own for more than 2**18, which wait for each other where all cores are busy
+# cost: multiplications of a matrix product; OpenBLAS starts threads for more than 2**18, which wait for each other where all cores are busy
 PRODUCTS_AT_ONCE = 1 << 18
 
 
@@ -213,7 +213,7 @@ class _Kernel:
         return np.divide(np.float32(1.0), distance, out=distance)
 
 
-MAX_TILES = 2**24       # of an image, most of them empty: GDAL keeps 16 bytes of each
+MAX_TILES = 2**24       # source: of an image, most of them empty: GDAL keeps 16 bytes of each
 
 PIECE_LENGTH = IMAGE.ranking_window / IMAGE.pieces_per_window
 Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice

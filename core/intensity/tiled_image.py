@@ -15,7 +15,7 @@ from ..execution.phase import Recipe
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
 from ..survey.store.spill_file import PART_WIDTHS, ColumnFile, Packing, SpillFile, StoredColumn
 
-TILE_MEMORY = 64 * 2**20   # bytes of pixels kept in memory; the tiles that follow go to a temporary file
+TILE_MEMORY = 64 * 2**20   # cost: bytes of pixels kept in memory; the tiles that follow go to a temporary file
 
 
 class _StoredTile(NamedTuple):

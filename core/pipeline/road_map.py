@@ -45,13 +45,13 @@ from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..road.surface.ground_grid import MeasuredGround
 from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.density import CubeDensity, cube_densities
-from ..survey.frame.road import CORRIDOR
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.las.reader import read_headers
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.store.records import Points
 from ..survey.store.road_points import columns_of_roads
 from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
+from ..survey.weights import FRAME
 
 
 @dataclass(frozen=True)
@@ -281,7 +281,8 @@ class Extent:
         points = sum(file.count for file in filled)
         places = np.column_stack([trajectory.x, trajectory.y])
         low, high = (np.array([getattr(file, name)[:2] for file in filled]).reshape(-1, 2) for name in ("minimum", "maximum"))
-        within = ((places > low.min(axis=0, initial=np.inf) - CORRIDOR) & (places < high.max(axis=0, initial=-np.inf) + CORRIDOR)).all(axis=1)
+        south_west, north_east = low.min(axis=0, initial=np.inf) - FRAME.corridor, high.max(axis=0, initial=-np.inf) + FRAME.corridor
+        within = ((places > south_west) & (places < north_east)).all(axis=1)
         driven = np.hypot(*np.diff(places, axis=0).T)[within[1:]].sum()
         return cls(points / 1e6, float(driven) / 1e3, sum(file.count for file in filled if file.chunk == 1) / max(points, 1))
 

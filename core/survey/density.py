@@ -16,8 +16,8 @@ from .store.road_points import RoadPoints
 from .store.section_store import STRETCH_POINTS, Stretch
 from .survey import Survey
 
-CUBE_SIDE = 10_000       # units of 0.1 mm: 1 m
-POINTS_PER_CHUNK = 1 << 15   # points counted at a time: fits the processor cache
+CUBE_SIDE = 10_000       # derived: units of 0.1 mm: 1 m
+POINTS_PER_CHUNK = 1 << 15   # cost: points counted at a time: fits the processor cache
 
 
 @dataclass(frozen=True)

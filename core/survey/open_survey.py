@@ -19,9 +19,8 @@ from ..execution.work_folder import KeptResults, WorkFolder, code_digest
 from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
 from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_levels
 from .adjustment.scanner_fit import lay_scanners
-from .adjustment.trajectory_fit import LOWEST_SENSOR, fitted_trajectory
+from .adjustment.trajectory_fit import fitted_trajectory
 from .blocks import PointChoice, unwrap_week
-from .frame.road import CORRIDOR
 from .frame.road_frame import RoadFrame, build_frame
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
@@ -36,7 +35,7 @@ from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import align_time, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
-from .weights import READING, STORE
+from .weights import FRAME, READING, STORE, VEHICLE
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -310,9 +309,9 @@ def _say_left_out(files, frame, reader, settings, progress):
 
 def _check_height(height, crs, explained, progress):
     """Refuse or doubt a trajectory by its height above the road, m; a word where that is in feet, otherwise ""."""
-    if abs(height) < LOWEST_SENSOR:
+    if abs(height) < VEHICLE.lowest_sensor:
         raise RoadExtractionError(
-            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {LOWEST_SENSOR} m above it. "
+            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {VEHICLE.lowest_sensor} m above it. "
             "It seems to be a line on the road, such as a driving line of a map, and not where the scanner was: choose the "
             "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
     if feet := unit_note(height, crs):
@@ -421,7 +420,7 @@ def _check_extent(files, frame, crs, trajectory_crs):
     high = np.max([file.maximum for file in files if file.count], axis=0)
     x = np.concatenate([p.x for p in frame.passes]) + frame.origin[0]
     y = np.concatenate([p.y for p in frame.passes]) + frame.origin[1]
-    reach = CORRIDOR
+    reach = FRAME.corridor
     if not _runs_through(low, high, x, y, reach):
         raise RoadExtractionError(
             f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, "

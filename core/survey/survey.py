@@ -12,13 +12,12 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.phase import THREADS, Executor, Recipe, read_plain, write_plain
-from .frame.road import CORRIDOR
 from .las.point_fields import INTENSITY_SOURCES
 from .las.reader import CloudHeader
 from .store.records import Points, road_of
 from .store.section_store import SectionStore
 from .survey_reader import Finishing, UnorderedPoints
-from .weights import LAS, READING, STORE
+from .weights import FRAME, LAS, READING, STORE
 
 if TYPE_CHECKING:
     from .adjustment.register import PassCorrections
@@ -46,7 +45,7 @@ class SurveySettings:
     block : points decoded at a time
     """
 
-    corridor: float = setting(CORRIDOR, 5.0, 100.0, "The corridor", "m")
+    corridor: float = setting(FRAME.corridor, 5.0, 100.0, "The corridor", "m")
     scanner_field: str = "automatic"
     time: str = "automatic"
     crs: str = ""
@@ -131,8 +130,9 @@ class Survey:
         """What messages call the road between two stations (m), with the files whose points may lie there."""
         s = np.linspace(start, end, 5)
         x, y = self.frame.to_map(road_of(road), s, 0.0)
-        near = [Path(file.path).name for file in self.files if file.count and file.minimum[0] - CORRIDOR <= x.max() and x.min() <= file.maximum[0]
-                + CORRIDOR and file.minimum[1] - CORRIDOR <= y.max() and y.min() <= file.maximum[1] + CORRIDOR]
+        near = [Path(file.path).name for file in self.files if file.count
+                and file.minimum[0] - FRAME.corridor <= x.max() and x.min() <= file.maximum[0] + FRAME.corridor
+                and file.minimum[1] - FRAME.corridor <= y.max() and y.min() <= file.maximum[1] + FRAME.corridor]
         return f"road {road_of(road)}, {start:.0f} to {end:.0f} m" + (f" ({', '.join(near)})" if near else "")
 
     def window(self, road: int, start: float, end: float) -> Points:

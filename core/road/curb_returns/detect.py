@@ -16,7 +16,7 @@ import numpy as np
 
 from ...common.progress import Progress
 from ...survey.frame.placement import PlaceIndex
-from ...survey.frame.road import CORRIDOR
+from ...survey.weights import FRAME
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
@@ -116,7 +116,7 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
     line = survey.frame.road(road)
     known_places = KnownPlaces(places_along(line, main, CURBS.max_joined_gap))
-    barrier = PlaceIndex(places_along(line, main, RETURN.min_opening_length), CORRIDOR)
+    barrier = PlaceIndex(places_along(line, main, RETURN.min_opening_length), FRAME.corridor)
     runs = main_runs(main, line)
     tips = FollowedEnds.of([coordinates for _, coordinates in runs], np.full(len(runs), np.nan))
     arguments = road, limits, known_places, barrier, tips, settings, behind
@@ -253,9 +253,9 @@ class _Reach:
     def __init__(self, limits, first, last):
         self.first = int(np.floor(first / RETURN.limit_node_spacing))
         nodes = np.arange(self.first, int(np.ceil(last / RETURN.limit_node_spacing)) + 2) * RETURN.limit_node_spacing
-        left, right = (np.minimum(limits[side](nodes), CORRIDOR) for side in SIDE_SIGNS)
+        left, right = (np.minimum(limits[side](nodes), FRAME.corridor) for side in SIDE_SIGNS)
         self.inside = -right, left
-        self.inner = [sign * np.where(limit < CORRIDOR, np.maximum(limit - RETURN.search_behind_curb - RETURN.inner_margin, 0.0), 0.0)
+        self.inner = [sign * np.where(limit < FRAME.corridor, np.maximum(limit - RETURN.search_behind_curb - RETURN.inner_margin, 0.0), 0.0)
                       for sign, limit in ((-1, right), (1, left))]
 
     def __call__(self, s, d):

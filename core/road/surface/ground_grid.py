@@ -16,9 +16,9 @@ from scipy.linalg import solveh_banded
 from ...common.arrays import order_by
 from ...common.progress import Progress
 from ...execution.phase import Phase
-from ...survey.frame.road import CORRIDOR
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.store.spill_file import SpillFile, StoredColumn
+from ...survey.weights import FRAME
 from ..common.sides import ahead_of_vehicle
 from ..weights import SURFACE
 
@@ -378,7 +378,7 @@ class MeasuredGround:
         profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
         self._measure(road, rows, profiled, progress)
-        half = _ground_columns(CORRIDOR, SURFACE.column_width)
+        half = _ground_columns(FRAME.corridor, SURFACE.column_width)
         cells = np.empty((len(CELL_NAMES), SURFACE.window_rows * len(rows), 2 * half), np.float32)
         for number, row in enumerate(rows):
             self._read(0, road, row, cells[:, SURFACE.window_rows * number:SURFACE.window_rows * (number + 1)])
@@ -387,7 +387,7 @@ class MeasuredGround:
         wanted = [row for row, want in zip(rows, profiled) if want]
         if not wanted:
             return ground, None
-        half = _ground_columns(CORRIDOR, SURFACE.profile_column)
+        half = _ground_columns(FRAME.corridor, SURFACE.profile_column)
         profiles = np.empty((len(SurfaceProfiles.NAMES), PROFILES_PER_WINDOW * len(wanted), 2 * half), np.float32)
         for number, row in enumerate(wanted):
             self._read(1, road, row, profiles[:, PROFILES_PER_WINDOW * number:PROFILES_PER_WINDOW * (number + 1)])
@@ -439,10 +439,10 @@ def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> t
     for row, with_cells, with_profiles in windows:
         points = survey.window(road, row * SURFACE.row_length, (row + SURFACE.window_rows) * SURFACE.row_length)
         if with_profiles:
-            profiles.append(SurfaceProfiles.of(points, row * SURFACE.row_length, SURFACE.window_rows * SURFACE.row_length, CORRIDOR, height,
+            profiles.append(SurfaceProfiles.of(points, row * SURFACE.row_length, SURFACE.window_rows * SURFACE.row_length, FRAME.corridor, height,
                                                lambda seen: ahead_of_vehicle(survey, seen, seen.s)))
         if with_cells:
-            cells.append(_ground_cells(points, row, SURFACE.window_rows, CORRIDOR, height))
+            cells.append(_ground_cells(points, row, SURFACE.window_rows, FRAME.corridor, height))
     return _stacked(cells, CELL_NAMES), _stacked(profiles, SurfaceProfiles.NAMES)
 
 

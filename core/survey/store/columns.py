@@ -9,7 +9,7 @@ import numpy as np
 
 from ..weights import STORE
 
-ROW_CHUNK = 1 << 14    # rows that are split into columns at a time: they fit the processor's cache
+ROW_CHUNK = 1 << 14    # cost: rows that are split into columns at a time: they fit the processor's cache
 
 
 class Columns:

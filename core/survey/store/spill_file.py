@@ -27,7 +27,7 @@ from ...execution.phase import checksum
 from ..weights import STORE
 
 PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # derived: bytes of a value -> bytes of its parts, lowest first
-PART_DTYPES = {width: np.dtype(f"u{width}") for width in (1, 2, 4, 8)}
+PART_DTYPES = {width: np.dtype(f"u{width}") for width in (1, 2, 4, 8)}   # derived: of unsigned integers
 SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a part
 
 
