@@ -42,6 +42,7 @@ from ..road.edges.road_edges import RoadEdges
 from ..road.scanlines.candidates import ScanlineBoundarySettings
 from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
+from ..road.surface.ground_grid import MeasuredGround
 from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.density import CubeDensity, cube_densities
 from ..survey.frame.road_frame import RoadFrame
@@ -150,15 +151,16 @@ def _map_of(survey, image_path, settings, stages, corrections):
     if survey.has_intensity:
         # before hours of work, not after
         check_fits(*_span(survey), settings.image)
-    curbs = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
+    ground = MeasuredGround(survey)
+    curbs = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries, ground=ground)
     # what workers keep of the curbs is of no use to the stages that follow
     survey.executor.forget()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, curbs, survey.frame, settings.edges,
-                            survey=survey)
+                            survey=survey, ground=ground)
     edges = correct_edges(boundaries.edges, survey.frame, map_corrections)
     road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface, survey, edges, settings.surface,
-                                      ground=boundaries.ground)
-    boundaries.ground = None
+                                      ground=ground)
+    del ground
     facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
     waiting = stages.progress.part(stages.done, stages.done)   # the bar stands meanwhile

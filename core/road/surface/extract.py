@@ -21,7 +21,7 @@ from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import STRETCH_POINTS
 from ..weights import SURFACE
 from .ground_change import follow_road, smooth_road
-from .ground_grid import GroundCells, MeasuredGround
+from .ground_grid import GroundCells, MeasuredGround, windows_of
 from .pavement_edge import Carriageway, edge_offsets, grown_limit, rows_with_edge
 from .road_points import surface_about, surface_points
 from .road_surface import SurfaceOutlines, outlines
@@ -102,10 +102,7 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
 
     Returns Carriageway, or None where no ground was measured near the track
     """
-    start, end = survey.store.span(road)
-    windows = [SURFACE.window_rows * k for k in range(int(np.floor(start / SURFACE.row_length / SURFACE.window_rows)),
-                                                      int(np.ceil(end / SURFACE.row_length / SURFACE.window_rows)))]
-
+    windows = windows_of(survey, road)
     stations = (windows[0] + np.arange(SURFACE.window_rows * len(windows)) + 0.5) * SURFACE.row_length
     measured = edge_offsets(edges, road, stations)
     missing = np.isnan(measured["left"][0]) | np.isnan(measured["right"][0])

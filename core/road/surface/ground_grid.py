@@ -83,7 +83,8 @@ class GroundCells:
     first_row, first_column : numbers of the first row and column
     row_size, column_size : m
     height : (R, C) float32 m, local z at the middle of a cell; NaN where there is no ground
-    rough : (R, C) float32 m, standard deviation about the plane of the cell; NaN where it has no plane
+    rough : (R, C) float32 m, standard deviation about the plane of the cell, each view (a scanner on a pass) at its own level; NaN where it has
+        no plane
     brightness : (R, C) float32 counts, median intensity, all scanners and passes at one level; NaN where there is no ground or it was not asked for
     scatter : (R, C) float32 counts, standard deviation of those intensities, estimated from the lower quartile
     count : (R, C) float32, points of the lowest layer
@@ -157,9 +158,9 @@ def _ground_cells(points: Points, first_row: int, rows: int, reach: float, road_
     row, column = np.divmod(np.arange(rows * columns), columns)
     u, v = (points.records[name].take(index) * COORDINATE_SCALE - middle.take(owner) for name, middle in
             (("d", (column - half + 0.5) * column_size), ("s", (row + first_row + 0.5) * row_size)))
-    height, rough = _planes(owner, count, u, v, z)
-    shape = rows, columns
-    brightness, scatter = np.full((2, len(count)), np.nan) if bright is None else _looks(points[index], owner, shape, column_size, bright)
+    ground, shape = points[index], (rows, columns)
+    height, rough = _planes(owner, count, u, v, z, _views(ground))
+    brightness, scatter = np.full((2, len(count)), np.nan) if bright is None else _looks(ground, owner, shape, column_size, bright)
     return GroundCells(first_row, -half, row_size, column_size,
                  *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count)))
 
@@ -218,8 +219,17 @@ def _in_lowest_layer(cell, z, total):
     return (layer_of_cell[cell] == layer) & (z - lowest[layer] < SURFACE.ground_layer_depth)
 
 
-def _planes(at, count, u, v, z):
-    """Height at the middle of each cell, and roughness, from a least-squares plane; points are sorted by cell, `at`."""
+def _views(points):
+    """(N,) number of the view of each point, a scanner on a pass, from 0."""
+    views = points.pass_number.astype(np.int64) << 8 | points.scanner
+    return (np.cumsum(np.bincount(views) > 0) - 1)[views] if len(views) else views
+
+
+def _planes(at, count, u, v, z, view):
+    """Height at the middle of each cell, and roughness, from a least-squares plane; points are sorted by cell, `at`.
+
+    Two views of one place differ in height by what positions and mounting angles are off. That is no roughness of the ground: it is taken out.
+    """
     n = np.maximum(count, 1).astype(float)
     filled = np.flatnonzero(count)
     starts = (np.cumsum(count) - count)[filled]
@@ -237,20 +247,25 @@ def _planes(at, count, u, v, z):
     uu, vv = uu + 1e-4, vv + 1e-4
     determinant = uu * vv - uv * uv
     across, along = (uz * vv - vz * uv) / determinant, (vz * uu - uz * uv) / determinant
-    squares = np.maximum(zz - across * uz - along * vz, 0.0)
+    squares, freedom = np.maximum(zz - across * uz - along * vz, 0.0) * n, n - 3
+    views = int(view.max(initial=0)) + 1
+    if views > 1:
+        of_view = at * views + view
+        points_of_view = np.bincount(of_view, minlength=len(count) * views).reshape(-1, views)
+        off = np.bincount(of_view, dz - across.take(at) * du - along.take(at) * dv, points_of_view.size).reshape(-1, views)
+        squares = np.maximum(squares - (off**2 / np.maximum(points_of_view, 1)).sum(1), 0.0)
+        freedom = n - 2 - np.maximum((points_of_view > 0).sum(1), 1)
     enough, any_ground = count >= SURFACE.min_plane_points, count >= SURFACE.min_layer_points
-    rough = np.sqrt(squares * n / np.maximum(n - 3, 1))
+    rough = np.sqrt(squares / np.maximum(freedom, 1))
     height = np.where(enough, mz - across * mu - along * mv, mz)
-    return np.where(any_ground, height, np.nan), np.where(enough, rough, np.nan)
+    return np.where(any_ground, height, np.nan), np.where(freedom >= SURFACE.min_plane_points - 3, rough, np.nan)
 
 
 def _looks(points, at, shape, column_size, bright):
     """Median of the intensities of points in the cells `at`, and their standard deviation from the lower quartile."""
     kept = np.flatnonzero(bright(points))
     points, at = points[kept], at[kept]
-    views = points.pass_number.astype(np.int64) << 8 | points.scanner
-    views = (np.cumsum(np.bincount(views) > 0) - 1)[views] if len(views) else views
-    intensity = at_one_level(points.intensity, views, at, shape, column_size)
+    intensity = at_one_level(points.intensity, _views(points), at, shape, column_size)
     # numbers that are not negative have the order of their bits
     values = intensity[order_by(intensity.view(np.int32), at)].astype(float)
     count = np.bincount(at, minlength=shape[0] * shape[1])
@@ -331,6 +346,12 @@ CELL_NAMES = ("height", "rough", "count")   # what is known of the cells: the br
 Wanted = tuple[int, bool, bool]   # first row of a window, and whether its cells and its profiles are to be measured
 
 
+def windows_of(survey: Survey, road: int) -> list[int]:
+    """First rows of the windows that cover a road."""
+    first, end = (station / SURFACE.row_length / SURFACE.window_rows for station in survey.store.span(road))
+    return [SURFACE.window_rows * k for k in range(int(np.floor(first)), int(np.ceil(end)))]
+
+
 class MeasuredGround:
     """Ground cells and surface profiles of windows of SURFACE.window_rows rows, kept in a temporary file, however long the road is."""
 
@@ -338,6 +359,11 @@ class MeasuredGround:
         self.survey = survey
         self._file: ArrayFile | None = None
         self._kept: tuple[dict[tuple[int, int], int], ...] = {}, {}   # of cells and of profiles, by road and first row
+
+    def cells(self, road: int, progress: Progress = Progress()) -> GroundCells:
+        """The GroundCells of a whole road."""
+        rows = windows_of(self.survey, road)
+        return self.windows(road, rows, [False] * len(rows), progress)[0]
 
     def windows(self, road: int, rows: Sequence[int], profiled: Sequence[bool],
                 progress: Progress = Progress()) -> tuple[GroundCells, SurfaceProfiles | None]:
