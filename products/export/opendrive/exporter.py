@@ -15,8 +15,9 @@ from ....core.common.progress import Progress
 from ....core.common.setting import check_limits, setting
 from ..shared_borders import with_driven_middles
 from ..sources import NearestValues, RoadMapSource, sigma_of_lanes, stop_lines, walked_crossings
+from .geometry import Cubics
 from .model import OPEN_END, STEP, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
-from .road_shape import add_heights, add_lanes, centre_of, heights_above_road, shape_of
+from .road_shape import RoadShape, add_heights, add_lanes, centre_of, fit_borders, heights_above_road, shape_of
 from .strips import (
     Cell,
     Slice,
@@ -93,11 +94,16 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     if lost:
         progress.info(f"Pieces of lanes that nobody drives, within junctions: {lost}. OpenDRIVE has no place for them there, and they were left out.")
     directions = directions_where_met([cell for strip, _ in strips for part in strip for cell in part.cells])
-    for number, (strip, single) in enumerate(strips, start=1):
-        draft_road = drafting.road(strip, number, single, directions)
+    shaped = []
+    for number, (strip, _) in enumerate(strips, start=1):
+        shaped.append(drafting.shape(strip))
+        progress.report(0.5 * number / len(strips))
+    borders = fit_borders(shaped, CURVES_SHARE * settings.tolerance, directions)
+    for number, (shape, functions, (_, single)) in enumerate(zip(shaped, borders, strips), start=1):
+        draft_road = drafting.road(*shape, functions, number, single)
         draft.roads.append(draft_road)
         draft.map.roads.append(draft_road.road)
-        progress.report(number / len(strips))
+        progress.report(0.5 + 0.5 * number / len(strips))
     draft.notes += _link_roads(draft.map, draft.roads)
     draft.notes += _said_open_ends(draft.map)
     _add_objects(draft.map, source.markings, origin)
@@ -158,13 +164,16 @@ class _Drafting:
                 ordinary.append(part)
         return ordinary, inside
 
-    def road(self, strip: list[Slice], number: int, single: bool, directions: dict[int, float]) -> _DraftRoad:
-        tolerance = self.settings.tolerance
+    def shape(self, strip: list[Slice]) -> tuple[RoadShape, list[Slice], list[int]]:
+        """(the shape of a road, its slices, the border in each at which lane 0 lies)."""
         centres = [centre_of(part, self.left_hand) for part in strip]
-        shape = shape_of(strip, centres, tolerance / 2)
+        return shape_of(strip, centres, self.settings.tolerance / 2), strip, centres
+
+    def road(self, shape: RoadShape, strip: list[Slice], centres: list[int], borders: list[list[Cubics]], number: int, single: bool) -> _DraftRoad:
+        tolerance = self.settings.tolerance
         roads = sorted({int(self.lanes.road[cell.piece]) for part in strip for cell in part.cells})
         road = MapRoad(str(number), shape.plan.length, shape.plan, f"Road {', '.join(map(str, roads))}", rule="LHT" if self.left_hand else "RHT")
-        numbers = add_lanes(road, shape, strip, centres, CURVES_SHARE * tolerance, directions)
+        numbers = add_lanes(road, shape, strip, centres, borders)
         add_heights(road, shape, tolerance)
         status: dict[str, float] = defaultdict(float)
         for row, (part, ids, section, centre) in enumerate(zip(strip, numbers, road.sections, centres)):

@@ -12,7 +12,7 @@ from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_t
 from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
 from lanewright.products.export.map_layers import border_misses
 from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.geometry import fit_cubics
+from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
 from lanewright.products.export.opendrive.layers import layers_of_opendrive
 from lanewright.products.export.opendrive.model import shape_height
 from lanewright.products.export.opendrive.reference_line import fit_reference
@@ -232,7 +232,7 @@ def test_the_work_for_heights_and_widths_grows_with_their_length():
     """Widths with jumps need hundreds of pieces, shapes hundreds of cross-sections."""
     s = np.linspace(0.0, 300.0, 1200)
     start = time.process_time()
-    fit_cubics([s] * 3, [np.floor(s / 3.0) % 2] * 3, 0.0, 300.0, 0.01)
+    fit_cubics([LineBundle([s] * 3, [np.floor(s / 3.0) % 2] * 3, 0.0, 300.0, 0.01)])
     shape = np.array([[at, t, 0.1 * t, 0.0, 0.0, 0.0] for at in s for t in (-3.5, 0.0, 3.5)])
     for _ in range(100):
         np.testing.assert_allclose(shape_height(shape, s, np.full(len(s), 3.5)), 0.35)

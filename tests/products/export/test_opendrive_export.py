@@ -10,7 +10,7 @@ from lanewright.core.common.progress import Progress
 from lanewright.products.export.check.roads import check_opendrive
 from lanewright.products.export.map_layers import border_misses, crs_of_reference, driving_line_misses, reference_of_crs
 from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
-from lanewright.products.export.opendrive.geometry import fit_cubics
+from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
 from lanewright.products.export.opendrive.layers import layers_of_opendrive
 from lanewright.products.export.opendrive.reference_line import fit_reference, polynomial_reference
 from lanewright.products.export.opendrive.xodr import opendrive_text, read_opendrive
@@ -166,15 +166,15 @@ def test_widths_never_fall_below_zero_where_a_lane_tapers_in(tmp_path):
               for id, lane in section.lanes.items() if id]
     assert min(widths) > -1e-9
     s = np.linspace(0, 10, 11)
-    line, = fit_cubics([s], [np.maximum(s - 5, 0)], 0.0, 10.0, 0.01, broken=True)
+    (line,), = fit_cubics([LineBundle([s], [np.maximum(s - 5, 0)], 0.0, 10.0, 0.01, broken=True)])
     assert line.least(10.0)[0] == 0.0 and line.at(7.5) == pytest.approx(2.5)
 
 
 def test_a_cubic_is_fitted_by_one_piece_and_a_step_by_many():
     s = np.linspace(0, 40, 41)
-    one, = fit_cubics([s], [3 + 0.1 * s - 0.01 * s**2 + 0.0002 * s**3], 0.0, 40.0, 0.001)
+    (one,), = fit_cubics([LineBundle([s], [3 + 0.1 * s - 0.01 * s**2 + 0.0002 * s**3], 0.0, 40.0, 0.001)])
     assert len(one) == 1
-    many, = fit_cubics([s], [np.where(s < 20, 3.0, 4.0)], 0.0, 40.0, 0.01)
+    (many,), = fit_cubics([LineBundle([s], [np.where(s < 20, 3.0, 4.0)], 0.0, 40.0, 0.01)])
     assert len(many) > 2 and np.abs(many.at(s) - np.where(s < 20, 3.0, 4.0)).max() < 0.02
 
 
