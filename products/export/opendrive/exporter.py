@@ -17,7 +17,8 @@ from ..shared_borders import with_driven_middles
 from ..sources import NearestValues, RoadMapSource, sigma_of_lanes, stop_lines, walked_crossings
 from .geometry import Cubics
 from .model import OPEN_END, STEP, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
-from .road_shape import RoadShape, add_heights, add_lanes, centre_of, fit_borders, heights_above_road, shape_of
+from .road_shape import RoadShape, add_heights, add_lanes, centre_of, fit_borders, heights_above_road, shape_steps
+from .side_by_side import side_by_side
 from .strips import (
     Cell,
     Slice,
@@ -90,14 +91,12 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     drafting = _Drafting(local, origin, settings)
     draft = OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
     draft.notes += drafting.notes
-    strips, lost = drafting.strips()
-    if lost:
-        progress.info(f"Pieces of lanes that nobody drives, within junctions: {lost}. OpenDRIVE has no place for them there, and they were left out.")
+    strips = drafting.strips()
     directions = directions_where_met([cell for strip, _ in strips for part in strip for cell in part.cells])
-    shaped = []
-    for number, (strip, _) in enumerate(strips, start=1):
-        shaped.append(drafting.shape(strip))
-        progress.report(0.5 * number / len(strips))
+    centres = [[centre_of(part, drafting.left_hand) for part in strip] for strip, _ in strips]
+    shapes = side_by_side([shape_steps(strip, road_centres, settings.tolerance / 2) for (strip, _), road_centres in zip(strips, centres)],
+                          progress.part(0.0, 0.5))
+    shaped = [(shape, strip, road_centres) for shape, (strip, _), road_centres in zip(shapes, strips, centres)]
     borders = fit_borders(shaped, CURVES_SHARE * settings.tolerance, directions)
     for number, (shape, functions, (_, single)) in enumerate(zip(shaped, borders, strips), start=1):
         draft_road = drafting.road(*shape, functions, number, single)
@@ -133,20 +132,25 @@ class _Drafting:
             self.notes.append("No road has lanes in both directions; traffic was taken to keep right. Set Side of traffic where it keeps left.")
         return votes < 0
 
-    def strips(self) -> tuple[list[tuple[list[Slice], bool]], int]:
-        """((slices of a road, whether it is a way through a junction), ordinary roads first; how many cells within junctions are of none)."""
+    def strips(self) -> list[tuple[list[Slice], bool]]:
+        """(slices of a road, whether it is a way through a junction), ordinary roads first."""
         mark_junctions(self.slices, self.lanes)
-        ordinary, inside = self._parted()
+        ordinary, inside, beside = self._parted()
         inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)}
         ordinary, between = _between_junctions(ordinary, inside_ids)
-        inside += between
-        lost = sum(len(part.cells) for part in inside if not part.driven)
-        return _ordinary_roads(ordinary) + _ways_through([way for part in inside for way in part.ways()] + self.connectors), lost
+        return (_ordinary_roads(ordinary) + [(strip, False) for strip in strips_of(beside, set())]
+                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors))
 
-    def _parted(self) -> tuple[list[Slice], list[Slice]]:
-        """(slices of ordinary roads, slices within junctions): ways through a junction are cut off from the slices in which they begin or end."""
-        ordinary, inside = [], []
+    def _parted(self) -> tuple[list[Slice], list[Slice], list[Slice]]:
+        """(slices of ordinary roads, slices within junctions, slices that nobody drives and that touch a junction).
+
+        Ways through a junction are cut off from the slices in which they begin or end.
+        """
+        ordinary, inside, beside = [], [], []
         for part in self.slices:
+            if (part.at_start or part.at_end) and not part.driven:
+                beside.append(part)
+                continue
             if part.at_start and part.at_end and part.length < LONGEST_JUNCTION:
                 inside.append(part)
                 continue
@@ -162,12 +166,7 @@ class _Drafting:
                 inside.append(way)
             else:
                 ordinary.append(part)
-        return ordinary, inside
-
-    def shape(self, strip: list[Slice]) -> tuple[RoadShape, list[Slice], list[int]]:
-        """(the shape of a road, its slices, the border in each at which lane 0 lies)."""
-        centres = [centre_of(part, self.left_hand) for part in strip]
-        return shape_of(strip, centres, self.settings.tolerance / 2), strip, centres
+        return ordinary, inside, beside
 
     def road(self, shape: RoadShape, strip: list[Slice], centres: list[int], borders: list[list[Cubics]], number: int, single: bool) -> _DraftRoad:
         tolerance = self.settings.tolerance
@@ -272,7 +271,7 @@ def _between_junctions(slices, inside):
     """(slices, those of them that are too short for a road and lie between ways through junctions)."""
     between = []
     while True:
-        short = [part for part in slices if part.length < SHORTEST_WAY and _lies_within(part, inside)]
+        short = [part for part in slices if part.driven and part.length < SHORTEST_WAY and _lies_within(part, inside)]
         if not short:
             return slices, between
         between += short

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import solve_banded
@@ -79,7 +79,7 @@ class Cubics:
         return float(value[piece, column]), float(start[piece] + ds[piece, column])
 
 
-def _on_spirals(u, x, y, heading, bend, change):
+def on_spirals(u: np.ndarray, x: Any, y: Any, heading: Any, bend: Any, change: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths (N,) of one spiral, or of one for each; lines and arcs are spirals too."""
     nodes, weights = GAUSS_RULES[gauss_rule(float((np.abs(bend * u) + np.abs(change * u * u / 2)).max(initial=0.0)))]
     first = np.asarray(heading)[..., None]
@@ -112,7 +112,7 @@ class PlanElement:
         """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths u from its start."""
         u = np.asarray(u, float)
         if not self.is_polynomial:
-            return _on_spirals(u, self.x, self.y, self.heading, *self.bends())
+            return on_spirals(u, self.x, self.y, self.heading, *self.bends())
         p, a, b = self._parameter(u), np.array(self._polynomials()[0]), np.array(self._polynomials()[1])
         powers = np.stack([np.ones_like(p), p, p**2, p**3])
         slopes = np.stack([np.zeros_like(p), np.ones_like(p), 2 * p, 3 * p**2])
@@ -172,7 +172,7 @@ class PlanView:
         s = np.asarray(s, float)
         starts, table, polynomial = self._table
         owner = np.maximum(np.searchsorted(starts, s + 1e-9, side="right") - 1, 0)
-        places, heading, bend = _on_spirals(s - starts[owner], *table[:, owner])
+        places, heading, bend = on_spirals(s - starts[owner], *table[:, owner])
         for k in np.flatnonzero(polynomial):
             rows = owner == k
             if rows.any():
@@ -249,7 +249,6 @@ SHORTEST_CUBIC = 0.1  # m of a piece
 LEAST_STEP = 0.001    # m along the road between places that count
 STEP_RUN = 0.005      # m along the road between places that are not of one step
 BAND = 3              # unknowns beside each other that one piece joins: levels and slopes at both of its ends
-BETWEEN = np.array([0.25, 0.5, 0.75])   # of a piece: where it is held against its lines between their places
 
 
 class LineBundle(NamedTuple):
@@ -318,11 +317,11 @@ class _Division:
     def divide(self, bad):
         """Halve the pieces that miss their lines, (K - 1,) bool; where none can be halved, they become straight ones."""
         knots = self.knots
-        inner = [(knots[k] + knots[k + 1]) / 2 for k in np.flatnonzero(bad) if len(knots) <= MOST_PIECES
-                 and _places_within(self.s, knots[k], knots[k + 1]) and knots[k + 1] - knots[k] > 2 * SHORTEST_CUBIC]
-        if inner:
-            self.knots = np.sort(np.append(knots, inner))
-            self.straight = self.straight[np.searchsorted(knots, self.knots[1:]) - 1]
+        has_places = np.any([np.searchsorted(x, knots[1:]) > np.searchsorted(x, knots[:-1], side="right") for x in self.s], axis=0)
+        halved = bad & has_places & (np.diff(knots) > 2 * SHORTEST_CUBIC) & (len(knots) <= MOST_PIECES)
+        if halved.any():
+            self.knots = np.sort(np.append(knots, ((knots[:-1] + knots[1:]) / 2)[halved]))
+            self.straight = np.repeat(self.straight, 1 + halved)
         else:
             self.straight = self.straight | bad
 
@@ -332,18 +331,29 @@ class _Division:
 
     def cubics(self, rows):
         """The functions by the rows at the knots of all lines: a piece of a cubic has one, a straight piece one for each of its places."""
-        knots, s, values = self.knots, self.s, self.values
-        rows_of = [rows[number * len(knots):(number + 1) * len(knots) - 1] for number in range(len(s))]
-        levels = [rows[number * len(knots):(number + 1) * len(knots), 1] for number in range(len(s))]
-        for k in np.flatnonzero(self.straight)[::-1]:
-            places = np.unique(np.concatenate([x[(x > knots[k] + LEAST_STEP) & (x < knots[k + 1] - LEAST_STEP)] for x in s]))
-            breaks = np.concatenate([[knots[k]], places, [knots[k + 1]]])
-            ordinates = np.array([[level[k], *np.interp(places, x, value), level[k + 1]] for x, value, level in zip(s, values, levels)])
-            run, rise = np.diff(breaks), np.diff(ordinates, axis=1)
-            kept = (run > STEP_RUN) | (np.abs(rise) < run).all(0) | (breaks[:-1] == knots[0])   # up to a step the piece before goes on
-            for number, row in enumerate(rows_of):
-                lines = np.c_[breaks[:-1] - knots[0], ordinates[number, :-1], rise[number] / run, np.zeros((len(run), 2))][kept]
-                rows_of[number] = np.concatenate([row[:k], lines, row[k + 1:]])
+        knots, count = self.knots, len(self.knots)
+        rows_of = [rows[number * count:(number + 1) * count - 1] for number in range(len(self.s))]
+        if not self.straight.any():
+            return [Cubics(row) for row in rows_of]
+        places = np.unique(np.concatenate(self.s))
+        piece = self.piece_of(places)
+        inner = self.straight[piece] & (places > knots[piece] + LEAST_STEP) & (places < knots[piece + 1] - LEAST_STEP)
+        breaks = np.concatenate([knots[:-1][self.straight], places[inner]])
+        order = np.argsort(breaks, kind="stable")
+        breaks, piece = breaks[order], np.append(np.flatnonzero(self.straight), piece[inner])[order]
+        ends_piece = np.append(piece[1:] > piece[:-1], True)
+        run = np.where(ends_piece, knots[piece + 1], np.append(breaks[1:], knots[-1])) - breaks
+        first, last = [], []
+        for number, (x, value) in enumerate(zip(self.s, self.values)):
+            levels = rows[number * count:(number + 1) * count, 1]
+            first.append(np.where(breaks == knots[piece], levels[piece], np.interp(breaks, x, value)))
+            last.append(np.where(ends_piece, levels[piece + 1], np.append(first[-1][1:], 0.0)))
+        rise = np.array(last) - np.array(first)
+        kept = (run > STEP_RUN) | (np.abs(rise) < run).all(0) | (breaks == knots[0])   # up to a step the piece before goes on
+        for number, row in enumerate(rows_of):
+            lines = np.c_[breaks - knots[0], first[number], rise[number] / run, np.zeros((len(run), 2))][kept]
+            both = np.concatenate([row[~self.straight], lines])
+            rows_of[number] = both[np.argsort(both[:, 0], kind="stable")]
         return [Cubics(row) for row in rows_of]
 
 
@@ -395,9 +405,9 @@ class _System:
         band[BAND, fixed] = 1.0
         solution = solve_banded((BAND, BAND), band, right)
         levels, slopes = solution[::2], solution[1::2]
-        rise, slopes_after = np.diff(levels, append=0.0), np.append(slopes[1:], 0.0)
+        rise, next_slopes = np.diff(levels, append=0.0), np.append(slopes[1:], 0.0)
         start = np.repeat(self.knots[self.begin], self.last - self.begin + 1)
-        return np.c_[self.knots - start, levels, slopes, (3 * rise / h - 2 * slopes - slopes_after) / h, (slopes + slopes_after - 2 * rise / h) / h**2]
+        return np.c_[self.knots - start, levels, slopes, (3 * rise / h - 2 * slopes - next_slopes) / h, (slopes + next_slopes - 2 * rise / h) / h**2]
 
     def _prescribed(self):
         """(2 K,) level and slope of every knot that are given, else NaN: at the ends, and where straight pieces begin and end."""
@@ -424,11 +434,11 @@ class _System:
 
     def missed_between(self, rows, chosen):
         """(K,) bool of the pieces of the chosen bundles that miss their lines between the places."""
-        quarters = [(np.empty(0), np.empty(0), np.empty(0, int))]
+        quarters, shares = [(np.empty(0), np.empty(0), np.empty(0, int))], np.arange(1, 4) / 4
         for (bundle, x, value, _), begin in zip(self.lines, self.begin):
             if bundle in chosen:
-                s = (bundle.knots[:-1, None] + np.diff(bundle.knots)[:, None] * BETWEEN).ravel()
-                quarters.append((s, np.interp(s, x, value), begin + np.arange(len(s)) // len(BETWEEN)))
+                s = (bundle.knots[:-1, None] + np.diff(bundle.knots)[:, None] * shares).ravel()
+                quarters.append((s, np.interp(s, x, value), begin + np.arange(len(s)) // len(shares)))
         return self._missed(rows, *map(np.concatenate, zip(*quarters)))
 
     def _missed(self, rows, s, values, k):
@@ -440,10 +450,6 @@ class _System:
         return missed & ~self.straight
 
 
-def _places_within(s, first, last):
-    return max(int(((x > first) & (x < last)).sum()) for x in s)
-
-
 def difference(first: Cubics, second: Cubics) -> Cubics:
     """first less second, which have the same pieces."""
     return Cubics(np.c_[first.rows[:, 0], first.rows[:, 1:] - second.rows[:, 1:]])
@@ -451,17 +457,23 @@ def difference(first: Cubics, second: Cubics) -> Cubics:
 
 def simplified(cubics: Cubics) -> Cubics:
     """Without pieces that only repeat the one before: constant and straight functions have one row."""
-    rows = cubics.rows
-    keep = [0]
+    rows, keep = cubics.rows, [0]
+    repeats = _missed_by(rows[:-1], rows[1:]) <= 1e-9
     for k in range(1, len(rows)):
-        ds = rows[k, 0] - rows[keep[-1], 0]
-        _, a, b, c, d = rows[keep[-1]]
-        moved = np.array([a + ds * (b + ds * (c + ds * d)), b + ds * (2 * c + ds * 3 * d), c + 3 * d * ds, d])
-        if np.abs(moved - rows[k, 1:]).max() > 1e-9:
+        last_is_before = keep[-1] == k - 1
+        if not (repeats[k - 1] if last_is_before else _missed_by(rows[keep[-1], None], rows[k, None])[0] <= 1e-9):
             keep.append(k)
     tiny = rows[keep].copy()
     tiny[:, 1:][np.abs(tiny[:, 1:]) < 1e-12] = 0.0
     return Cubics(tiny)
+
+
+def _missed_by(before, after):
+    """(n,) by how much coefficients of (n, 5) rows differ from those of the rows before, which go on."""
+    start, a, b, c, d = before.T
+    ds = after[:, 0] - start
+    moved = np.stack([a + ds * (b + ds * (c + ds * d)), b + ds * (2 * c + ds * 3 * d), c + 3 * d * ds, d], axis=1)
+    return np.abs(moved - after[:, 1:]).max(1)
 
 
 def risen(s: np.ndarray) -> np.ndarray:

@@ -11,7 +11,8 @@ import numpy as np
 from ..sources import LEAST_CURB
 from .geometry import LEAST_STEP, STEP_RUN, Cubics, LineBundle, PlanView, difference, fit_cubics, risen, simplified
 from .model import LaneSection, MapLane, MapRoad, shape_height
-from .reference_line import fit_reference, polynomial_reference
+from .reference_line import polynomial_reference, reference_steps
+from .side_by_side import Steps
 from .strips import MOST_TURN, SLOPE_REACH, Slice
 
 NEAREST_POINTS = 0.005   # m within which two places of a guide line are one
@@ -61,8 +62,8 @@ def centre_of(one: Slice, left_hand: bool) -> int:
     return len(ways) if left_hand else 0
 
 
-def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadShape:
-    """The reference line through the borders at which lane 0 lies, and every vertex in its s and t.
+def shape_steps(strip: list[Slice], centres: list[int], tolerance: float) -> Steps[RoadShape]:
+    """A task of `side_by_side`: the reference line through the borders at which lane 0 lies, and every vertex in its s and t.
 
     Where lane 0 jumps aside, as where a lane for the opposite traffic begins, the reference line goes on beside it.
 
@@ -82,7 +83,7 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadSh
     keep[-1] = True
     for square in (False, True):
         ends, widest = _end_headings(strip, guide, square)
-        plan, follows = _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
+        plan, follows = yield from _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
         shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
         if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
             shown, near = (list(values) for values in zip(*(_finer(part, s) for part, s in zip(strip, near))))
@@ -217,11 +218,11 @@ def _reference(points, tolerance, ends, turn_tolerance, reach):
     """(the reference line, whether it follows the points within the tolerance); a border with a corner is cut short by it, and the lane offset
     has the rest."""
     # to meet other roads squarely matters more than to lie on the border, and no border may fold back in a curve
-    guides = [points, *(_smoothed(points, width) for width in SMOOTHER)]
     for headings in (ends, (None, None)):
-        for guide in guides:
+        for width in (0.0, *SMOOTHER):
+            guide = _smoothed(points, width) if width else points
             for loose in LOOSER:
-                plan = fit_reference(guide, loose * tolerance, headings, turn_tolerance)
+                plan = yield from reference_steps(guide, loose * tolerance, headings, turn_tolerance)
                 if plan is not None and not _folds(plan, points, reach):
                     return plan, guide is points and loose == LOOSER[0]
     return polynomial_reference(points), True
@@ -290,8 +291,8 @@ def fit_borders(roads: Sequence[tuple[RoadShape, list[Slice], list[int]]], toler
     centres = [centre for *_, road_centres in roads for centre in road_centres]
     fitted = fit_cubics(bundles)
     crossing = [k for k, (functions, bundle) in enumerate(zip(fitted, bundles)) if _crossing(functions, bundle.end - bundle.start)]
-    untangled = [bundles[k]._replace(s=bundles[k].s[:1] * len(bundles[k].s), values=_untangled(*bundles[k][:2], centres[k]), slopes=(), broken=True)
-                 for k in crossing]
+    untangled = [LineBundle([bundle.s[0]] * len(bundle.s), _untangled(bundle.s, bundle.values, centres[k]), bundle.start, bundle.end, tolerance,
+                            broken=True) for k, bundle in enumerate(bundles) if k in crossing]
     for k, functions in zip(crossing, fit_cubics(untangled)):
         fitted[k] = functions
     sections = iter(fitted)
@@ -310,7 +311,12 @@ def _border_bundles(shape, strip, tolerance, directions):
 
 
 def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list[int], sections: list[list[Cubics]]) -> list[list[int]]:
-    """Give a road its lane offset and sections with widths, by the functions of their borders; the number of the lane of every cell of every slice."""
+    """Give a road its lane offset and sections with widths, by the functions of their borders.
+
+    Returns
+    -------
+    for every slice the numbers of the lanes of its cells
+    """
     offsets, numbers = [], []
     lines = _lines_of_lane_0(sections, centres, np.diff(shape.starts), int(np.argmax([part.length for part in strip])))
     for start, part, centre, functions, line in zip(shape.starts, strip, centres, sections, lines):

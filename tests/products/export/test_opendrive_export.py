@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, Features
-from lanewright.core.common.progress import Progress
 from lanewright.products.export.check.roads import check_opendrive
 from lanewright.products.export.map_layers import border_misses, crs_of_reference, driving_line_misses, reference_of_crs
 from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
@@ -104,7 +103,7 @@ def test_a_road_that_goes_straight_on_past_a_side_road_has_a_way_through_the_jun
     assert led == {(id, other) for id, others in zip(lanes.lane_id, lanes.successors) for other in others}
 
 
-def test_a_shoulder_within_a_junction_is_left_out_and_counted():
+def test_a_shoulder_within_a_junction_apart_from_its_ways_is_a_road_of_its_own(tmp_path):
     scene, line = LaneScene(), Axis(((100.0, 0.0, 0.0),))
     for piece, (first, last) in enumerate(((0, 40), (40, 60), (60, 100)), start=1):
         scene.add(line, 0.0, -3.5, first, last, lane=1, piece=piece, **kinds())
@@ -121,10 +120,10 @@ def test_a_shoulder_within_a_junction_is_left_out_and_counted():
         scene.add(side, 0.0, -3.5, road=2 + number, **kinds())
         turn = [hermite(line.at([at], [t])[0], side.at([0], [u])[0], heading, way) for t, u in ((0.0, 0.0), (outer, -3.5))]
         scene.piece(*turn, road=1, lane=8 + number, type="connector", **unmarked)
-    said, progress = [], Progress()
-    progress.info = said.append
-    draft_opendrive(checked(RoadMapSource(scene.lanes())), progress=progress)
-    assert any("within junctions: 1." in text for text in said)
+    lanes = scene.lanes()
+    draft, whole = exported(tmp_path, lanes)
+    assert not check_opendrive(whole).found and sorted(lane_names(draft).values()) == sorted(lanes.lane_id)
+    assert border_misses(lanes, layers_of_opendrive(whole).lanes)[0].largest < OpenDriveSettings().tolerance
 
 
 def test_in_left_hand_traffic_lanes_along_the_road_are_left_of_its_line(tmp_path):
