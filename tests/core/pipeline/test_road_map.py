@@ -122,7 +122,7 @@ def test_towns_too_far_apart_for_one_image_are_refused_before_anything_is_detect
     assert not (tmp_path / "image.tif").exists()
 
 
-def test_tiles_and_their_order_section_length_memory_block_size_and_number_of_threads_do_not_show(sample, cloud, road_map, tmp_path, monkeypatch):
+def test_tiles_and_their_order_section_length_block_size_and_number_of_threads_do_not_show(sample, cloud, road_map, tmp_path, monkeypatch):
     whole = laspy.read(cloud)
     half, tiles = np.asarray(whole.x) > np.median(whole.x), []
     for name, part in (("east", half), ("west", ~half)):
@@ -132,7 +132,7 @@ def test_tiles_and_their_order_section_length_memory_block_size_and_number_of_th
         tiles.append((np.median(tile.gps_time), tmp_path / f"{name}.las"))
     others = 4 if os.cpu_count() == 1 else 1
     monkeypatch.setattr(os, "cpu_count", lambda: others)
-    settings = RoadMapSettings(survey=SurveySettings(section_length=7.0, memory_limit=2**20, block=33_333))
+    settings = RoadMapSettings(survey=SurveySettings(section_length=7.0, block=33_333))
     against_the_drive = [path for _, path in sorted(tiles, reverse=True)]
     assert_same(road_map, make_road_map(against_the_drive, sample.trajectory, tmp_path / "intensity.tif", settings))
 
@@ -224,6 +224,6 @@ def test_a_run_that_is_broken_off_gives_back_the_disk_of_its_points(sample, clou
     monkeypatch.setattr(chain, "open_survey", lambda *given, **named: opened.append(open_survey(*given, **named)) or opened[0])
     monkeypatch.setattr(chain, "make_intensity_image", broken_off)
     with pytest.raises(Cancelled):
-        make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif", RoadMapSettings(survey=SurveySettings(memory_limit=2**20)))
+        make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif")
     assert not opened[0].store.roads()
     assert opened[0].counts["kept"] > 0
