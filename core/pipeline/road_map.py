@@ -42,15 +42,16 @@ from ..road.edges.road_edges import RoadEdges
 from ..road.scanlines.candidates import ScanlineBoundarySettings
 from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
+from ..road.surface.ground_grid import MeasuredGround
 from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.density import CubeDensity, cube_densities
-from ..survey.frame.road import CORRIDOR
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.las.reader import read_headers
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.store.records import Points
 from ..survey.store.road_points import columns_of_roads
 from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
+from ..survey.weights import FRAME
 
 
 @dataclass(frozen=True)
@@ -150,20 +151,20 @@ def _map_of(survey, image_path, settings, stages, corrections):
     if survey.has_intensity:
         # before hours of work, not after
         check_fits(*_span(survey), settings.image)
-    curbs = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
+    ground = MeasuredGround(survey)
+    curbs = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries, ground=ground)
     # what workers keep of the curbs is of no use to the stages that follow
     survey.executor.forget()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, curbs, survey.frame, settings.edges,
-                            survey=survey)
+                            survey=survey, ground=ground)
     edges = correct_edges(boundaries.edges, survey.frame, map_corrections)
     road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface, survey, edges, settings.surface,
-                                      ground=boundaries.ground)
-    boundaries.ground = None
+                                      ground=ground)
+    del ground
     facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
     waiting = stages.progress.part(stages.done, stages.done)   # the bar stands meanwhile
     density = cube_densities(road_points, waiting)
-    survey.store.clear_cache()
     result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
                      density=density, country=settings.driving.country, corrections=map_corrections)
@@ -210,8 +211,6 @@ def _paint(result, image_path, settings, stages, executor):
                         result.road_points, image, frame, settings.markings)
     executor.forget()
     image.close()
-    # road points are not read until lines are fitted
-    result.road_points.store.clear_cache()
     result.image = IntensityImage.open(image_path)
     result.counts["marking_points"] = len(points)
     if len(points):
@@ -279,7 +278,8 @@ class Extent:
         points = sum(file.count for file in filled)
         places = np.column_stack([trajectory.x, trajectory.y])
         low, high = (np.array([getattr(file, name)[:2] for file in filled]).reshape(-1, 2) for name in ("minimum", "maximum"))
-        within = ((places > low.min(axis=0, initial=np.inf) - CORRIDOR) & (places < high.max(axis=0, initial=-np.inf) + CORRIDOR)).all(axis=1)
+        south_west, north_east = low.min(axis=0, initial=np.inf) - FRAME.corridor, high.max(axis=0, initial=-np.inf) + FRAME.corridor
+        within = ((places > south_west) & (places < north_east)).all(axis=1)
         driven = np.hypot(*np.diff(places, axis=0).T)[within[1:]].sum()
         return cls(points / 1e6, float(driven) / 1e3, sum(file.count for file in filled if file.chunk == 1) / max(points, 1))
 
