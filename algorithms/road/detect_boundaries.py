@@ -41,9 +41,11 @@ class DetectBoundaries(Algorithm):
 
     def work(self, call, progress):
         from ...core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+        from ...core.road.surface.ground_grid import MeasuredGround
 
         settings = BoundarySettings(call.value("BOUNDARY_METHOD"), call.settings(CURB_SETTINGS), call.settings(SCANLINE_METHOD_SETTINGS))
         survey = open_survey_of(call, progress.part(0.0, 0.5))
-        curbs = find_curb_points(survey, settings, progress.part(0.5, 0.95))
-        boundaries = draw_boundaries(curbs, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0), survey)
+        ground = MeasuredGround(survey)
+        curbs = find_curb_points(survey, settings, progress.part(0.5, 0.95), ground)
+        boundaries = draw_boundaries(curbs, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0), survey, ground)
         call.layer("ROAD_EDGES", boundaries.edges.to_features(survey.frame))

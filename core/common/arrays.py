@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-FEW = 500        # numbers that numpy's lexsort takes less time for
+FEW = 500        # cost: numbers that numpy's lexsort takes less time for
 RADIX_BITS = 16  # derived: numpy sorts integers of up to 16 bits in linear time (radix sort)
 
 
@@ -170,8 +170,8 @@ def best_within(place: np.ndarray, row: np.ndarray, score: np.ndarray, span: int
 
 # Which of many stretches of a road meet: found in order of station, so that a long survey needs no table of all pairs.
 
-PAIRS_PER_BLOCK = 1 << 18  # about so many are handed out at a time
-ROUNDING_TOLERANCE = 1e-6  # m, more than coordinates are rounded by
+PAIRS_PER_BLOCK = 1 << 18  # cost: about so many are handed out at a time
+ROUNDING_TOLERANCE = 1e-6  # derived: m, more than coordinates are rounded by
 
 
 def overlapping_pairs(first: np.ndarray, last: np.ndarray, other_first: np.ndarray, other_last: np.ndarray,

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 else:
     np = LazyModule("numpy")  # the plugin loads without it, to say what is missing
 
-POLL_INTERVAL = 0.2   # s between two checks for cancellation while a result is awaited
-MAX_WORKERS = 4       # threads by default at most
+POLL_INTERVAL = 0.2   # cost: s between two checks for cancellation while a result is awaited
+MAX_WORKERS = 4       # cost: threads by default at most
 
 _thread = threading.local()
 
@@ -153,7 +153,7 @@ class _MessagesForLater(RememberedMessages):
 
 # Reused working memory, work on some rows of a long table at a time, and the return of freed memory to the operating system.
 
-ROWS_OF_A_PART = 1024   # rows of some hundred cells: a megabyte of each array
+ROWS_OF_A_PART = 1024   # cost: rows of some hundred cells: a megabyte of each array
 
 
 def by_rows(function: Callable[[slice], np.ndarray], count: int, at_once: int = ROWS_OF_A_PART) -> np.ndarray:
@@ -186,7 +186,7 @@ def trim_heap() -> None:
 
 
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3   # source: glibc, malloc.h: parameters of glibc's mallopt
-LARGEST_REUSED = 32 * 2**20                    # bytes of an array whose memory is used again; glibc takes no more on 64 bits
+LARGEST_REUSED = 32 * 2**20                    # source: glibc: bytes of an array whose memory is used again; glibc takes no more on 64 bits
 
 
 def reuse_freed_memory() -> None:
@@ -249,12 +249,12 @@ column_buffers = ScratchBuffers()   # for packing and unpacking columns of recor
 # A process with too little of it does not end with a MemoryError alone: shared libraries cannot be loaded, threads cannot start, and OpenBLAS up to
 # 0.3.21 asks for its working memory again and again, for ever. So what cannot do without is asked for before the work begins.
 
-MEGABYTE = 10**6
-# MB of address space, measured with Debian 12, whose libraries are the largest: OpenCV and SciPy with what they load, a product of matrices that runs
-# at the same time as others (OpenBLAS's BUFFER_SIZE), and a thread (8 of stack, 64 of heap)
+MEGABYTE = 10**6   # derived: bytes
+# source: MB of address space, measured with Debian 12, whose libraries are the largest: OpenCV and SciPy with what they load, a product of
+# matrices that runs at the same time as others (OpenBLAS's BUFFER_SIZE), and a thread (8 of stack, 64 of heap)
 LIBRARIES, PRODUCT, THREAD = 270, 135, 72
-WITHOUT_QGIS = 400  # MB more of libraries where QGIS has not brought NumPy, BLAS and GDAL
-BLAS_SIZE = 600  # rows and columns: a product takes some 20 ms, so that those of all threads overlap
+WITHOUT_QGIS = 400  # source: MB more of libraries where QGIS has not brought NumPy, BLAS and GDAL
+BLAS_SIZE = 600  # cost: rows and columns: a product takes some 20 ms, so that those of all threads overlap
 # What says in other words than a MemoryError that there was none: of the loaders of Linux, macOS and Windows, of threads, OpenCV, GDAL and GEOS
 _WORDS = ("failed to map segment", "cannot allocate memory", "paging file is too small", "not enough memory", "insufficient memory", "out of memory",
           "bad_alloc", "can't start new thread")

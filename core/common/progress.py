@@ -6,11 +6,7 @@ import math
 import time
 from collections.abc import Callable
 
-REMAINING_STEPS = (10, 20, 40, 60, 120, 180, 300, 600, 900, 1200, 1800, 2700, 3600, 7200, 10800, 18000, 28800, 43200, 86400)  # s, as reported
-MIN_ELAPSED = 5.0      # s of work before the first estimate
-MIN_FRACTION = 0.08    # of the work that must be done before the first estimate
-LONGER_FACTOR = 1.5    # a longer estimate replaces the last one only if it exceeds it by this factor
-MIN_REPEAT = 20.0      # s after the last estimate before a longer one may replace it
+from .weights import PROGRESS
 
 
 class Progress:
@@ -87,7 +83,7 @@ class RememberedMessages(_PassedOn):
 class RemainingTime:
     """Estimates the remaining time from the fraction done, in round steps.
 
-    The remaining work is assumed to advance as fast as the work so far. Each of `REMAINING_STEPS` is returned at most
+    The remaining work is assumed to advance as fast as the work so far. Each of `PROGRESS.remaining_steps` is returned at most
     once as the time runs down, so a run of one minute gets four estimates. A longer estimate than the last one is
     returned only if it is clearly longer.
     """
@@ -97,14 +93,14 @@ class RemainingTime:
         self._last, self._last_at = math.inf, 0.0
 
     def after(self, fraction: float) -> int | None:
-        """Remaining seconds, one of `REMAINING_STEPS`, with a fraction of the work done; None where no new estimate is due."""
+        """Remaining seconds, one of `PROGRESS.remaining_steps`, with a fraction of the work done; None where no new estimate is due."""
         elapsed = self._clock() - self._began
-        if elapsed < MIN_ELAPSED or not MIN_FRACTION <= fraction < 1.0:
+        if elapsed < PROGRESS.min_elapsed or not PROGRESS.min_fraction <= fraction < 1.0:
             return None
         left = elapsed * (1.0 - fraction) / fraction
-        step = min(REMAINING_STEPS, key=lambda seconds: abs(math.log(seconds / max(left, 1e-3))))
-        longer = step > self._last and left > LONGER_FACTOR * self._last and elapsed - self._last_at > MIN_REPEAT
-        if left < REMAINING_STEPS[0] / 2 or not (step < self._last or longer):
+        step = min(PROGRESS.remaining_steps, key=lambda seconds: abs(math.log(seconds / max(left, 1e-3))))
+        longer = step > self._last and left > PROGRESS.longer_factor * self._last and elapsed - self._last_at > PROGRESS.min_repeat
+        if left < PROGRESS.remaining_steps[0] / 2 or not (step < self._last or longer):
             return None
         self._last, self._last_at = step, elapsed
         return step

@@ -105,7 +105,7 @@ def _words():
 
 BRACES = "{}"
 AMOUNT = re.compile(r"([\d.,]+ \S+ )([a-z]+)")  # 12 m measured
-PHRASE = 2  # blanks in what is put in: with as many it is a phrase, with fewer a number with its unit or a name
+PHRASE = 2  # derived: blanks in what is put in: with as many it is a phrase, with fewer a number with its unit or a name
 BETWEEN_SENTENCES = re.compile(r"(?<=[.?…]) (?=[A-Z])")
 _METRES = r"(-?\d+(?:\.\d+)?)"
 _PLACE = re.compile(rf"road (\d+)(?:, (left|right) side)?, station {_METRES}(?: to {_METRES})? m")

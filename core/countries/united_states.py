@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from .model import Country, Dashes, DesignSpeed, SectionLimits
 
-FOOT = 0.3048            # m
-INCH = 25.4              # mm
-MILE = 1.609344          # km
-SUPERELEVATION = 0.08    # greatest crossfall in curves
-# Design speed, miles per hour, and the greatest side friction at it
+FOOT = 0.3048            # source: m, international foot (1959)
+INCH = 25.4              # source: mm
+MILE = 1.609344          # source: km
+SUPERELEVATION = 0.08    # source: greatest crossfall in curves
+# source: (as the rest of this file) design speed, miles per hour, and the greatest side friction at it
 SIDE_FRICTION = ((20, 0.27), (30, 0.20), (40, 0.16), (50, 0.14), (60, 0.12), (70, 0.10))
 
 UNITED_STATES = Country(

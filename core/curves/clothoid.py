@@ -19,9 +19,9 @@ def _gauss(count):
     return (nodes + 1) / 2, weights / 2
 
 
-# Gauss-Legendre rules that integrate a clothoid to 1e-12 of its length, by how far it turns
+# derived: Gauss-Legendre rules that integrate a clothoid to 1e-12 of its length, by how far it turns
 GAUSS_RULES = _gauss(8), _gauss(14), _gauss(24)
-STEP_RULE = _gauss(3)    # for steps of decimetres
+STEP_RULE = _gauss(3)    # derived: for steps of decimetres
 
 
 def gauss_rule(turn: float | np.ndarray) -> int | np.ndarray:

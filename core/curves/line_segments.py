@@ -12,9 +12,9 @@ import shapely
 from ..common.arrays import Rows
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
+from .weights import FITS
 
-HEADING_BASE = 0.5         # m to either side over which the direction of a line is measured: vertices a decimetre apart are noisy
-QUERY_BATCH = 20_000       # points queried at a time: each may have many neighbours
+QUERY_BATCH = 20_000       # cost: points queried at a time: each may have many neighbours
 
 
 def single_lines(geometries: Sequence[Any]) -> tuple[list[shapely.LineString], np.ndarray]:
@@ -81,8 +81,8 @@ class SegmentIndex:
         return spot[:, :2], spot[:, 2]
 
     def heading_at(self, line: np.ndarray, station: np.ndarray) -> np.ndarray:
-        """(N,) directions of the lines there, radians, over HEADING_BASE metres behind and ahead."""
-        behind, ahead = np.maximum(station - HEADING_BASE, 0.0), np.minimum(station + HEADING_BASE, self._line_length[line])
+        """(N,) directions of the lines there, radians, over `FITS.heading_base` metres behind and ahead."""
+        behind, ahead = np.maximum(station - FITS.heading_base, 0.0), np.minimum(station + FITS.heading_base, self._line_length[line])
         step = self.at(line, ahead)[0] - self.at(line, behind)[0]
         return np.arctan2(step[:, 1], step[:, 0])
 

@@ -23,7 +23,7 @@ class _FitWeights:
     weight_tolerance: float = 1e-6   # a smaller change of the weights moves the curve by less than a micrometre
     medium_rule_turn: float = 0.8   # radians from which on the second and the third rule serve
     fine_rule_turn: float = 3.0   # radians from which on the second and the third rule serve
-    max_newton_steps: int = 10
+    max_newton_steps: int = 10   # to the foot of a point on a curve: each squares the error, so that three to five do
     newton_tolerance: float = 1e-5   # m; after so short a step the error is about 1e-10 m
     max_start_bins: int = 12   # of the points of a line, from whose medians the start is made
     max_residual_p95: float = 0.05   # m; a simpler curve is selected only if 95 % of the points are nearer
@@ -37,7 +37,7 @@ class _FitWeights:
     max_misfit_share: float = 0.05   # share of the points beyond `max_misfit` above which a fit is not refined
     max_steps: int = 100   # accepted steps of Levenberg-Marquardt
     max_damping: float = 1e8   # at which a fit that finds no better step ends
-    robust_rounds: int = 5
+    robust_rounds: int = 5   # of reweighting the smoothed values, after which outliers have no weight any more
     outlier_factor: float = 3.0   # of the median deviation, at which a value has half its weight
     element_node_spacing: float = 4.0   # m between the nodes at which elements may join
     min_element_length: float = 8.0   # m
@@ -48,7 +48,8 @@ class _FitWeights:
     element_cost_factor: float = 2.0
     cost_margin: float = 1.0   # of cost, beyond all rounding
     min_ellipse_turn: float = np.radians(60.0)   # on a shorter arc an ellipse cannot be distinguished from a circle
-    polynomial_reweightings: int = 15
+    polynomial_reweightings: int = 15   # of a polynomial, a fit of which takes no time
+    heading_base: float = 0.5   # m to either side over which the direction of a line is measured: vertices a decimetre apart are noisy
 
 
 FITS = _FitWeights()

@@ -159,7 +159,7 @@ def named(name: str) -> Any:
 # and read
 FORMAT = b"LWplain2"
 CHECKSUM, TEXT_LENGTH = struct.Struct("<I"), struct.Struct("<q")
-CHECKED_AT_ONCE = 1 << 20   # bytes, which fit the processor's cache
+CHECKED_AT_ONCE = 1 << 20   # cost: bytes, which fit the processor's cache
 
 
 def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> None:

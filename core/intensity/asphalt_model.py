@@ -100,12 +100,13 @@ class _PassTable:
 
 DISTANCE_BINS = int(2 * ASPHALT.max_distance / ASPHALT.distance_bin)   # derived: both sides of the vehicle
 INTENSITY_LEVELS = 1024     # derived: logarithmic, 64 to a doubling: 1.1 % each
-LEVELS_PER_DOUBLING = 64
+LEVELS_PER_DOUBLING = 64   # cost: finer ones take more memory and change nothing
 LOWER_QUANTILE = 0.5 - 0.3413  # derived: one standard deviation below the median of a normal distribution
-INNER_QUANTILE, INNER_SIGMAS = 0.30, 0.5244    # of a normal distribution: so many standard deviations below the median
-# corrections are looked up in steps of 2**4 units of 0.1 mm, 52 m to either side; beyond `max_distance` they are all alike
+INNER_QUANTILE, INNER_SIGMAS = 0.30, 0.5244    # source: of a normal distribution: so many standard deviations below the median
+# cost: corrections are looked up in steps of 2**4 units of 0.1 mm, 52 m to either side; beyond `max_distance` they are all alike
 LOOKUP_SHIFT, LOOKUP_STEPS = 4, 2**16
 LOOKUP_HALF = LOOKUP_STEPS << LOOKUP_SHIFT >> 1
+# derived: of intensities of 16 bits
 LEVEL_OF_COUNT = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * LEVELS_PER_DOUBLING), 0, INTENSITY_LEVELS - 1).astype(np.int32)
 
 

@@ -19,20 +19,17 @@ from ..lazy import cv2
 from ..survey.store.columns import Columns
 from ..survey.store.records import COORDINATE_SCALE, take_rows
 from ..survey.store.road_points import RoadPoints
+from .weights import OUTLIERS
 
 OUTLIER_SCOPES = ("all", "windows")
-OUTLIER_WINDOW = 20.0     # m of station that one limit is taken from
-OUTLIER_BAND = 3.0        # m of offset likewise
-NEIGHBOUR_HALO = 2.0      # m of station beyond a window where neighbours are still looked for
-MAX_LIMIT_SAMPLE = 1500   # points of a band from which its limit is taken; where there are twice as many, of an evenly spaced sample
-MIN_POINTS_PER_BAND = 30  # points of a window whose deviation is still reliable
-SPARSENESS_FACTOR = 3.0   # times the distance that is usual among a point's own neighbours
+NEIGHBOUR_HALO = 2.0      # cost: m of station beyond a window where neighbours are still looked for
+MAX_LIMIT_SAMPLE = 1500   # cost: points of a band from which its limit is taken; where there are twice as many, of an evenly spaced sample
 COLUMNS = "s", "d", "x", "y", "z"   # that outliers are told by
-TASK_WINDOWS = 5       # windows of 20 m that a worker process is given together
-WINDOWS_AT_ONCE = 100      # windows whose columns are held at a time
-TREE_LEAF_POINTS = 20      # points in a leaf of the tree
-MAX_FLOAT32_UNITS = 1 << 24       # units (1.6 km): up to here float32 holds every integer
-QUERIES_PER_BLOCK = 1 << 16       # points asked for at a time: bounds the table of their neighbours
+TASK_WINDOWS = 5       # cost: windows of 20 m that a worker process is given together
+WINDOWS_AT_ONCE = 100      # cost: windows whose columns are held at a time
+TREE_LEAF_POINTS = 20      # cost: points in a leaf of the tree
+MAX_FLOAT32_UNITS = 1 << 24       # derived: units (1.6 km): up to here float32 holds every integer
+QUERIES_PER_BLOCK = 1 << 16       # cost: points asked for at a time: bounds the table of their neighbours
 
 
 @dataclass(frozen=True)
@@ -86,7 +83,7 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
     else:
         windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
         together = TASK_WINDOWS if executor.folder is not None else 1
-        phase = Phase(kept_of_windows, NoSource(), (settings,), lambda item: f"markings {item[0][0] * OUTLIER_WINDOW:.0f} m along a road")
+        phase = Phase(kept_of_windows, NoSource(), (settings,), lambda item: f"markings {item[0][0] * OUTLIERS.window:.0f} m along a road")
         keep = [np.empty(0, bool)]
         for first in range(0, len(windows), WINDOWS_AT_ONCE):
             batch = windows[first:first + WINDOWS_AT_ONCE]
@@ -99,7 +96,7 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
 
 
 def _windows(start, end):
-    return range(int(np.floor(start / OUTLIER_WINDOW)), int(np.ceil(end / OUTLIER_WINDOW)))
+    return range(int(np.floor(start / OUTLIERS.window)), int(np.ceil(end / OUTLIERS.window)))
 
 
 def _put(kept, points, keep):
@@ -113,7 +110,7 @@ def _put(kept, points, keep):
 
 def _columns_of(points, road, number):
     """Number of a window, and the columns s, d, x, y, z of its points and those about it."""
-    records = points.window(road, number * OUTLIER_WINDOW - NEIGHBOUR_HALO, (number + 1) * OUTLIER_WINDOW + NEIGHBOUR_HALO).records
+    records = points.window(road, number * OUTLIERS.window - NEIGHBOUR_HALO, (number + 1) * OUTLIERS.window + NEIGHBOUR_HALO).records
     return number, [np.asarray(records[name]) for name in COLUMNS]
 
 
@@ -135,19 +132,19 @@ def kept_of_windows(source: NoSource, windows: Sequence[tuple[int, Sequence[np.n
 def _kept_of_window(number, records, settings):
     """(N,) bool of the points of a window, without those about it."""
     s = records["s"] * COORDINATE_SCALE
-    inner = np.flatnonzero((s >= number * OUTLIER_WINDOW) & (s < (number + 1) * OUTLIER_WINDOW))
+    inner = np.flatnonzero((s >= number * OUTLIERS.window) & (s < (number + 1) * OUTLIERS.window))
     neighbours = Neighbours(_units(records), settings.neighbours)
     distance = neighbours.distances()
-    band = np.floor(records["d"].take(inner) * COORDINATE_SCALE / OUTLIER_BAND)
+    band = np.floor(records["d"].take(inner) * COORDINATE_SCALE / OUTLIERS.band)
     outliers = [np.empty(0, np.intp)]
     for value in np.unique(band):
         rows = inner[band == value]
-        if len(rows) >= MIN_POINTS_PER_BAND:
+        if len(rows) >= OUTLIERS.min_points_per_band:
             sample = distance[rows[::max(len(rows) // MAX_LIMIT_SAMPLE, 1)]]
             outliers.append(rows[distance[rows] > sample.mean() + settings.std_ratio * sample.std(ddof=1)])
     outliers = np.concatenate(outliers)
     if len(outliers):  # what stands as far apart as its neighbours do is worn or far paint
-        outliers = outliers[distance[outliers] > SPARSENESS_FACTOR * np.median(distance[neighbours.of(outliers)[1]], axis=1)]
+        outliers = outliers[distance[outliers] > OUTLIERS.sparseness_factor * np.median(distance[neighbours.of(outliers)[1]], axis=1)]
     keep = np.ones(len(inner), bool)
     keep[np.searchsorted(inner, outliers)] = False
     return keep

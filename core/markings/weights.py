@@ -454,7 +454,7 @@ class _NoisyWeights:
     dash_width: float = 0.40   # m, most
     view_ring: tuple[int, int] = 3, 8   # cells from a piece: asphalt that it is compared with in each view
     view_length: float = 0.5   # m of the vehicle's way: points measured from farther apart are different views
-    min_views: int = 4
+    min_views: int = 4   # of a piece, so that the scatter among them says how well their mean is known
     min_view_sigmas: float = 3.0   # standard errors by which a piece is brighter than its surroundings in the mean of the views
 
 
@@ -596,3 +596,16 @@ class _LaneWeights:
 
 
 LANES = _LaneWeights()
+
+
+@dataclass(frozen=True)
+class _OutlierWeights:
+    """Outliers among the points of paint."""
+
+    window: float = 20.0   # m of station that one limit is taken from
+    band: float = 3.0   # m of offset likewise
+    min_points_per_band: int = 30   # points of a window whose deviation is still reliable
+    sparseness_factor: float = 3.0   # times the distance that is usual among a point's own neighbours
+
+
+OUTLIERS = _OutlierWeights()

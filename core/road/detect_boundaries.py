@@ -33,6 +33,7 @@ from .scanlines.detect import SurveyScanlines, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
+from .surface.road_look import looks_of
 from .weights import BOUNDARY, CURBS, SCANLINE
 
 if TYPE_CHECKING:
@@ -74,18 +75,19 @@ class RoadBoundaries:
     edges : RoadEdges
     differences : RoadEdges, where the edges of the two methods lie apart; None with one method
     length_by_method : method -> m of measured edges; empty with one method
-    ground : MeasuredGround in which edges of the pavement were looked for; None without
     """
 
     curb_points: CurbPoints
     edges: RoadEdges
     differences: RoadEdges | None = None
     length_by_method: dict = field(default_factory=dict)
-    ground: MeasuredGround | None = None
 
 
-def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettings(), progress: Progress = Progress()) -> dict[str, CurbPoints]:
+def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettings(), progress: Progress = Progress(),
+                     ground: MeasuredGround | None = None) -> dict[str, CurbPoints]:
     """Curb points of the methods that the settings name.
+
+    ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
     Returns
     -------
@@ -96,7 +98,7 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
     least = settings.scanlines.limits.least_height
     with (closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing, least)) as decimation,
           _lattice_meanwhile(survey, settings) as lattice):
-        return _find_curb_points(decimation, lattice, settings, progress)
+        return _find_curb_points(decimation, lattice, settings, progress, ground or MeasuredGround(survey))
 
 
 @contextmanager
@@ -111,28 +113,30 @@ def _lattice_meanwhile(survey, settings):
         yield find
 
 
-def _find_curb_points(decimation, lattice, settings, progress):
+def _find_curb_points(decimation, lattice, settings, progress, ground):
     """`find_curb_points` with the points of a PointDecimation and a function that gives the lattice."""
     survey, both_methods, points = decimation.survey, settings.method == "both", {}
+    looks = looks_of(ground)
     occlusion: dict[int, dict[str, OcclusionGrid]] = {}
     occlusion_of_scanlines: dict[int, dict[str, OcclusionGrid]] = {}
     chains: list[dict[tuple[int, str], SideChains]] = [{}, {}]
     if settings.method != "scanlines":
         part = progress.part(0.0, BOUNDARY.profiles_progress) if both_methods else progress
-        points["profiles"] = detect_curbs(survey, settings.curbs, part, not both_methods, decimation, occlusion, chains[0])
+        points["profiles"] = detect_curbs(survey, settings.curbs, part, not both_methods, decimation, occlusion, chains[0], looks)
     if settings.method != "profiles":
         part = progress.part(BOUNDARY.profiles_progress if both_methods else 0.0, 1.0)
         source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice(part.part(0.0, BOUNDARY.lattice_progress)),
                                  level=_level_for(decimation, settings.scanlines))
         corners = part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)
         points["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, corners,
-                                                   occlusion_of_scanlines if both_methods else occlusion, chains[1])
+                                                   occlusion_of_scanlines if both_methods else occlusion, chains[1], looks)
         drawn = "both" if both_methods else "scanlines"
         if both_methods:
             chosen = _better_points(points, survey.frame, CurbEvidence(chains[1], occlusion_of_scanlines), CurbEvidence(chains[0], occlusion))
             occlusion_of_scanlines.clear()   # planes lie close: along a long road their grids are large
             points["both"] = with_pieces_of_both(chosen, chains, occlusion, survey)
-        points[drawn] = with_curb_returns(points[drawn], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0), occlusion)
+        points[drawn] = with_curb_returns(points[drawn], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0), occlusion,
+                                           looks)
     return points
 
 
@@ -151,7 +155,7 @@ def _better_points(found, frame, *seen):
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
-                    progress: Progress = Progress(), survey: Survey | None = None) -> RoadBoundaries:
+                    progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> RoadBoundaries:
     """Edges through the curb points of one method, or of two that check each other, and edges of the pavement where there is no curb.
 
     With both methods, the one that measures better is drawn at every place
@@ -161,12 +165,12 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
     ----------
     found : result of `find_curb_points`
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
+    ground : MeasuredGround of it that an earlier stage kept, or None
     """
     boundaries = _drawn(found, frame, settings, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
     if survey is not None:
-        boundaries.ground = MeasuredGround(survey)
         boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress.part(BOUNDARY.curb_edges_progress, 1.0),
-                                               ground=boundaries.ground)
+                                               ground=ground)
     return boundaries
 
 

@@ -54,6 +54,10 @@ class _CurbWeights:
     least_slope: float = 25.0   # °: flatter faces are ramps
     max_faint_scatter: float = 0.006   # m, of a faint step about its own running line
     min_faint_length: float = 5.0   # m of faint steps in one line that make a curb
+    # road before a curb
+    max_road_ratio: float = 2.0   # roughness of the ground before a step over that under the vehicle, above which it is no road: before curbs of
+    # simulated and real streets it was 0.2 to 1.7, in grass 2.0 to 7.6
+    road_before_curb: tuple[float, ...] = (0.25, 0.5, 0.75)   # m before a step at which that is looked at
     # decimation
     points_per_level_cell: int = 12   # points of a cell that describe level ground in profiles
     points_per_level_cell_in_plan: int = 6   # the same in plan, where a cell of the raster covers four of these cells and more
@@ -549,6 +553,7 @@ class _SurfaceWeights:
     tolerance_floor: float = 0.03   # m, height tolerance of a scanner without noise
     tolerance_sigmas: float = 4.0   # times the noise of the heights, added to it
     track_reach: float = 1.5   # m either side of the reference line where ground must be measured
+    rows_of_look: int = 10   # rows of cells either way, 5 m, whose roughness under the vehicle is the road's
     grown_inset: float = 0.05   # m off a limit that is no edge: on a road that is too wide, verge is extracted as paint
     min_surface_width: float = 0.5   # m between the limits of a row with road
     measured_progress: float = 0.9   # share of the work on a carriageway at which its ground is measured

@@ -14,16 +14,11 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
-from .adjustment.trajectory_fit import LOWEST_SENSOR
 from .frame.road_frame import RoadFrame
 from .store.road_points import RoadPoints
-from .weights import MIRROR
+from .weights import FRAME, MIRROR, VEHICLE
 
-STATION_TOLERANCE = 1.0    # m: far more than rounding, far less than the shift of another drive
-OFFSET_TOLERANCE = 1.0     # m: more than passes are moved by onto each other, less than a trajectory is moved by to its scanners (HALF_VEHICLE)
-# m from the roads: the widest corridor and an arm of a side street beyond it; the nodes compared are 5 m apart
-REACH_OF_ROADS, NODES_APART = 200.0, 50
-CHECKED_SECTIONS, CHECKED_POINTS_PER_SECTION = 50, 200  # evenly over the file
+CHECKED_SECTIONS, CHECKED_POINTS_PER_SECTION = 50, 200  # cost: evenly over the file
 
 
 def check_features_on_roads(features: Features, frame: RoadFrame, label: str) -> None:
@@ -50,7 +45,7 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
         inside = np.isfinite(s)
         if inside.any():
             above.append(np.median(_above(frame, row["road"], s[inside], z[inside])))
-        agree.append(bool(inside.any()) and abs(_outside(s[inside], row["station_m"])) <= STATION_TOLERANCE)
+        agree.append(bool(inside.any()) and abs(_outside(s[inside], row["station_m"])) <= FRAME.station_tolerance)
         if agree[-1] and row.get("offset_m") is not None:
             aside.append(_outside(d[inside], row["offset_m"]))
     _refuse_mismatch(agree, label, "features")
@@ -77,10 +72,10 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
         return ""
     places, owner = shapely.get_coordinates(shapes, include_z=True, return_index=True)
     local = np.column_stack(frame.to_local(places[:, 0], places[:, 1]))
-    nodes = np.concatenate([np.column_stack([road.x, road.y])[::NODES_APART] for road in frame.roads])
-    low, high = nodes.min(axis=0) - REACH_OF_ROADS, nodes.max(axis=0) + REACH_OF_ROADS
+    nodes = np.concatenate([np.column_stack([road.x, road.y])[::FRAME.nodes_apart] for road in frame.roads])
+    low, high = nodes.min(axis=0) - FRAME.reach_of_roads, nodes.max(axis=0) + FRAME.reach_of_roads
     far = ~((local >= low) & (local <= high)).all(axis=1)
-    far[~far] = ~np.isfinite(cKDTree(nodes).query(local[~far], distance_upper_bound=REACH_OF_ROADS)[0])
+    far[~far] = ~np.isfinite(cKDTree(nodes).query(local[~far], distance_upper_bound=FRAME.reach_of_roads)[0])
     if not far.any():
         return ""
     lines = shapely.get_type_id(shapes) == shapely.GeometryType.LINESTRING
@@ -93,8 +88,8 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
     example = places[int(np.argmax(far))]
     features.geometries[:], features.rows[:] = ([value for row, value in enumerate(values) if row not in gone]
                                                 for values in (features.geometries, features.rows))
-    return (f"{label}: {np.count_nonzero(far):,} of {len(far):,} vertices lie more than {REACH_OF_ROADS:.0f} m from the trajectory, the first at "
-            f"{example[0]:.1f}, {example[1]:.1f}. They were left out, and {len(gone):,} of {len(shapes):,} features with them.")
+    return (f"{label}: {np.count_nonzero(far):,} of {len(far):,} vertices lie more than {FRAME.reach_of_roads:.0f} m from the trajectory, "
+            f"the first at {example[0]:.1f}, {example[1]:.1f}. They were left out, and {len(gone):,} of {len(shapes):,} features with them.")
 
 
 def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label: str) -> None:
@@ -112,7 +107,7 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
     agree, aside, above = [], [], []
     for road, x, y, s, d, z in sample_road_points(road_points):
         station, offset = _located(frame, road, x, y)
-        agree.append(np.abs(station - s) <= STATION_TOLERANCE)
+        agree.append(np.abs(station - s) <= FRAME.station_tolerance)
         aside.append((d - offset)[agree[-1]])
         if agree[-1].any():
             above.append(_above(frame, road, s[agree[-1]], z[agree[-1]]))
@@ -166,12 +161,12 @@ def _refuse_moved(beside, above, label):
     """Refuse what lies beside its offsets, (N,) m to the left, or where no vehicle is, (M,) m below the trajectory, for the most part."""
     beside, above = np.asarray(beside, float), np.asarray(above, float)
     above = above[np.isfinite(above)]
-    if np.count_nonzero(np.abs(beside) > OFFSET_TOLERANCE) > 0.5 * len(beside):
+    if np.count_nonzero(np.abs(beside) > FRAME.offset_tolerance) > 0.5 * len(beside):
         raise RoadExtractionError(
             f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry from the trajectory. They were made with another "
             "trajectory, or with one that was moved to the scanners, as a warning said then. Run Road map, which makes all layers with the moved "
             "trajectory, or give every stage the trajectory that belongs to the cloud.")
-    if np.count_nonzero((above < -LOWEST_SENSOR) | (above > MIRROR.heights[1])) > 0.5 * len(above):
+    if np.count_nonzero((above < -VEHICLE.lowest_sensor) | (above > MIRROR.heights[1])) > 0.5 * len(above):
         depth = float(np.median(above))
         raise RoadExtractionError(
             f"{label} lie {abs(depth):.2f} m {'below' if depth > 0 else 'above'} the trajectory, where its vehicle cannot have driven. They were "

@@ -19,24 +19,23 @@ from ..execution.work_folder import KeptResults, WorkFolder, code_digest
 from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
 from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_levels
 from .adjustment.scanner_fit import lay_scanners
-from .adjustment.trajectory_fit import LOWEST_SENSOR, fitted_trajectory
+from .adjustment.trajectory_fit import fitted_trajectory
 from .blocks import PointChoice, unwrap_week
-from .frame.road import CORRIDOR
 from .frame.road_frame import RoadFrame, build_frame
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, intensity_source_of, without_intensity
 from .las.reader import CloudHeader, read_headers
 from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
+from .store.array_file import files_are_whole
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
-from .store.spill_file import parts_are_whole
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import align_time, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
-from .weights import READING, STORE
+from .weights import FRAME, READING, STORE, VEHICLE
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -107,7 +106,7 @@ def _kept_survey(work, executor, read, progress):
             return earlier
         listener = RememberedMessages(progress)
         parts = WorkFolder(str(work.path / f"{name}.parts"))
-        if not parts_are_whole(parts.path / "points"):
+        if not files_are_whole(parts.path / "points"):
             parts.discard()
             parts = WorkFolder(str(parts.path))
         reading = KeptResults(_readers(executor.executor, files, progress), parts)
@@ -183,7 +182,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     samples = sample_files(files)
     intensity, rounding = _intensity_source(samples, settings, progress)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
-                         settings.memory_limit, folder=None if shared is None else shared.points)
+                         None if shared is None else shared.points)
     reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
     several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = READING.read_progress if several_passes else 1.0
@@ -219,10 +218,10 @@ def _intensity_source(samples, settings, progress):
 
 def _read_points(reader, files, block, shared, progress):
     if shared is None:
-        reader.read(files, block, progress)
+        reader.read(files, block, THREADS, progress)
     else:
         shared.points.mkdir(exist_ok=True)
-        reader.read_in_parts(files, block, shared.reading, progress.part(0.0, READING.parts_progress))
+        reader.read(files, block, shared.reading, progress.part(0.0, READING.parts_progress))
 
 
 def _survey_of(files, frame, reader, settings, crs, progress):
@@ -310,9 +309,9 @@ def _say_left_out(files, frame, reader, settings, progress):
 
 def _check_height(height, crs, explained, progress):
     """Refuse or doubt a trajectory by its height above the road, m; a word where that is in feet, otherwise ""."""
-    if abs(height) < LOWEST_SENSOR:
+    if abs(height) < VEHICLE.lowest_sensor:
         raise RoadExtractionError(
-            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {LOWEST_SENSOR} m above it. "
+            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {VEHICLE.lowest_sensor} m above it. "
             "It seems to be a line on the road, such as a driving line of a map, and not where the scanner was: choose the "
             "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
     if feet := unit_note(height, crs):
@@ -421,7 +420,7 @@ def _check_extent(files, frame, crs, trajectory_crs):
     high = np.max([file.maximum for file in files if file.count], axis=0)
     x = np.concatenate([p.x for p in frame.passes]) + frame.origin[0]
     y = np.concatenate([p.y for p in frame.passes]) + frame.origin[1]
-    reach = CORRIDOR
+    reach = FRAME.corridor
     if not _runs_through(low, high, x, y, reach):
         raise RoadExtractionError(
             f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, "

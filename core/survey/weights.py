@@ -39,6 +39,11 @@ class _FrameWeights:
     bend_stretch: tuple[float, float] = (0.4, 2.5)   # limits of the ratio of along-track distance to station difference in a bend
     points_per_projection: int = 100_000   # fewer points spend more time on Python's interpreter lock, many more on memory access
     clock_slack: float = 1.0   # s that a cloud may begin before or end after the trajectory
+    station_tolerance: float = 1.0   # m: far more than rounding, far less than the shift of another drive
+    offset_tolerance: float = 1.0   # m: more than passes are moved by onto each other, less than a trajectory to its scanners (half a vehicle)
+    reach_of_roads: float = 200.0   # m from the roads: the widest corridor and an arm of a side street beyond it
+    nodes_apart: int = 50   # nodes, 5 m each, between those that features are compared with first
+    corridor: float = 25.0   # m either side of the reference line
 
 
 FRAME = _FrameWeights()
@@ -145,7 +150,7 @@ class _LatticeWeights:
     rotation_window: float = 0.5   # s of scanning whose points are compared
     rotation_tolerance: float = 0.02   # share of a frequency within which it may vary
     min_direction_ratio: float = 1.5   # of the peak against that of the opposite rotation
-    min_rotation_peak: float = 0.5
+    min_rotation_peak: float = 0.5   # of the spectrum at the rotation: 1 of points that all lie on scan lines, near 0 of shuffled times
 
 
 LATTICE = _LatticeWeights()
@@ -153,20 +158,15 @@ LATTICE = _LatticeWeights()
 
 @dataclass(frozen=True)
 class _StoreWeights:
-    """Points by section: how many are kept in memory, and worked on at a time."""
+    """Points by section: how many are mapped and worked on at a time."""
 
-    rows_overhead: int = 8   # reading some rows of a column costs as much as the inverse of this share of the whole column, plus the rows
     section_length: float = 5.0   # m of station; results do not depend on it
-    memory_limit: int = 64 * 2**20   # bytes of records in memory before they are spilled
-    cache_limit: int = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again
+    mapped_bytes: int = 64 * 2**20   # bytes of files mapped into a process before it lets go of their pages: neighbouring windows ask for them again
     strips_per_section: int = 16   # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
     section_locks: int = 16   # locks that the sections share while they are read
     sort_chunk: int = 1 << 15   # points sorted at a time: they fit the processor's cache
     station_cell_bits: int = 7   # bits of the number of a cell of stations; points are sorted into cells first (fewer than a byte holds)
-    packing_chunk: int = 1 << 15   # values packed at a time: they fit the processor's cache
-    open_parts: int = 64   # files of parts that are held open: a system lets a program open some hundred (macOS 256)
-    max_free_ranges: int = 64   # free ranges of the file that are remembered; of more, the smallest is forgotten
-    subset_memory_limit: int = 16 * 2**20   # bytes of masks, and as many of additional columns, in memory
+    open_files: int = 64   # finished files that are held open: a system lets a program open some hundred (macOS 256)
 
 
 STORE = _StoreWeights()
@@ -514,3 +514,21 @@ class _HeadWeights:
 
 
 HEAD = _HeadWeights()
+
+
+@dataclass(frozen=True)
+class _VehicleWeights:
+    """The vehicle, and what one move of its trajectory may leave."""
+
+    lowest_sensor: float = 0.5   # m above the road; no scanner rides lower, but lines and places drawn on the road lie within
+    usual_ahead: float = 3.0   # m ahead of a trajectory on the same vehicle that scanners ride, one sigma
+    turns_window: float = 0.05   # s; every mirror turns a few times, and a vehicle on the road hardly sways
+    min_windows: int = 8   # good ones that the place of a scanner needs
+    attitude_noise: float = 0.01   # radians that roll, pitch and heading may be off, or differ from those of the way driven
+    max_upright: float = 0.8   # of the plane's normal; what lies flatter is the ground
+    one_move: float = 0.20   # m that one move may leave, as navigation drifts; more is the error of a drive by itself
+    moved_share: float = 0.9   # of the windows, in which no more may be left
+    clearly_better: float = 0.5   # of what one move leaves, below which another is taken
+
+
+VEHICLE = _VehicleWeights()

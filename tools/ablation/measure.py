@@ -19,6 +19,7 @@ from accuracy.variants import VARIANTS, Variant
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.road.detect_boundaries import draw_boundaries
 from lanewright.core.road.surface.extract import extract_road_surface
+from lanewright.core.road.surface.ground_grid import MeasuredGround
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.store.road_points import columns_of_roads
 from lanewright.core.survey.trajectory.reader import read_trajectory
@@ -33,8 +34,8 @@ ALL_VARIANTS = {variant.name: variant for variant in (
 
 
 def _edges(work, settings):
-    boundaries = draw_boundaries(work.found, work.frame, settings.edges, survey=work.survey)
-    work.edges, work.ground = boundaries.edges, boundaries.ground
+    work.ground = MeasuredGround(work.survey)
+    work.edges = draw_boundaries(work.found, work.frame, settings.edges, survey=work.survey, ground=work.ground).edges
 
 
 def _surface(work, settings):

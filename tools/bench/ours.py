@@ -55,11 +55,10 @@ def placing(size):
     from lanewright.core.common.parallel import ordered_map
     from lanewright.core.survey.blocks import DECODED_LAYERS
     from lanewright.core.survey.frame.projection import RoadProjection
-    from lanewright.core.survey.frame.road import CORRIDOR
     from lanewright.core.survey.frame.road_frame import build_frame
     from lanewright.core.survey.las.reader import read_blocks
     from lanewright.core.survey.trajectory.reader import read_trajectory
-    from lanewright.core.survey.weights import LAS
+    from lanewright.core.survey.weights import FRAME, LAS
 
     blocks = [block for path in clouds_of("dense", size) for block in read_blocks(str(path), LAS.points_per_block, DECODED_LAYERS)]
     frame = build_frame(read_trajectory(trajectory_of("dense", size)))
@@ -70,7 +69,7 @@ def placing(size):
         _, _, d = places.project(x, y, np.ascontiguousarray(block.array["gps_time"]))
         return int(np.isfinite(d).sum())
 
-    places = RoadProjection(frame, CORRIDOR)
+    places = RoadProjection(frame, FRAME.corridor)
     points, seconds = timed(lambda: sum(ordered_map(place, blocks)))
     return dict(seconds, points=points)
 

@@ -17,11 +17,12 @@ from .curb_points import CurbPoints, curb_points_at
 from .occlusion import OcclusionGrid
 from .pseudo_scanlines import expand_ranges
 from .sides import SIDE_SIGNS, OutermostTrack, expected_height, hidden_points, join_sections
-from .tracking import StepChain, curb_chains, drop_short_curbs, link_steps, select_along_road, with_pieces_in_line
+from .tracking import StepChain, curb_chains, drop_short_curbs, is_road, link_steps, select_along_road, with_pieces_in_line
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
 
+Roughness = Callable[[np.ndarray, np.ndarray], np.ndarray]
 AnySteps = TypeVar("AnySteps", bound=CurbSteps)
 
 
@@ -93,13 +94,20 @@ class SideChains:
     bounds: np.ndarray
 
     @staticmethod
-    def of(steps: CurbSteps, width: float, limits: CurbLimits, bounds: np.ndarray) -> SideChains:
-        """The chains of steps, upright and sloped ones apart; `width` : m of road per profile."""
+    def of(steps: CurbSteps, width: float, limits: CurbLimits, bounds: np.ndarray, roughness: Roughness | None = None) -> SideChains:
+        """The chains of steps, upright and sloped ones apart; `width` : m of road per profile.
+
+        roughness : function, (N,) stations and outward offsets in m -> (N,) roughness of the ground in units of the road's; None where nothing
+            is known of it
+        """
         label = np.empty(len(steps), np.int64)
         upright = steps.upright
         label[upright] = link_steps(steps[upright], width)
         label[~upright] = link_steps(steps[~upright], width) + label[upright].max(initial=-1) + 1
-        return SideChains(steps, curb_chains(steps, label, width, limits), bounds)
+        chains = curb_chains(steps, label, width, limits)
+        if roughness is not None:
+            chains = [chain for chain in chains if _has_road_before(steps[chain.steps], chain.end - chain.start, roughness)]
+        return SideChains(steps, chains, bounds)
 
     def points(self, members: np.ndarray, number: int) -> list[dict]:
         """Curb points of the steps with the (K,) indices, by station, of one line: one of each part per block.
@@ -134,6 +142,12 @@ class SideChains:
         row = order[row]
         near = np.abs(self.steps.u[row] - u[index] - skew[index] * (self.steps.s[row] - s[index])) <= 2 * CURBS.link_tolerance
         return np.bincount(index[near], self.steps.support[row[near]], len(s)) / CURBS.max_link_length
+
+
+def _has_road_before(steps, length, roughness):
+    """Does road lie before a line of steps? What goes on in one line for long enough is a curb whatever is before it."""
+    before = np.array(CURBS.road_before_curb)[:, None]
+    return length >= CURBS.min_faint_length or is_road(roughness(*(v.ravel() for v in np.broadcast_arrays(steps.s, steps.u - before))))
 
 
 def points_of_side(source: Any, road: int, side: str, found: SideChains, occlusion: OcclusionGrid) -> CurbPoints:

@@ -149,6 +149,12 @@ def is_clean(noise: float, scanner_noise: float, behind: np.ndarray, scatter: fl
                 and scatter <= CURBS.max_chain_scatter + scanner_noise)
 
 
+def is_road(roughness: np.ndarray) -> bool:
+    """Is ground as even as a road? `roughness` : (N,) of places on it in units of the road's, NaN where it is not known."""
+    known = roughness[np.isfinite(roughness)]
+    return not len(known) or bool(np.median(known) <= CURBS.max_road_ratio)
+
+
 def _continuing(chains, weak, steps):
     """Those of the weak chains that continue a chain, or another such one: how much a short chain scatters depends on where profiles are cut."""
     continuing: list[StepChain] = []

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ...common.arrays import mask_runs
 from ..common.sides import SIDE_SIGNS
-from ..common.tracking import is_clean
+from ..common.tracking import is_clean, is_road
 from ..weights import CURBS, RETURN
 from .main_curbs import CurbLines
 from .steps import PlanSteps
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ...survey.frame.passes import Pass
     from ...survey.frame.road import Road
     from ..common.curb_limits import CurbSettings
+    from ..surface.road_look import RoadLook
     from .main_curbs import SearchLimit
 
 
@@ -65,6 +66,15 @@ def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarr
             and not (limits.automatic and length >= CURBS.min_faint_length and limits.faint(height, slope, rough, len(line_steps), scatter)):
         return False
     return is_clean(rough, noise, line_steps.behind, scatter)
+
+
+def has_road_before(line_steps: PlanSteps, line: Road, look: RoadLook | None) -> bool:
+    """Does road lie before a line of steps, as far as its RoadLook tells? What goes on for long enough is a curb whatever is before it."""
+    if look is None or _length(line_steps.x, line_steps.y) >= CURBS.min_faint_length:
+        return True
+    before = np.array(CURBS.road_before_curb)[:, None]
+    return is_road(look.roughness(*line.locate(*((place - before * uphill).ravel() for place, uphill in
+                                                 ((line_steps.x, line_steps.nx), (line_steps.y, line_steps.ny))))))
 
 
 def _length(x, y):

@@ -16,14 +16,14 @@ import numpy as np
 
 from ...common.progress import Progress
 from ...survey.frame.placement import PlaceIndex
-from ...survey.frame.road import CORRIDOR
+from ...survey.weights import FRAME
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import phase_along
 from ..common.sides import SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden_beside, work_sections
 from ..weights import CURBS, RETURN
-from .classify import CurbReturn, classify_curbs, is_curb_like
+from .classify import CurbReturn, classify_curbs, has_road_before, is_curb_like
 from .extended_curbs import FollowedEnds, followed_steps, with_led_on
 from .ground_raster import averaged, driven_ground, ground_raster, ground_slopes
 from .islands import are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands
@@ -34,12 +34,14 @@ from .tracking import join_chains, link_plan_steps
 
 if TYPE_CHECKING:
     from ..common.curb_limits import CurbSettings
+    from ..surface.road_look import RoadLook
 
 KIND_TITLES = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
 
 
 def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, settings: CurbSettings,
-                      progress: Progress = Progress(), beside: Mapping[int, Mapping[str, OcclusionGrid]] | None = None) -> CurbPoints:
+                      progress: Progress = Progress(), beside: Mapping[int, Mapping[str, OcclusionGrid]] | None = None,
+                      looks: Mapping[int, RoadLook] | None = None) -> CurbPoints:
     """The points of the main curbs, and behind them those of corners, side streets and islands.
 
     Where a piece of main curb is found here, hidden places are looked for in the gaps next to it. A main curb that is the side
@@ -48,6 +50,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     curb_points : CurbPoints of every road, of kind main
     beside : number of the road -> side -> OcclusionGrid, what was seen beside it; without, no hidden place is added, and main curbs
         are not looked at for islands
+    looks : number of the road -> RoadLook; without, a curb may lie anywhere
     """
     survey, lines, parts = decimation.survey, [], []
     roads = survey.store.roads()
@@ -56,15 +59,16 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     runs = {road: [coordinates[:2] for _, coordinates in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
+        look = None if looks is None else looks[road]
         main, chain = mains[road]
         elsewhere = [run for other_road in roads if other_road != road for run in runs[other_road]]
         of_road = curb_points.road == road
         islands = curb_points[of_road & on_islands]
-        curbs = find_curb_returns(decimation, road, main, settings, part.part(0.0, 0.5) if len(islands) else part, elsewhere, behind[road])
+        curbs = find_curb_returns(decimation, road, main, settings, part.part(0.0, 0.5) if len(islands) else part, elsewhere, look, behind[road])
         if not are_replaced(islands, curbs):
             on_islands &= ~of_road
             main, chain = main_curbs_of(curb_points, survey, road)
-            curbs = find_curb_returns(decimation, road, main, settings, part.part(0.5, 1.0), elsewhere)
+            curbs = find_curb_returns(decimation, road, main, settings, part.part(0.5, 1.0), elsewhere, look)
         points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
         lines += points
         parts += points + hidden
@@ -98,20 +102,21 @@ def _points_of(survey, road, curb, chain):
 
 
 def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray], settings: CurbSettings,
-                      progress: Progress = Progress(), elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (),
+                      progress: Progress = Progress(), elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (), look: RoadLook | None = None,
                       behind: np.ndarray = np.empty((2, 0))) -> list[CurbReturn]:
     """Corners, side streets and islands of one road.
 
     main : side -> (N, 4) points of the main curb, by station: station, offset, height above the expected road in m,
         1 where it was measured and 0 where it is hidden
     elsewhere : (x, y) of the main curbs of other roads, local m
+    look : RoadLook of the road; without, a curb may lie anywhere
     behind : (2, K) local m, x and y of places that are road although something stands between them and the track
     """
     survey = decimation.survey
     limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
     line = survey.frame.road(road)
     known_places = KnownPlaces(places_along(line, main, CURBS.max_joined_gap))
-    barrier = PlaceIndex(places_along(line, main, RETURN.min_opening_length), CORRIDOR)
+    barrier = PlaceIndex(places_along(line, main, RETURN.min_opening_length), FRAME.corridor)
     runs = main_runs(main, line)
     tips = FollowedEnds.of([coordinates for _, coordinates in runs], np.full(len(runs), np.nan))
     arguments = road, limits, known_places, barrier, tips, settings, behind
@@ -121,7 +126,8 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     if measured is None:
         return []
     steps, falls, scanner_noise = measured
-    chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)]
+    chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)
+              and has_road_before(steps[c.steps], line, look)]
     curbs = classify_curbs(chains, steps, falls, runs, line, limits, survey.frame.passes_of(road), elsewhere)
     noisy = _noisy_sections(sections, line, steps, scanner_noise, settings)
     curbs = with_led_on(curbs, runs, decimation, road, noisy, known_places, limits, settings, progress.part(RETURN.led_progress, 1.0))
@@ -247,9 +253,9 @@ class _Reach:
     def __init__(self, limits, first, last):
         self.first = int(np.floor(first / RETURN.limit_node_spacing))
         nodes = np.arange(self.first, int(np.ceil(last / RETURN.limit_node_spacing)) + 2) * RETURN.limit_node_spacing
-        left, right = (np.minimum(limits[side](nodes), CORRIDOR) for side in SIDE_SIGNS)
+        left, right = (np.minimum(limits[side](nodes), FRAME.corridor) for side in SIDE_SIGNS)
         self.inside = -right, left
-        self.inner = [sign * np.where(limit < CORRIDOR, np.maximum(limit - RETURN.search_behind_curb - RETURN.inner_margin, 0.0), 0.0)
+        self.inner = [sign * np.where(limit < FRAME.corridor, np.maximum(limit - RETURN.search_behind_curb - RETURN.inner_margin, 0.0), 0.0)
                       for sign, limit in ((-1, right), (1, left))]
 
     def __call__(self, s, d):

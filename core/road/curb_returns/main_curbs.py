@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from ...survey.frame.road import CORRIDOR
+from ...survey.weights import FRAME
 from ..common.curb_points import CurbPoints
 from ..common.sides import SIDE_SIGNS, expected_height
 from ..weights import CURBS, RETURN
@@ -51,10 +51,10 @@ class SearchLimit:
     def __call__(self, s: np.ndarray, behind: float = RETURN.search_behind_curb, at_opening: float = RETURN.opening_margin) -> np.ndarray:
         """(N,) m, largest outward offset at (N,) stations: `behind` metres behind the curb, except for its last metres beside openings."""
         if not len(self.s):
-            return np.full(len(s), CORRIDOR)
+            return np.full(len(s), FRAME.corridor)
         k = np.searchsorted(self.begins + at_opening, s) - 1
         bounded = (k >= 0) & (s < self.ends[k] - at_opening)
-        return np.where(bounded, np.interp(s, self.s, self.u) + behind, CORRIDOR)
+        return np.where(bounded, np.interp(s, self.s, self.u) + behind, FRAME.corridor)
 
     def outward(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) m from the main curb outward to places at (N,) stations and offsets; at openings from the end of what is searched."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,8 @@ from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import SideChains, block_bounds, merged_passes, points_of_side, steps_of_road
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
 from ..curb_returns.detect import with_curb_returns
+from ..surface.ground_grid import MeasuredGround
+from ..surface.road_look import RoadLook, looks_of
 from ..weights import CURBS, PROFILE
 from .steps import find_averaged_steps, find_steps
 
@@ -29,20 +31,23 @@ if TYPE_CHECKING:
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
                  include_returns: bool = True, decimation: PointDecimation | None = None,
                  beside: dict[int, dict[str, OcclusionGrid]] | None = None,
-                 side_chains: dict[tuple[int, str], SideChains] | None = None) -> CurbPoints:
+                 side_chains: dict[tuple[int, str], SideChains] | None = None,
+                 looks: Mapping[int, RoadLook] | None = None) -> CurbPoints:
     """Bottom corners of the curb on each side of every road, one per block.
 
     include_returns : are corners, side streets and islands looked for too?
     decimation : PointDecimation of the survey, where it is used again
     beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
     side_chains : is given all chains that were found: (number of the road, side) -> SideChains
+    looks : number of the road -> RoadLook; None to measure the ground here
 
     Returns CurbPoints. Those of status `measured` are vertices of the road edge; those of
     status `occluded` lie where the curb is expected and something hides it.
     """
     if decimation is None:
         with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own_decimation:
-            return detect_curbs(survey, settings, progress, include_returns, own_decimation, beside, side_chains)
+            return detect_curbs(survey, settings, progress, include_returns, own_decimation, beside, side_chains, looks)
+    looks = looks_of(MeasuredGround(survey)) if looks is None else looks
     parts, beside, side_chains = [], {} if beside is None else beside, {} if side_chains is None else side_chains
     roads, width = survey.store.roads(), settings.profile_width
     for i, road in enumerate(roads):
@@ -51,12 +56,12 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
         bounds = block_bounds(survey.frame.road(road), *survey.store.span(road), settings.block_length)
         for side in steps:
             if len(steps[side]):
-                side_chains[road, side] = SideChains.of(steps[side], width, settings.limits, bounds)
+                side_chains[road, side] = SideChains.of(steps[side], width, settings.limits, bounds, looks[road].outward(SIDE_SIGNS[side]))
                 parts.append(points_of_side(survey, road, side, side_chains[road, side], beside[road][side]))
     points = CurbPoints.join(parts, survey.crs)
     measured, main = np.count_nonzero(points.status == "measured"), len(points)
     if include_returns:
-        points = with_curb_returns(points, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside)
+        points = with_curb_returns(points, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside, looks)
     progress.info(f"Curb points: {measured:,} measured, {main - measured:,} hidden by something in front.")
     return points
 

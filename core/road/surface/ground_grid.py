@@ -16,9 +16,9 @@ from scipy.linalg import solveh_banded
 from ...common.arrays import order_by
 from ...common.progress import Progress
 from ...execution.phase import Phase
-from ...survey.frame.road import CORRIDOR
+from ...survey.store.array_file import ArrayFile
 from ...survey.store.records import COORDINATE_SCALE, Points
-from ...survey.store.spill_file import SpillFile, StoredColumn
+from ...survey.weights import FRAME
 from ..common.sides import ahead_of_vehicle
 from ..weights import SURFACE
 
@@ -83,7 +83,8 @@ class GroundCells:
     first_row, first_column : numbers of the first row and column
     row_size, column_size : m
     height : (R, C) float32 m, local z at the middle of a cell; NaN where there is no ground
-    rough : (R, C) float32 m, standard deviation about the plane of the cell; NaN where it has no plane
+    rough : (R, C) float32 m, standard deviation about the plane of the cell, each view (a scanner on a pass) at its own level; NaN where it has
+        no plane
     brightness : (R, C) float32 counts, median intensity, all scanners and passes at one level; NaN where there is no ground or it was not asked for
     scatter : (R, C) float32 counts, standard deviation of those intensities, estimated from the lower quartile
     count : (R, C) float32, points of the lowest layer
@@ -157,9 +158,9 @@ def _ground_cells(points: Points, first_row: int, rows: int, reach: float, road_
     row, column = np.divmod(np.arange(rows * columns), columns)
     u, v = (points.records[name].take(index) * COORDINATE_SCALE - middle.take(owner) for name, middle in
             (("d", (column - half + 0.5) * column_size), ("s", (row + first_row + 0.5) * row_size)))
-    height, rough = _planes(owner, count, u, v, z)
-    shape = rows, columns
-    brightness, scatter = np.full((2, len(count)), np.nan) if bright is None else _looks(points[index], owner, shape, column_size, bright)
+    ground, shape = points[index], (rows, columns)
+    height, rough = _planes(owner, count, u, v, z, _views(ground))
+    brightness, scatter = np.full((2, len(count)), np.nan) if bright is None else _looks(ground, owner, shape, column_size, bright)
     return GroundCells(first_row, -half, row_size, column_size,
                  *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count)))
 
@@ -218,8 +219,17 @@ def _in_lowest_layer(cell, z, total):
     return (layer_of_cell[cell] == layer) & (z - lowest[layer] < SURFACE.ground_layer_depth)
 
 
-def _planes(at, count, u, v, z):
-    """Height at the middle of each cell, and roughness, from a least-squares plane; points are sorted by cell, `at`."""
+def _views(points):
+    """(N,) number of the view of each point, a scanner on a pass, from 0."""
+    views = points.pass_number.astype(np.int64) << 8 | points.scanner
+    return (np.cumsum(np.bincount(views) > 0) - 1)[views] if len(views) else views
+
+
+def _planes(at, count, u, v, z, view):
+    """Height at the middle of each cell, and roughness, from a least-squares plane; points are sorted by cell, `at`.
+
+    Two views of one place differ in height by what positions and mounting angles are off. That is no roughness of the ground: it is taken out.
+    """
     n = np.maximum(count, 1).astype(float)
     filled = np.flatnonzero(count)
     starts = (np.cumsum(count) - count)[filled]
@@ -237,20 +247,25 @@ def _planes(at, count, u, v, z):
     uu, vv = uu + 1e-4, vv + 1e-4
     determinant = uu * vv - uv * uv
     across, along = (uz * vv - vz * uv) / determinant, (vz * uu - uz * uv) / determinant
-    squares = np.maximum(zz - across * uz - along * vz, 0.0)
+    squares, freedom = np.maximum(zz - across * uz - along * vz, 0.0) * n, n - 3
+    views = int(view.max(initial=0)) + 1
+    if views > 1:
+        of_view = at * views + view
+        points_of_view = np.bincount(of_view, minlength=len(count) * views).reshape(-1, views)
+        off = np.bincount(of_view, dz - across.take(at) * du - along.take(at) * dv, points_of_view.size).reshape(-1, views)
+        squares = np.maximum(squares - (off**2 / np.maximum(points_of_view, 1)).sum(1), 0.0)
+        freedom = n - 2 - np.maximum((points_of_view > 0).sum(1), 1)
     enough, any_ground = count >= SURFACE.min_plane_points, count >= SURFACE.min_layer_points
-    rough = np.sqrt(squares * n / np.maximum(n - 3, 1))
+    rough = np.sqrt(squares / np.maximum(freedom, 1))
     height = np.where(enough, mz - across * mu - along * mv, mz)
-    return np.where(any_ground, height, np.nan), np.where(enough, rough, np.nan)
+    return np.where(any_ground, height, np.nan), np.where(freedom >= SURFACE.min_plane_points - 3, rough, np.nan)
 
 
 def _looks(points, at, shape, column_size, bright):
     """Median of the intensities of points in the cells `at`, and their standard deviation from the lower quartile."""
     kept = np.flatnonzero(bright(points))
     points, at = points[kept], at[kept]
-    views = points.pass_number.astype(np.int64) << 8 | points.scanner
-    views = (np.cumsum(np.bincount(views) > 0) - 1)[views] if len(views) else views
-    intensity = at_one_level(points.intensity, views, at, shape, column_size)
+    intensity = at_one_level(points.intensity, _views(points), at, shape, column_size)
     # numbers that are not negative have the order of their bits
     values = intensity[order_by(intensity.view(np.int32), at)].astype(float)
     count = np.bincount(at, minlength=shape[0] * shape[1])
@@ -331,13 +346,24 @@ CELL_NAMES = ("height", "rough", "count")   # what is known of the cells: the br
 Wanted = tuple[int, bool, bool]   # first row of a window, and whether its cells and its profiles are to be measured
 
 
+def windows_of(survey: Survey, road: int) -> list[int]:
+    """First rows of the windows that cover a road."""
+    first, end = (station / SURFACE.row_length / SURFACE.window_rows for station in survey.store.span(road))
+    return [SURFACE.window_rows * k for k in range(int(np.floor(first)), int(np.ceil(end)))]
+
+
 class MeasuredGround:
     """Ground cells and surface profiles of windows of SURFACE.window_rows rows, kept in a temporary file, however long the road is."""
 
     def __init__(self, survey: Survey):
         self.survey = survey
-        self._file: SpillFile | None = None
-        self._kept: tuple[dict[tuple[int, int], StoredColumn], ...] = {}, {}   # of cells and of profiles, by road and first row
+        self._file: ArrayFile | None = None
+        self._kept: tuple[dict[tuple[int, int], int], ...] = {}, {}   # of cells and of profiles, by road and first row
+
+    def cells(self, road: int, progress: Progress = Progress()) -> GroundCells:
+        """The GroundCells of a whole road."""
+        rows = windows_of(self.survey, road)
+        return self.windows(road, rows, [False] * len(rows), progress)[0]
 
     def windows(self, road: int, rows: Sequence[int], profiled: Sequence[bool],
                 progress: Progress = Progress()) -> tuple[GroundCells, SurfaceProfiles | None]:
@@ -352,7 +378,7 @@ class MeasuredGround:
         profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
         self._measure(road, rows, profiled, progress)
-        half = _ground_columns(CORRIDOR, SURFACE.column_width)
+        half = _ground_columns(FRAME.corridor, SURFACE.column_width)
         cells = np.empty((len(CELL_NAMES), SURFACE.window_rows * len(rows), 2 * half), np.float32)
         for number, row in enumerate(rows):
             self._read(0, road, row, cells[:, SURFACE.window_rows * number:SURFACE.window_rows * (number + 1)])
@@ -361,7 +387,7 @@ class MeasuredGround:
         wanted = [row for row, want in zip(rows, profiled) if want]
         if not wanted:
             return ground, None
-        half = _ground_columns(CORRIDOR, SURFACE.profile_column)
+        half = _ground_columns(FRAME.corridor, SURFACE.profile_column)
         profiles = np.empty((len(SurfaceProfiles.NAMES), PROFILES_PER_WINDOW * len(wanted), 2 * half), np.float32)
         for number, row in enumerate(wanted):
             self._read(1, road, row, profiles[:, PROFILES_PER_WINDOW * number:PROFILES_PER_WINDOW * (number + 1)])
@@ -380,7 +406,7 @@ class MeasuredGround:
         items = [windows[k:k + size] for k in range(0, len(windows), size)]
         phase = Phase(ground_of_windows, self.survey, (road,), lambda item: self.survey.stretch(
             road, item[0][0] * SURFACE.row_length, (item[-1][0] + SURFACE.window_rows) * SURFACE.row_length))
-        self._file = self._file or SpillFile()
+        self._file = self._file or ArrayFile()
         for item, measured in zip(items, executor.run(phase, items, progress)):
             self._keep(road, item, measured)
 
@@ -388,11 +414,11 @@ class MeasuredGround:
         """Put what `ground_of_windows` found of some windows into the file."""
         for kind, (kept, parts) in enumerate(zip(self._kept, found), 1):
             for values, row in zip(parts, [window[0] for window in item if window[kind]]):
-                kept[road, row] = self._file.put(values.ravel())
+                kept[road, row] = self._file.put([values], values.nbytes)
 
     def _read(self, kind, road, row, out):
         """Fill an array with what is kept of a window: 0 its cells, 1 its profiles."""
-        out[:] = self._file.get(self._kept[kind][road, row]).reshape(out.shape)
+        out[:] = self._file.get(self._kept[kind][road, row], out.size, out.dtype).reshape(out.shape)
 
 
 def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> tuple[np.ndarray, np.ndarray]:
@@ -413,10 +439,10 @@ def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> t
     for row, with_cells, with_profiles in windows:
         points = survey.window(road, row * SURFACE.row_length, (row + SURFACE.window_rows) * SURFACE.row_length)
         if with_profiles:
-            profiles.append(SurfaceProfiles.of(points, row * SURFACE.row_length, SURFACE.window_rows * SURFACE.row_length, CORRIDOR, height,
+            profiles.append(SurfaceProfiles.of(points, row * SURFACE.row_length, SURFACE.window_rows * SURFACE.row_length, FRAME.corridor, height,
                                                lambda seen: ahead_of_vehicle(survey, seen, seen.s)))
         if with_cells:
-            cells.append(_ground_cells(points, row, SURFACE.window_rows, CORRIDOR, height))
+            cells.append(_ground_cells(points, row, SURFACE.window_rows, FRAME.corridor, height))
     return _stacked(cells, CELL_NAMES), _stacked(profiles, SurfaceProfiles.NAMES)
 
 

@@ -84,7 +84,7 @@ class PassCorrections:
 AXES = "along", "left", "up"
 PLAN_AXES = AXES[:2]
 CHANNELS = "steps", "paint"
-CHANNEL_SCALE = {"steps": 1e4, "paint": 64.0}  # units per m, and per standard deviation of intensity
+CHANNEL_SCALE = {"steps": 1e4, "paint": 64.0}  # cost: units per m, and per standard deviation of intensity
 WINDOW_LENGTH = REGISTER.correction_step          # m of road compared at a time, counted from station 0
 LAGS = np.arange(-int(round(REGISTER.max_offset / REGISTER.lag_cell)), int(round(REGISTER.max_offset / REGISTER.lag_cell)) + 1)
 _ROUGH_REACH = int(REGISTER.max_rough_offset / REGISTER.lag_cell / 2)
@@ -433,8 +433,8 @@ def _second_best(unlikely, best):
 # How far the middle of the passes over a road may be off, and how that travels from stage to stage with points and layers.
 
 SIGMA_USER_ID = "LanewrightSigma"   # of the LAS records: FIRST_RECORD and those that follow it, and ROAD_RECORD of earlier versions
-ROAD_RECORD, FIRST_RECORD = 1, 2
-NODES_PER_RECORD = 5000      # a LAS record holds 65,535 bytes
+ROAD_RECORD, FIRST_RECORD = 1, 2   # derived: numbers that tell them apart
+NODES_PER_RECORD = 5000      # derived: a LAS record holds 65,535 bytes
 _ROAD = np.dtype([("road", "<u4"), ("sigma", "<f8")])
 _NODE = np.dtype([("road", "<u4"), ("station", "<f4"), ("sigma", "<f4")])
 

@@ -15,14 +15,13 @@ from ...curves.robust import MAD_TO_SIGMA
 from ...io.crs import FOOT
 from ..estimation.poses import resected, vehicle_axes
 from ..estimation.samples import SAMPLED_LAYERS
-from ..frame.road import CORRIDOR
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
 from ..las.reader import CloudHeader
 from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
 from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
-from ..weights import ADJUST, LATTICE, MIRROR, RAYS, TRACK
+from ..weights import ADJUST, FRAME, LATTICE, MIRROR, RAYS, TRACK, VEHICLE
 
 
 @dataclass(frozen=True)
@@ -75,7 +74,7 @@ def _carried(sample, trajectory, mountings, progress):
 
 def _near(mountings):
     """Those of the mountings that lie within reach of the trajectory."""
-    return [mounting for mounting in mountings if np.hypot(*_usual_lever([mounting])[:2]) < CORRIDOR]
+    return [mounting for mounting in mountings if np.hypot(*_usual_lever([mounting])[:2]) < FRAME.corridor]
 
 
 def _met(mountings):
@@ -110,7 +109,7 @@ def _at_height(trajectory: Trajectory, mountings: Sequence[_Mounting], progress:
     times, lever = _places(mountings)
     above_road = -float(np.mean([mounting.ground for mounting in mountings]))
     up = lever[:, 2]
-    far = (np.abs(up) > VEHICLE_HEIGHT) | (up > above_road + LOWEST_SENSOR)
+    far = (np.abs(up) > VEHICLE_HEIGHT) | (up > above_road + VEHICLE.lowest_sensor)
     if not far.any():
         return trajectory
     worst = float(up[np.argmax(np.abs(up))])
@@ -119,7 +118,7 @@ def _at_height(trajectory: Trajectory, mountings: Sequence[_Mounting], progress:
                   f"show: {'below the road' if worst > 0 else 'no vehicle is so high'}. Heights of cloud and trajectory seem to be of two kinds "
                   "(above the ellipsoid and above sea level), or one of them is wrong. The trajectory was moved to the height of the scanners; the "
                   "map has the heights of the cloud. Export both with one kind of heights.")
-    metres = np.full(len(trajectory), np.median(up)) if np.ptp(up) < ONE_MOVE * abs(worst) else np.interp(trajectory.time, times, up)
+    metres = np.full(len(trajectory), np.median(up)) if np.ptp(up) < VEHICLE.one_move * abs(worst) else np.interp(trajectory.time, times, up)
     return replace(trajectory, z=trajectory.z + metres)
 
 
@@ -169,12 +168,12 @@ def _moved_aside(trajectory, mountings, at, beside):
     measured = np.r_[lever[:, 0], lever[:, 1]]
     in_vehicle = np.median(lever[:, 1])
     rows = np.r_[np.c_[cos, sin, ones], np.c_[-sin, cos, zeros]]
-    on_map = np.linalg.lstsq(np.r_[rows, [[0.0, 0.0, 1.0 / USUAL_AHEAD]]], np.r_[measured, 0.0], rcond=None)[0]
-    left_over = [float(np.quantile(np.abs(off), MOST)) for off in (lever[:, 1] - in_vehicle, measured - rows @ on_map)]
+    on_map = np.linalg.lstsq(np.r_[rows, [[0.0, 0.0, 1.0 / VEHICLE.usual_ahead]]], np.r_[measured, 0.0], rcond=None)[0]
+    left_over = [float(np.quantile(np.abs(off), VEHICLE.moved_share)) for off in (lever[:, 1] - in_vehicle, measured - rows @ on_map)]
     east, north, metres = 0.0, 0.0, in_vehicle
-    if left_over[1] < CLEARLY_BETTER * left_over[0]:
+    if left_over[1] < VEHICLE.clearly_better * left_over[0]:
         (east, north), metres = on_map[:2], 0.0
-    if min(left_over) > ONE_MOVE:
+    if min(left_over) > VEHICLE.one_move:
         east, north, metres = 0.0, 0.0, np.interp(trajectory.time, at, beside)
     return replace(trajectory, x=trajectory.x + east - np.sin(yaw) * metres, y=trajectory.y + north + np.cos(yaw) * metres)
 
@@ -247,7 +246,7 @@ def _read_place(reader, file, start, windows):
     parts, counts = [], {}
     for block in reader.following(file, start, PLACE_POINTS // 10):
         parts.append(_first_returns(block))
-        for window, count in zip(*np.unique(np.floor(parts[-1][0] / TURNS_WINDOW), return_counts=True)):
+        for window, count in zip(*np.unique(np.floor(parts[-1][0] / VEHICLE.turns_window), return_counts=True)):
             counts[window] = counts.get(window, 0) + count
         if sum(count >= MIN_TURNS_POINTS for count in counts.values()) >= windows or sum(len(part[0]) for part in parts) >= PLACE_POINTS:
             break
@@ -286,7 +285,7 @@ def _in_vehicle_frame(sample, trajectory, stretch):
     driven = np.flatnonzero((sample.time >= trajectory.time[0]) & (sample.time <= trajectory.time[-1]))
     # by scanner, then by time, as the sample is
     driven = driven[np.argsort(sample.scanner[driven], kind="stable")]
-    windows = np.stack([sample.scanner[driven], np.floor(sample.time[driven] / TURNS_WINDOW)])
+    windows = np.stack([sample.scanner[driven], np.floor(sample.time[driven] / VEHICLE.turns_window)])
     begin = np.flatnonzero((np.diff(windows, axis=1, prepend=np.nan) != 0).any(axis=0))
     size = np.diff(np.append(begin, len(driven)))
     rank = np.arange(len(driven)) - np.repeat(begin, size)
@@ -313,13 +312,13 @@ def _vehicle_angles(trajectory: Trajectory, stretch: float = 1.0) -> tuple[np.nd
 
 def _mounting_of(number, time, place):
     """The _Mounting of one scanner from the points that it saw, (N,) s and (N, 3) m in the frame of the vehicle; None where they do not show it."""
-    if len(time) < MIN_WINDOWS * MIN_TURNS_POINTS:
+    if len(time) < VEHICLE.min_windows * MIN_TURNS_POINTS:
         return None
-    _, window = np.unique(np.floor(time / TURNS_WINDOW), return_inverse=True)
+    _, window = np.unique(np.floor(time / VEHICLE.turns_window), return_inverse=True)
     size = int(window[-1]) + 1
     middle, normal, off = _scan_plane(place, window, size)
     # points of several mirrors, or of many beams, lie in no plane
-    if abs(normal[2]) > MAX_UPRIGHT or MAD_TO_SIGMA * np.median(np.abs(off)) > SIGNIFICANT:
+    if abs(normal[2]) > VEHICLE.max_upright or MAD_TO_SIGMA * np.median(np.abs(off)) > SIGNIFICANT:
         return None
     across = np.cross([0.0, 0.0, 1.0], normal)
     across /= np.linalg.norm(across)
@@ -332,7 +331,7 @@ def _mounting_of(number, time, place):
     best = max((_resected_places(a, b, time - middles[window], window, middles, sign * rate) for sign in (1, -1)),
                key=lambda one: (one[2].sum(), -one[3]))
     u, v, good, misfit = best
-    if good.sum() < max(MIN_WINDOWS, size / 2):
+    if good.sum() < max(VEHICLE.min_windows, size / 2):
         return None
     lever = middle + u[:, None] * across + v[:, None] * upright
     rays = place - lever[window]
@@ -350,7 +349,7 @@ def _scan_plane(place, window, size):
         return np.stack([np.bincount(window, weight * column, size) for column in values.T], axis=1) / np.bincount(window, weight, size)[:, None]
 
     far = np.linalg.norm(place - means(np.ones(len(place)), place)[window], axis=1)
-    variance = RAYS.max_ray_misfit**2 + (ATTITUDE_NOISE * far) ** 2
+    variance = RAYS.max_ray_misfit**2 + (VEHICLE.attitude_noise * far) ** 2
     weight = 1.0 / variance
     for _ in range(TRACK.density_rounds):
         middle = means(weight, place)
@@ -387,8 +386,8 @@ def _resected_places(a, b, since, window, middles, rate):
         seconds = np.diff(middles)
         step = np.diff(phase) - 2 * np.pi * rate * seconds
         step = (step + np.pi) % (2 * np.pi) - np.pi
-        near = good[1:] & good[:-1] & (seconds < 1.5 * TURNS_WINDOW)
-        if near.sum() >= MIN_WINDOWS:
+        near = good[1:] & good[:-1] & (seconds < 1.5 * VEHICLE.turns_window)
+        if near.sum() >= VEHICLE.min_windows:
             rate += float(np.median(step[near] / seconds[near])) / (2 * np.pi)
     return u, v, good, float(np.median(misfit[good])) if good.any() else np.inf
 
@@ -406,23 +405,15 @@ def _usual_lever(mountings: Sequence[_Mounting]) -> np.ndarray:
 # Vehicles
 HALF_VEHICLE = 1.275     # source: m; no vehicle on the road is wider than 2.55 m (Directive 96/53/EC), so no scanner rides farther beside its middle
 VEHICLE_HEIGHT = 4.0     # source: m (the same), so no scanner rides farther above or below a trajectory that is on the vehicle
-LOWEST_SENSOR = 0.5      # weight: m above the road; no scanner rides lower, but lines and places drawn on the road lie within
-USUAL_AHEAD = 3.0        # weight: m ahead of a trajectory on the same vehicle that scanners ride, one sigma
 
 # Points from which places of scanners are found
-TURNS_WINDOW = 0.05      # weight: s; every mirror turns a few times, and a vehicle on the road hardly sways
 PLACES_READ = 6          # cost: places in the files that are looked at, and
 PLACE_WINDOWS = 5        # cost: windows that points are read of at a place; the first and the last of them are not whole
 PLACE_GAP = 2.0          # derived: s between windows, from which they are of another place, as PLACE_WINDOWS take far less
 PLACE_POINTS = 50_000    # cost: that are read at a place, at most
 MIN_TURNS_POINTS, MAX_TURNS_POINTS = 60, 200   # weight: of a window, with which four unknowns are found well; cost: those that are used
-MIN_WINDOWS = 8          # weight: good ones that the place of a scanner needs
-ATTITUDE_NOISE = 0.01    # weight: radians that roll, pitch and heading may be off, or differ from those of the way driven
-MAX_UPRIGHT = 0.8        # weight: of the plane's normal; what lies flatter is the ground
 
 # What one move of a trajectory may leave
-ONE_MOVE, MOST = 0.20, 0.9   # weight: m at this share of the windows, as navigation drifts; more is the error of a drive by itself
-CLEARLY_BETTER = 0.5     # weight: of what one move leaves, below which another is taken
 
 # Where heights are in another unit or upside down, curbs are looked for at heights that they do not have. Their edges are then drawn along
 # another line of the curb: its top, the back of its stone, the rim of its gutter. Nothing in such a survey says which, so that any place within

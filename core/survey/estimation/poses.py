@@ -11,7 +11,7 @@ from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
 from ..weights import LATTICE, MIRROR, TRACK
 from .samples import FirstTrack, Samples, headings_of, thinned
 
-X, Y, Z, ROLL, PITCH, YAW, POSE = range(7)   # columns of the control values, and the first of the phases of the scanners
+X, Y, Z, ROLL, PITCH, YAW, POSE = range(7)   # derived: columns of the control values, and the first of the phases of the scanners
 
 
 @dataclass(frozen=True)
@@ -242,7 +242,7 @@ def spinning_scanners(samples: Samples, tracks: list[FirstTrack]) -> list[Spinni
     return scanners
 
 
-EMPTY = _Fixes(np.empty(0), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0))
+EMPTY = _Fixes(np.empty(0), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0))   # derived: of places in three dimensions
 
 
 def _quality(fixes):

@@ -15,8 +15,6 @@ from ...common.errors import RoadExtractionError
 from ..weights import FRAME
 from .passes import moving_rows
 
-CORRIDOR = 25.0               # m either side of the reference line
-
 
 class Road:
     """The reference line of one carriageway in local coordinates.
@@ -80,7 +78,7 @@ class Road:
         return x + beyond * c - d * n, y + beyond * n + d * c
 
     def locate(self, x: np.ndarray, y: np.ndarray, start: np.ndarray | None = None,
-               corridor: float = CORRIDOR) -> tuple[np.ndarray, np.ndarray]:
+               corridor: float = FRAME.corridor) -> tuple[np.ndarray, np.ndarray]:
         """Station and offset of (N,) local positions, by Newton iteration on the along-track component.
 
         NaN beyond the ends of the frame, outside the corridor, or on the inner side of a bend beyond 0.9 of its radius, where normals cross.
@@ -120,13 +118,13 @@ class Road:
     def within(self, x: np.ndarray, y: np.ndarray, start: float, end: float) -> np.ndarray:
         """(N,) bool, whether the stations of (N,) local places, as of `locate`, lie from `start` to before `end`; places far away cost little."""
         line = np.stack(self.to_map(np.arange(start, end + NODE_SPACING, NODE_SPACING), 0.0))
-        low, high = line.min(axis=1) - CORRIDOR - 1.0, line.max(axis=1) + CORRIDOR + 1.0
+        low, high = line.min(axis=1) - FRAME.corridor - 1.0, line.max(axis=1) + FRAME.corridor + 1.0
         inside = (x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1])
         s, _ = self.locate(x[inside], y[inside])
         inside[inside] = (s >= start) & (s < end)
         return inside
 
-    def nearest_station(self, x: np.ndarray, y: np.ndarray, corridor: float = CORRIDOR) -> np.ndarray:
+    def nearest_station(self, x: np.ndarray, y: np.ndarray, corridor: float = FRAME.corridor) -> np.ndarray:
         """Station of the nearest node of the line, (N,) m; NaN where none is within the corridor."""
         if self._tree is None:
             self._tree = cKDTree(np.c_[self.x[::5], self.y[::5]])

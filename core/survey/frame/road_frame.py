@@ -16,10 +16,10 @@ from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
 from ..weights import FRAME
 from .passes import MAX_ROAD_LENGTH, Pass, decimate_by_distance, moving_rows, split_into_passes
-from .road import CORRIDOR, Road, continue_line, reference_nodes, track_line
+from .road import Road, continue_line, reference_nodes, track_line
 from .row_table import SigmaAlong
 
-MAX_POINT_DISTANCE = 200.0    # m from the track: exceeds the widest corridor and the extension at the ends of a road
+MAX_POINT_DISTANCE = 200.0    # derived: m from the track: exceeds the widest corridor and the extension at the ends of a road
 
 
 @dataclass
@@ -102,7 +102,7 @@ class RoadFrame:
         distances = [np.where((s >= p.span[0]) & (s <= p.span[1]), 0.0, 1e6) + np.abs(p.at_station(s)[0] - d) for p in passes]
         return np.array([p.number for p in passes])[np.argmin(distances, axis=0)]
 
-    def locate_nearest(self, x: np.ndarray, y: np.ndarray, corridor: float = CORRIDOR) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def locate_nearest(self, x: np.ndarray, y: np.ndarray, corridor: float = FRAME.corridor) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Road number, station and offset of the nearest point on any road, (N,) each; -1 and NaN where there is none."""
         x, y = np.asarray(x, float), np.asarray(y, float)
         best_road = np.full(len(x), -1)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..weights import FRAME
 
-BLOCK = 64   # stations for which the rows that are there are listed together
+BLOCK = 64   # cost: stations for which the rows that are there are listed together
 
 
 class RowSpans:

@@ -288,8 +288,8 @@ def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str]
 # The CRS of a LAS file from its WKT and GeoKeys records, which may contradict each other.
 
 RECORDS_OF = "LASF_Projection"  # user id of the records
-WKT_RECORD, KEYS_RECORD, DOUBLES_RECORD = 2112, 34735, 34736
-PROJECTED, GEODETIC, LENGTH_UNIT, LENGTH_SIZE, VERTICAL, HEIGHT_UNIT = 3072, 2048, 3076, 3077, 4096, 4099   # GeoKeys, OGC 19-008r4
+WKT_RECORD, KEYS_RECORD, DOUBLES_RECORD = 2112, 34735, 34736   # source: LAS 1.4 R15, georeferencing records
+PROJECTED, GEODETIC, LENGTH_UNIT, LENGTH_SIZE, VERTICAL, HEIGHT_UNIT = 3072, 2048, 3076, 3077, 4096, 4099   # source: GeoKeys, OGC 19-008r4
 EPSG_CODES = range(1024, 32767)   # source: OGC 19-008r4, as are those of the records and keys above
 
 

@@ -25,7 +25,7 @@ from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, take_rows
 from ..weights import LATTICE
 
-TIME_SORT_TICK = 2.0**-22      # s: finer than the resolution of any clock
+TIME_SORT_TICK = 2.0**-22      # derived: s: finer than the resolution of any clock
 # why a scanner has no regular lines
 COARSE_TIMES = "neighbouring points share one time and so have no order"
 AT_ONCE = "points at one time lie far apart as those of many beams do or where times are very coarse"
@@ -476,8 +476,8 @@ def _unwrap(time, phase, bin_length):
 
 # The rotation rate of a scanner's mirror, from the times and angles of its points.
 
-SPECTRUM_CELL = 1.0 / 2048.0    # s
-SPECTRUM_SIZE = 8192            # cells, zero-padded: a step of 0.25 Hz
+SPECTRUM_CELL = 1.0 / 2048.0    # cost: s
+SPECTRUM_SIZE = 8192            # cost: cells, zero-padded: a step of 0.25 Hz
 
 
 def rotation_spectrum(time: np.ndarray, phasor: np.ndarray) -> np.ndarray:

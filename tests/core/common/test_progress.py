@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.progress import REMAINING_STEPS, RemainingTime
+from lanewright.core.common.progress import RemainingTime
+from lanewright.core.common.weights import PROGRESS
 
 
 class Clock:
@@ -31,7 +32,7 @@ def test_an_even_bar_is_told_truly_and_only_shorter(whole):
     seconds = np.linspace(0.0, whole, 4001)
     found = told(seconds / whole, seconds)
     steps = [step for _, step in found]
-    assert steps == sorted(set(steps), reverse=True) and steps[-1] == REMAINING_STEPS[0]
+    assert steps == sorted(set(steps), reverse=True) and steps[-1] == PROGRESS.remaining_steps[0]
     for passed, step in found:
         assert 0.6 < step / (whole - passed) < 1.7
 

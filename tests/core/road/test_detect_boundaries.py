@@ -170,3 +170,23 @@ def test_points_that_others_do_not_see_yet_are_not_read_while_they_are_moved(tmp
     surveyed.executor = Moving()
     surveyed.executor.folder = tmp_path
     assert len(find_curb_points(surveyed, BoundarySettings("both"))["both"])
+
+
+def with_step(length, rough, height=0.06, noise=0.002):
+    """A street without curbs, and 2 m beside its asphalt a step as long as that, before which the ground scatters so much."""
+    x, y, z, time = street(curb=0.0, noise=noise)
+    rng = np.random.default_rng(3)
+    verge = np.abs(y) > 3.5
+    z[verge] += rng.normal(0.0, rough, verge.sum())
+    step, face = np.abs(x - 0.5 * LENGTH) < 0.5 * length, np.abs(y - 5.5) < 0.03
+    z[step & (y > 5.53)] += height
+    y[step & face] = 5.5
+    z[step & face] += rng.uniform(0.0, height, (step & face).sum())
+    return x, y, z, time
+
+
+@pytest.mark.parametrize("length, rough, drawn", [(4.6, 0.006, 0.0), (4.6, 0.0, 4.6), (12.0, 0.006, 12.0)],
+                         ids=["in grass", "on pavement", "long in grass"])
+def test_a_short_step_is_a_curb_where_road_lies_before_it_and_none_in_grass(length, rough, drawn):
+    found = boundaries(with_step(length, rough), "both").edges
+    assert found.length.sum() == pytest.approx(drawn, abs=1.5)

@@ -27,12 +27,12 @@ def half_of(s):
 
 
 def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shuffled=False, density=150, seed=5, gravel=GRAVEL, gain=None,
-           grey_of=None):
+           grey_of=None, misfit=None):
     """A straight street along y = 0 of asphalt up to `half` of the station, then a strip of gravel, then grass; or asphalt throughout.
 
     Scatter of heights and returned intensity are those of the three; `keep` : of s and d, False where nothing was scanned. With a `gain`, a
-    function of d, half of the points are of a second scanner that returns so many times the intensity; `grey_of` s and d is times the
-    intensity of the ground
+    function of d, half of the points are of a second scanner that returns so many times the intensity; with a `misfit`, a function of d, its
+    points lie so many metres too high; `grey_of` s and d is times the intensity of the ground
     """
     rng = np.random.default_rng(seed)
     along = np.linspace(0.0, LENGTH, 601)
@@ -57,9 +57,11 @@ def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shu
     places = frame.to_local(x + EAST, y + NORTH)
     records = np.zeros(len(x), SURVEY_POINT)
     s, d = frame.road(0).locate(*places)
+    second = np.zeros(len(x), int) if gain is None and misfit is None else rng.integers(0, 2, len(x))
+    if misfit is not None:
+        z = z + second * misfit(y)
     records["x"], records["y"], records["z"], records["s"], records["d"] = map(to_units, (*places, z + 100 - frame.origin[2], s, d))
     records["time"] = 1000 + np.clip(LENGTH - x if backwards else x, 0, LENGTH) / 10
-    second = np.zeros(len(x), int) if gain is None else rng.integers(0, 2, len(x))
     records["scanner"], records["intensity"] = second, np.rint(np.where(second, grey * (1.0 if gain is None else gain(y)), grey))
     store = SectionStore(SURVEY_POINT, 20.0)
     store.append(0, records[np.argsort(s, kind="stable")] if not shuffled else records)
@@ -115,6 +117,13 @@ def test_between_scanners_of_different_gain_a_strip_of_gravel_is_no_road_on_eith
     edges = found(survey)
     assert set(edges.status) == {"measured"}
     assert min(covered(edges, survey, side, within=0.1) for side in (1, -1)) >= 0.95
+
+
+@pytest.mark.parametrize("off", [0.02, 0.03])
+def test_where_two_drives_disagree_in_height_the_road_goes_on_to_its_edge(off):
+    survey = street(half=lambda s: np.full_like(s, 6.0), misfit=lambda d: np.where(np.abs(d) > 3.0, off, 0.0), density=300)
+    edges = found(survey)
+    assert min(covered(edges, survey, side, half=lambda s: np.full_like(s, 6.0)) for side in (1, -1)) >= 0.95
 
 
 def test_where_one_scanner_stops_to_see_the_road_it_does_not_end():
