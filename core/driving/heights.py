@@ -101,7 +101,7 @@ class _Near:
             end = np.cumsum(count)
             even = np.array_equal(low[1:], high[:-1])   # one cell begins where the last one ends
             rows = low[:1] if even else np.arange(end[-1]) + np.repeat(low - (end - count), count)
-            offset = (records.row_range(int(low[0]), int(high[-1])) if even else records.take(rows))["d"]
+            offset = (records[int(low[0]):int(high[-1])] if even else records.take(rows))["d"]
             kept = np.flatnonzero(near_lanes.take((offset >> OFFSET_GRAIN_BITS) - first, mode="clip"))
             parts.append((np.repeat(cells, np.diff(np.searchsorted(kept, end), prepend=0)), offset.take(kept),
                           records.take(kept + rows if even else rows.take(kept))["z"]))

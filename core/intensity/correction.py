@@ -16,7 +16,7 @@ from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
-from ..survey.store.section_store import STRETCH_POINTS, Stretch
+from ..survey.store.section_store import STRETCH_POINTS, StoreIndex, Stretch
 from .asphalt_model import (
     ACROSS_TRACK,
     INTENSITY_LEVELS,
@@ -224,10 +224,10 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     return replace(road_points, store=store, has_corrected=True), report
 
 
-def _run(function, road_points, arguments, progress):
-    """Yield the results of a phase, a function of stretches of the road."""
-    executor, length = road_points.executor, road_points.store.section_length
-    phase = Phase(function, road_points, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length))
+def _run(function, road_points, arguments, progress, source=None):
+    """Yield the results of a phase, a function of stretches of the road points, that reads from these or from a `source`."""
+    executor, length, source = road_points.executor, road_points.store.section_length, road_points if source is None else source
+    phase = Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length))
     return executor.run(phase, road_points.store.stretches(STRETCH_POINTS if executor.folder else 0), progress)
 
 
@@ -244,11 +244,10 @@ def _reason_of_counts(table, lost, points):
 def _corrected_store(road_points, table, passes_and_beams, points_by_scanner, step, after, progress):
     """The points with `corrected`, whose levels are added to the histograms `after`."""
     kinds = np.unique(table.distance_kind[points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
-    store = road_points.store.with_column("corrected", road_points.executor.folder)
+    store = road_points.store.with_column("corrected", road_points.store.folder)
     arguments = *passes_and_beams, table, table.lookup(), kinds, step
-    for road, sections, counts in _run(corrected_of_stretch, road_points, arguments, progress):
-        for section, corrected in sections:
-            store.put(road, section, corrected)
+    for index, counts in _run(corrected_of_stretch, road_points, arguments, progress, replace(road_points, store=store)):
+        store.adopt(index, store.folder)
         after.add(counts, step)
     return store
 
@@ -281,31 +280,34 @@ def levels_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequenc
 
 
 def corrected_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequence[Pass], beams: Beams | None, table: AsphaltTable,
-                         lookup: np.ndarray, kinds: list[int], step: int) -> tuple[int, list[tuple[int, np.ndarray]], list[BinCounts]]:
-    """The phase that corrects intensities.
+                         lookup: np.ndarray, kinds: list[int], step: int) -> tuple[StoreIndex, list[BinCounts]]:
+    """The phase that corrects intensities, those of the points that the store of `road_points` puts a column beside.
 
     passes, beams, step : as of `levels_of_stretch`
     table, lookup : AsphaltTable and its `lookup`
     kinds : kinds of distance that it needs
 
-    Returns the road, (number of a section, (N,) float32 corrected intensity) of each section, and counts of the corrected intensities.
+    Returns where the corrected intensities lie in parts of a store, and counts of them.
     """
-    histograms, sections, counts = IntensityHistograms(len(table.distance_kind)), [], []
-    for key in road_points.store.in_stretch(stretch):
-        points = road_points.section(*key)
-        records: Any = points.records
-        corrected, distances_of = np.empty(len(points), np.float32), VehicleDistances(passes, points.time).of
-        for first in range(0, len(points), ASPHALT.points_at_once):
-            batch = points[first:first + ASPHALT.points_at_once]
-            distances = distances_of(batch, kinds)
-            distance: Any = distances[0] if len(distances) == 1 else np.where(table.distance_kind[batch.scanner] == ACROSS_TRACK, *distances)
-            correction, intensity = table.corrections(lookup, batch.scanner, distance), beams.equalised(batch) if beams else batch.intensity
-            np.add(intensity, correction, out=correction) if table.logarithmic else np.multiply(intensity, correction, out=correction)
-            corrected[first:first + ASPHALT.points_at_once] = correction
-        sample = _stripes(Points(records.with_columns(corrected=corrected)), step)
-        counts.append(histograms.count(sample.scanner, distances_of(sample, kinds), sample.corrected, kinds))
-        sections.append((key[1], corrected))
-    return stretch[0], sections, IntensityHistograms.together(counts)
+    histograms, counts = IntensityHistograms(len(table.distance_kind)), []
+    store: Any = road_points.store
+    with store.part() as part:
+        for key in store.base.in_stretch(stretch):
+            records = store.base.section(*key)
+            points = Points(records)
+            corrected, distances_of = np.empty(len(points), np.float32), VehicleDistances(passes, points.time).of
+            for first in range(0, len(points), ASPHALT.points_at_once):
+                batch = points[first:first + ASPHALT.points_at_once]
+                distances = distances_of(batch, kinds)
+                distance: Any = distances[0] if len(distances) == 1 else np.where(table.distance_kind[batch.scanner] == ACROSS_TRACK, *distances)
+                correction, intensity = table.corrections(lookup, batch.scanner, distance), beams.equalised(batch) if beams else batch.intensity
+                np.add(intensity, correction, out=correction) if table.logarithmic else np.multiply(intensity, correction, out=correction)
+                corrected[first:first + ASPHALT.points_at_once] = correction
+            records = records.with_columns(corrected=corrected)
+            sample = _stripes(Points(records), step)
+            counts.append(histograms.count(sample.scanner, distances_of(sample, kinds), sample.corrected, kinds))
+            part.put(*key, records)
+    return part.index(), IntensityHistograms.together(counts)
 
 
 def _sampling_step(road_points):

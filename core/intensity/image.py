@@ -23,7 +23,7 @@ from ..lazy import cv2
 from ..survey.consistency import sample_road_points
 from ..survey.store.records import COORDINATE_SCALE, Points
 from ..survey.store.road_points import RoadPoints
-from .tiled_image import TILE_MEMORY, TiledImage
+from .tiled_image import TiledImage
 from .weights import IMAGE
 
 # Inverse distance weighting on the map's lattice of cells: every point weighs on all cells within the search radius.
@@ -238,13 +238,10 @@ class _Piece:
 
 
 def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = ImageSettings(), progress: Progress = Progress(),
-                         path: str | PathLike | None = None, memory_limit: int = TILE_MEMORY) -> TiledImage:
-    """The image of `write_intensity_image` in memory, to be read at once like an IntensityImage, and in a GeoTIFF too where a path is given.
-
-    memory_limit : bytes of pixels kept in memory; the others go to a temporary file, and all where other processes work on the points
-    """
+                         path: str | PathLike | None = None) -> TiledImage:
+    """The image of `write_intensity_image`, to be read at once like an IntensityImage, and in a GeoTIFF too where a path is given."""
     grid, tiles = _interpolate(road_points, settings, progress)
-    image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, memory_limit, road_points.executor.folder)
+    image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, road_points.executor.folder)
     with new_geotiff(path, grid.width, grid.height, grid.geotransform, road_points.crs) if path else nullcontext() as file:
         for column, row, values in tiles:
             image.put(column, row, values)

@@ -1,30 +1,30 @@
-"""An intensity image that lives in memory, and beyond a limit in a temporary file.
+"""An intensity image in a file of tiles that the operating system keeps in memory.
 
 The chain reads the image through this object; the GeoTIFF is written for the user alone.
 """
 
 from __future__ import annotations
 
+from os import PathLike
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple
 from uuid import uuid4
 
 import numpy as np
 
 from ..execution.phase import Recipe
-from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
-from ..survey.store.spill_file import PART_WIDTHS, ColumnFile, Packing, SpillFile, StoredColumn
-
-TILE_MEMORY = 64 * 2**20   # cost: bytes of pixels kept in memory; the tiles that follow go to a temporary file
+from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage, new_geotiff
+from ..survey.store.array_file import ArrayFile, opened
 
 
 class _StoredTile(NamedTuple):
-    """The part of a tile that has data: its first pixel in the image, its shape, and its values or their place in the file."""
+    """The part of a tile that has data: its first pixel in the image, its height and width, and the first byte of its values in the file."""
 
     column: int
     row: int
-    shape: tuple[int, ...]
-    values: np.ndarray | StoredColumn
+    height: int
+    width: int
+    place: int
 
 
 class TiledImage(IntensityImage):
@@ -33,25 +33,19 @@ class TiledImage(IntensityImage):
     Its pixels, and what `sample` returns, are those of the GeoTIFF of the same tiles.
     Tiles are put by one thread; once all are there, several threads may read.
 
-    memory_limit : bytes of pixels kept in memory; the tiles that follow go to a temporary file
-    folder : where all pixels go instead, so that other processes can read them; None for none
+    folder : where the file lies, so that other processes can read it; None for a temporary one without a name
     """
 
-    def __init__(self, geotransform: tuple[float, ...], width: int, height: int, crs: str, memory_limit: int = TILE_MEMORY,
-                 folder: Path | None = None):
+    def __init__(self, geotransform: tuple[float, ...], width: int, height: int, crs: str, folder: Path | None = None):
         super().__init__("", geotransform, width, height, crs)
         self._tiles: dict[tuple[int, int], _StoredTile] = {}
-        self.folder, self._free = folder, 0 if folder else memory_limit
-        self._file: SpillFile | None = None
+        self.folder = folder
+        self._file: ArrayFile | Path | None = None
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the image, whose pixels lie in its folder."""
-        rows = []
-        for tile in self._tiles.values():
-            first_byte, packing = cast(StoredColumn, tile.values)[:2]
-            rows.append((tile.column, tile.row, *tile.shape, first_byte, packing.least, sum(packing.widths)))
         return Recipe("core.intensity.tiled_image:_shared_image", dict(
-            file=str(self._file.path) if self._file else "", tiles=np.array(rows, np.int64).reshape(-1, 7),
+            file=str(self._file.path) if isinstance(self._file, ArrayFile) else "", tiles=np.array([*self._tiles.values()], np.int64).reshape(-1, 5),
             geotransform=[float(number) for number in self.geotransform], width=int(self.width), height=int(self.height), crs=self.crs))
 
     def put(self, column: int, row: int, values: np.ndarray) -> None:
@@ -62,15 +56,10 @@ class TiledImage(IntensityImage):
             return
         box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
         pixels = np.where(filled[box], values[box], np.float32(np.nan))
-        stored: np.ndarray | StoredColumn = pixels
-        if pixels.nbytes <= self._free:
-            self._free -= pixels.nbytes
-        else:
-            self._free = 0
-            self._file = self._file or SpillFile(self.folder and self.folder / f"image-{uuid4().hex}.bin")
-            stored = self._file.put(pixels.ravel())
-        first = column + int(columns[0]), row + int(rows[0])
-        self._tiles[column // GEOTIFF_TILE, row // GEOTIFF_TILE] = _StoredTile(*first, pixels.shape, stored)
+        if not isinstance(self._file, ArrayFile):
+            self._file = ArrayFile(self.folder and self.folder / f"image-{uuid4().hex}.bin")
+        self._tiles[column // GEOTIFF_TILE, row // GEOTIFF_TILE] = _StoredTile(
+            column + int(columns[0]), row + int(rows[0]), pixels.shape[0], pixels.shape[1], self._file.put([pixels], pixels.nbytes))
 
     def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
         """(height, width) float32 from a first pixel on, which may lie outside the image; NaN where there is no data or no image."""
@@ -89,29 +78,37 @@ class TiledImage(IntensityImage):
     def _copy(self, tile: _StoredTile, column: int, row: int, values: np.ndarray) -> None:
         """Fill what a tile covers of a window whose first pixel is given."""
         height, width = values.shape
-        c0, c1 = max(tile.column, column), min(tile.column + tile.shape[1], column + width)
-        r0, r1 = max(tile.row, row), min(tile.row + tile.shape[0], row + height)
+        c0, c1 = max(tile.column, column), min(tile.column + tile.width, column + width)
+        r0, r1 = max(tile.row, row), min(tile.row + tile.height, row + height)
         if c0 < c1 and r0 < r1:
-            pixels = tile.values if isinstance(tile.values, np.ndarray) else tile.values.file.get(tile.values)
-            pixels = np.asarray(pixels).reshape(tile.shape)
+            file: Any = opened(self._file) if isinstance(self._file, Path) else self._file
+            pixels = file.get(tile.place, tile.height * tile.width, np.float32).reshape(tile.height, tile.width)
             values[r0 - row:r1 - row, c0 - column:c1 - column] = pixels[r0 - tile.row:r1 - tile.row, c0 - tile.column:c1 - tile.column]
 
     def tiles(self) -> list[tuple[int, int]]:
         """[(column, row)] of the first pixels of all tiles that hold data, row by row."""
         return [(column * GEOTIFF_TILE, row * GEOTIFF_TILE) for column, row in sorted(self._tiles, key=lambda tile: tile[::-1])]
 
+    def write(self, path: str | PathLike) -> None:
+        """Write the image to a GeoTIFF."""
+        with new_geotiff(path, self.width, self.height, self.geotransform, self.crs) as file:
+            for column, row in self.tiles():
+                values = self.read_pixels(column, row, min(GEOTIFF_TILE, self.width - column), min(GEOTIFF_TILE, self.height - row))
+                file.write(column, row, np.where(np.isnan(values), np.float32(NODATA), values))
+                file.flush()
+
     def close(self) -> None:
         self._tiles = {}
-        if self._file is not None:
+        if isinstance(self._file, ArrayFile):
             self._file.close()
-            self._file = None
+            if self._file.path is not None:
+                self._file.path.unlink(missing_ok=True)
+        self._file = None
 
 
 def _shared_image(file: str, tiles: np.ndarray, geotransform: list[float], width: int, height: int, crs: str) -> TiledImage:
-    """What `TiledImage.recipe` describes: of each tile first column and row, shape, first byte, least value and bytes of a packed value."""
-    image, pixels = TiledImage(tuple(geotransform), width, height, crs), ColumnFile(Path(file))
-    for column, row, high, wide, first_byte, least, nbytes in tiles.tolist():
-        packing = Packing(np.dtype(np.float32), high * wide, least, PART_WIDTHS.get(nbytes, (nbytes,)))
-        stored = StoredColumn(first_byte, packing, pixels)
-        image._tiles[column // GEOTIFF_TILE, row // GEOTIFF_TILE] = _StoredTile(column, row, (high, wide), stored)
+    """What `TiledImage.recipe` describes: (T, 5) of each tile first column and row, height, width and first byte."""
+    image = TiledImage(tuple(geotransform), width, height, crs)
+    image._file = Path(file)
+    image._tiles = {(tile.column // GEOTIFF_TILE, tile.row // GEOTIFF_TILE): tile for tile in (_StoredTile(*row) for row in tiles.tolist())}
     return image

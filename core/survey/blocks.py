@@ -141,9 +141,10 @@ class BlockReader:
         return [(road, points.copy() if near is None else points.take(near).load_all()) for road, points, near in self._near_roads(block, summary)]
 
     def read(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
-             store: SectionStore) -> list[PartitionedPoints]:
-        """The points of a block near the road, ready for the store; `summary` and `chosen` are updated."""
-        return [self._partition(road, points, near, chosen, store) for road, points, near in self._near_roads(block, summary, ground)]
+             store: SectionStore) -> Iterator[PartitionedPoints]:
+        """Yield the points of a block near the road, ready for the store, until the next ones are asked for; `summary` and `chosen` are updated."""
+        for road, points, near in self._near_roads(block, summary, ground):
+            yield self._partition(road, points, near, chosen, store)
 
     def filtered(self, parts: Iterable[tuple[int, Columns]], ground: HeightFilter, chosen: ChosenPoints,
                  store: SectionStore) -> Iterator[PartitionedPoints]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -34,7 +33,7 @@ class CubeDensity:
     of_a_point: float
 
 
-def cube_density(sections: Iterable[Any], points_of: Callable[[Any], Points] = lambda section: section,
+def cube_density(sections: Iterable, points_of: Callable[..., Points] = lambda section: section,
                  progress: Progress = Progress()) -> CubeDensity:
     """Density of points in cubes aligned with the local coordinates, so that a cube shared by two sections counts once.
 
@@ -43,7 +42,7 @@ def cube_density(sections: Iterable[Any], points_of: Callable[[Any], Points] = l
     sections : one entry per section of road
     points_of : function of an entry that returns its Points
     """
-    return _density_of_parts(ordered_map(lambda section: _counted(points_of(section))[0], sections, progress))
+    return _density_of_parts(ordered_map(lambda section: _counted(points_of(section)), sections, progress))
 
 
 def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> tuple[CubeDensity, CubeDensity]:
@@ -51,7 +50,7 @@ def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> 
 
     Parameters
     ----------
-    road_points : RoadPoints of a survey, `RoadPoints.subset_of`
+    road_points : RoadPoints of a survey, `RoadPoints.of_survey`
     """
     survey: Survey = road_points.survey
     length: float = survey.store.section_length
@@ -69,8 +68,7 @@ def cubes_of_stretch(road_points: RoadPoints, stretch: Stretch) -> list[list[tup
     -------
     for each section of the survey [(keys of the occupied cubes, their counts)] of all points and of those on the road; None without points
     """
-    store: Any = road_points.store
-    return [_counted(road_points.survey.section(*key), store.rows(*key)) for key in road_points.survey.store.in_stretch(stretch)]
+    return [[_counted(points.section(*key)) for points in (road_points.survey, road_points)] for key in road_points.survey.store.in_stretch(stretch)]
 
 
 def _density_of_parts(parts):
@@ -85,33 +83,29 @@ def _density_of_parts(parts):
     return CubeDensity(total, float(number.mean()), float((number**2).sum() / number.sum()))
 
 
-def _counted(points, *subsets):
-    """[(keys of the occupied cubes, their counts)] of points and of some of them, rows in ascending order; None without points."""
+def _counted(points):
+    """Keys of the occupied cubes, and how many points they hold; None without points."""
     if not len(points):
-        return [None] * (1 + len(subsets))
+        return None
     low, size = [], []
     for axis in (points.records[name] for name in "xyz"):
         low.append(int(axis.min()) // CUBE_SIDE)
         size.append(int(axis.max()) // CUBE_SIDE - low[-1] + 1)
-    counts = np.zeros((1 + len(subsets), size[0] * size[1] * size[2]), np.int64)
+    counts = np.zeros(size[0] * size[1] * size[2], np.int64)
     for first in range(0, len(points), POINTS_PER_CHUNK):
         x, y, z = (points.records[name][first:first + POINTS_PER_CHUNK] // np.int32(CUBE_SIDE) - np.int32(least) for name, least in zip("xyz", low))
         z *= np.int32(size[1])
         z += y
         z *= np.int32(size[0])
         z += x
-        for count, rows in zip(counts, (None, *subsets)):
-            cubes = z if rows is None else z.take(rows[slice(*np.searchsorted(rows, (first, first + len(z))))] - first)
-            chunk = np.bincount(cubes)
-            count[:len(chunk)] += chunk
-    return [_occupied(count, low, size) for count in counts]
+        chunk = np.bincount(z)
+        counts[:len(chunk)] += chunk
+    return _occupied(counts, low, size)
 
 
 def _occupied(count, low, size):
-    """Keys of the cubes that hold points, and how many these are; None where none does."""
+    """Keys of the cubes that hold points, and how many these are."""
     held = np.flatnonzero(count)
-    if not len(held):
-        return None
     x, y, z = held % size[0] + low[0], held // size[0] % size[1] + low[1], held // (size[0] * size[1]) + low[2]
     half = 2**22   # 4,000 km either side, and 32 km up or down
     return ((z + 2**15) << 46) | ((y + half) << 23) | (x + half), count[held]

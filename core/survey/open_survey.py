@@ -27,9 +27,9 @@ from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, intensity_source_of, without_intensity
 from .las.reader import CloudHeader, read_headers
 from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
+from .store.array_file import files_are_whole
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
-from .store.spill_file import parts_are_whole
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
@@ -106,7 +106,7 @@ def _kept_survey(work, executor, read, progress):
             return earlier
         listener = RememberedMessages(progress)
         parts = WorkFolder(str(work.path / f"{name}.parts"))
-        if not parts_are_whole(parts.path / "points"):
+        if not files_are_whole(parts.path / "points"):
             parts.discard()
             parts = WorkFolder(str(parts.path))
         reading = KeptResults(_readers(executor.executor, files, progress), parts)
@@ -182,7 +182,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     samples = sample_files(files)
     intensity, rounding = _intensity_source(samples, settings, progress)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
-                         settings.memory_limit, folder=None if shared is None else shared.points)
+                         None if shared is None else shared.points)
     reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
     several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = READING.read_progress if several_passes else 1.0
@@ -218,10 +218,10 @@ def _intensity_source(samples, settings, progress):
 
 def _read_points(reader, files, block, shared, progress):
     if shared is None:
-        reader.read(files, block, progress)
+        reader.read(files, block, THREADS, progress)
     else:
         shared.points.mkdir(exist_ok=True)
-        reader.read_in_parts(files, block, shared.reading, progress.part(0.0, READING.parts_progress))
+        reader.read(files, block, shared.reading, progress.part(0.0, READING.parts_progress))
 
 
 def _survey_of(files, frame, reader, settings, crs, progress):

@@ -15,9 +15,9 @@ from ..execution.phase import THREADS, Executor, Recipe, read_plain, write_plain
 from .las.point_fields import INTENSITY_SOURCES
 from .las.reader import CloudHeader
 from .store.records import Points, road_of
-from .store.section_store import SectionStore
+from .store.section_store import SectionStore, opened_store
 from .survey_reader import Finishing, UnorderedPoints
-from .weights import FRAME, LAS, READING, STORE
+from .weights import FRAME, LAS, READING
 
 if TYPE_CHECKING:
     from .adjustment.register import PassCorrections
@@ -41,7 +41,6 @@ class SurveySettings:
     trajectory_sigma : m, one sigma across of the trajectory, and so of all points, as its processing or check points tell; 0 where unknown
     above_road : m above the road up to which points are kept; the map needs what hides a curb, an inventory what hangs over the road
     section_length : m of station in a section of the store; None for as many as hold some hundred thousand points
-    memory_limit : bytes of points in memory; more go to a temporary file
     block : points decoded at a time
     """
 
@@ -54,7 +53,6 @@ class SurveySettings:
     trajectory_sigma: float = setting(0.0, 0.0, 10.0, "The accuracy of the trajectory", "m")
     above_road: float = setting(READING.kept_above_road, 1.0, 100.0, "The height above the road", "m")
     section_length: float | None = None
-    memory_limit: int = STORE.memory_limit
     block: int = LAS.points_per_block
 
     def __post_init__(self) -> None:
@@ -159,4 +157,4 @@ class Survey:
 def survey_in_folder(folder: str) -> Survey:
     """The survey that `Survey.recipe` put into a folder, without the files that it was read from."""
     fields = read_plain(Path(folder) / SURVEY_FILE)
-    return Survey(files=[], store=SectionStore.opened(Path(folder), **fields.pop("store")), folder=Path(folder), **fields)
+    return Survey(files=[], store=opened_store(folder, **fields.pop("store")), folder=Path(folder), **fields)

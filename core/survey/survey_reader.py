@@ -1,4 +1,4 @@
-"""Reading point cloud files into the section store: by threads of this process, or part by part by whoever runs phases.
+"""Reading point cloud files into the section store, part by part, by whoever runs phases.
 
 The height of the road is estimated from the first blocks, which are always read here.
 """
@@ -8,14 +8,13 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..common.parallel import POLL_INTERVAL, check_cancelled
+from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..execution.phase import Executor, Phase, Recipe
 from .blocks import BlockReader, BlockSummary, ChosenPoints, HeightFilter, PointChoice, estimate_sensor_height
@@ -25,15 +24,15 @@ from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import numbers_by_value
 from .las.reader import CloudHeader
 from .las.samples import TimeSlots
+from .store.array_file import close_files
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, road_of
-from .store.section_store import STRETCH_POINTS, SectionStore, Stretch
-from .store.spill_file import StoreIndex, close_parts
+from .store.section_store import STRETCH_POINTS, SectionStore, StoreIndex, Stretch, opened_store
 from .weights import READING
 
 
 class SurveyReader:
-    """Reads files into a section store and gathers statistics of the whole survey, complete after `read` or `read_in_parts`.
+    """Reads files into a section store and gathers statistics of the whole survey, complete after `read`.
 
     summary : BlockSummary of all points
     heights, uneven : {pass number: metres from the trajectory down to the road}, and as of `HeightHistogram.uneven`
@@ -58,42 +57,16 @@ class SurveyReader:
         """See above."""
         return self._chosen.sampled
 
-    def read(self, files: list[CloudHeader], block: int, progress: Progress) -> None:
-        """Read all files, `block` points at a time, in several threads of this process."""
-        total, done = self._begin(files), 0
-        threads = min(READING.max_threads, os.cpu_count() or 1)
-        with ParallelCloudReader(self.choice.layers) as readers, ThreadPoolExecutor(threads) as pool:
-            waiting: deque[Future] = deque()
-
-            def take():
-                nonlocal done
-                while not wait([waiting[0]], POLL_INTERVAL).done:
-                    progress.report(done / total)
-                done += self._take(*waiting.popleft().result())
-                progress.report(done / total)
-
-            try:
-                for load in readers.blocks(files, block):
-                    waiting.append(pool.submit(self._read_block, load))
-                    # the height of the road is estimated from the first blocks and filters the others
-                    while len(waiting) > (READING.blocks_per_thread * threads if self._ground else 0):
-                        take()
-                while waiting:
-                    take()
-            finally:
-                for coming in waiting:
-                    coming.cancel()
-        self._end()
-
-    def read_in_parts(self, files: list[CloudHeader], block: int, executor: Executor, progress: Progress) -> None:
-        """Read all files, `block` points at a time: what follows the first blocks as a phase, into the folder of the store."""
+    def read(self, files: list[CloudHeader], block: int, executor: Executor, progress: Progress) -> None:
+        """Read all files, `block` points at a time: what follows the first blocks as a phase."""
         total, done = self._begin(files), 0
         with ParallelCloudReader(self.choice.layers) as readers:
             ranges = deque(readers.ranges(files, block))
             while ranges and self._ground is None:
                 number, first, count = ranges.popleft()
                 for points in readers.points(files[number], first, count, block):
-                    done += self._take(*self._read_block(lambda points=points: points))
+                    self._read_block(points)
+                    done += len(points)
                     progress.report(done / total)
         self._settle()
         source = _PartsOfFiles(files, self.frame, self.store, self.choice, self.slots, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
@@ -113,35 +86,26 @@ class SurveyReader:
         self._settle()
         self.heights, self.uneven = self._chosen.histogram.heights(), self._chosen.histogram.uneven()
 
-    def _read_block(self, load):
-        """BlockSummary, points by road, whether these are filtered by height and partitioned, and the size of the block."""
-        block, ground, summary = load(), self._ground, BlockSummary()
-        parts: Any = self._blocks.unfiltered(block, summary) if ground is None else \
-            self._blocks.read(block, summary, ground, self._chosen, self.store)
-        return summary, parts, ground is not None, len(block)
-
-    def _take(self, summary, parts, parted, count):
-        """Take the result of a block, in the order of the files."""
-        self.summary.join(summary)
-        if parted:
-            for part in parts:
+    def _read_block(self, block):
+        """Read one of the first blocks, by which the rough height of the road is estimated: its points wait until that is known."""
+        summary = BlockSummary()
+        if self._ground is not None:
+            for part in self._blocks.read(block, summary, self._ground, self._chosen, self.store):
                 self.store.add(part)
-        elif self._ground is not None:
-            self._choose(parts)
         else:
+            parts = self._blocks.unfiltered(block, summary)
             self._waiting += parts
             self._samples += [drops[::7] for road, points in parts if road >= 0 for _, drops in self._blocks.tracks.drops(road, points)]
             if sum(map(len, self._samples)) > READING.height_samples or sum(len(points) for _, points in self._waiting) > READING.max_waiting_points:
                 self._settle()
-        return count
+        self.summary.join(summary)
 
     def _take_part(self, part):
         """Take a part that somebody else read, in the order of the files."""
         self.summary.join(part.summary)
         self._chosen.histogram.join(part.drops)
         self._chosen.sampled.append((part.times, part.places))
-        if self.store.folder is not None:
-            self.store.adopt(part.index, self.store.folder)
+        self.store.adopt(part.index, self.store.folder)
 
     def _settle(self):
         """Estimate the rough height of the road and store the points that waited for it."""
@@ -151,11 +115,7 @@ class SurveyReader:
         self._drop = READING.default_sensor_height if drop is None else drop
         self._ground, self._chosen = self._blocks.ground(self._drop), self._blocks.chosen(self._drop)
         waiting, self._waiting, self._samples = self._waiting, [], []
-        self._choose(waiting)
-
-    def _choose(self, parts):
-        """Filter by height the points that were projected before it was known, and store them."""
-        for points in self._blocks.filtered(parts, self._ground, self._chosen, self.store):
+        for points in self._blocks.filtered(waiting, self._ground, self._chosen, self.store):
             self.store.add(points)
 
 
@@ -180,7 +140,7 @@ class _PartOfFiles:
 class _PartsOfFiles:
     """Files whose points are read part by part into the folder of a store; several threads may do so.
 
-    store : of which dtype, section length, memory limit and folder count; drop : m from the trajectory down to the road, about
+    store : of which dtype, section length and folder count; drop : m from the trajectory down to the road, about
     ranges : (B, 3) number of a file, index of the first point and points of every block, which has about `block` points
     """
 
@@ -197,7 +157,7 @@ class _PartsOfFiles:
         files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
         return Recipe("core.survey.survey_reader:_parts_of_files", dict(
             files=files, frame=self.reader.frame, columns=[list(column) for column in store.dtype.descr], section_length=store.section_length,
-            memory_limit=store.memory_limit, folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
+            folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
             ranges=self.ranges, block=self.block))
 
     def items(self, points: int) -> list[tuple[int, int]]:
@@ -219,9 +179,9 @@ class _PartsOfFiles:
         return float(self.ranges[item[0]:item[1], 2].sum())
 
 
-def _parts_of_files(columns: list[list[str]], section_length: float, memory_limit: int, folder: str, **others: Any) -> _PartsOfFiles:
+def _parts_of_files(columns: list[list[str]], section_length: float, folder: str, **others: Any) -> _PartsOfFiles:
     """What `_PartsOfFiles.recipe` describes."""
-    store = SectionStore([tuple(column) for column in columns], section_length, memory_limit, folder=Path(folder))
+    store = SectionStore([tuple(column) for column in columns], section_length, Path(folder))
     return _PartsOfFiles(store=store, **others)
 
 
@@ -234,7 +194,7 @@ def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
                 check_cancelled()
                 for part in source.reader.read(points, summary, source.ground, chosen, store):
                     store.add(part)
-        index = store.index()
+    index = store.index()
     sampled = list(zip(*chosen.sampled)) or [[np.empty(0)], [np.empty((0, 3), np.int32)]]
     return _PartOfFiles(index, summary, chosen.histogram.counts, *(np.concatenate(column) for column in sampled))
 
@@ -277,7 +237,7 @@ class UnorderedPoints:
 
 def _unordered_points(contents: dict[str, Any], points_folder: str, finishing: Finishing | None, folder: str) -> UnorderedPoints:
     """What `UnorderedPoints.recipe` describes."""
-    store = SectionStore.opened(Path(points_folder), **contents)
+    store = opened_store(points_folder, **contents)
     store.finish = finishing
     return UnorderedPoints(store, finishing, Path(folder))
 
@@ -285,10 +245,11 @@ def _unordered_points(contents: dict[str, Any], points_folder: str, finishing: F
 def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
     """The phase: the points of some sections, in order, in a file of the folder."""
     try:
-        return source.store.write_in_order(source.store.in_stretch(item), source.folder)
+        with SectionStore(source.store.dtype, source.store.section_length, source.folder).part() as part:
+            return source.store.written_in_order(source.store.in_stretch(item), part)
     finally:
         # they are removed when all is in order, which Windows refuses for files that are open
-        close_parts()
+        close_files()
 
 
 # What is done with the points of a section before they are put in order: scanners are numbered, and those far above or below the road go.

@@ -158,20 +158,15 @@ LATTICE = _LatticeWeights()
 
 @dataclass(frozen=True)
 class _StoreWeights:
-    """Points by section: how many are kept in memory, and worked on at a time."""
+    """Points by section: how many are mapped and worked on at a time."""
 
-    rows_overhead: int = 8   # reading some rows of a column costs as much as the inverse of this share of the whole column, plus the rows
     section_length: float = 5.0   # m of station; results do not depend on it
-    memory_limit: int = 64 * 2**20   # bytes of records in memory before they are spilled
-    cache_limit: int = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again
+    mapped_bytes: int = 64 * 2**20   # bytes of files mapped into a process before it lets go of their pages: neighbouring windows ask for them again
     strips_per_section: int = 16   # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
     section_locks: int = 16   # locks that the sections share while they are read
     sort_chunk: int = 1 << 15   # points sorted at a time: they fit the processor's cache
     station_cell_bits: int = 7   # bits of the number of a cell of stations; points are sorted into cells first (fewer than a byte holds)
-    packing_chunk: int = 1 << 15   # values packed at a time: they fit the processor's cache
-    open_parts: int = 64   # files of parts that are held open: a system lets a program open some hundred (macOS 256)
-    max_free_ranges: int = 64   # free ranges of the file that are remembered; of more, the smallest is forgotten
-    subset_memory_limit: int = 16 * 2**20   # bytes of masks, and as many of additional columns, in memory
+    open_files: int = 64   # finished files that are held open: a system lets a program open some hundred (macOS 256)
 
 
 STORE = _StoreWeights()

@@ -7,7 +7,7 @@ from measured_streets import HALF, SENSOR, Drive, edges_of, measured_road
 
 LENGTH = 120.0
 BESIDE = 0.12 - 0.025 * HALF  # m, of the ground beside the carriageway above its crown: a curb of 12 cm where it fell by 2.5 %
-FACE = 500.0            # points per m² of a face
+FACE = 250.0            # points per m² of a face
 SOLID = ("barrier", "wall", "hedge", "building", "cars")
 
 
@@ -104,7 +104,7 @@ def vans(offset, length=3.5, every=6.0, start=0.0, end=LENGTH, apart=0.0):
     return tuple(Thing("wall", offset + rng.uniform(-apart, apart), x, x + length, 1.7) for x in np.arange(start, end, every))
 
 
-def road_with(things, poles=(), drives=(Drive(1, -1.75),), density=800.0, face=FACE, noise=0.005, seed=5, steepest=np.inf, **road):
+def road_with(things, poles=(), drives=(Drive(1, -1.75),), density=300.0, face=FACE, noise=0.005, seed=5, steepest=np.inf, **road):
     """(Survey, ROAD_EDGES) of a road of LENGTH with things beside it; `poles` are arguments of `pole_points` but for the generator, `steepest` the
     slope down (m/m) beyond which the scanner sees nothing."""
     def above(rng):

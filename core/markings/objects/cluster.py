@@ -248,7 +248,7 @@ def _put(store, road, cluster, points):
     first = 0
     for section in points.sections(road):
         count = len(points.section(road, section))
-        store.put(road, section, cluster[first:first + count])
+        store.put(road, section, Columns({"cluster": cluster[first:first + count]}, store.dtype))
         first += count
 
 

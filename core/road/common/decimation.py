@@ -17,8 +17,8 @@ import numpy as np
 
 from ...common.arrays import decimate_cells
 from ...execution.phase import Executor, Recipe
+from ...survey.store.array_file import ArrayFile
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
-from ...survey.store.spill_file import SpillFile
 from ..weights import CURBS
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class PointDecimation:
         self._uneven: dict = {}       # (road, profile) -> bool
         self._strips: dict = {}       # (road, first profile) -> {pass number: LevelStrip}
         self._locks = [threading.Lock() for _ in range(CURBS.decimation_locks)]
-        self._file: SpillFile | None = None
+        self._file: ArrayFile | None = None
 
     @property
     def executor(self) -> Executor:
@@ -131,7 +131,7 @@ class PointDecimation:
         count, selected = self._selections[road, first]
         if selected[limit] is None:
             return None
-        bits = self._file.get(selected[limit])
+        bits = self._file.get(selected[limit], (count + 7) // 8, np.uint8)
         return np.flatnonzero(np.unpackbits(bits, count=count).view(bool))
 
     def _decide(self, road, first):
@@ -169,8 +169,8 @@ class PointDecimation:
     def _store_bits(self, bits):
         with self._locks[-1]:
             if self._file is None:
-                self._file = SpillFile()
-        return self._file.put(bits)
+                self._file = ArrayFile()
+        return self._file.put([bits], bits.nbytes)
 
 
 class LevelGround:

@@ -63,7 +63,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
 
     Returns
     -------
-    road_points : RoadPoints with `half_width` and `covered`; they stay in the survey's store
+    road_points : RoadPoints with `half_width` and `covered`; the survey lives as long as they do
     surface : SurfaceOutlines
 
     Raises
@@ -71,7 +71,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     RoadExtractionError
         If no road surface is found.
     """
-    road_points = RoadPoints.subset_of(survey)
+    road_points = RoadPoints.of_survey(survey)
     stretches, margins = [], Margins()
     roads = survey.store.roads()
     for k, road in enumerate(roads):
@@ -156,13 +156,12 @@ def _take_points(survey, road, carriageway, road_points, progress):
     per_row = np.zeros(len(carriageway.height), np.int64)
     executor, length = survey.executor.passing(), survey.store.section_length
     stretches = [stretch for stretch in survey.store.stretches(STRETCH_POINTS if executor.folder else 0) if stretch[0] == road]
-    phase = Phase(surface_points, survey, (), lambda item: survey.stretch(road, item[0][1] * length, item[0][2] * length),
+    phase = Phase(surface_points, road_points, (), lambda item: survey.stretch(road, item[0][1] * length, item[0][2] * length),
                   lambda item: survey.store.points_between(road, item[0][1] * length, item[0][2] * length))
-    for sections in executor.run(phase, [(stretch, surface_about(carriageway, stretch, length)) for stretch in stretches], progress):
-        for surface in sections:
-            road_points.store.put_mask(road, surface.number, surface.bits, half_width=surface.half_width, covered=surface.covered)
-            first = surface.first_row - carriageway.cells.first_row
-            per_row[first:first + len(surface.per_row)] += surface.per_row
+    for index, first_row, rows in executor.run(phase, [(stretch, surface_about(carriageway, stretch, length)) for stretch in stretches], progress):
+        road_points.store.adopt(index, executor.folder)
+        first = first_row - carriageway.cells.first_row
+        per_row[first:first + len(rows)] += rows
     return per_row
 
 

@@ -16,8 +16,8 @@ from scipy.linalg import solveh_banded
 from ...common.arrays import order_by
 from ...common.progress import Progress
 from ...execution.phase import Phase
+from ...survey.store.array_file import ArrayFile
 from ...survey.store.records import COORDINATE_SCALE, Points
-from ...survey.store.spill_file import SpillFile, StoredColumn
 from ...survey.weights import FRAME
 from ..common.sides import ahead_of_vehicle
 from ..weights import SURFACE
@@ -357,8 +357,8 @@ class MeasuredGround:
 
     def __init__(self, survey: Survey):
         self.survey = survey
-        self._file: SpillFile | None = None
-        self._kept: tuple[dict[tuple[int, int], StoredColumn], ...] = {}, {}   # of cells and of profiles, by road and first row
+        self._file: ArrayFile | None = None
+        self._kept: tuple[dict[tuple[int, int], int], ...] = {}, {}   # of cells and of profiles, by road and first row
 
     def cells(self, road: int, progress: Progress = Progress()) -> GroundCells:
         """The GroundCells of a whole road."""
@@ -406,7 +406,7 @@ class MeasuredGround:
         items = [windows[k:k + size] for k in range(0, len(windows), size)]
         phase = Phase(ground_of_windows, self.survey, (road,), lambda item: self.survey.stretch(
             road, item[0][0] * SURFACE.row_length, (item[-1][0] + SURFACE.window_rows) * SURFACE.row_length))
-        self._file = self._file or SpillFile()
+        self._file = self._file or ArrayFile()
         for item, measured in zip(items, executor.run(phase, items, progress)):
             self._keep(road, item, measured)
 
@@ -414,11 +414,11 @@ class MeasuredGround:
         """Put what `ground_of_windows` found of some windows into the file."""
         for kind, (kept, parts) in enumerate(zip(self._kept, found), 1):
             for values, row in zip(parts, [window[0] for window in item if window[kind]]):
-                kept[road, row] = self._file.put(values.ravel())
+                kept[road, row] = self._file.put([values], values.nbytes)
 
     def _read(self, kind, road, row, out):
         """Fill an array with what is kept of a window: 0 its cells, 1 its profiles."""
-        out[:] = self._file.get(self._kept[kind][road, row]).reshape(out.shape)
+        out[:] = self._file.get(self._kept[kind][road, row], out.size, out.dtype).reshape(out.shape)
 
 
 def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> tuple[np.ndarray, np.ndarray]:

@@ -9,12 +9,11 @@ import numpy as np
 from scipy import ndimage
 
 from ...survey.store.records import COORDINATE_SCALE, Points
-from ...survey.store.road_points import packed_mask
-from ...survey.store.section_store import Stretch
+from ...survey.store.road_points import RoadPoints
+from ...survey.store.section_store import StoreIndex, Stretch
 from ..weights import SURFACE
 
 if TYPE_CHECKING:
-    from ...survey.open_survey import Survey
     from .pavement_edge import Carriageway
 
 
@@ -55,26 +54,6 @@ def _squares(*points):
         numbers.append(number)
     return *numbers, shape
 
-@dataclass(frozen=True)
-class _SurfaceOfSection:
-    """The points of the road surface in one section.
-
-    number : of the section
-    bits : (B,) uint8 of `packed_mask`, which of its points
-    half_width : (M,) uint16 mm
-    covered : (M,) uint8, 1 beneath obstacles and right beside them
-    first_row : number of the first of some rows of cells
-    per_row : (R,) int64, points in each of them
-    """
-
-    number: int
-    bits: np.ndarray
-    half_width: np.ndarray
-    covered: np.ndarray
-    first_row: int
-    per_row: np.ndarray
-
-
 def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: float) -> Carriageway:
     """The rows of a carriageway that tell of the points of a stretch of it, what stands beside them, and no more.
 
@@ -91,17 +70,26 @@ def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: fl
     return replace(carriageway, cells=cells_of_stretch, grown={}, **rows)
 
 
-def surface_points(survey: Survey, item: tuple[Stretch, Carriageway]) -> list[_SurfaceOfSection]:
-    """The phase that selects the points of the road surface, section by section.
+def surface_points(road_points: RoadPoints, item: tuple[Stretch, Carriageway]) -> tuple[StoreIndex, int, np.ndarray]:
+    """The phase that selects the points of the road surface, section by section, and puts them into a part of the store of road points.
 
     item : Stretch of a road, and what `surface_about` says of it
+
+    Returns where the points lie, the number of the first of R rows of cells, and (R,) int64 points in each of them.
     """
     stretch, carriageway = item
-    return [_points_of_section(survey, *key, carriageway) for key in survey.store.in_stretch(stretch)]
+    per_row = np.zeros(len(carriageway.height), np.int64)
+    with road_points.store.part() as part:
+        for key in road_points.survey.store.in_stretch(stretch):
+            records, of_section = _points_of_section(road_points.survey, key, carriageway)
+            part.put(key[0], key[1], records)
+            per_row += of_section
+    return part.index(), carriageway.cells.first_row, per_row
 
 
-def _points_of_section(survey, road, number, carriageway):
-    store = survey.store
+def _points_of_section(survey, key, carriageway):
+    """Columns of the points of the road surface in one section, and (R,) how many lie in each row of a carriageway."""
+    store, (road, number) = survey.store, key
     start, end = (np.array([number, number + 1]) * store.section_length).tolist()
     # an obstacle beside a point may lie in the next section
     first_square, last_square = np.floor(start / SURFACE.obstacle_square - 1.01), np.ceil(end / SURFACE.obstacle_square + 1.01)
@@ -112,11 +100,10 @@ def _points_of_section(survey, road, number, carriageway):
     stations = points.records["s"]
     first, last = np.searchsorted(stations, np.array([store.first_unit(number), store.first_unit(number + 1)], stations.dtype))
     of_section = slice(*np.searchsorted(on_road.surface, [first, last]))
-    rows, first_row, count = on_road.surface[of_section], carriageway.cells.first_row, len(carriageway.height)
-    row = np.floor(stations.take(rows) * COORDINATE_SCALE / SURFACE.row_length).astype(np.int64) - first_row
-    per_row = np.bincount(np.clip(row, 0, count - 1), minlength=count)
-    return _SurfaceOfSection(number, packed_mask(rows - first), on_road.half_width[of_section], beneath[of_section].astype(np.uint8),
-                             first_row, per_row)
+    rows, count = on_road.surface[of_section], len(carriageway.height)
+    row = np.floor(stations.take(rows) * COORDINATE_SCALE / SURFACE.row_length).astype(np.int64) - carriageway.cells.first_row
+    records = points.records.take(rows).with_columns(half_width=on_road.half_width[of_section], covered=beneath[of_section].astype(np.uint8))
+    return records, np.bincount(np.clip(row, 0, count - 1), minlength=count)
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
     where it left the others, so that it has no step there.
 
     survey : Survey with times; its store and frame are replaced where passes are moved
-    folder : of the moved points that are not kept in memory; None for a temporary file
+    folder : of the moved points; None for a temporary file
     """
     roads = [road for road in survey.store.roads() if len(survey.frame.passes_of(road)) > 1]
     moves: dict[int, tuple[np.ndarray, np.ndarray]] = {}
@@ -178,10 +178,10 @@ def _replace_points(survey, moves, progress, folder):
 def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: Progress = Progress(), folder: Path | None = None) -> None:
     """Replace the store of a Survey by one of points that `moved` gives, the Columns of a section with other coordinates.
 
-    folder : of the moved points that are not kept in memory; None for a temporary file
+    folder : of the moved points; None for a temporary file
     """
     before = survey.store
-    store = SectionStore(before.dtype, before.section_length, before.memory_limit, folder=folder)
+    store = SectionStore(before.dtype, before.section_length, folder)
 
     def part(key):
         records = moved(before.section(*key))

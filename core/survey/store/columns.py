@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from ..weights import STORE
-
 ROW_CHUNK = 1 << 14    # cost: rows that are split into columns at a time: they fit the processor's cache
 
 
@@ -31,13 +29,12 @@ class Columns:
     kept : whether a column stays in memory once it was loaded; of a long road each would take as much again
     """
 
-    __slots__ = ("_arrays", "_load", "_load_rows", "_load_cost", "_source", "_parts", "_ends", "_read_only", "_length", "_kept", "dtype")
+    __slots__ = ("_arrays", "_load", "_load_rows", "_source", "_parts", "_ends", "_read_only", "_length", "_kept", "dtype")
 
     def __init__(self, arrays: dict[str, np.ndarray], dtype: Any, length: int | None = None,
                  load: Callable[[str], np.ndarray] | None = None, source: tuple[Columns, np.ndarray] | None = None,
                  parts: Sequence[Columns] | None = None, load_rows: Callable[[str, np.ndarray], np.ndarray] | None = None, kept: bool = True):
         self._arrays, self._load, self._load_rows = arrays, load, load_rows
-        self._load_cost: dict[str, int] = {}   # cost so far of reading rows by name, in rows; beyond half of the column it is read whole
         self._source = source
         self._parts = parts
         self._ends: np.ndarray | None = None   # of the parts
@@ -125,7 +122,7 @@ class Columns:
         if not len(rows):
             return np.empty(0, self.dtype[name])
         if name not in self._arrays:
-            if self._load_rows is not None and self._pays(name, rows):
+            if self._load_rows is not None:
                 return self._load_rows(name, rows)
             # the rows are split among the parts only where they ascend within bounds
             if self._parts is not None and rows[0] >= 0 and rows[-1] < self._length and (rows[1:] >= rows[:-1]).all():
@@ -133,15 +130,6 @@ class Columns:
         column = self[name]
         # A column of one repeated value has stride 0 and stays one value.
         return column.take(rows) if column.strides[0] else np.broadcast_to(column[0], len(rows))
-
-    def _pays(self, name, rows):
-        """Whether rows of a column are read by row: of a column that is kept, only until they have cost half as much as the whole."""
-        cost = self._load_cost.get(name, 0) + len(rows) + self._length // STORE.rows_overhead if self._kept else len(rows)
-        if 2 * cost > self._length or rows.min() < 0 or rows.max() >= self._length:
-            return False
-        if self._kept:
-            self._load_cost[name] = cost
-        return True
 
     def _rows_of_parts(self, name, rows):
         if self._ends is None:
@@ -153,10 +141,6 @@ class Columns:
         pieces = [part.column_rows(name, rows[a:b] - (end - len(part)))
                   for part, end, a, b in zip(parts, ends, bounds[:-1], bounds[1:]) if b > a]
         return pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
-
-    def row_range(self, first: int, end: int) -> Columns:
-        """The rows from `first` up to `end`: a few are read by row, many by slicing the whole column."""
-        return self[first:end] if 2 * (end - first) > self._length else self.take(np.arange(first, end))
 
     def _slice_of_parts(self, first, end):
         """The rows from first up to end, concatenated from the parts that hold them."""

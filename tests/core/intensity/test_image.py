@@ -34,10 +34,10 @@ def painted_street(length=45.0, density=1500, seed=3):
     return records
 
 
-def road_points(records, section_length=20.0, memory_limit=2**28, origin=ORIGIN, crs="EPSG:32632"):
+def road_points(records, section_length=20.0, origin=ORIGIN, crs="EPSG:32632"):
     from lanewright.core.io.crs import parse_crs
 
-    found = RoadPoints(SectionStore(ROAD_POINT, section_length, memory_limit), np.asarray(origin), parse_crs(crs).to_wkt() if crs else "")
+    found = RoadPoints(SectionStore(ROAD_POINT, section_length), np.asarray(origin), parse_crs(crs).to_wkt() if crs else "")
     found.store.append(0, records)
     return found
 
@@ -144,7 +144,7 @@ def test_without_the_brightness_rule_it_agrees_with_gdal_grid(tmp_path):
 def test_the_image_does_not_depend_on_the_length_of_sections(tmp_path, section_length):
     records = painted_street()
     usual = all_pixels(image_of(records, tmp_path / "a.tif"))
-    other = all_pixels(image_of(records[::-1], tmp_path / "b.tif", section_length=section_length, memory_limit=10**6))
+    other = all_pixels(image_of(records[::-1], tmp_path / "b.tif", section_length=section_length))
     np.testing.assert_array_equal(usual, other)
 
 
@@ -211,14 +211,13 @@ def test_cells_are_multiples_of_the_cell_size_wherever_the_origin_is(tmp_path):
     np.testing.assert_allclose(all_pixels(usual), all_pixels(other), rtol=1e-5)
 
 
-@pytest.mark.parametrize("memory_limit", [2**27, 10**6, 0], ids=["in memory", "some tiles in a file", "all tiles in a file"])
-def test_an_image_that_is_not_read_from_its_file_has_the_same_pixels_and_samples(tmp_path, memory_limit):
+def test_an_image_that_is_not_read_from_its_file_has_the_same_pixels_and_samples(tmp_path):
     """A diagonal street, so that tiles are filled in part."""
     records = painted_street()
     x, y = records["x"].copy(), records["y"].copy()
     records["x"], records["y"] = np.rint((x - y) * np.sqrt(0.5)), np.rint((x + y) * np.sqrt(0.5))
     usual = image_of(records, tmp_path / "a.tif")
-    image = make_intensity_image(road_points(records), path=tmp_path / "b.tif", memory_limit=memory_limit)
+    image = make_intensity_image(road_points(records), path=tmp_path / "b.tif")
     assert image.geotransform == usual.geotransform and (image.width, image.height) == (usual.width, usual.height)
     np.testing.assert_array_equal(all_pixels(image), all_pixels(usual))
     np.testing.assert_array_equal(all_pixels(IntensityImage.open(tmp_path / "b.tif")), all_pixels(usual))

@@ -12,7 +12,7 @@ from lanewright.core.survey.open_survey import SurveySettings
 
 pytestmark = pytest.mark.slow
 
-SHORT, LONG = 40.0, 120.0   # m
+SHORT, LONG = 24.0, 72.0   # m
 SECTION = 5.0               # m of a section of the store, as on dense streets: longer ones hold no more points than these do there
 
 

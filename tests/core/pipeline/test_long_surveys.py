@@ -53,10 +53,9 @@ def test_the_same_street_a_thousand_kilometres_on_has_the_same_stations_and_coor
         np.testing.assert_allclose(there[name] - here[name], apart, rtol=0, atol=2e-4, err_msg=name)
 
 
-@pytest.mark.parametrize("settings", [SurveySettings(memory_limit=0), SurveySettings(block=997, section_length=50.0)])
-def test_memory_blocks_and_sections_change_no_point_of_either_town(survey, towns, settings):
+def test_blocks_and_sections_change_no_point_of_either_town(survey, towns):
     trajectory, clouds, _ = towns
-    other = open_survey(clouds, trajectory, settings)
+    other = open_survey(clouds, trajectory, SurveySettings(block=997, section_length=50.0))
     for road in (0, 1):
         one, again = points_of(survey, road), points_of(other, road)
         for name in one:
@@ -81,12 +80,12 @@ def test_what_32_bits_cannot_tell_from_a_street_is_not_on_it(towns, tmp_path):
 
 
 def test_road_points_of_both_towns_come_back_from_a_file(survey, tmp_path):
-    road_points = RoadPoints.subset_of(survey)
+    road_points = RoadPoints.of_survey(survey)
     for road in survey.store.roads():
         for number in survey.store.sections(road):
-            rows = np.arange(len(survey.section(road, number)))
-            if len(rows):
-                road_points.store.put(road, number, rows, half_width=np.full(len(rows), 3500, "u2"), covered=np.zeros(len(rows), "u1"))
+            records = survey.section(road, number).records
+            limits = dict(half_width=np.full(len(records), 3500, "u2"), covered=np.zeros(len(records), "u1"))
+            road_points.store.put(road, number, records.with_columns(**limits))
     write_road_points(road_points, tmp_path / "road.laz")
     read = read_road_points(tmp_path / "road.laz")
     assert read.roads() == road_points.roads() and len(read) == len(road_points)

@@ -57,24 +57,14 @@ def by_threads(sample):
     return found_by(sample)
 
 
-def test_worker_processes_find_what_threads_find_and_leave_nothing(sample, by_threads):
-    executor = Noting(2)
-    assert found_by(sample, executor) == by_threads
-    assert all(executor.tasks[name] > 1 for name in PHASES) and not executor.folder.exists()
-
-
-def test_a_worker_that_is_killed_in_one_phase_after_another_is_replaced_and_nothing_is_lost(sample, by_threads):
-    executor = Noting(1, KILLED_IN)
-    assert found_by(sample, executor) == by_threads
-    assert not executor.killed_in and not executor.folder.exists()
-
-
-def test_a_work_folder_keeps_nothing_of_these_stages(sample, by_threads, tmp_path):
-    work = WorkFolder(str(tmp_path / "work"))
-    assert found_by(sample, Noting(2), work) == by_threads
-    kept = sorted(path.name for path in work.path.rglob("*") if path.is_file())
-    assert found_by(sample, Noting(2), work) == by_threads
-    assert sorted(path.name for path in work.path.rglob("*") if path.is_file()) == kept and not any("part" in name for name in kept)
+def test_worker_processes_killed_or_not_find_what_threads_find_and_a_work_folder_keeps_nothing_of_these_stages(sample, by_threads, tmp_path):
+    """Then one is killed in one phase after another: it is replaced, and nothing is lost."""
+    work, kept = WorkFolder(str(tmp_path / "work")), []
+    for executor in (Noting(2), Noting(1, KILLED_IN)):
+        assert found_by(sample, executor, work) == by_threads
+        assert all(executor.tasks[name] > 1 for name in PHASES) and not executor.killed_in and not executor.folder.exists()
+        kept.append(sorted(path.name for path in work.path.rglob("*") if path.is_file()))
+    assert kept[0] == kept[1] and not any("part" in name for name in kept[0])
 
 
 def test_cancel_while_paint_is_extracted_ends_the_workers_and_leaves_nothing(sample):

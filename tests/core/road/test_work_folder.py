@@ -42,11 +42,18 @@ def without(sample):
     return numbers_of(boundaries(sample, ""))
 
 
-@pytest.fixture
-def work(sample, tmp_path, without):
+@pytest.fixture(scope="module")
+def first_work(sample, tmp_path_factory, without):
     """A work folder after a run."""
-    assert numbers_of(boundaries(sample, tmp_path / "work")) == without
-    return tmp_path / "work"
+    folder = tmp_path_factory.mktemp("first") / "work"
+    assert numbers_of(boundaries(sample, folder)) == without
+    return folder
+
+
+@pytest.fixture
+def work(first_work, tmp_path):
+    """Another one like it, for it may be moved."""
+    return shutil.copytree(first_work, tmp_path / "work")
 
 
 def never(*_, **__):
@@ -54,20 +61,12 @@ def never(*_, **__):
 
 
 @pytest.mark.parametrize("workers", [0, 2])
-def test_a_second_run_reads_nothing_again_and_gives_the_same(sample, work, without, monkeypatch, workers):
+def test_a_second_run_in_a_folder_that_was_moved_reads_nothing_again_and_gives_the_same(sample, work, without, monkeypatch, workers):
     monkeypatch.setattr(opening, "read_survey", never)
     before, heard = sorted(os.listdir(work)), Heard()
     assert numbers_of(boundaries(sample, work, progress=heard, workers=workers)) == without
     assert heard.says("read by an earlier run") and heard.says("Points read:") and heard.says("finished by an earlier run")
     assert sorted(os.listdir(work)) == before
-
-
-def test_the_folder_may_be_moved(sample, work, without, monkeypatch, tmp_path):
-    shutil.move(work, tmp_path / "elsewhere")
-    monkeypatch.setattr(opening, "read_survey", never)
-    heard = Heard()
-    assert numbers_of(boundaries(sample, tmp_path / "elsewhere", progress=heard)) == without
-    assert heard.says("finished by an earlier run")
 
 
 def test_a_cancelled_run_goes_on_where_it_was(sample, tmp_path, without):
@@ -105,8 +104,7 @@ def test_another_file_of_the_same_name_other_settings_and_other_code_are_read_an
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a full disk is made of /dev/full")
-@pytest.mark.parametrize("cut", ["*.json", "survey-*/survey.plain", "survey-*/points*", "phase-*/*.plain"])
-@pytest.mark.parametrize("left", [0, 100])
+@pytest.mark.parametrize("cut, left", [("*.json", 0), ("survey-*/survey.plain", 100), ("survey-*/points*", 100), ("phase-*/*.plain", 0)])
 def test_what_a_power_failure_has_cut_off_is_made_again(sample, work, without, monkeypatch, cut, left):
     for path in sorted(work.glob(cut)):
         os.truncate(path, left)

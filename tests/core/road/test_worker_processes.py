@@ -78,7 +78,7 @@ def test_items_that_share_something_go_to_one_worker_and_come_in_order(monkeypat
 
 
 def test_workers_that_forget_what_they_read_go_on_with_the_next_phase(python):
-    points = RoadPoints.subset_of(survey_of(street()))
+    points = RoadPoints.of_survey(survey_of(street()))
     stretches = points.survey.store.stretches()[:4]
     with closing(WorkerProcesses(python, 1)) as executor:
         found, workers = [], []

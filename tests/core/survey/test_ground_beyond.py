@@ -46,12 +46,12 @@ def test_level_ground_to_fifty_metres_is_kept_beside_the_road(arm, tmp_path):
     assert survey.store.roads() == [0] and survey.store.count == survey.counts["kept"] < len(away) + len(points[0])
 
 
-def test_it_depends_neither_on_the_order_of_points_nor_on_blocks_sections_and_memory(arm, tmp_path):
+def test_it_depends_neither_on_the_order_of_points_nor_on_blocks_and_sections(arm, tmp_path):
     trajectory, points, *_ = arm
     shuffled = np.random.default_rng(1).permutation(len(points[0]))
     one = ground_beyond(open_survey([cloud(tmp_path, points)], trajectory))
     two = ground_beyond(open_survey([cloud(tmp_path, points, "b.laz", shuffled)], trajectory))
-    small = SurveySettings(memory_limit=10_000, block=1500, section_length=7.0)
+    small = SurveySettings(block=1500, section_length=7.0)
     three = ground_beyond(open_survey([cloud(tmp_path, points)], trajectory, small))
     np.testing.assert_array_equal(one, two)
     np.testing.assert_array_equal(np.sort(one, order=["time", "x", "y", "z"]), np.sort(three, order=["time", "x", "y", "z"]))

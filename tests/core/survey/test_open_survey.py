@@ -54,10 +54,9 @@ def test_the_accuracy_that_the_trajectory_is_told_to_have_is_that_of_every_road(
 
 
 @pytest.mark.parametrize("settings", [
-    SurveySettings(block=997), SurveySettings(section_length=7.0), SurveySettings(memory_limit=20_000),
-    SurveySettings(block=3001, section_length=50.0, memory_limit=0),
+    SurveySettings(block=997), SurveySettings(section_length=7.0), SurveySettings(block=3001, section_length=50.0),
 ])
-def test_block_size_section_length_and_memory_change_no_point(street, settings):
+def test_block_size_and_section_length_change_no_point(street, settings):
     trajectory, _, path = street
     np.testing.assert_array_equal(contents(open_survey([path], trajectory, settings)), contents(open_survey([path], trajectory)))
 

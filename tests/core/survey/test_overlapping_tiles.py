@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from drives import ahead, bend, chain, contents, drive, surveyed_points, write_cloud
 from lanewright.core.common.progress import Progress
-from lanewright.core.survey.open_survey import SurveySettings, open_survey
+from lanewright.core.survey.open_survey import open_survey
 
 CRS = "EPSG:32632"
 PATH = chain(ahead(80), bend(60, 60), ahead(60))
@@ -37,11 +37,10 @@ def tiles(folder, points, overlap):
     return [write_cloud(folder / f"tile{k}.laz", *(c[rows] for c in points), crs=CRS) for k, rows in enumerate(halves)]
 
 
-@pytest.mark.parametrize("settings", [SurveySettings(), SurveySettings(memory_limit=0)], ids=["in memory", "on disk"])
-def test_points_that_overlapping_tiles_share_are_used_once(street, tmp_path, settings):
+def test_points_that_overlapping_tiles_share_are_used_once(street, tmp_path):
     trajectory, points, path = street
     heard = Heard()
-    survey = open_survey(tiles(tmp_path, points, 40.0), trajectory, settings, heard)
+    survey = open_survey(tiles(tmp_path, points, 40.0), trajectory, progress=heard)
     np.testing.assert_array_equal(contents(survey), contents(open_survey([path], trajectory)))
     shared = np.mean(np.abs(points[0] - np.median(points[0])) < 20.0)
     told = [re.match(r"About ([\d.]+) % of the points that were read are copies", text) for text in heard.infos]

@@ -11,8 +11,9 @@ from lanewright.products.export.inferred_ways import with_inferred_ways
 from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
 from lanewright.products.export.map_layers import border_misses
+from lanewright.products.export.opendrive import geometry as fits
 from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.geometry import fit_cubics
+from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
 from lanewright.products.export.opendrive.layers import layers_of_opendrive
 from lanewright.products.export.opendrive.model import shape_height
 from lanewright.products.export.opendrive.reference_line import fit_reference
@@ -232,7 +233,7 @@ def test_the_work_for_heights_and_widths_grows_with_their_length():
     """Widths with jumps need hundreds of pieces, shapes hundreds of cross-sections."""
     s = np.linspace(0.0, 300.0, 1200)
     start = time.process_time()
-    fit_cubics([s] * 3, [np.floor(s / 3.0) % 2] * 3, 0.0, 300.0, 0.01)
+    fit_cubics([LineBundle([s] * 3, [np.floor(s / 3.0) % 2] * 3, 0.0, 300.0, 0.01)])
     shape = np.array([[at, t, 0.1 * t, 0.0, 0.0, 0.0] for at in s for t in (-3.5, 0.0, 3.5)])
     for _ in range(100):
         np.testing.assert_allclose(shape_height(shape, s, np.full(len(s), 3.5)), 0.35)
@@ -269,6 +270,21 @@ def test_ways_of_a_map_from_elsewhere_are_all_that_there_are(tmp_path):
     text = opendrive([arms, ways, outs], f'<junction id="9">{junction}</junction>')
     lanes = layers_of_opendrive(read_opendrive(written(tmp_path, text)), "EPSG:25832").lanes
     assert len(with_inferred_ways(checked(RoadMapSource(lanes))).lanes) == len(lanes)
+
+
+def test_the_steps_of_an_export_do_not_grow_with_the_number_of_roads(tmp_path, monkeypatch):
+    """What is fitted, is fitted for all roads at once: a map of many short roads would take many times as long as its import."""
+    steps = []
+    for solve, name in ((np.linalg, "solve"), (fits, "solve_banded")):
+        monkeypatch.setattr(solve, name, lambda *given, compute=getattr(solve, name): steps.append(given) or compute(*given))
+    counts = []
+    for count in (1, 12):
+        _, lanes = taken_in(tmp_path, "".join(road(geometry(0, 0, 20 * k, 0, 40, SPIRAL), 40, str(k), lanes=section(
+            left=lane(1), right=lane(-1, widths=GROWING))) for k in range(count)))
+        steps.clear()
+        draft_opendrive(with_shared_borders(checked(RoadMapSource(lanes))))
+        counts.append(len(steps))
+    assert counts[0] == counts[1] > 2
 
 
 def test_a_map_without_crs_leaves_as_a_local_map(tmp_path):

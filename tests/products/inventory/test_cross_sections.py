@@ -24,7 +24,7 @@ def column(rows, *names):
     return np.array([[np.nan if row[name] is None else row[name] for name in names] for row in rows], float)
 
 
-@pytest.mark.parametrize("crossfall", [0.0, 0.025, 0.06])
+@pytest.mark.parametrize("crossfall", [0.0, 0.06])
 def test_the_crossfall_of_both_sides_of_a_crown_is_measured(crossfall):
     rows = rows_of(measured_road(crossfall=crossfall))
     true = [100 * crossfall if row["lane"] == 1 else -100 * crossfall for row in rows]
@@ -32,10 +32,9 @@ def test_the_crossfall_of_both_sides_of_a_crown_is_measured(crossfall):
     np.testing.assert_allclose(column(rows, "crossf_pct")[:, 0], true, atol=0.05)
 
 
-@pytest.mark.parametrize("roll", [0.002, -0.005])
-def test_passes_in_opposite_directions_tell_roll_from_crossfall(roll):
+def test_passes_in_opposite_directions_tell_roll_from_crossfall():
     """The same vehicle with two scanners, all of them tilted, and a centimetre between them: 0.005 are 0.3 degrees."""
-    survey = measured_road(drives=(Drive(1, -1.75, roll), Drive(-1, 1.75, roll, 0.008)), scanners=((0.005, 0.003), (-0.005, -0.001)), rut=0.01)
+    survey = measured_road(drives=(Drive(1, -1.75, -0.005), Drive(-1, 1.75, -0.005, 0.008)), scanners=((0.005, 0.003), (-0.005, -0.001)), rut=0.01)
     rows = rows_of(survey)
     true = np.array([2.5 if row["lane"] == 1 else -2.5 for row in rows])
     assert np.abs(column(rows, "crossf_pct")[:, 0] - true).max() < 0.2
@@ -51,8 +50,7 @@ def test_one_pass_says_that_it_cannot_tell_roll_from_crossfall():
     assert np.median([section.parts[0].crossfall for section in one.sections]) == pytest.approx(0.004, abs=0.0005)
 
 
-@pytest.mark.parametrize("rut", [0.0, 0.005, 0.012, 0.025])
-@pytest.mark.parametrize("density", [150.0, 2500.0])
+@pytest.mark.parametrize("rut, density", [(0.0, 150.0), (0.005, 150.0), (0.025, 150.0), (0.012, 2500.0)])
 def test_rut_depths_are_right_within_three_millimetres(rut, density):
     """A scanner of 5 mm noise, another 8 mm above it and tilted, and a vehicle that rolls."""
     survey = measured_road(drives=(Drive(1, -1.75, 0.003),), scanners=((0.004, 0.002), (-0.004, -0.002)), rut=rut, density=density, noise=0.005)
@@ -66,9 +64,8 @@ def test_a_step_between_two_scanners_is_no_rut():
     assert np.nanmax(column(rows, "rut_l_mm", "rut_r_mm")) < 3.0
 
 
-@pytest.mark.parametrize("crossfall", [0.025, 0.08])
-def test_a_crown_is_no_rut_however_steeply_the_road_falls_from_it(crossfall):
-    found = column(rows_of(measured_road(drives=BOTH_WAYS, crossfall=crossfall)), "rut_l_mm", "rut_r_mm")
+def test_a_crown_is_no_rut_however_steeply_the_road_falls_from_it():
+    found = column(rows_of(measured_road(drives=BOTH_WAYS, crossfall=0.08)), "rut_l_mm", "rut_r_mm")
     assert np.sqrt(np.mean(found**2)) < 1.5 and found.max() < 3.0
 
 
@@ -86,19 +83,18 @@ def test_limits_that_no_lane_can_keep_are_refused_with_both_numbers():
     assert CrossSectionSettings(max_crossfall=1.0).limits().max_crossfall == 1.0
 
 
-@pytest.mark.parametrize("north", [False, True])
-def test_widths_grades_and_curbs_whatever_way_the_road_runs(north):
-    layers = BorderLayers(edges_of(north=north), markings_of(north=north))
-    survey = measured_road(grade=0.045, curb=0.14, north=north)
+def test_widths_grades_and_curbs_of_a_road_that_runs_north():
+    layers = BorderLayers(edges_of(north=True), markings_of(north=True))
+    survey = measured_road(grade=0.045, curb=0.14, north=True)
     whole = rows_of(survey, "carriageway", layers)
     off = np.abs(column(whole, "width_m", "grade_pct", "curb_l_m", "curb_r_m") - [2 * HALF, 4.5, 0.14, 0.14])
     assert (off < [0.02, 0.05, 0.01, 0.01]).all()
     np.testing.assert_allclose(column(rows_of(survey, "lane", layers), "width_m"), 3.25, atol=0.02)
 
 
-@pytest.mark.parametrize("radius", [15.0, 40.0])
-def test_the_grade_of_a_bend_is_that_of_each_lane_along_its_own_middle(radius):
+def test_the_grade_of_a_bend_is_that_of_each_lane_along_its_own_middle():
     """10 % along the middle of the road: the inner lane climbs as much on a shorter way."""
+    radius = 15.0
     survey = measured_road(drives=(Drive(1, -1.75), Drive(-1, 1.75)), grade=0.10, radius=radius)
     layers = BorderLayers(edges_of(radius=radius), markings_of(radius=radius))
     whole, rows = ([row for row in rows_of(survey, part, layers) if 5.0 < row["station_m"] < 55.0] for part in ("carriageway", "lane"))
@@ -108,7 +104,7 @@ def test_the_grade_of_a_bend_is_that_of_each_lane_along_its_own_middle(radius):
     assert np.abs(column(rows, "grade_pct") - true).max() < 0.1
 
 
-@pytest.mark.parametrize("grade", [0.0, 0.08, -0.08])
+@pytest.mark.parametrize("grade", [0.08, -0.08])
 def test_a_vehicle_that_changes_lanes_on_a_hill_measures_crossfall_across_the_road(grade):
     rows = rows_of(measured_road(drives=(Drive(1, -1.75, shift=3.5),), grade=grade, crown=False, crossfall=0.03))
     assert np.abs(column(rows, "crossf_pct", "grade_pct") - [3.0, 100 * grade]).max() < 0.1

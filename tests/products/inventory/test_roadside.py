@@ -45,7 +45,7 @@ def metres(things_or_lines):
 
 
 @pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("face, density, noise", [(500.0, 800.0, 0.005), (120.0, 250.0, 0.005), (500.0, 800.0, 0.015)])
+@pytest.mark.parametrize("face, density, noise", [(120.0, 250.0, 0.005), (500.0, 800.0, 0.015)])
 def test_by_length_95_percent_are_right_and_90_percent_found(scene, face, density, noise):
     survey, edges = road_with(SCENES[scene], face=face, density=density, noise=noise)
     lines = [line for line in found_in(survey, edges).lines if line.kind != "gutter"]
@@ -73,7 +73,7 @@ def test_rails_of_two_beams_or_of_ropes_are_guard_rails(form, top):
     assert rail.kind == "guard_rail" and rail.chain.length > 85 and np.median(rail.chain.top) == pytest.approx(top, abs=0.1)
 
 
-@pytest.mark.parametrize("offset", [4.3, 4.4, 4.45])
+@pytest.mark.parametrize("offset", [4.3, 4.45])
 def test_a_barrier_before_a_slope_keeps_its_height(offset):
     """The ground that is seen beyond the barrier lies higher than that before it."""
     def bank(rng):
@@ -83,7 +83,7 @@ def test_a_barrier_before_a_slope_keeps_its_height(offset):
     barrier = Thing("barrier", offset, 10, 100)
 
     def above(rng):
-        return tuple(np.concatenate(parts) for parts in zip(points_of(barrier, rng), bank(rng)))
+        return tuple(np.concatenate(parts) for parts in zip(points_of(barrier, rng, 500.0), bank(rng)))
 
     survey = measured_road(length=LENGTH, density=800.0, reach=8.0, above=above, hides=hidden_by((barrier,)))
     (line,) = [line for line in found_in(survey, edges_of(LENGTH)).lines if line.kind != "gutter"]
@@ -106,15 +106,14 @@ def test_a_rock_face_that_hides_what_lies_behind_it_is_one_wall():
     assert wall.kind == "wall" and wall.chain.length > 0.95 * 78
 
 
-@pytest.mark.parametrize("radius, grade", [(18.0, 0.0), (18.0, 0.09)])
-def test_a_low_wall_on_the_inner_side_of_a_hairpin_is_a_wall(radius, grade):
+def test_a_low_wall_on_the_inner_side_of_a_hairpin_that_climbs_is_a_wall():
     """A broad upper side and the ground behind are seen over it."""
     def behind(rng):
         x, y, over = rng.uniform(0, 60, 60_000), rng.uniform(4.7, 4.95, 60_000), rng.random(60_000) < 0.6
         return x, np.where(over, y, 4.7), np.where(over, 1.0, rng.uniform(0.0, 1.0, 60_000)) + BESIDE
 
-    survey = measured_road(above=behind, grade=grade, radius=radius, reach=8.0, density=800.0, hides=hidden_by((Thing("wall", 4.7, 0, 60, 1.0),)))
-    lines = [line for line in found_in(survey, edges_of(radius=radius)).lines if line.kind != "gutter"]
+    survey = measured_road(above=behind, grade=0.09, radius=18.0, reach=8.0, density=400.0, hides=hidden_by((Thing("wall", 4.7, 0, 60, 1.0),)))
+    lines = [line for line in found_in(survey, edges_of(radius=18.0)).lines if line.kind != "gutter"]
     assert [line.kind for line in lines] == ["wall"] and np.median(lines[0].chain.top) == pytest.approx(1.0, abs=0.1)
 
 
@@ -176,9 +175,9 @@ def test_a_driveway_through_a_hedge_is_left_open():
     assert pieces[0][3] == pytest.approx(50.0, abs=0.5) and pieces[1][2] == pytest.approx(52.8, abs=0.5)
 
 
-@pytest.mark.parametrize("face, seed", [(150.0, 1), (300.0, 5), (500.0, 2), (500.0, 4)])
+@pytest.mark.parametrize("face, seed", [(150.0, 1), (500.0, 4)])
 def test_a_hedge_into_which_one_sees_is_one_line_along_its_face(face, seed):
-    survey, edges = road_with((Thing("hedge", 5.8, 10, 110, form="loose"),), seed=seed, face=face)
+    survey, edges = road_with((Thing("hedge", 5.8, 10, 110, form="loose"),), seed=seed, face=face, density=800.0)
     line, = (line for line in found_in(survey, edges).lines if line.kind != "gutter")
     assert line.kind == "hedge" and line.chain.length == pytest.approx(100.0, abs=1.5)
     assert line.chain.d.max() < 5.8 + 1.75 + 0.45   # counted from the driven line
@@ -206,7 +205,7 @@ def test_the_flat_ground_above_a_retaining_wall_is_no_line():
     def above(rng):
         return tuple(np.concatenate(parts) for parts in zip(points_of(wall, rng), terrace(rng)))
 
-    survey = measured_road(length=LENGTH, density=800.0, reach=5.2, above=above)
+    survey = measured_road(length=LENGTH, density=400.0, reach=5.2, above=above)
     (line,) = [line for line in found_in(survey, edges_of(LENGTH)).lines if line.kind != "gutter"]
     assert line.kind == "wall" and np.median(line.chain.top) == pytest.approx(0.8, abs=0.08)
 
@@ -218,11 +217,12 @@ def test_a_line_has_a_vertex_in_every_interval():
         assert np.diff(np.array(line.coords)[:, 0]).max() < interval + 1.0
 
 
-def test_nothing_is_invented_on_an_empty_road_or_among_cars_and_buildings():
-    for things in ((), (Thing("cars", 4.2), Thing("cars", -5.5), Thing("building", 9.0))):
-        survey, edges = road_with(things)
-        found = found_in(survey, edges)
-        assert not [line.kind for line in found.lines if line.kind != "gutter"] and not sum(map(len, found.poles.values()))
+@pytest.mark.parametrize("things", [(), (Thing("cars", 4.2), Thing("cars", -5.5), Thing("building", 9.0))], ids=["empty", "cars and a building"])
+def test_nothing_is_invented_and_a_crowned_road_has_a_gutter_on_both_sides(things):
+    survey, edges = road_with(things, crown=True)
+    found = found_in(survey, edges)
+    assert not [line.kind for line in found.lines if line.kind != "gutter"] and not sum(map(len, found.poles.values()))
+    assert things or {line.chain.side for line in found.lines} == {1, -1}
 
 
 def rail_of(d, thickness=0.05):
@@ -255,7 +255,7 @@ def test_what_only_hangs_beside_the_road_is_no_line():
         x, y, z = points_of(hanging, rng)
         return x, y, z + 1.5
 
-    over = measured_road(length=LENGTH, reach=14.0, above=above)
+    over = measured_road(length=LENGTH, density=300.0, reach=14.0, above=above)
     assert {line.kind for line in found_in(over, edges).lines} <= {"gutter"}
 
 
@@ -266,11 +266,6 @@ def test_a_gutter_lies_where_the_road_falls_to_and_not_on_its_higher_side():
     assert {line.chain.side for line in gutters} == {-1}
     assert sum(line.chain.length for line in gutters) > 0.9 * LENGTH
     assert abs(from_edge(found, gutters[0])) < 0.1 and np.median(gutters[0].chain.ground) + 100 - GROUND < 5
-
-
-def test_a_crowned_road_has_a_gutter_on_both_sides():
-    survey, edges = road_with((), crown=True)
-    assert {line.chain.side for line in found_in(survey, edges).lines} == {1, -1}
 
 
 def test_poles_signs_and_trunks_with_diameter_and_height():
@@ -317,7 +312,7 @@ def test_a_verge_that_falls_on_to_the_foot_of_a_barrier_is_no_gutter():
 
 
 def test_windows_of_another_length_give_the_same(monkeypatch):
-    survey, edges = road_with(SCENES["country"], poles=((39.9, 5.5, 0.2, 4.0),))
+    survey, edges = road_with(SCENES["country"], poles=((39.9, 5.5, 0.2, 4.0),), density=800.0, face=500.0)
     one = roadside_to_features(found_in(survey, edges))
     monkeypatch.setattr(finding, "ROADSIDE_WINDOW", 60.0)
     other = roadside_to_features(found_in(survey, edges))

@@ -35,7 +35,7 @@ def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None):
 def test_paint_and_mask_are_the_same_whether_the_image_is_read_from_its_file_or_not(tmp_path):
     records = street(FRAME, [strip(10, 70, 1.0, 1.15), strip(20, 20.5, -3.0, 1.0)])
     usual = found_on(records, tmp_path, mask=tmp_path / "a.tif")
-    image = make_intensity_image(road_points(records, FRAME), memory_limit=10**6)
+    image = make_intensity_image(road_points(records, FRAME))
     found = extract_markings(road_points(records, FRAME), image, FRAME, mask_path=tmp_path / "b.tif").all_points()
     assert len(found) > 1000
     assert_same_points(found.records, usual.records)
@@ -71,7 +71,7 @@ def test_an_edge_line_behind_a_band_of_water_is_paint_and_no_gutter(tmp_path):
     records = street(FRAME, [line], density=2500, level=lambda s, d: np.where((d > 2.0) & (d < 3.3), 0.25, 1.0))
     records["corrected"] = records["intensity"]
     points = replace(road_points(records, FRAME), has_corrected=True)
-    paint = extract_markings(points, make_intensity_image(points, memory_limit=10**7), FRAME).all_points()
+    paint = extract_markings(points, make_intensity_image(points), FRAME).all_points()
     on = line(paint.s, paint.d)
     assert on.sum() > 0.9 * 2500 * 60 * 0.12 and on.mean() > 0.95
 

@@ -65,6 +65,6 @@ def test_a_bright_island_on_the_road_is_no_paint():
         heights = records.copy()
         heights["z"][on_island] += int(height * 1e4)
         points = road_points(heights, FRAME)
-        paint = extract_markings(points, make_intensity_image(points, memory_limit=10**7), FRAME).all_points()
+        paint = extract_markings(points, make_intensity_image(points), FRAME).all_points()
         assert island(paint.s, paint.d).sum() == pytest.approx(share * on_island.sum(), abs=0.12 * on_island.sum())
         assert sum(mark(paint.s, paint.d).sum() for mark in stripes) > 7000

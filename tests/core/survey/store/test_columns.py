@@ -78,27 +78,6 @@ def test_only_those_parts_are_read_that_the_rows_lie_in():
     assert joined[120:130][np.array([1])]["s"].tolist() == [21]
 
 
-def test_few_rows_are_read_by_row_and_many_by_reading_the_column_once():
-    records, fetched = some(), []
-
-    def whole(name):
-        fetched.append((name, len(records)))
-        return records[name].copy()
-
-    def few(name, rows):
-        fetched.append((name, len(rows)))
-        return records[name][rows]
-
-    columns = Columns({}, records.dtype, len(records), whole, load_rows=few)
-    np.testing.assert_array_equal(columns[::20]["time"], records["time"][::20])
-    assert fetched == [("time", 5)]
-    for rows in (np.arange(7), np.arange(20), np.arange(3, 90), np.arange(4)):
-        np.testing.assert_array_equal(columns[rows]["time"], records["time"][rows])
-    assert fetched == [("time", 5), ("time", 7), ("time", 100)]
-    with pytest.raises(IndexError):
-        columns[np.array([0, 100])]["s"]
-
-
 def test_parts_are_joined_in_order_and_none_are_none():
     records = some()
     halves = [Columns.from_records(records[:30]), Columns.from_records(records[30:])]

@@ -5,18 +5,18 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from lanewright.core.survey.store.records import ROAD_POINT, SURVEY_POINT, join_columns, to_units
+from lanewright.core.survey.store.records import SURVEY_POINT, join_columns, to_units
 from lanewright.core.survey.store.road_points import columns_of_roads
 from lanewright.core.survey.store.section_store import SectionStore
 
 PER_METRE = 400
-LIMIT = 200_000   # bytes of points that the stores below may keep
+LIMIT = 200_000   # bytes, a few sections of the stores below
 
 
-def road_of(length, folder=None, cache_limit=LIMIT):
-    """A store of a road so many metres long, whose points are mostly in a file."""
+def road_of(length):
+    """A store of a road so many metres long, whose points are in a file."""
     rng = np.random.default_rng(3)
-    store = SectionStore(SURVEY_POINT, section_length=5.0, memory_limit=LIMIT, cache_limit=cache_limit, folder=folder)
+    store = SectionStore(SURVEY_POINT, section_length=5.0)
     for first in range(0, length, 50):
         made = np.zeros(50 * PER_METRE, SURVEY_POINT)
         made["s"], made["x"] = to_units(rng.uniform(first, first + 50, len(made))), rng.integers(0, 2_000_000, len(made))
@@ -83,16 +83,6 @@ def test_a_store_that_was_read_holds_no_more_memory_for_a_longer_road():
     points = (1000 - 200) * PER_METRE * SURVEY_POINT.itemsize
     # where the points lie in the file grows with the road: sections and their columns, not points
     assert long - short < 0.05 * points and long < 4 * LIMIT + 0.05 * points
-
-
-def test_a_column_that_is_set_anew_keeps_as_many_points_ready_as_the_store(tmp_path):
-    points = road_of(400, tmp_path)
-    overlay = points.with_column("intensity", tmp_path)
-    for number in overlay.sections(0):
-        overlay.put(0, number, overlay.points.section(0, number)["intensity"] // 2)
-    ready = overlay._column._cache_limit / SURVEY_POINT["intensity"].itemsize
-    assert ready <= 64 * 2**20 / SURVEY_POINT.itemsize + 1 and ROAD_POINT.itemsize > SURVEY_POINT.itemsize
-    np.testing.assert_array_equal(columns_of_roads(overlay, [0])["intensity"], columns_of_roads(points, [0])["intensity"] // 2)
 
 
 def test_rows_that_were_read_can_be_asked_for_anew_without_what_was_read(road):

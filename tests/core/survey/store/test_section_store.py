@@ -1,13 +1,14 @@
-"""Points kept by section of road, in memory or beyond it."""
+"""Points kept by section of road."""
 
 import gc
 import threading
 import warnings
+import weakref
 
 import numpy as np
 import pytest
 from lanewright.core.survey.store.records import SURVEY_POINT, join_columns, to_units
-from lanewright.core.survey.store.section_store import SectionStore, canonical_order
+from lanewright.core.survey.store.section_store import SectionStore, canonical_order, opened_store
 
 
 def records(count=4000, seed=4, length=200.0):
@@ -27,10 +28,9 @@ def filled(parts, **settings):
     return store
 
 
-@pytest.mark.parametrize("limit", [0, 10_000, 10**9])
-def test_what_went_in_comes_out_sorted_along_the_road(limit):
+def test_what_went_in_comes_out_sorted_along_the_road():
     made = records()
-    store = filled(np.array_split(made, 7), section_length=20.0, memory_limit=limit)
+    store = filled(np.array_split(made, 7), section_length=20.0)
     read = np.asarray(join_columns([store.section(0, number) for number in store.sections(0)], SURVEY_POINT))
     assert store.count == len(read) == len(made)
     assert (np.diff(read["s"]) >= 0).all()
@@ -40,21 +40,13 @@ def test_what_went_in_comes_out_sorted_along_the_road(limit):
         assert ((section["s"] >= to_units(20.0 * number)) & (section["s"] < to_units(20.0 * (number + 1)))).all()
 
 
-def test_columns_survive_the_file_whatever_their_widths():
-    made = records(999)
-    made["returns"], made["scanner"], made["source"] = np.arange(999) % 256, 3, np.arange(999)
-    kept, spilled = filled([made]), filled([made[:500], made[500:]], memory_limit=0)
-    for number in kept.sections(0):
-        np.testing.assert_array_equal(spilled.section(0, number), kept.section(0, number))
-
-
 @pytest.mark.parametrize("more", [False, True])
-def test_columns_whose_points_are_alike_survive_the_file_without_being_written(more):
+def test_points_that_come_to_sections_in_order_are_put_in_order_with_them(more):
     """Sections that are put in order already; more points may come to them later."""
     made = records()
     made["pass_number"], made["source"] = 3, 7
     sections = filled([made])
-    store = SectionStore(SURVEY_POINT, memory_limit=0)
+    store = SectionStore(SURVEY_POINT)
     for number in sections.sections(0):
         store.put(0, number, sections.section(0, number))
     if more:
@@ -69,18 +61,17 @@ def test_columns_whose_points_are_alike_survive_the_file_without_being_written(m
 
 def test_what_a_section_is_finished_with_is_seen_and_nothing_else():
     made = records()
-    for limit in (0, 10_000, 10**9):
-        store = filled(np.array_split(made, 3), memory_limit=limit)
-        store.finish = lambda road, section: section["d"] > 0
-        for _ in range(2):  # the second time as it was put back
-            assert len(store.window(0, -20.0, 220.0)) == np.count_nonzero(made["d"] > 0)
-            assert (store.window(0, -20.0, 220.0).d > 0).all()
+    store = filled(np.array_split(made, 3))
+    store.finish = lambda road, section: section["d"] > 0
+    for _ in range(2):  # the second time as it was put back
+        assert len(store.window(0, -20.0, 220.0)) == np.count_nonzero(made["d"] > 0)
+        assert (store.window(0, -20.0, 220.0).d > 0).all()
 
 
 def test_the_order_of_appending_leaves_no_trace():
     made = records()
     mixed = made[np.random.default_rng(1).permutation(len(made))]
-    one, other = filled([made]), filled(np.array_split(mixed, 13), memory_limit=5_000)
+    one, other = filled([made]), filled(np.array_split(mixed, 13))
     for number in one.sections(0):
         np.testing.assert_array_equal(one.section(0, number), other.section(0, number))
 
@@ -98,7 +89,7 @@ def test_windows_side_by_side_hold_every_point_once():
 
 
 def test_points_added_after_reading_are_seen():
-    store = filled([records(100)], memory_limit=1_000)
+    store = filled([records(100)])
     before = len(store.window(0, -20, 220))
     store.append(0, records(50, seed=9))
     assert (before, len(store.window(0, -20, 220))) == (100, 150)
@@ -112,7 +103,7 @@ def test_an_empty_store_has_no_roads_and_empty_windows():
 
 
 def test_several_threads_read_what_one_reads():
-    store = filled(np.array_split(records(20_000), 9), section_length=20.0, memory_limit=50_000)
+    store = filled(np.array_split(records(20_000), 9), section_length=20.0)
     expected = {number: np.asarray(store.section(0, number)).tobytes() for number in store.sections(0)}
     wrong = []
 
@@ -156,10 +147,9 @@ def test_a_tenth_of_a_millimetre_survives():
     np.testing.assert_array_equal(to_units([0.0001, -0.0001, 123.45674]), [1, -1, 1234567])
 
 
-@pytest.mark.parametrize("limit", [0, 60_000, 10**9])
-def test_a_section_read_before_its_last_points_came_is_in_order_all_the_same(limit):
+def test_a_section_read_before_its_last_points_came_is_in_order_all_the_same():
     made = records()
-    store = SectionStore(SURVEY_POINT, memory_limit=limit)
+    store = SectionStore(SURVEY_POINT)
     for part in np.array_split(made, 5):
         store.append(0, part)
         store.section(0, 3)
@@ -171,10 +161,9 @@ def test_a_section_read_before_its_last_points_came_is_in_order_all_the_same(lim
 
 
 def test_a_section_that_was_handed_out_cannot_be_spoilt_for_the_next_reader():
-    for limit in (0, 10**9):
-        section = filled([records()], memory_limit=limit).section(0, 2)
-        with pytest.raises(ValueError, match="read-only"):
-            section["time"] = 0.0
+    section = filled([records()]).section(0, 2)
+    with pytest.raises(ValueError, match="read-only"):
+        section["time"] = 0.0
 
 
 @pytest.mark.parametrize("length", [5.0, 7.0, 0.3])
@@ -188,8 +177,52 @@ def test_the_temporary_file_goes_with_the_store_and_nobody_is_warned():
     """Python would write of an unclosed file into the log that the user reads."""
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
-        store = filled([records()], memory_limit=0)
+        store = filled([records()])
         store.section(0, 3)
         del store
         gc.collect()
     assert not [one for one in said if issubclass(one.category, ResourceWarning)]
+
+
+def bright_of(store, folder=None):
+    """The store with half the intensity, and a column that is the same everywhere."""
+    bright = store.with_column("intensity", folder)
+    with bright.part() as part:
+        for number in store.sections(0):
+            part.put(0, number, store.section(0, number).with_columns(intensity=store.section(0, number)["intensity"] // 2))
+    bright.adopt(part.index(), folder)
+    return bright
+
+
+@pytest.mark.parametrize("named", [False, True])
+def test_a_column_beside_a_store_replaces_its_own_and_no_other(tmp_path, named):
+    folder = tmp_path if named else None
+    store = filled(np.array_split(records(), 3), folder=folder)
+    for found in [bright := bright_of(store, folder), *([opened_store(tmp_path, **bright.contents())] if named else [])]:
+        assert (found.count, found.roads(), found.sections(0)) == (store.count, [0], store.sections(0))
+        whole, halved = (np.asarray(one.window(0, -20.0, 220.0).records) for one in (store, found))
+        np.testing.assert_array_equal(halved["intensity"], whole["intensity"] // 2)
+        for name in SURVEY_POINT.names:
+            assert name == "intensity" or (halved[name] == whole[name]).all()
+        few = np.array([5, 2, 2])
+        np.testing.assert_array_equal(found.section(0, 4).take(few)["intensity"], store.section(0, 4)["intensity"][few] // 2)
+    bright.close()
+    assert not store.roads()
+
+
+def test_a_column_with_one_value_for_all_points_is_not_stored():
+    made, store = records(), SectionStore(SURVEY_POINT, constants=dict(scanner=3, time=np.nan))
+    store.append(0, made)
+    read = store.window(0, -20.0, 220.0).records
+    assert len(read) == len(made) and (read["scanner"] == 3).all() and np.isnan(read["time"]).all()
+    assert store._row_bytes == SURVEY_POINT.itemsize - 9
+
+
+def test_the_disk_space_of_points_in_no_order_is_given_back_with_the_last_section_that_is_put_in_order():
+    store = filled(np.array_split(records(), 3))
+    waiting = weakref.ref(store._files[False])
+    for number in store.sections(0):
+        assert waiting() is not None
+        store.section(0, number)
+    gc.collect()
+    assert waiting() is None

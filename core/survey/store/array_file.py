@@ -1,0 +1,161 @@
+"""Files of arrays: written once, as the arrays lie in memory, and mapped into memory by whoever reads them: thread, process or machine.
+
+The operating system keeps in memory what was written and read last, once for all who read it.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+import struct
+import tempfile
+import threading
+import weakref
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import numpy as np
+
+from ...common.parallel import freed_on_demand
+from ...execution.phase import checksum
+from ..weights import STORE
+
+SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a finished file
+ALIGNMENT = 8   # derived: bytes: the longest number of an array begins at a multiple of them
+
+
+class ArrayFile:
+    """Arrays one after the other in a file, which several threads may write and read; `end` is its length in bytes.
+
+    path : of the file; None for a temporary one without a name, which a killed run does not leave behind (on Windows it is deleted when it is closed)
+    mode : "w+b" for a new file, "rb" for one that others finished
+    """
+
+    def __init__(self, path: Path | None = None, mode: str = "w+b") -> None:
+        self.path, self._lock = path, threading.Lock()
+        self._file: Any = tempfile.TemporaryFile(prefix="lanewright-", buffering=0) if path is None else open(path, mode, buffering=0)
+        # closed with this object; otherwise Python warns of an unclosed file
+        weakref.finalize(self, self._file.close)
+        self._map: mmap.mmap | None = None
+        self.end = os.fstat(self._file.fileno()).st_size
+
+    def put(self, arrays: Iterable[np.ndarray], nbytes: int) -> int:
+        """Write arrays of so many bytes together one after the other; their first byte. Each is written before the next one is asked for."""
+        with self._lock:
+            first, self.end = self.end, self.end + -(-nbytes // ALIGNMENT) * ALIGNMENT
+        place = first
+        for array in arrays:
+            self._write(place, array)
+            place += array.nbytes
+        return first
+
+    def get(self, place: int, count: int, dtype: Any) -> np.ndarray:
+        """(N,) read-only values from a byte on, which stay in the file until they are used.
+
+        Raises OSError where the file ends before.
+        """
+        end = place + count * np.dtype(dtype).itemsize
+        with self._lock:
+            if self._map is None or end > len(self._map):
+                if os.fstat(self._file.fileno()).st_size < end:
+                    raise OSError(f"{self._file.name} ends early, before byte {end:,}")
+                self._map = mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ)
+            mapped = self._map
+        _mapped.add(self, end - place)
+        return np.frombuffer(mapped, dtype, count, place)
+
+    # pwrite leaves the file's position alone, so threads may use it together; Windows lacks it
+    def _write(self, place, array):
+        data = memoryview(np.ascontiguousarray(array).view(np.uint8)) if array.nbytes else b""
+        try:
+            while len(data):  # a signal may shorten a write; a full disk raises
+                if hasattr(os, "pwrite"):
+                    written = os.pwrite(self._file.fileno(), data, place)
+                else:
+                    with self._lock:
+                        self._file.seek(place)
+                        written = self._file.write(data)
+                data, place = data[written:], place + written
+        except OSError as error:   # which does not say where the disk is full
+            raise OSError(error.errno, error.strerror, str(self.path or tempfile.gettempdir())) from error
+
+    def seal(self) -> None:
+        """Fill the file up to its end and write a checksum of all bytes behind them, by which `files_are_whole` knows them again."""
+        self._file.truncate(self.end)
+        self._file.seek(0)
+        self._write(self.end, np.frombuffer(SEAL.pack(checksum(self._file, self.end)), np.uint8))
+
+    def close(self) -> None:
+        """Release the disk space of a file without a name, as soon as nobody uses its arrays; others stay."""
+        self._map = None
+        self._file.close()
+
+    def forget_pages(self) -> None:
+        """Let go of the pages that are mapped; the arrays stay, and fetch theirs again from the file."""
+        mapped = self._map
+        if mapped is not None and hasattr(mapped, "madvise"):
+            mapped.madvise(mmap.MADV_DONTNEED)
+
+
+class _MappedPages:
+    """What this process has mapped of all files: more than `STORE.mapped_bytes` would count as its memory for as long as they are open."""
+
+    def __init__(self) -> None:
+        self._lock, self._files, self._nbytes = threading.Lock(), weakref.WeakSet[ArrayFile](), 0
+
+    def add(self, file: ArrayFile, nbytes: int) -> None:
+        with self._lock:
+            self._files.add(file)
+            self._nbytes += nbytes
+            if self._nbytes <= STORE.mapped_bytes:
+                return
+            self._nbytes, files = 0, list(self._files)
+        for file in files:
+            file.forget_pages()
+
+
+_mapped = _MappedPages()
+
+
+@lru_cache(maxsize=STORE.open_files)
+def opened(path: Path) -> ArrayFile:
+    """A file that is finished, open for reading; again where too many others were read meanwhile."""
+    return ArrayFile(path, "rb")
+
+
+@freed_on_demand
+def close_files() -> None:
+    """Close the files that are held open: Windows removes none that is."""
+    opened.cache_clear()
+
+
+@contextmanager
+def new_file(folder: Path) -> Iterator[tuple[ArrayFile, str]]:
+    """A new file in a folder and its name, under which it appears there at the end, whole or not at all; without a byte in it there is none."""
+    name = f"points-{uuid4().hex}.bin"
+    unfinished = folder / f"{name}.part"
+    file = ArrayFile(unfinished)
+    try:
+        yield file, name
+        if file.end:
+            file.seal()
+        file.close()
+        if file.end:
+            os.replace(unfinished, folder / name)
+    finally:
+        file.close()
+        unfinished.unlink(missing_ok=True)
+
+
+def files_are_whole(folder: Path) -> bool:
+    """Whether all files of `new_file` in a folder are as they were written, which they may not be after the power failed."""
+    for path in folder.glob("points-*.bin"):
+        with open(path, "rb", buffering=0) as file:
+            end = os.fstat(file.fileno()).st_size - SEAL.size
+            if end < 0 or checksum(file, end) != SEAL.unpack(file.read(SEAL.size))[0]:
+                return False
+    return True
