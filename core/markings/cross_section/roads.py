@@ -18,6 +18,7 @@ from ...survey.store.road_points import RoadPoints
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..weights import ROADS
+from .beside import lanes_beside
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import (
@@ -88,10 +89,10 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     estimates = _estimates(evidence, sides, usual_width, weights, progress.part(0.4, 0.7))
     best, named, behind, opposite = _best_side(estimates, weights)
     used = tuple(first for first in sides if first == best or behind < ROADS.sure_side or opposite < weights.doubt)
-    width = usual_width if width_asked else _usual_width(evidence, estimates[best], usual_width)
+    width, shown = (usual_width, True) if width_asked else _usual_width(evidence, estimates[best], usual_width)
     # the road's own width tells lanes better than that of a country
     if width != usual_width:
-        estimates = _estimates(evidence, used, width, weights, progress.part(0.7, 1.0))
+        estimates = _estimates(evidence, used, width, weights, progress.part(0.7, 1.0), shown)
     roads = {}
     for number, estimate in estimates[best].items():
         if named:
@@ -118,8 +119,7 @@ def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, d
     covered, ends = _surface(*points, number, s, likely)
     open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
     hatched, borders = _closed_areas(markings, frame, number, s, driven[0])
-    bends = np.abs(frame.road(number).curvature(s)) > 1 / ROADS.widened_radius
-    boundaries = gather_boundaries(of_road, curbs, ends, open_ends, bends, borders, pavement, dash_lengths(of_road, markings, number))
+    boundaries = gather_boundaries(of_road, curbs, ends, open_ends, borders, pavement, dash_lengths(of_road, markings, number))
     candidates = boundary_candidates(boundaries, weights)
     evidence = evidence_of(candidates, s, *driven, covered, hatched, arrows, markings, number, other_carriageway(frame, number, s))
     return boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, s))
@@ -183,16 +183,19 @@ def _likely_ends(lines, width):
     return ends + np.array([[width], [-width]])
 
 
-def _estimates(known, sides, width, weights, progress):
-    """{side of traffic: {number of the road: RoadEstimate}}."""
+def _estimates(known, sides, width, weights, progress, shown=False):
+    """{side of traffic: {number of the road: RoadEstimate}}; `shown` : whether lines of the survey show the width."""
+    widths = {number: replace(candidates, beside=lanes_beside(candidates, evidence, width, shown, weights))
+              for number, (_, candidates, evidence) in known.items()}
+
     def of_side(first):
-        return {number: estimate_road(candidates, evidence, first, width, weights) for number, (_, candidates, evidence) in known.items()}
+        return {number: estimate_road(widths[number], evidence, first, width, weights) for number, (_, _, evidence) in known.items()}
 
     return dict(zip(sides, ordered_map(of_side, sides, progress)))
 
 
 def _usual_width(known, estimates, usual):
-    """Median width, metres, of lanes between painted lines, or between one and the edge of the pavement."""
+    """Median width, metres, of lanes between painted lines, or between one and the edge of the pavement, and whether these show it."""
     widths, lengths = [], []
     for number, estimate in estimates.items():
         boundaries, candidates, _ = known[number]
@@ -207,12 +210,12 @@ def _usual_width(known, estimates, usual):
                 widths.append(width if painted.all() else min(width, usual))
                 lengths.append(STATION_STEP * (rows.stop - rows.start))
     if not lengths:
-        return usual
+        return usual, False
     widths, lengths = np.append(widths, usual), np.append(lengths, ROADS.length_of_usual)
     order = np.argsort(widths)
     total = np.cumsum(lengths[order])
     middle = float(widths[order[int(np.searchsorted(total, total[-1] / 2))]])
-    return (middle * sum(lengths[:-1]) + usual * ROADS.length_of_usual) / sum(lengths)
+    return (middle * sum(lengths[:-1]) + usual * ROADS.length_of_usual) / sum(lengths), sum(lengths[:-1]) > ROADS.length_of_usual
 
 
 # Arrows on the road: in which lane they lie and which way they point.
