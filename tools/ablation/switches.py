@@ -216,7 +216,7 @@ ROWS = (
         ("mouths of side streets", "openings:opened_limits", nth(0), "side streets not driven",
          "openings:opened_limits openings:street_ground openings:cells_driven"),
         ("narrow mouths of a wider road", "openings:_goes_on_wider", gives(False), "bays and widenings"),
-        ("level flanks of mouths", "openings:_level_share", gives(0.0), "driveways"),
+        ("level flanks of mouths", "openings:_level_flanks", gives(0.0), "driveways"),
         ("streets driven themselves", "openings:cells_driven", lambda frame, road, cells: np.zeros(cells.height.shape, bool), "crossing, roundabout"),
         ("openings between pavement edges", "limits:_closed", nth(1), "one-way street with a flush bicycle path"),
         ("openings between curbs", "limits:_continued", nth(1)),
