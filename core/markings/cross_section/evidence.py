@@ -216,8 +216,9 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     with np.errstate(invalid="ignore", divide="ignore"):
         offsets = np.where(2 * count >= size, np.add.reduceat(np.where(driven_there, driven, 0.0), candidates.first, axis=1) / count, np.nan)
     stops = np.empty((0, 3)) if markings is None else _stop_lines(candidates, s, markings, road)
-    most = [np.zeros(len(size), bool) if there is None else np.add.reduceat(there, candidates.first) * 2 > size for there in (divided, bare)]
-    return Evidence(offsets, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops, *most)
+    on_one_of_two, without_paint = (np.zeros(len(size), bool) if there is None else np.add.reduceat(there, candidates.first) * 2 > size
+                                    for there in (divided, bare))
+    return Evidence(offsets, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops, on_one_of_two, without_paint)
 
 
 def _extents(markings, road, kind):
