@@ -96,6 +96,9 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     centres = [[centre_of(part, drafting.left_hand) for part in strip] for strip, _ in strips]
     shapes = side_by_side([shape_steps(strip, road_centres, settings.tolerance / 2) for (strip, _), road_centres in zip(strips, centres)],
                           progress.part(0.0, 0.5))
+    if cornered := sum(not shape.follows for shape in shapes):
+        progress.info(f"The borders in the middle of {cornered} of {len(shapes)} roads have corners, which no reference line follows: smoother lines "
+                      "were tried, so that the export takes longer, and the lane offset leads from them to the borders.")
     shaped = [(shape, strip, road_centres) for shape, (strip, _), road_centres in zip(shapes, strips, centres)]
     borders = fit_borders(shaped, CURVES_SHARE * settings.tolerance, directions)
     for number, (shape, functions, (_, single)) in enumerate(zip(shaped, borders, strips), start=1):

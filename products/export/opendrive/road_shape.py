@@ -39,6 +39,7 @@ class RoadShape:
 
     courses : for each slice and border (3, n) s, t, z that reach from the start of its section to its end at least, s rising: sections are cut
         square, lanes are not
+    follows : whether the reference line lies on the border at which lane 0 is; else that has corners, which a smoother line cuts
     """
 
     plan: PlanView
@@ -48,6 +49,7 @@ class RoadShape:
     lifts: list[np.ndarray]
     starts: np.ndarray
     courses: list[list[np.ndarray]]
+    follows: bool
 
 
 def centre_of(one: Slice, left_hand: bool) -> int:
@@ -102,7 +104,7 @@ def shape_steps(strip: list[Slice], centres: list[int], tolerance: float) -> Ste
     z_all, lifts = (list(values) for values in zip(*(part.levels(centre) for part, centre in zip(strip, centres))))
     starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
     courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
-    return RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses)
+    return RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses, follows)
 
 
 def _finer(one, s):

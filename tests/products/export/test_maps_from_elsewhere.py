@@ -5,6 +5,7 @@ import time
 import numpy as np
 import pytest
 import shapely
+from lanewright.core.common.progress import Progress
 from lanewright.core.driving.layers import Lanes
 from lanewright.products.export.check.lanelets import check_lanelets
 from lanewright.products.export.inferred_ways import with_inferred_ways
@@ -285,6 +286,19 @@ def test_the_steps_of_an_export_do_not_grow_with_the_number_of_roads(tmp_path, m
         draft_opendrive(with_shared_borders(checked(RoadMapSource(lanes))))
         counts.append(len(steps))
     assert counts[0] == counts[1] > 2
+
+
+def test_an_export_that_takes_longer_since_borders_have_corners_says_so(tmp_path):
+    """As maps do whose reference lines are made of chords, with a kink at the end of each."""
+    turns, places = np.tile([0.2, -0.2], 5), [(0.0, 0.0)]
+    for turn in turns:
+        places.append((places[-1][0] + 4 * np.cos(turn), places[-1][1] + 4 * np.sin(turn)))
+    kinked = road("".join(geometry(4 * k, *places[k], turn, 4) for k, turn in enumerate(turns)), 40)
+    for roads, said in ((kinked + road(geometry(0, 0, 50, 0, 40), 40, "2"), "1 of 2 roads have corners"), (road(LINE, 40), "")):
+        told, progress = [], Progress()
+        progress.info = told.append
+        draft_opendrive(with_shared_borders(checked(RoadMapSource(taken_in(tmp_path, roads)[1]))), progress=progress)
+        assert said in "".join(told) and bool(told) == bool(said)
 
 
 def test_a_map_without_crs_leaves_as_a_local_map(tmp_path):
