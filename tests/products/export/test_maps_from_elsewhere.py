@@ -139,11 +139,12 @@ def test_roads_that_do_not_meet_in_height_are_named(tmp_path):
     assert "moved by up to 0.10 m" in note and "near x 40.0, y 0.0" in note
 
 
-def test_a_miss_between_the_vertices_of_a_border_is_seen_and_what_lies_beyond_its_end_is_not():
+def test_a_miss_between_the_vertices_of_a_border_is_seen_with_its_place_and_what_lies_beyond_its_end_is_not():
     ours, theirs = (Lanes.of_pieces([dict(left=np.array(left), right=np.array(right))]) for left, right in (
         ([[0.0, 0, 0], [10, 0, 0]], [[0.0, -3, 0], [10, -3, 0]]),
         ([[-1.0, 0, 0], [5, 0.05, 0], [12, 0, 0]], [[-1.0, -3, 0], [5, -3, 0], [12, -3, 0]])))
-    assert border_misses(ours, theirs)[0].largest == pytest.approx(0.05)
+    across, _ = border_misses(ours, theirs)
+    assert across.largest == pytest.approx(0.05) and across.worst == pytest.approx([5.0, 0.05, 0.0])
 
 
 def test_a_lane_that_begins_at_width_0_keeps_both_of_its_borders(tmp_path):
