@@ -40,8 +40,8 @@ EXECUTION_SETTINGS = (
     SettingSpec("WORKERS", "core.execution.choice:ExecutionSettings", "workers", tr("Worker processes, 0 = automatic (whole number)"),
                 tr("So many further processes of Python read the points, find curbs and do most of what is done point by point, with the same "
                    "results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic "
-                   "takes one for every 8 million points, eight or one per core at most, and none for less than 24 million points, nor on two cores "
-                   "for less than 100 million. Where no Python can be started, this program does their work, and the log says so."), advanced=True),
+                   "takes one for every 5 million points, one per core and GB of memory at most, and none for less than 10 million "
+                   "points. Where no Python can be started, this program does their work, and the log says so."), advanced=True),
     SettingSpec("SCHEDULER", "core.execution.choice:ExecutionSettings", "scheduler", tr("Address of a Dask scheduler"),
                 tr("The workers of a Dask cluster that is running already do what worker processes would, with the same results: tls://host:8786, or "
                    "tcp://127.0.0.1:8786 on this computer. They need the same Python, packages and Lanewright, no QGIS, and a work folder that all "
@@ -73,7 +73,7 @@ def add_execution(algorithm):
     """Who does the work, and where finished work is kept."""
     algorithm.add_settings(EXECUTION_SETTINGS)
     algorithm.add_input("folder", "WORK_FOLDER", tr("Work folder"),
-                        tr("A folder for finished work, about 20 bytes for every point near the road. A run that ended early, or that is repeated "
+                        tr("A folder for finished work, about 40 bytes for every point near the road. A run that ended early, or that is repeated "
                            "with other settings of later stages, does not read the points and find the curbs again. What was made from other files, "
                            "settings or another version of Lanewright is not used. Nothing that is finished is ever removed; delete it when the map "
                            "is done."), optional=True, advanced=True)

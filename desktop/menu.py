@@ -7,6 +7,7 @@ from qgis.PyQt.QtCore import QObject, QUrl
 from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
 
+from ..core.pipeline.kept_run import WINDOW
 from ..processing_provider.reports import last_report
 from ..processing_provider.results.layer_tree import NAMES_ONLY, REPLACES_LAST_RUN
 from ..processing_provider.results.road_maps import clouds_of, road_maps
@@ -34,6 +35,7 @@ class Menu(QObject):
         self.actions = []
         self.dialog = self.layout_dialog = self.designer = None  # kept, or Python would collect the open windows
         self.section = self.doubts = self.pairs = None
+        WINDOW.begin()
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
         theme = QgsApplication.getThemeIcon
@@ -198,6 +200,7 @@ class Menu(QObject):
             self.pairs.deleteLater()
             self.pairs = None
         self.manual.forget()
+        WINDOW.end()
 
     def open_road_map(self, **values):
         """The dialog of Road map, with some of its values."""

@@ -119,11 +119,11 @@ class RoadMap(Algorithm):
         progress = progress.part(ESTIMATED if estimated else 0.0, 1.0)
         image_path = call.new_file("INTENSITY_IMAGE") or call.scratch_file("intensity.tif")
         road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95), corrections)
+        call.at_end(road_map.free)
         if estimated:
             road_map.survey_facts["trajectory"] = estimated.summary()
         if call.wants("ROAD_POINTS"):
             write_road_points(road_map.road_points, call.new_file("ROAD_POINTS"), progress.part(0.95, 1.0))
-        road_map.road_points.close()
         if road_map.image is None:
             call.drop_file("INTENSITY_IMAGE")
         layers = {}

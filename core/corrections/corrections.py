@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -72,6 +72,10 @@ class Corrections:
     def of(self, target: str) -> list[Correction]:
         """Those of one target, in the order of the layer."""
         return [row for row in self.rows if row.target == target]
+
+    def asked(self, target: str) -> list[Correction]:
+        """What is asked for one target, whatever else the layer holds and says: plain values that tell requests apart."""
+        return [replace(row, row=0, note="") for row in self.of(target)]
 
     def taken(self, frame: RoadFrame) -> list[TakenReading]:
         """The second readings of lanes that were taken, for the estimate of lines and lanes."""

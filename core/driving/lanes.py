@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.ndimage import binary_dilation
@@ -16,7 +16,6 @@ from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
 from .weights import TRACKS
 
 BESIDE_ONE, BETWEEN_WORN, DIVIDED, BETWEEN_LINES = 1, 2, 3, 4   # ranks of lanes by how sure their place is; those between two lines are not moved
-STATIONS_OF_STEP = int(TRACKS.step_length / STATION_STEP) + STATIONS_OF_CELL   # derived: of a lane's end that are looked at where it goes on
 
 
 def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: float, line_distance: float = 0.0) -> list[LaneTrack]:
@@ -24,49 +23,18 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
 
     `lane_width` : m, of a lane beside which only one line is painted; `line_distance` : m from that line to its middle, 0 for half of its width.
     """
-    open_tracks: list[_OpenLane] = []
-    closed: list[LaneTrack] = []
+    open_tracks: list[list[LaneTrack]] = []
+    closed: list[list[LaneTrack]] = []
     spans: dict[int, list[LaneSpan]] = {}
     for span in lane_spans(estimate):
         spans.setdefault(span.interval, []).append(span)
     for i, (first, last) in enumerate(zip(estimate.candidates.first.tolist(), estimate.candidates.last.tolist())):
         parts = [part for span in spans.get(i, []) for part in [_part(boundaries, span, first, last, lane_width, line_distance)] if part is not None]
         follows = _followed(open_tracks, parts, first)
-        closed += [LaneTrack.joined(lane.parts) for k, lane in enumerate(open_tracks) if k not in follows.values()]
-        open_tracks = [_appended(open_tracks[follows[k]], part) if k in follows else _OpenLane([part], np.zeros(2)) for k, part in enumerate(parts)]
+        closed += [lane for k, lane in enumerate(open_tracks) if k not in follows.values()]
+        open_tracks = [[*open_tracks[follows[k]], part] if k in follows else [part] for k, part in enumerate(parts)]
         check_cancelled()
-    return [_to_its_ends(track, boundaries) for track in closed + [LaneTrack.joined(lane.parts) for lane in open_tracks]]
-
-
-@dataclass
-class _OpenLane:
-    """A lane as far as it was followed: LaneTracks one after the other, and by how much its end is moved, m across and of width."""
-
-    parts: list[LaneTrack]
-    moved: np.ndarray
-
-    def tail(self, stations: int) -> LaneTrack:
-        """The last stations of the lane, so many of them as there are, which become its last part."""
-        parts: list[LaneTrack] = []
-        while self.parts and stations > 0:
-            part = self.parts.pop()
-            cut = max(len(part) - stations, 0)
-            if cut:
-                self.parts.append(part.part(0, cut))
-            parts.insert(0, part.part(cut, len(part)))
-            stations -= len(part) - cut
-        self.parts.append(LaneTrack.joined(parts))
-        return self.parts[-1]
-
-    def since_surer(self, rank: int) -> int:
-        """How many stations at its end there are from the last one on whose rank is above `rank`."""
-        count = 0
-        for part in reversed(self.parts):
-            surer = np.flatnonzero(_rank(part) > rank)
-            count += len(part) - (int(surer[-1]) if len(surer) else 0)
-            if len(surer):
-                break
-        return count
+    return [_to_its_ends(_without_steps(lane), boundaries) for lane in closed + open_tracks]
 
 
 def _to_its_ends(track, boundaries):
@@ -106,30 +74,33 @@ def _rank(track):
     return np.where(track.status == MEASURED, BETWEEN_LINES, np.where(track.offset, BESIDE_ONE, np.where(between, BETWEEN_WORN, DIVIDED)))
 
 
-def _appended(found, part):
-    """A track and the part that follows it; of the two the one whose place is less sure is moved to meet the other, and takes its width.
+def _without_steps(parts):
+    """The LaneTracks of one lane, one after the other, as one without steps between them.
 
-    It is moved as far as it is less sure: a stretch between two that are sure ends in both. A border that is a line in both stays on it. Of two
-    that are as sure as each other the second stays moved as the first was (`moved`, m across and of width), and what else they differ by, as
-    where a line between them steps aside, is evened out there. What is given is the lane with the part.
+    At a step the side whose place is less sure is led to where the other ends; of two that are as sure as each other both are, by half of what they
+    differ. Where nothing is painted between two lanes, what parts them goes on as the line before, for as long as that was seen; else it is led over
+    some metres, and up to a surer place at most.
     """
-    # between lines that are seen on both sides of the joint nothing is moved
-    if found.parts[-1].status[-1] == part.status[0] == MEASURED:
-        return _OpenLane([*found.parts, part], np.zeros(2))
-    track, moved = found.tail(STATIONS_OF_STEP), found.moved
-    step = np.array([track.d[-1] - part.d[0], track.width[-1] - part.width[0]])
-    before, after = _rank(track), _rank(part)
-    before, after = _with_lines_up_to(before[::-1], after)[::-1], _with_lines_up_to(after, before[::-1])
-    if after[0] > before[-1]:
-        # the lane is moved back to where its place was surer
-        track = found.tail(found.since_surer(before[-1]))
-        return _OpenLane([*found.parts[:-1], _shifted(track, -step, _held(_rank(track)[::-1])[::-1]), part], np.zeros(2))
-    weights = _held(after)
-    if after[0] < before[-1] or after[0] == BESIDE_ONE:
-        return _OpenLane([*found.parts, _shifted(part, step, weights)], step * weights[-1])
-    shift = (step - moved) / 2
-    track = _shifted(track, -shift, _evened(before[::-1])[::-1])
-    return _OpenLane([*found.parts[:-1], track, _shifted(_shifted(part, moved, weights), shift, _evened(after))], moved * weights[-1])
+    track, rank = LaneTrack.joined(parts), _rank(LaneTrack.joined(parts))
+    moved = np.zeros((2, len(track)))
+    for k in np.cumsum([len(part) for part in parts[:-1]]).tolist():
+        # between lines that are seen on both sides of the joint nothing is moved
+        if track.status[k - 1] == track.status[k] == MEASURED:
+            continue
+        step = np.array([track.d[k - 1] - track.d[k], track.width[k - 1] - track.width[k]])
+        before, after = rank[:k][::-1], rank[k:]
+        before, after = _with_lines_up_to(before, after), _with_lines_up_to(after, before)
+        share = (1 + np.sign(after[0] - before[0])) / 2
+        for ranks, other, sign, part_of_step, window in ((before, after, -1, share, slice(None, k)), (after, before, 1, 1 - share, slice(k, None))):
+            if part_of_step:
+                weight = _led(ranks, _run(other, ranks[0]) if ranks[0] == DIVIDED else 0)
+                moved[:, window] += sign * part_of_step * step[:, None] * (weight[::-1] if sign < 0 else weight)
+    return replace(track, d=track.d + moved[0], width=track.width + moved[1], aside=track.aside + moved[0])
+
+
+def _run(rank, least):
+    """How many places from the first on have a rank above `least`."""
+    return len(rank) if (rank > least).all() else int(np.argmin(rank > least))
 
 
 def _with_lines_up_to(rank, other):
@@ -143,20 +114,11 @@ def _with_lines_up_to(rank, other):
     return np.r_[np.full(lines[0], BETWEEN_LINES), rank[lines[0]:]]
 
 
-def _shifted(track, step, share):
-    """A track moved across and widened by shares, (N,), of a step: m across and of width."""
-    return replace(track, d=track.d + step[0] * share, width=track.width + step[1] * share, aside=track.aside + step[0] * share)
-
-
-def _held(rank):
-    """(N,) share of a step at their first place by which places of some rank are moved: all of it, or less and less up to a surer place."""
-    surer = np.flatnonzero(rank > rank[0])
-    return np.clip(1 - np.arange(len(rank)) / (surer[0] if len(surer) else np.inf), 0, None)
-
-
-def _evened(rank):
-    """(N,) the same of a step that is evened out where it is."""
-    return np.minimum(_held(rank), np.clip(1 - np.arange(len(rank)) * STATION_STEP / TRACKS.step_length, 0, None))
+def _led(rank, held):
+    """(N,) share of a step by which places of some rank are moved: all of it at the first `held`, none some metres on or at a surer place."""
+    surer, distance = np.flatnonzero(rank > rank[0]), np.arange(len(rank))
+    led = np.clip(1 - (distance - held) * STATION_STEP / TRACKS.step_length, 0, 1)
+    return np.minimum(led, np.clip(1 - distance / surer[0], 0, 1)) if len(surer) else led
 
 
 def _part(boundaries, span, first, last, lane_width, line_distance):
@@ -168,7 +130,7 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     painted = [bool(boundaries.bounding[row]) for row in sides]
     made_of = [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]
     seen = np.stack([boundaries.seen[row, rows] for row in sides])
-    begin, width = lane_places(left, right, *made_of, span.count, lane_width, boundaries.bend[rows])
+    begin, width = lane_places(left, right, *made_of, span.count, lane_width, span.beside)
     between_both = all(painted) or not line_distance and _has_all_room(made_of, seen, left - right - span.count * width)
     beside_one = any(painted) and not between_both
     if beside_one and (line_distance or beside_surface_end(*made_of)):
@@ -203,15 +165,12 @@ def _filled(values):
 
 
 def _followed(found, parts, first):
-    """{part: track} of the parts that go on as a track which ends right before them, one to one, the nearest first.
-
-    An end that was moved to meet a surer stretch before it is no farther from what follows than where it was seen.
-    """
+    """{part: lane} of the parts that go on as a lane, a list of parts, which ends right before them, one to one, the nearest first."""
     pairs = []
     for k, part in enumerate(parts):
         for j, lane in enumerate(found):
-            track = lane.parts[-1]
-            step = min(abs(part.d[0] - track.d[-1]), abs(part.d[0] - track.d[-1] + lane.moved[0]))
+            track = lane[-1]
+            step = abs(part.d[0] - track.d[-1])
             if track.last == first - 1 and track.direction == part.direction \
                     and step < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
                 pairs.append((step, k, j))

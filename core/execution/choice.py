@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass
 
@@ -57,13 +58,19 @@ def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(),
 def automatic_workers(points: int) -> int:
     """How many worker processes are started for so many points where the user leaves that open; 0 for threads.
 
-    Threads wait for each other in Python, and no more than four are started. On two cores two processes make a map of 17 million points
-    in 0.92 (2 km) and 1.01 (200 m, both methods) of the time of threads, their start counted in, with more work of the processor, so that they
-    are for surveys in which the start does not matter. More processes gain more (docs/scale.md).
+    Threads wait for each other in Python, and no more than four are started. Processes take a second to start, and each needs memory.
     """
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    workers = min(cores, EXECUTION.most_automatic_workers, int(points / EXECUTION.worker_points))
-    return workers if workers > 2 or workers == 2 and points >= EXECUTION.two_workers_points else 0
+    workers = min(cores, int(points / EXECUTION.worker_points), int(_memory() / EXECUTION.least_memory))
+    return workers if workers > 1 else 0
+
+
+def _memory():
+    """Bytes of memory of this computer; no limit where the system does not tell."""
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return math.inf
 
 
 def _executor_for(points, settings, progress):

@@ -9,9 +9,7 @@ from dataclasses import dataclass
 class _ExecutionWeights:
     """Who does the work, and how long others are waited for."""
 
-    worker_points: int = 8_000_000   # points of the files for each worker: starting takes it a second, about as long as decoding so many
-    two_workers_points: int = 100_000_000   # points of the files from which two workers pay, all that two cores can do with
-    most_automatic_workers: int = 8   # each takes some hundred MB
+    worker_points: int = 5_000_000   # points of the files for each worker: starting takes it a second, a tenth of its time for so many
     beat_time: float = 2.0   # s between two signs of life of the caller
     caller_lost: float = 300.0   # s without one after which workers remove the caller's folder; a computer may be suspended for a while
     scheduler_lost: float = 15.0   # s without a connection to the scheduler after which the run ends

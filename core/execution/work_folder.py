@@ -41,7 +41,7 @@ class WorkFolder:
     def error(self, error: OSError) -> RoadExtractionError:
         """One sentence about a folder that cannot be used."""
         return RoadExtractionError(f"The work folder {self.path} cannot be used: {error.strerror or error}. Choose a folder that can be "
-                                   "written to, with room for about 20 bytes for every point near the road, or none; a folder that a power "
+                                   "written to, with room for about 40 bytes for every point near the road, or none; a folder that a power "
                                    "failure has damaged is to be deleted.")
 
     def begin(self, name: str) -> Path:

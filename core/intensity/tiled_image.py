@@ -5,6 +5,7 @@ The chain reads the image through this object; the GeoTIFF is written for the us
 
 from __future__ import annotations
 
+from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 from uuid import uuid4
@@ -12,7 +13,7 @@ from uuid import uuid4
 import numpy as np
 
 from ..execution.phase import Recipe
-from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
+from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage, new_geotiff
 from ..survey.store.array_file import ArrayFile, opened
 
 
@@ -88,10 +89,20 @@ class TiledImage(IntensityImage):
         """[(column, row)] of the first pixels of all tiles that hold data, row by row."""
         return [(column * GEOTIFF_TILE, row * GEOTIFF_TILE) for column, row in sorted(self._tiles, key=lambda tile: tile[::-1])]
 
+    def write(self, path: str | PathLike) -> None:
+        """Write the image to a GeoTIFF."""
+        with new_geotiff(path, self.width, self.height, self.geotransform, self.crs) as file:
+            for column, row in self.tiles():
+                values = self.read_pixels(column, row, min(GEOTIFF_TILE, self.width - column), min(GEOTIFF_TILE, self.height - row))
+                file.write(column, row, np.where(np.isnan(values), np.float32(NODATA), values))
+                file.flush()
+
     def close(self) -> None:
         self._tiles = {}
         if isinstance(self._file, ArrayFile):
             self._file.close()
+            if self._file.path is not None:
+                self._file.path.unlink(missing_ok=True)
         self._file = None
 
 

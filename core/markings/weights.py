@@ -395,7 +395,6 @@ class _RoadWeights:
     """What all roads of a survey have in common."""
 
     length_of_usual: float = 50.0   # m of lanes that weigh as much as what is usual in the country
-    widened_radius: float = 60.0   # m: lanes are widened in tighter bends (most codes widen below 100 to 200 m; less than 0.3 m there)
     sure_side: float = 1.4   # nats by which one side of traffic must be more probable than the other to be sure: else it is wrong one time in five
     # Arrows on the road.
     worn_ends: float = 0.1   # m that an arrow may look shorter than it was painted

@@ -6,9 +6,13 @@ memory; nothing but the intensity image, which is one of the results, goes to di
 
 from __future__ import annotations
 
+import os
+import shutil
+import tempfile
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,8 +28,11 @@ from ..corrections.lanes import correct_lanes
 from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..execution.choice import ExecutionSettings
+from ..execution.phase import digest
+from ..execution.work_folder import code_digest
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
+from ..intensity.tiled_image import TiledImage
 from ..io.crs import check_projected
 from ..io.geotiff import IntensityImage
 from ..markings.lines.curvature import marking_curvature
@@ -48,10 +55,11 @@ from ..survey.density import CubeDensity, cube_densities
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.las.reader import read_headers
 from ..survey.open_survey import SurveySettings, open_survey
-from ..survey.store.records import Points
+from ..survey.store.records import ROAD_POINT, SURVEY_POINT, Points
 from ..survey.store.road_points import columns_of_roads
 from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
 from ..survey.weights import FRAME
+from .kept_run import WINDOW, KeptRun
 
 
 @dataclass(frozen=True)
@@ -90,7 +98,7 @@ class RoadMap:
     curb_points: CurbPoints
     edges: RoadEdges
     surface: SurfaceOutlines
-    road_points: Any   # RoadPoints; `road_points.close()` frees the disk space of the store
+    road_points: Any   # RoadPoints, there until `free` is called
     boundary_differences: RoadEdges | None = None   # RoadEdges, where the two boundary methods disagree; None if one method was used
     length_by_method: dict = field(default_factory=dict)   # {method: metres of measured edges}
     intensity_report: Any = None   # of the correction, None without it
@@ -108,6 +116,7 @@ class RoadMap:
     marking_curvature: Any = None   # MarkingCurvature, None without lines
     country: str = DrivingSettings.country   # whose design code the curves are checked against
     corrections: Corrections = field(default_factory=Corrections)   # of an analyst, and which of them something was found for
+    free: Callable[[], None] = lambda: None   # frees the disk space of the points, where no later run wants them
 
     def layer(self, name: str) -> Features | None:
         """The result of a name, such as "edges", as a layer in map coordinates; None where it was not made."""
@@ -116,7 +125,8 @@ class RoadMap:
 
 
 def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_path: str | Path,
-                  settings: RoadMapSettings = RoadMapSettings(), progress: Progress = Progress(), corrections: Features | None = None) -> RoadMap:
+                  settings: RoadMapSettings = RoadMapSettings(), progress: Progress = Progress(), corrections: Features | None = None,
+                  kept: KeptRun = WINDOW) -> RoadMap:
     """Run the chain.
 
     Parameters
@@ -125,6 +135,7 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     image_path : where the intensity image is written (.tif)
     settings : RoadMapSettings, those of every stage
     corrections : the layer CORRECTIONS of an analyst, or None; each is made where its kind of line was found, so that what follows builds on it
+    kept : what the last run gave, if it is wanted; stages that would give the same are not run again
 
     Raises
     ------
@@ -134,16 +145,41 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     """
     stages = Stages(progress, Extent.expected(paths, trajectory, settings.survey.crs), settings.boundary_method,
                     () if settings.correct else ("intensity",))
-    survey = stages.run("survey", "Reading the survey …", open_survey, paths, trajectory, settings.survey,
-                        execution=settings.execution)
+    if kept.wanted and _may_be_kept(paths, settings.execution) and kept.take():
+        stages.kept = kept
+    survey, ground = None, None
     try:
-        return _map_of(survey, image_path, settings, stages, corrections)
+        survey, ground = stages.run("survey", "Reading the survey …", _open, paths, trajectory, settings.survey, settings.execution,
+                                    depends=lambda: (code_digest(), _states(paths), trajectory, settings.survey, settings.execution),
+                                    free=lambda opened: opened[0].store.close())
+        return _map_of(survey, ground, image_path, settings, stages, corrections)
     except BaseException:
-        survey.store.close()
+        if stages.kept is not None:
+            if survey is not None:
+                survey.executor.release()
+            stages.kept.give_back()
+        elif survey is not None:
+            survey.store.close()
         raise
 
 
-def _map_of(survey, image_path, settings, stages, corrections):
+def _open(paths, trajectory, settings, execution, progress):
+    """The survey, and its ground, which is measured where it is asked for."""
+    survey = open_survey(paths, trajectory, settings, progress, execution)
+    return survey, MeasuredGround(survey)
+
+
+def _may_be_kept(paths, execution):
+    """Whether a run may be kept: where no work folder does so, no workers of others are held, and as much disk space is left as it takes."""
+    taken = sum(header.count for header in read_headers(paths)) * (SURVEY_POINT.itemsize + ROAD_POINT.itemsize)
+    return not execution.work_folder and not execution.scheduler and shutil.disk_usage(tempfile.gettempdir()).free > 2 * taken
+
+
+def _states(paths):
+    return [(os.path.abspath(path), os.path.getsize(path), os.stat(path).st_mtime_ns) for path in paths]
+
+
+def _map_of(survey, ground, image_path, settings, stages, corrections):
     """The map of an open survey, whose store the road points keep."""
     map_corrections = Corrections() if corrections is None else corrections_from_features(corrections, survey.frame, survey.crs)
     extent = Extent(survey.store.count / 1e6, sum(road.length for road in survey.frame.roads) / 1e3)
@@ -151,23 +187,21 @@ def _map_of(survey, image_path, settings, stages, corrections):
     if survey.has_intensity:
         # before hours of work, not after
         check_fits(*_span(survey), settings.image)
-    ground = MeasuredGround(survey)
-    curbs = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries, ground=ground)
+    curbs = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries, ground=ground, depends=settings.boundaries)
     # what workers keep of the curbs is of no use to the stages that follow
     survey.executor.forget()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, curbs, survey.frame, settings.edges,
-                            survey=survey, ground=ground)
+                            survey=survey, ground=ground, depends=settings.edges)
     edges = correct_edges(boundaries.edges, survey.frame, map_corrections)
-    road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface, survey, edges, settings.surface,
-                                      ground=ground)
+    road_points, surface, density = stages.run("surface", "Extracting the road surface …", _surface_of, survey, edges, settings.surface, ground,
+                                               depends=(map_corrections.asked("edge"), settings.surface), free=lambda made: made[0].store.remove())
     del ground
     facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
-    waiting = stages.progress.part(stages.done, stages.done)   # the bar stands meanwhile
-    density = cube_densities(road_points, waiting)
     result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
                      density=density, country=settings.driving.country, corrections=map_corrections)
+    result.free = stages.kept.give_back if stages.kept is not None else lambda: result.road_points.close()
     result.counts.update(curb_points=len(boundaries.curb_points), road_points=len(road_points))
     if survey.has_intensity:
         _paint(result, image_path, settings, stages, survey.executor)
@@ -178,6 +212,12 @@ def _map_of(survey, image_path, settings, stages, corrections):
     if len(map_corrections):
         _tell_corrections(map_corrections, stages.progress)
     return result
+
+
+def _surface_of(survey, edges, settings, ground, progress):
+    """Road points, the outlines of the surface, and how dense all points and those of the road lie."""
+    road_points, surface = extract_road_surface(survey, edges, settings, progress, ground)
+    return road_points, surface, cube_densities(road_points, progress.part(1.0, 1.0))
 
 
 def _tell_corrections(corrections, progress):
@@ -200,30 +240,34 @@ def _paint(result, image_path, settings, stages, executor):
     frame = result.frame
     if settings.correct:
         result.road_points, result.intensity_report = stages.run(
-            "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity)
+            "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity, depends=settings.intensity,
+            free=lambda made: made[1].reason or made[0].store.remove())
     # without what they keep of the intensities they take a quarter less memory for the image
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
-                       result.road_points, settings.image, path=image_path)
+                       result.road_points, settings.image, path=image_path, depends=(settings.correct, settings.image), free=TiledImage.close,
+                       again=lambda image: image.write(image_path))
     executor.forget()
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
-                        result.road_points, image, frame, settings.markings)
+                        result.road_points, image, frame, settings.markings, depends=settings.markings)
     executor.forget()
-    image.close()
+    if stages.kept is None:
+        image.close()
     result.image = IntensityImage.open(image_path)
     result.counts["marking_points"] = len(points)
     if len(points):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers,
-                            executor=executor.passing())
+                            executor=executor.passing(), depends=settings.outliers)
     result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters,
-                                     executor=executor.passing())
+                                     executor=executor.passing(), depends=settings.clusters)
     executor.forget()
     markings = correct_markings(markings, result.corrections)
     edges, readings = result.edges.densified(frame), result.corrections.taken(frame)
     lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines,
-                       edges=edges, road_points=result.road_points, taken=readings)
+                       edges=edges, road_points=result.road_points, taken=readings,
+                       depends=(result.corrections.asked("marking"), readings, settings.lines))
     edge_places = np.c_[edges.course.x, edges.course.y, edges.course.z]
     corrected = correct_marking_lines(lines, frame, result.corrections, edge_places)
     if corrected is not lines:
@@ -305,6 +349,8 @@ class Stages:
 
     def __init__(self, progress: Progress, extent: Extent, method: str, left_out: Sequence[str] = ()):
         self.progress, self.done, self.method = progress, 0.0, method
+        self.kept: KeptRun | None = None   # what the last run gave
+        self._digest = ""   # of all that the stages so far depend on
         self.seconds: dict[str, float] = {}
         self.waiting = list(STAGE_NAMES)
         self.plan(extent, left_out)
@@ -315,12 +361,26 @@ class Stages:
         costs = {name: extent.cost(name, self.method) for name in self.waiting}
         self.shares = {name: (1.0 - self.done) * cost / max(sum(costs.values()), 1e-9) for name, cost in costs.items()}
 
-    def run(self, name: str, title: str, function: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
-        """Run a stage: log its title, call the function with its part of the progress, and return its result."""
+    def run(self, name: str, title: str, function: Callable[..., Any], *arguments: Any, depends: Any = None,
+            free: Callable[[Any], None] = lambda result: None, again: Callable[[Any], None] = lambda result: None, **options: Any) -> Any:
+        """Run a stage: log its title, call the function with its part of the progress, and return its result, or that of the last run.
+
+        depends : plain values that the result depends on beside the stages before, or a function that gives them; None for a result that is not kept
+        free, again : what frees the disk space of a result that is kept, and what is done with one that is used again
+        """
         share = self.shares[name]
         self.progress.info(title)
         began = time.perf_counter()
-        result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
+        if self.kept is not None and depends is not None:
+            self._digest = digest((self._digest, name, depends() if callable(depends) else depends))
+        if self.kept is not None and depends is not None and self.kept.known(name, self._digest):
+            self.progress.info("The result of the last run is used again.")
+            result = self.kept.result(name)
+            again(result)
+        else:
+            result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
+            if self.kept is not None and depends is not None:
+                self.kept.keep(name, self._digest, result, partial(free, result))
         trim_heap()
         self.seconds[name] = time.perf_counter() - began
         self.done += share

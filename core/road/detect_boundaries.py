@@ -33,7 +33,6 @@ from .scanlines.detect import SurveyScanlines, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
-from .surface.road_look import looks_of
 from .weights import BOUNDARY, CURBS, SCANLINE
 
 if TYPE_CHECKING:
@@ -116,27 +115,26 @@ def _lattice_meanwhile(survey, settings):
 def _find_curb_points(decimation, lattice, settings, progress, ground):
     """`find_curb_points` with the points of a PointDecimation and a function that gives the lattice."""
     survey, both_methods, points = decimation.survey, settings.method == "both", {}
-    looks = looks_of(ground)
     occlusion: dict[int, dict[str, OcclusionGrid]] = {}
     occlusion_of_scanlines: dict[int, dict[str, OcclusionGrid]] = {}
     chains: list[dict[tuple[int, str], SideChains]] = [{}, {}]
     if settings.method != "scanlines":
         part = progress.part(0.0, BOUNDARY.profiles_progress) if both_methods else progress
-        points["profiles"] = detect_curbs(survey, settings.curbs, part, not both_methods, decimation, occlusion, chains[0], looks)
+        points["profiles"] = detect_curbs(survey, settings.curbs, part, not both_methods, decimation, occlusion, chains[0], ground)
     if settings.method != "profiles":
         part = progress.part(BOUNDARY.profiles_progress if both_methods else 0.0, 1.0)
         source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice(part.part(0.0, BOUNDARY.lattice_progress)),
                                  level=_level_for(decimation, settings.scanlines))
         corners = part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)
         points["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, corners,
-                                                   occlusion_of_scanlines if both_methods else occlusion, chains[1], looks)
+                                                   occlusion_of_scanlines if both_methods else occlusion, chains[1], ground)
         drawn = "both" if both_methods else "scanlines"
         if both_methods:
             chosen = _better_points(points, survey.frame, CurbEvidence(chains[1], occlusion_of_scanlines), CurbEvidence(chains[0], occlusion))
             occlusion_of_scanlines.clear()   # planes lie close: along a long road their grids are large
             points["both"] = with_pieces_of_both(chosen, chains, occlusion, survey)
         points[drawn] = with_curb_returns(points[drawn], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0), occlusion,
-                                           looks)
+                                           ground)
     return points
 
 

@@ -144,6 +144,7 @@ class _CurbWeights:
     max_noise_allowance: float = 0.3   # share of the least curb height by which such a scanner may have seen a curb too low
     max_road_roughness: float = 0.010   # m about the road side's line, if the scanner's noise is less than half of it
     jump_cost: float = 4.0   # m of curb that a lateral jump of 1 m must gain
+    level_jump_cost: float = 1.2   # m of curb that it must gain where road is seen all the way: the curb of a wider road behind a side street
     climb_cost: float = 60.0   # m of curb that a difference of 1 m in height must gain: ground behind a curb is higher
     max_jump_cost: float = 10.0   # m of curb that any jump costs at most
     distance_penalty: float = 0.03   # share of its value that a metre of curb loses for each metre farther from the track
@@ -553,6 +554,9 @@ class _SurfaceWeights:
     tolerance_floor: float = 0.03   # m, height tolerance of a scanner without noise
     tolerance_sigmas: float = 4.0   # times the noise of the heights, added to it
     track_reach: float = 1.5   # m either side of the reference line where ground must be measured
+    places_between: int = 25   # of a way across the ground that are looked at,
+    min_seen_between: float = 0.7   # least share of them that must be seen, and
+    min_level_between: float = 0.9   # of these, as high as the road, for it to be level
     rows_of_look: int = 10   # rows of cells either way, 5 m, whose roughness under the vehicle is the road's
     grown_inset: float = 0.05   # m off a limit that is no edge: on a road that is too wide, verge is extracted as paint
     min_surface_width: float = 0.5   # m between the limits of a row with road
@@ -564,7 +568,7 @@ class _SurfaceWeights:
     flank_depth: float = 2.0   # m beyond that line from which the sides of the street are looked at: nearer, its corners are dropped
     flank_rows: int = 2   # 1 m along the road from the outermost cell of the street to the ground beside it
     min_flank_step: float = 0.03   # m between them: the lowest curbs
-    max_level_flanks: float = 1 / 3   # of the places along its sides that may lie level with the street: driveways and crossings of its own
+    max_level_flanks: float = 2 / 3   # m along its two sides, per m of its width, that may lie level with the street: driveways, dropped corners
     max_unseen_columns: int = 5   # 1.25 m across the road between two tracks of the scan, far from the vehicle
     step_columns: int = 2   # 0.5 m of other ground end the street; one cell alone is a thing on it
     smoothed_rows: int = 5   # 2.5 m along the road: the far end of the scan frays

@@ -157,12 +157,13 @@ BEYOND_END = 10.0     # m: a road of four lanes whose end is cut oblique by 30 d
 
 
 class Misses(NamedTuple):
-    """Metres: mean, 95th percentile, largest; and at how many places."""
+    """Metres: mean, 95th percentile, largest; at how many places; and the (3,) place of the largest."""
 
     mean: float
     p95: float
     largest: float
     places: int
+    worst: np.ndarray
 
 
 def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
@@ -171,19 +172,27 @@ def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
     What lies beyond the end of a border of the source is left out: an export ends lanes square to the road.
     """
     source_borders, exported_borders = ([border for k in range(len(lanes)) for border in lanes.borders(k)] for lanes in (source, exported))
-    ends = [end for border in source_borders for end in (_gone_on(border), _gone_on(border[::-1]))]
-    misses_of_source, misses_of_exported = (_distances(_joined(source_borders), _segments(exported_borders)),
-                                            _distances(_joined(exported_borders), _segments(source_borders, True), apart_from=_segments(ends)))
-    across, rise = (_summary(np.concatenate(misses)) for misses in zip(misses_of_source, misses_of_exported))
-    return across, rise
+    ends = [end for border in _once(source_borders)[0] for end in (_gone_on(border), _gone_on(border[::-1]))]
+    misses_of_source = _distances(source_borders, _segments(exported_borders))
+    misses_of_exported = _distances(exported_borders, _segments(source_borders, True), apart_from=_segments(ends))
+    across, rise, places = (np.concatenate(misses) for misses in zip(misses_of_source, misses_of_exported))
+    return _summary(across, places), _summary(rise, places)
 
 
 def _joined(lines):
     return np.concatenate([np.empty((0, 3)), *lines])
 
 
+def _once(lines):
+    """(the lines without those that repeat another, forth or back, as neighbours do with the border between them; the number of each in them)."""
+    first = {min(line.tobytes(), line[::-1].tobytes()): line for line in lines}
+    numbers = {key: number for number, key in enumerate(first)}
+    return list(first.values()), [numbers[min(line.tobytes(), line[::-1].tobytes())] for line in lines]
+
+
 def _segments(lines, curved=False):
     """(M, 7) both ends of every segment of lines, and by how much it misses the curve that bends like the lines at its ends, if `curved`."""
+    lines, _ = _once(lines)
     places, line = _joined(lines), np.repeat(np.arange(len(lines)), [len(border) for border in lines])
     way, same = np.diff(places[:, :2], axis=0), line[1:] == line[:-1]
     turn = np.abs((np.diff(np.arctan2(way[:, 1], way[:, 0])) + np.pi) % (2 * np.pi) - np.pi)
@@ -206,23 +215,26 @@ def driving_line_misses(driving_lines: Features | None, exported: Lanes, measure
 
     apart_from : (N, 2) places; what lies within LEFT_OUT_NEAR of one is left out
     """
-    middles = [(left + right) / 2 for left, right in (exported.borders(k) for k in range(len(exported))
-                                                      if exported.type[k] in ("driving", "connector"))]
+    middles = [sum(exported.borders(k)) / 2 for k in np.flatnonzero(np.isin(exported.type, ("driving", "connector")))]
     rows = [shapely.get_coordinates(geometry, include_z=True) for geometry, row in driving_lines or ()
             if geometry is not None and (not measured_only or row.get("status") in (None, "measured"))]
     places = np.concatenate([np.empty((0, 3)), *rows])
     if apart_from is not None and len(apart_from) and len(places):
         places = places[cKDTree(apart_from).query(places[:, :2])[0] > LEFT_OUT_NEAR]
     if not len(places) or not middles:
-        return _summary(np.empty(0))
-    return _summary(_distances(places, _segments(middles), NEAR_MIDDLE)[0])
+        return _summary(np.empty(0), places)
+    across, _, places = _distances([places], _segments(middles), NEAR_MIDDLE)
+    return _summary(across, places)
 
 
-def _distances(places, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
-    """(across, in height) metres of (N, 3) places from (M, 7) segments, of those places from which one lies nearer than `farthest` metres.
+def _distances(lines, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
+    """((N,) metres across, (N,) in height, (N, 3) places) of lines from (M, 7) segments, of places from which none lies nearer than `farthest`
+    metres infinite.
 
-    apart_from : (K, 7) segments; places to which one of them is nearer are left out
+    apart_from : (K, 7) segments; places to which one of them is nearer are infinite too
     """
+    lines, index = _once(lines)
+    places, begin = _joined(lines), np.cumsum([0, *map(len, lines)])
     all_segments = np.concatenate([segments, apart_from])
     points, tree = shapely.points(places[:, :2]), shapely.STRtree(shapely.linestrings(all_segments[:, :6].reshape(-1, 2, 3)[:, :, :2]))
     indices, near = tree.query(points, predicate="dwithin", distance=SAME_BORDER)
@@ -230,22 +242,30 @@ def _distances(places, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
     run = (last - first)[:, :2]
     share = np.clip(((places[indices, :2] - first[:, :2]) * run).sum(1) / np.maximum((run**2).sum(1), 1e-12), 0.0, 1.0)
     distance, counted = np.hypot(*(places[indices] - first - share[:, None] * (last - first)).T[:2]), near < len(segments)
-    across, left_out = np.full((2, len(places)), np.inf)
-    np.minimum.at(across, indices[counted], distance[counted] - segments[near[counted], 6])
-    np.minimum.at(left_out, indices[~counted], distance[~counted])
+    across = _least(len(places), indices[counted], distance[counted] - segments[near[counted], 6])
+    left_out = _least(len(places), indices[~counted], distance[~counted])
     far = np.flatnonzero(np.isinf(across) & np.isinf(left_out))   # the nearest of all segments is looked for only where none lies near
     across[left_out < across] = np.inf
     pairs, distance = tree.query_nearest(points[far], max_distance=None if np.isinf(farthest) else farthest, return_distance=True, all_matches=False)
     nearest = pairs[1] < len(segments)
     across[far[pairs[0, nearest]]] = distance[nearest] - segments[pairs[1, nearest], 6]
     # where borders of several roads lie on each other, the one at the place's own height is its own
-    rise = np.full(len(places), np.inf)
-    np.minimum.at(rise, indices[counted], np.abs(places[indices, 2] - first[:, 2] - share * (last - first)[:, 2])[counted])
+    rise = _least(len(places), indices[counted], np.abs(places[indices, 2] - first[:, 2] - share * (last - first)[:, 2])[counted])
     rise[np.isinf(across)] = np.inf
-    return np.maximum(across[np.isfinite(across)], 0.0), rise[np.isfinite(rise)]
+    rows = np.concatenate([np.arange(begin[number], begin[number + 1]) for number in index])
+    return np.maximum(across, 0.0)[rows], rise[rows], places[rows]
 
 
-def _summary(values):
+def _least(count, indices, values):
+    """(count,) the least of the values of each index, which rise; inf where there is none."""
+    least, begin = np.full(count, np.inf), np.flatnonzero(np.diff(indices, prepend=-1))
+    if len(begin):
+        least[indices[begin]] = np.minimum.reduceat(values, begin)
+    return least
+
+
+def _summary(values, places):
+    values, places = values[np.isfinite(values)], places[np.isfinite(values)]
     if not len(values):
-        return Misses(np.nan, np.nan, np.nan, 0)
-    return Misses(float(values.mean()), float(np.percentile(values, 95)), float(values.max()), len(values))
+        return Misses(np.nan, np.nan, np.nan, 0, np.full(3, np.nan))
+    return Misses(float(values.mean()), float(np.percentile(values, 95)), float(values.max()), len(values), places[np.argmax(values)])

@@ -35,7 +35,6 @@ class Boundaries:
     patterns: RowTable
     paint: np.ndarray   # (R,) m of paint of each row
     named: np.ndarray   # (R,) what a row separates by its layer, -1 where that is not said
-    bend: np.ndarray   # (K,) whether the road bends so much that lanes are widened
     wide: RowTable   # (R, K) 0 to 1, whether a row is a wide line, which is at least twice as broad as the usual lines of its road
     short: RowTable   # (R, K) the same of dashes shorter than those between lanes; NaN where unknown
 
@@ -51,7 +50,7 @@ class Boundaries:
 
 
 def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, surface: np.ndarray | None = None,
-                      open_ends: np.ndarray | None = None, bend: np.ndarray | None = None, hatching: RowTable | None = None,
+                      open_ends: np.ndarray | None = None, hatching: RowTable | None = None,
                       pavement: CrossSections | None = None, dashes: RowTable | None = None) -> Boundaries:
     """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines.
 
@@ -86,7 +85,6 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     paint = STATION_STEP * np.bincount(found_d.spans.owner, found_seen, len(found_d))
     return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in tables]), all_patterns,
                       paint, np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(unpainted, -1)].astype(int),
-                      np.zeros(count, bool) if bend is None else bend,
                       *(found_d.like(np.append(share, np.full(found_d.spans.size - len(share), np.nan)), np.nan)
                         for share in (_wide_share(lines), _short_share(lines, dashes))))
 
@@ -147,9 +145,14 @@ class Candidates:
     rows: np.ndarray   # (I, M, 2) the rows of Boundaries that lie leftmost and rightmost; -1 outside
     valid: np.ndarray   # (I, M) False where there are fewer boundaries than M
     named: np.ndarray   # (I, M) what the layer says that a boundary separates, -1 where it does not
-    bend: np.ndarray   # (I,) as in Boundaries
     wide: np.ndarray   # (I, M) as there, NaN of double lines
     short: np.ndarray
+    beside: np.ndarray   # (I, M, 2, 3) as `lanes_beside` gives it; NaN before
+
+    @property
+    def bounding(self) -> np.ndarray:
+        """(I, M) bool, whether a boundary is paint that bounds lanes."""
+        return self.painted | (self.made_of == HATCHING)
 
     @property
     def painted(self) -> np.ndarray:
@@ -302,5 +305,5 @@ def _table(groups, boundaries, first, last):
     valid[:, [0, -1]] = True
     rows = np.stack([column(groups[name], -1) for name in ("row", "right_row")], axis=2)
     return Candidates(first, last, left, right, column(groups["made"], OUTSIDE), column(groups["trust"], 0.0), column(groups["seen"], 0.0), rows,
-                      valid, column(boundaries.named[groups["row"]], -1), boundaries.bend[(first + last) // 2], column(groups["wide"], np.nan),
-                      column(groups["short"], np.nan))
+                      valid, column(boundaries.named[groups["row"]], -1), column(groups["wide"], np.nan),
+                      column(groups["short"], np.nan), np.full((*shape, 2, 3), np.nan))

@@ -7,16 +7,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.parallel import check_cancelled
+from .beside import NATS, SECOND_WIDTH, WIDTH
 from .candidates import Candidates
 from .evidence import Evidence
 from .sequence import (
     FIRST,
     INTERVALS_AT_ONCE,
     SECOND,
-    UNPAINTED,
     Sections,
     behind_best,
-    beside_surface_end,
+    beside_of,
     best_sections,
     best_sequence,
     best_through,
@@ -27,9 +27,8 @@ from .sequence import (
     separated_kinds,
     strip_costs,
     transitions,
-    width_cost,
 )
-from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, EstimateWeights, Reading
+from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading
 
 FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
 INTERVALS_OF_STRETCH = 256   # derived: intervals that are looked at together, 1 to 2 km of road: what they are chosen from takes 0.2 MB for each
@@ -88,10 +87,10 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     cost = sections.cost - _by_stretch(lambda part: misnamed_costs(candidates.take(part), sections.take(part), weights), len(sections.cost))
     unnamed, (once, second) = np.argmin(cost, axis=1), np.full((2, *cost.shape), np.inf)
     if len(lined):
-        between = np.r_[0.0, np.cumsum(candidates.length)]
-        gap = between[lined[1:]] - between[lined[:-1] + 1]
-        least_shown = np.minimum(shown[lined[:-1]], shown[lined[1:]])
-        left = [least_shown * np.exp(-gap / remembered) for remembered in (weights.lanes_remembered, weights.directions_remembered)]
+        hidden = np.r_[0.0, np.cumsum(candidates.length)]
+        unseen = candidates.length * (1 - shown)
+        gap = hidden[lined[1:]] - hidden[lined[:-1] + 1] + (unseen[lined[1:]] + unseen[lined[:-1]]) / 2
+        left = [np.exp(-gap / remembered) for remembered in (weights.lanes_remembered, weights.directions_remembered)]
         transition = transitions(candidates, sections, lined, lane_width, left, weights)
         choice[lined], total = best_sequence(sections.cost[lined], transition)
         posterior[lined] = probabilities(sections.cost[lined], transition)
@@ -201,6 +200,7 @@ class LaneSpan:
     right: int
     place: int   # from the right, of `count` lanes between them
     count: int
+    beside: float   # m, how wide a lane is that lies alone beside the one of them that is painted
     direction: int
     probability: float   # 0 to 1, of a lane of either direction there, with the posterior of RoadEstimate
     confidence: float   # 0 to 1, of a lane of either direction there, with the sureness of RoadEstimate
@@ -228,16 +228,18 @@ def _lane_spans(estimate, part):
     seconds = [min((reading for reading in readings if reading is not None), key=lambda reading: reading.nats, default=None) for readings in zip(
         _second_readings(estimate, lanes, lane_rows, way, part), _second_places(estimate, lanes, strips, lane_rows, way))]
     k = 0
-    of_best = (values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first))
-    for i, m, end, number, first in zip(*of_best):
+    of_best = [values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first)]
+    beside = beside_of(c, strips.interval[best], strips.left[best], strips.right[best])[:, WIDTH]
+    for row, (i, m, end, number, first) in enumerate(zip(*of_best)):
         # what the borders of its lanes separate, from left to right
         uses = [CENTRE_LINE if inner == first else LANE_LINE for inner in range(number + 1)]
         uses[0], uses[-1] = borders[i - part.start, [m, end]].tolist()
         for lane in range(number):
             direction = estimate.first_direction if lane < first else -estimate.first_direction
             probability, confidence, directed, turned = shares[k].tolist()
-            spans.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - lane, number, -direction if turned else direction,
-                                  probability, confidence, 1 - directed if turned else directed, uses[lane], uses[lane + 1], seconds[k]))
+            spans.append(LaneSpan(
+                i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - lane, number, float(beside[row]), -direction if turned else direction,
+                probability, confidence, 1 - directed if turned else directed, uses[lane], uses[lane + 1], seconds[k]))
             k += 1
     return spans
 
@@ -268,7 +270,7 @@ def _lanes_of(estimate, strips):
 def _lanes(c, lane_width, first_direction, strips):
     row = strips.interval
     d_left, width_each = lane_places(c.right[row, strips.left], c.left[row, strips.right], c.made_of[row, strips.left], c.made_of[row, strips.right],
-                                     strips.number, lane_width, c.bend[row])
+                                     strips.number, lane_width, beside_of(c, row, strips.left, strips.right)[:, WIDTH])
     of = np.repeat(np.arange(len(row)), strips.number)
     place = np.arange(len(of)) - (np.cumsum(strips.number) - strips.number)[of]
     way = np.where(place < strips.first[of], first_direction, -first_direction)
@@ -342,28 +344,14 @@ def _second_readings(estimate, lanes, own, way, part):
 
 
 def _second_places(estimate, lanes, strips, own, way):
-    """The Reading in which the lanes `own` share all the room up to the curb or edge beside them; None for those that do, or lie between lines.
-
-    What the width of a lane says is laid out once, so it counts as one observation however long the road is, and so does where one drove.
-    """
-    c, w, intervals, strip = estimate.candidates, estimate.weights, lanes.interval[own], lanes.strip[own]
+    """The Reading of another width for those of the lanes `own` that lie alone between a line and a curb or edge; None for the others."""
+    c, intervals, strip = estimate.candidates, lanes.interval[own], lanes.strip[own]
     left, right = strips.left[strip], strips.right[strip]
-    made_left, made_right = c.made_of[intervals, left], c.made_of[intervals, right]
-    begin, number = c.right[intervals, left], strips.number[strip]
-    shared = (begin - c.left[intervals, right]) / number
-    index = np.arange(len(own)) - np.searchsorted(strip, strip)
-    d = begin - shared * (index + 0.5)
-    open_room = (UNPAINTED[made_left] ^ UNPAINTED[made_right]) & ~beside_surface_end(made_left, made_right) & (shared > lanes.width[own]) \
-        & (np.abs(d - lanes.d[own]) > SAME_LANE)
-    widths = np.stack([shared, lanes.width[own]])
-    nats = width_cost(widths, estimate.lane_width, w)
-    driven = estimate.evidence.driven[:, intervals]
-    with np.errstate(invalid="ignore"):
-        inside = np.abs(driven - d) < shared / 2
-        misfit = [np.where(inside, np.minimum(0.5 * ((driven - middle) / w.driven_sigma) ** 2, w.driven_astride), 0.0).sum(0)
-                  for middle in (d, lanes.d[own])]
-    behind = nats[0] - nats[1] + misfit[0] - misfit[1]
-    return [Reading(max(float(behind[k]), 0.0), ((float(d[k]), float(shared[k]), int(way[k])),)) if open_room[k] and np.isfinite(behind[k]) else None
+    open_left, open_right = UNPAINTED[c.made_of[intervals, left]], UNPAINTED[c.made_of[intervals, right]]
+    beside = beside_of(c, intervals, left, right)
+    d = np.where(open_left, c.left[intervals, right] + beside[:, SECOND_WIDTH] / 2, c.right[intervals, left] - beside[:, SECOND_WIDTH] / 2)
+    known = (open_left ^ open_right) & (strips.number[strip] == 1) & np.isfinite(beside[:, NATS]) & (np.abs(d - lanes.d[own]) > SAME_LANE)
+    return [Reading(max(float(beside[k, NATS]), 0.0), ((float(d[k]), float(beside[k, SECOND_WIDTH]), int(way[k])),)) if known[k] else None
             for k in range(len(own))]
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
 from ..weights import LANES
+from .beside import WIDTH
 from .candidates import FAR, Candidates
 from .evidence import BIN, Evidence
 from .weights import (
@@ -24,46 +25,49 @@ from .weights import (
     HATCHING,
     ISLAND,
     LANE_LINE,
-    OPEN,
     OTHER_LINE,
     OUTSIDE,
     PAVEMENT,
+    SAME_LANE,
     SOLID,
     SURFACE,
+    SURFACE_END,
+    UNPAINTED,
     EstimateWeights,
 )
 
 # How wide lanes are in the strip between two boundaries, and where they begin.
 
-# whether nothing is painted there, and whether the surface ends without an edge or nothing is known of it, by what a boundary is made of
-UNPAINTED, SURFACE_END = (np.isin(np.arange(PAVEMENT + 1), made) for made in ((CURB, ISLAND, PAVEMENT, SURFACE, OPEN), (SURFACE, OPEN)))
-
 
 def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made_right: np.ndarray, number: np.ndarray | int, usual: float,
-                bend: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+                beside: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Offset of the left border of the leftmost lane, and width of each lane, in strips between two boundaries; arrays broadcast together.
 
-    Between two lines lanes share the strip. Beside a curb, or an edge of the pavement that was seen, they are no wider than usual; beside an island,
-    where nothing else has room, they share the strip too, but are as wide as usual where it reaches somewhat into them. Elsewhere the surface may
-    end at what hides it, and reach into side streets: beside its end they are as wide as usual. In bends, where lanes are widened, lanes beside the
-    end of the surface are as wide as there is room.
+    Between two lines lanes share the strip. Beside a curb, or an edge of the pavement that was seen, one lane is as wide as `lanes_beside` says, and
+    several are no wider than usual; beside an island, where nothing else has room, they share the strip too, but are as wide as usual where it
+    reaches somewhat into them. Elsewhere the surface may end at what hides it, and reach into side streets: beside its end the room says nothing.
 
     Parameters
     ----------
     left, right : m, offsets of the two boundaries of each strip; made_left, made_right : SOLID ... ISLAND, what they are made of
     number : lanes in the strip; usual : m, the usual width of a lane
-    bend : bool, whether the road bends so much that lanes are widened
+    beside : m, how wide one lane is beside the one of the two that is painted
     """
     open_left, open_right = UNPAINTED[made_left], UNPAINTED[made_right]
     loose = open_left ^ open_right
     each_width = (left - right) / number
-    widened = bend & (each_width > LANES.likely_share[0] * usual) & (each_width < LANES.likely_share[1] * usual)
+    alone = np.where(np.equal(number, 1), beside, usual)
     hidden = loose & beside_surface_end(made_left, made_right)
-    narrow = np.where(widened & ((made_left == PAVEMENT) | (made_right == PAVEMENT)), each_width, np.minimum(each_width, usual))
+    # the room of an interval is not quite the same at all its places
+    full = np.abs(each_width - alone) < 2 * SAME_LANE
     likely = beside_island(made_left, made_right) & (each_width > LANES.likely_share[0] * usual) & (each_width < LANES.likely_share[1] * usual)
-    each_width = np.where(hidden, np.where(widened, each_width, usual),
-                          np.where(loose, np.where(likely, np.maximum(each_width, usual), narrow), each_width))
+    each_width = np.select([hidden, loose & likely, loose & ~full], [alone, np.maximum(each_width, usual), np.minimum(each_width, alone)], each_width)
     return np.where(loose & open_left, right + number * each_width, left), each_width
+
+
+def beside_of(c: Candidates, interval: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """(N, 3) of `lanes_beside` for strips between two boundaries of their intervals, on the inner side of the one that is painted."""
+    return np.where(UNPAINTED[c.made_of[interval, left]][:, None], c.beside[interval, right, 0], c.beside[interval, left, 1])
 
 
 def beside_island(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
@@ -130,15 +134,17 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     possible = ordered & ~outside & any_paint & (width < LANES.max_lanes * NEUTRAL.widest_lane)
     base = scale * (through + hatched * w.hatched_lane + uncovered * w.off_asphalt)
     driven_there = inside.any(0)
+    beside = np.where(UNPAINTED[made_left], c.beside[:, None, :, 0, WIDTH], c.beside[:, :, None, 1, WIDTH])
     for number in range(1, LANES.max_lanes + 1):
-        begin, width_each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, c.bend[:, None, None])
-        fits = width_cost(width_each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
+        begin, width_each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, beside)
+        fits = _width_cost(np.where(loose, np.minimum(width_each, lane_width), width_each), lane_width, w) \
+            + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
         # what lies beyond the end of the surface
         beyond = np.clip(1 - width / np.maximum(number * width_each, 0.1), 0, 1) * hidden
         total = base + scale * (fits + beyond * w.off_asphalt)
         scanned = ~hidden | (width > LANES.min_scanned_share * number * lane_width)
         # only where somebody drove is a lane known to be wider than lanes are built: elsewhere nothing tells its place in the strip
-        built = (width_each >= NEUTRAL.narrowest_lane) & ((width_each <= NEUTRAL.widest_lane) | driven_there)
+        built = (width_each >= NEUTRAL.narrowest_lane) & ((width_each <= NEUTRAL.widest_lane) | driven_there | loose)
         total = np.where(possible & scanned & built, total, np.inf)
         for split in range(number + 1):
             kind = SECOND if split == 0 else FIRST if split == number else TWO_WAY[1 + int(np.sign(number - 2 * split))]
@@ -158,7 +164,7 @@ def _unused(asphalt, cost, enough=LANES.asphalt_of_a_lane[1]):
     return cost / (1 + np.exp(-(asphalt - enough) / LANES.asphalt_softness))
 
 
-def width_cost(width: np.ndarray, usual: float, w: EstimateWeights) -> np.ndarray:
+def _width_cost(width: np.ndarray, usual: float, w: EstimateWeights) -> np.ndarray:
     """Nats of a lane of some width, m, against one of the usual width: most lanes of a road are alike, some as on other roads, few are odd."""
     as_usual = np.exp(-0.5 * ((width - usual) / w.width_sigma) ** 2)
     as_elsewhere = np.exp(-0.5 * ((width - NEUTRAL.usual_lane) / LANES.other_sigma) ** 2)
@@ -437,7 +443,7 @@ def _occupancy(candidates: Candidates, sections: Sections, lane_width: float) ->
     strips = lane_strips(sections)
     i, k, m, end, number = strips.interval, strips.section, strips.left, strips.right, strips.number
     d_left, width_each = lane_places(candidates.right[i, m], candidates.left[i, end], candidates.made_of[i, m], candidates.made_of[i, end], number,
-                                     lane_width, candidates.bend[i])
+                                     lane_width, beside_of(candidates, i, m, end)[:, WIDTH])
     d_right = d_left - number * width_each
     split = d_left - width_each * strips.first
     for direction, (high, low) in enumerate(((d_left, split), (split, d_right))):

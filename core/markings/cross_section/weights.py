@@ -11,6 +11,8 @@ from scipy.special import erf
 SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE, HATCHING, ISLAND, PAVEMENT = range(10)
 # What a boundary separates
 LANE_LINE, CENTRE_LINE, EDGE_LINE, OTHER_LINE = range(4)
+# whether nothing is painted there, and whether the surface ends without an edge or nothing is known of it, by what a boundary is made of
+UNPAINTED, SURFACE_END = (np.isin(np.arange(PAVEMENT + 1), made) for made in ((CURB, ISLAND, PAVEMENT, SURFACE, OPEN), (SURFACE, OPEN)))
 
 
 def _costs(*shares: float) -> tuple[float, ...]:
@@ -55,6 +57,15 @@ class EstimateWeights:
     odd_width: float = 0.05   # share of lanes of any other width
     odd_width_asked: float = 0.005   # the same where the user named the width
     widest_odd: float = 8.0   # m, of these
+    # lanes beside a curb or edge of the pavement: what is left of the room, m and its scatter, and how often that is so: nothing; a gutter (0.3 to
+    # 0.6 m: RASt 06, AASHTO Green Book 4.7); a row of parked cars (2.0 to 2.3 m: RASt 06; 7 to 8 ft: AASHTO); else anything
+    left_over_beside: tuple[tuple[float, float, float], ...] = ((0.0, 0.05, 0.6), (0.5, 0.15, 0.2), (2.2, 0.25, 0.1))
+    like_lines: float = 0.7   # share of such lanes that are as wide as those between lines, where these show their width,
+    width_sigma_lined: float = 0.15   # m, scatter of the widths of these,
+    width_sigma_beside: float = 0.8   # and of others about the usual one
+    widest_beside: float = 5.5   # m, of them
+    track_sigma: float = 0.15   # m, scatter of where vehicles keep within a lane about its middle, on average over a block
+    alike_beside: float = 4.0   # by how many times more lanes of the same road that were driven tell what is left over than what is usual
     unpainted_divider: float = 2.2   # of a border between the two directions where nothing is painted
     unpainted_lane_line: float = 3.2   # of one between two lanes of a direction
     unused_asphalt: tuple[float, float] = (4.5, 2.0)   # as wide as a lane, between two lines, and beside a curb, an end of surface or short dashes
@@ -62,7 +73,6 @@ class EstimateWeights:
     off_asphalt: float = 3.0   # of a lane on what is no road surface
     driven_rest: float = 8.0   # of a vehicle that drives where no lane is
     driven_against: float = 12.0   # of a vehicle that drives against its lane
-    driven_against_asked: float = 0.5   # the same where the user named the side of traffic
     driven_sigma: float = 0.8   # m, scatter of a vehicle about the middle of its lane
     driven_astride: float = 3.0   # the most that this costs
     hatched_lane: float = 8.0   # of a lane over a hatched area
@@ -82,7 +92,9 @@ class EstimateWeights:
     two_and_one: float = 0.4   # of two lanes one way and one the other
     two_way_carriageway: float = 4.0   # of two directions on one of two carriageways
     dashed_between_many: float = 1.5   # of dashes between the directions of a road of more than two lanes
-    left_hand: float = 0.7   # of traffic on the left, against traffic on the right
+    left_hand: float = 0.7   # of traffic on the left, against traffic on the right, where the place is not known
+    # of traffic on the side that is not that of the country there: of four hundred surveys one is of private grounds, or its CRS is another
+    foreign_side: float = 6.0
     # slope and offset of the curve by which probable lanes are right, over the log odds; fitted to 13 km of lanes of 32 simulated streets of two
     # simulators, and checked on others (docs/accuracy.md)
     calibration: tuple[float, float] = (0.38, 1.85)

@@ -21,8 +21,8 @@ from .tracking import StepChain, curb_chains, drop_short_curbs, is_road, link_st
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
+    from ..surface.road_look import SideLook
 
-Roughness = Callable[[np.ndarray, np.ndarray], np.ndarray]
 AnySteps = TypeVar("AnySteps", bound=CurbSteps)
 
 
@@ -94,19 +94,18 @@ class SideChains:
     bounds: np.ndarray
 
     @staticmethod
-    def of(steps: CurbSteps, width: float, limits: CurbLimits, bounds: np.ndarray, roughness: Roughness | None = None) -> SideChains:
+    def of(steps: CurbSteps, width: float, limits: CurbLimits, bounds: np.ndarray, look: SideLook | None = None) -> SideChains:
         """The chains of steps, upright and sloped ones apart; `width` : m of road per profile.
 
-        roughness : function, (N,) stations and outward offsets in m -> (N,) roughness of the ground in units of the road's; None where nothing
-            is known of it
+        look : SideLook of the side, None where nothing is known of the ground
         """
         label = np.empty(len(steps), np.int64)
         upright = steps.upright
         label[upright] = link_steps(steps[upright], width)
         label[~upright] = link_steps(steps[~upright], width) + label[upright].max(initial=-1) + 1
         chains = curb_chains(steps, label, width, limits)
-        if roughness is not None:
-            chains = [chain for chain in chains if _has_road_before(steps[chain.steps], chain.end - chain.start, roughness)]
+        if look is not None:
+            chains = [chain for chain in chains if _has_road_before(steps[chain.steps], chain.end - chain.start, look)]
         return SideChains(steps, chains, bounds)
 
     def points(self, members: np.ndarray, number: int) -> list[dict]:
@@ -144,20 +143,21 @@ class SideChains:
         return np.bincount(index[near], self.steps.support[row[near]], len(s)) / CURBS.max_link_length
 
 
-def _has_road_before(steps, length, roughness):
+def _has_road_before(steps, length, look):
     """Does road lie before a line of steps? What goes on in one line for long enough is a curb whatever is before it."""
     before = np.array(CURBS.road_before_curb)[:, None]
-    return length >= CURBS.min_faint_length or is_road(roughness(*(v.ravel() for v in np.broadcast_arrays(steps.s, steps.u - before))))
+    return length >= CURBS.min_faint_length or is_road(look.roughness(*(v.ravel() for v in np.broadcast_arrays(steps.s, steps.u - before))))
 
 
-def points_of_side(source: Any, road: int, side: str, found: SideChains, occlusion: OcclusionGrid) -> CurbPoints:
+def points_of_side(source: Any, road: int, side: str, found: SideChains, occlusion: OcclusionGrid, look: SideLook | None = None) -> CurbPoints:
     """Curb points of one side of one road, measured and hidden, in order of station.
 
     source : Survey, or scanlines: what has `frame` and `road_height`
+    look : SideLook of the side, None where nothing is known of the ground
     """
     frame, sign, steps, chains = source.frame, SIDE_SIGNS[side], found.steps, found.chains
     track = OutermostTrack(frame, road, sign)
-    selected = drop_short_curbs(select_along_road(chains, steps, track), chains, steps)
+    selected = drop_short_curbs(select_along_road(chains, steps, track, look), chains, steps)
     lines = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u))
     rows = [row for number, members in enumerate(lines) for row in found.points(members, number)]
     bottoms = np.array([(row["s"], row["u"], row["h"]) for row in rows if row["fields"]["part"] == "bottom"]).reshape(-1, 3)

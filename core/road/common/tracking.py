@@ -11,6 +11,7 @@ from __future__ import annotations
 from bisect import bisect_left, insort
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -21,6 +22,9 @@ from ..weights import CURBS
 from .corners import CurbSteps
 from .curb_limits import CurbLimits
 from .pseudo_scanlines import expand_ranges
+
+if TYPE_CHECKING:
+    from ..surface.road_look import SideLook
 
 
 @dataclass
@@ -192,17 +196,18 @@ def _wander(steps, members):
     return float(np.std(u - (mu - slope * ms)))
 
 
-def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
-                      near: Callable[..., np.ndarray]) -> list[tuple[int, float, float]]:
+def select_along_road(chains: Sequence[StepChain], steps: CurbSteps, near: Callable[..., np.ndarray],
+                      look: SideLook | None = None) -> list[tuple[int, float, float]]:
     """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming, and what continues it.
 
     chains : list of StepChain of one side
     steps : CurbSteps to which they refer
     near : function, station in m -> outward offset of the outermost track on that side, m
+    look : SideLook of the side, None where nothing is known of the ground
 
     Returns a list of (chain index, first station, last station), in order along the road
     """
-    paths = _Paths(chains, steps, near)
+    paths = _Paths(chains, steps, near, look)
     cuts = np.unique(np.r_[paths.starts, paths.ends])
     for a, b in zip(cuts[:-1], cuts[1:]):
         check_cancelled()
@@ -218,8 +223,8 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
 class _Paths:
     """The best path over chains that ends, or last was, on each chain: its value in m of curb, and (chain, first, last station, path before)."""
 
-    def __init__(self, chains, steps, near):
-        self.chains, self.near = chains, near
+    def __init__(self, chains, steps, near, look):
+        self.chains, self.near, self.look = chains, near, look
         self.places = [(steps.s[c.steps], steps.u[c.steps], steps.h[c.steps]) for c in chains]
         self.tips = np.array([_end_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
         self.starts, self.ends = np.array([c.start for c in chains]), np.array([c.end for c in chains])
@@ -262,12 +267,28 @@ class _Paths:
         turn = np.minimum(gap, CURBS.max_extrapolation) * 0.5 * (self.tips[known, 1] + (self.tips[c, 0] if a <= self.starts[c] else 0.0))
         jump = np.maximum(np.abs(u - at[:, 0] - np.where(gap > 0, turn, 0.0)) - 0.05 - 0.1 * gap, 0.0)
         climb = np.maximum(np.abs(h - at[:, 1]) - 0.03 - 0.003 * gap, 0.0)
-        cost = np.where(known == c, 0.0, np.minimum(CURBS.jump_cost * jump + CURBS.climb_cost * climb, CURBS.max_jump_cost))
+        cost = CURBS.jump_cost * jump + CURBS.climb_cost * climb
+        costly = np.flatnonzero((jump > 0.0) & (known != c))
+        if self.look is not None and len(costly):
+            cost[costly] = np.fmin(cost[costly], self._across_the_road(np.minimum(a, self.ends[known]), *at.T, a, u, h, gap, jump)[costly])
+        cost = np.where(known == c, 0.0, np.minimum(cost, CURBS.max_jump_cost))
         total = self.value[known] - cost
         if not len(known) or total.max() < 0.0:
             return 0.0, None
         k = int(np.argmax(total))
         return total[k], self.path[known[k]]
+
+
+    def _across_the_road(self, s, u, h, end_s, end_u, end_h, gap, jump):
+        """(N,) costs of going on from (N,) places to another one over ground that is road all the way, infinite where it is not.
+
+        The road's own crossfall is no climb.
+        """
+        foot = np.array(CURBS.road_before_curb[1])   # on the road before the curb
+        level = self.look.level_to(s, u - foot, end_s, end_u - foot)
+        above, end_above = h - self.look.road_height(s, u - foot), end_h - self.look.road_height(np.array(end_s), end_u - foot)
+        climb = np.maximum(np.abs(end_above - above) - 0.03 - 0.003 * gap, 0.0)
+        return np.where(level, CURBS.level_jump_cost * jump + CURBS.climb_cost * climb, np.inf)
 
 
 def _continued(selected, chains, steps):

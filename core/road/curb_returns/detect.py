@@ -22,6 +22,7 @@ from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import phase_along
 from ..common.sides import SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden_beside, work_sections
+from ..surface.road_look import RoadLook
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_curbs, has_road_before, is_curb_like
 from .extended_curbs import FollowedEnds, followed_steps, with_led_on
@@ -34,14 +35,14 @@ from .tracking import join_chains, link_plan_steps
 
 if TYPE_CHECKING:
     from ..common.curb_limits import CurbSettings
-    from ..surface.road_look import RoadLook
+    from ..surface.ground_grid import MeasuredGround
 
 KIND_TITLES = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
 
 
 def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, settings: CurbSettings,
                       progress: Progress = Progress(), beside: Mapping[int, Mapping[str, OcclusionGrid]] | None = None,
-                      looks: Mapping[int, RoadLook] | None = None) -> CurbPoints:
+                      ground: MeasuredGround | None = None) -> CurbPoints:
     """The points of the main curbs, and behind them those of corners, side streets and islands.
 
     Where a piece of main curb is found here, hidden places are looked for in the gaps next to it. A main curb that is the side
@@ -50,7 +51,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     curb_points : CurbPoints of every road, of kind main
     beside : number of the road -> side -> OcclusionGrid, what was seen beside it; without, no hidden place is added, and main curbs
         are not looked at for islands
-    looks : number of the road -> RoadLook; without, a curb may lie anywhere
+    ground : MeasuredGround of the survey; without, a curb may lie anywhere
     """
     survey, lines, parts = decimation.survey, [], []
     roads = survey.store.roads()
@@ -59,7 +60,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     runs = {road: [coordinates[:2] for _, coordinates in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
-        look = None if looks is None else looks[road]
+        look = None if ground is None else RoadLook(ground, road)
         main, chain = mains[road]
         elsewhere = [run for other_road in roads if other_road != road for run in runs[other_road]]
         of_road = curb_points.road == road

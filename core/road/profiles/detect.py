@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +20,7 @@ from ..common.side_curbs import SideChains, block_bounds, merged_passes, points_
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
 from ..curb_returns.detect import with_curb_returns
 from ..surface.ground_grid import MeasuredGround
-from ..surface.road_look import RoadLook, looks_of
+from ..surface.road_look import RoadLook, SideLook
 from ..weights import CURBS, PROFILE
 from .steps import find_averaged_steps, find_steps
 
@@ -32,36 +32,38 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
                  include_returns: bool = True, decimation: PointDecimation | None = None,
                  beside: dict[int, dict[str, OcclusionGrid]] | None = None,
                  side_chains: dict[tuple[int, str], SideChains] | None = None,
-                 looks: Mapping[int, RoadLook] | None = None) -> CurbPoints:
+                 ground: MeasuredGround | None = None) -> CurbPoints:
     """Bottom corners of the curb on each side of every road, one per block.
 
     include_returns : are corners, side streets and islands looked for too?
     decimation : PointDecimation of the survey, where it is used again
     beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
     side_chains : is given all chains that were found: (number of the road, side) -> SideChains
-    looks : number of the road -> RoadLook; None to measure the ground here
+    ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
     Returns CurbPoints. Those of status `measured` are vertices of the road edge; those of
     status `occluded` lie where the curb is expected and something hides it.
     """
     if decimation is None:
         with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own_decimation:
-            return detect_curbs(survey, settings, progress, include_returns, own_decimation, beside, side_chains, looks)
-    looks = looks_of(MeasuredGround(survey)) if looks is None else looks
+            return detect_curbs(survey, settings, progress, include_returns, own_decimation, beside, side_chains, ground)
+    ground = ground or MeasuredGround(survey)
     parts, beside, side_chains = [], {} if beside is None else beside, {} if side_chains is None else side_chains
     roads, width = survey.store.roads(), settings.profile_width
     for i, road in enumerate(roads):
         part = progress.part(PROFILE.main_curb_progress * i / len(roads), PROFILE.main_curb_progress * (i + 1) / len(roads))
         steps, beside[road] = steps_of_road(steps_of_section, decimation, road, settings, work_sections(survey, road, width), width, part)
         bounds = block_bounds(survey.frame.road(road), *survey.store.span(road), settings.block_length)
+        road_look = RoadLook(ground, road)
         for side in steps:
             if len(steps[side]):
-                side_chains[road, side] = SideChains.of(steps[side], width, settings.limits, bounds, looks[road].outward(SIDE_SIGNS[side]))
-                parts.append(points_of_side(survey, road, side, side_chains[road, side], beside[road][side]))
+                look = SideLook(road_look, SIDE_SIGNS[side])
+                side_chains[road, side] = SideChains.of(steps[side], width, settings.limits, bounds, look)
+                parts.append(points_of_side(survey, road, side, side_chains[road, side], beside[road][side], look))
     points = CurbPoints.join(parts, survey.crs)
     measured, main = np.count_nonzero(points.status == "measured"), len(points)
     if include_returns:
-        points = with_curb_returns(points, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside, looks)
+        points = with_curb_returns(points, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside, ground)
     progress.info(f"Curb points: {measured:,} measured, {main - measured:,} hidden by something in front.")
     return points
 

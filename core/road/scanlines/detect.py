@@ -10,7 +10,7 @@ The paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,6 +29,7 @@ from ..common.side_curbs import SideChains, block_bounds, merged_passes, points_
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections
 from ..edges.fit import EdgeCurve, point_table, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
+from ..surface.road_look import RoadLook, SideLook
 from ..weights import CURBS, EDGE, PROFILE, SCANLINE
 from .candidates import ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
@@ -39,21 +40,21 @@ if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.survey import Survey
     from ..common.decimation import LevelGround
-    from ..surface.road_look import RoadLook
+    from ..surface.ground_grid import MeasuredGround
 
 
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),
                          block_length: float = 0.0, progress: Progress = Progress(),
                          beside: dict[int, dict[str, OcclusionGrid]] | None = None,
                          side_chains: dict[tuple[int, str], SideChains] | None = None,
-                         looks: Mapping[int, RoadLook] | None = None) -> CurbPoints:
+                         ground: MeasuredGround | None = None) -> CurbPoints:
     """Bottom and top corners of the curb on each side of every road, one of each per block.
 
     source : SurveyScanlines or LayerScanlines
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
     beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
     side_chains : is given all chains that were found: (number of the road, side) -> SideChains
-    looks : number of the road -> RoadLook; None where nothing but the scanlines is known of the ground
+    ground : MeasuredGround of the survey; None where nothing but the scanlines is known of the ground
 
     Returns CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb.
     """
@@ -65,11 +66,12 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
         sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
         corners, beside[road] = steps_of_road(corners_of_section, source, road, settings, sections, interval, part)
         bounds = block_bounds(source.frame.road(road), start, end, block_length)
+        road_look = None if ground is None else RoadLook(ground, road)
         for side in corners:
             if len(corners[side]):
-                roughness = None if looks is None else looks[road].outward(SIDE_SIGNS[side])
-                side_chains[road, side] = SideChains.of(_with_scanner_noise(corners[side]), interval, settings.limits, bounds, roughness)
-                parts.append(points_of_side(source, road, side, side_chains[road, side], beside[road][side]))
+                look = None if road_look is None else SideLook(road_look, SIDE_SIGNS[side])
+                side_chains[road, side] = SideChains.of(_with_scanner_noise(corners[side]), interval, settings.limits, bounds, look)
+                parts.append(points_of_side(source, road, side, side_chains[road, side], beside[road][side], look))
     points = CurbPoints.join(parts, source.crs)
     measured, hidden = (np.count_nonzero((points.part == "bottom") & (points.status == status)) for status in ("measured", "occluded"))
     progress.info(f"Corners of curbs: {measured:,} measured on scanlines, {hidden:,} hidden by objects.")

@@ -239,7 +239,7 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
             continue
         deep = between & (offsets > limit[rows, None] + SURFACE.min_mouth_depth)
         if deep.sum(axis=0).max() * SURFACE.row_length < SURFACE.min_street_width \
-                or _level_share(between, first, height, limit, offsets) > SURFACE.max_level_flanks:
+                or _level_flanks(between, first, height, limit, offsets) > SURFACE.max_level_flanks * (end - first) * SURFACE.row_length:
             continue
         reach = median_filter(_outermost(between & ground[rows], offsets), SURFACE.smoothed_rows, mode="nearest")
         result[rows] = np.fmax(limit[rows], np.minimum(reach, farthest[rows]))
@@ -266,8 +266,11 @@ def _street(beyond, seen, ground):
     return street
 
 
-def _level_share(street, first, height, limit, offsets):
-    """Share of the places along both sides of a street, (N, C) cells from row `first` on, where the ground beside it is level with it."""
+def _level_flanks(street, first, height, limit, offsets):
+    """m along both sides of a street, (N, C) cells from row `first` on, where the ground beside it is level with it; infinite where most of it is.
+
+    What was not seen is taken to be as the rest.
+    """
     level = []
     for column in np.flatnonzero(street.any(axis=0)):
         rows = first + np.flatnonzero(street[:, column])[[0, -1]]
@@ -277,7 +280,8 @@ def _level_share(street, first, height, limit, offsets):
         level.append(height[rows[usable], column] - height[flanks[usable], column])
     differences = np.abs(np.concatenate(level)) if level else np.empty(0)
     differences = differences[np.isfinite(differences)]
-    return float((differences < SURFACE.min_flank_step).mean()) if len(differences) else 0.0
+    share = float((differences < SURFACE.min_flank_step).mean()) if len(differences) else 0.0
+    return share * sum(map(len, level)) * SURFACE.column_width if share <= 0.5 else np.inf
 
 
 def _outermost(cells, offsets):

@@ -1,13 +1,14 @@
-"""How the ground beside a road looks beside the road itself: a curb has road before it."""
+"""What the ground beside a road tells of steps on it: a curb has road before it, and across level ground it may go on farther out."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..weights import SURFACE
+from .ground_change import follow_road, smooth_road
 from .ground_grid import known_median
 
 if TYPE_CHECKING:
@@ -23,24 +24,60 @@ class RoadLook:
 
     def __init__(self, ground: MeasuredGround, road: int):
         self.cells = ground.cells(road)
-        near = np.abs(self.cells.offsets) < SURFACE.track_reach
-        driven = np.pad(self.cells.rough[:, near], ((SURFACE.rows_of_look,) * 2, (0, 0)), constant_values=np.nan)
-        windows = np.lib.stride_tricks.sliding_window_view(driven, 2 * SURFACE.rows_of_look + 1, axis=0)
-        self.usual = known_median(windows.reshape(len(windows), -1), 1)
+        self.prior = ground.survey.road_height(road, self.cells.stations)
+        driven = known_median(self.cells.rough[:, np.abs(self.cells.offsets) < SURFACE.track_reach], 1)
+        driven = np.pad(driven, SURFACE.rows_of_look, constant_values=np.nan)
+        self.usual = known_median(np.lib.stride_tricks.sliding_window_view(driven, 2 * SURFACE.rows_of_look + 1), 1)
 
     def roughness(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
-        """(N,) roughness at (N,) stations and offsets, m, in units of that of the road under the vehicle there; NaN where it is not known."""
+        """(N,) roughness at stations and offsets, (N,) m, in units of that of the road under the vehicle there; NaN where it is not known."""
+        rough, row = self._at(self.cells.rough, s, d)
+        return rough / self.usual[row]
+
+    def road_height(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """Height of the road as it goes on from the track, above the expected one; m, of one shape with stations and offsets, m."""
+        height, row = self._at(self._road, s, d)
+        return height - self.prior[row]
+
+    def off_road(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """Height of the ground above the road as it goes on from the track; m, of one shape with stations and offsets; NaN where none was seen."""
+        return self._at(self.cells.height, s, d)[0] - self._at(self._road, s, d)[0]
+
+    @cached_property
+    def _road(self):
+        followed = follow_road(self.cells, self.prior)
+        return np.full_like(self.cells.height, np.nan) if followed is None else smooth_road(followed, self.cells)
+
+    def _at(self, values, s, d):
+        """Values of cells at stations and offsets, NaN beyond them, and their rows."""
         row, column = np.floor(s / self.cells.row_size) - self.cells.first_row, np.floor(d / self.cells.column_size) - self.cells.first_column
-        rows, columns = self.cells.rough.shape
-        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)   # NaN is not inside
-        row, column = (np.where(inside, values, 0).astype(np.int64) for values in (row, column))
-        return np.where(inside, self.cells.rough[row, column] / self.usual[row], np.nan)
-
-    def outward(self, sign: int) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
-        """`roughness` of one side, 1 left or -1 right, as a function of stations and outward offsets."""
-        return lambda s, u: self.roughness(s, sign * u)
+        inside = (row >= 0) & (row < values.shape[0]) & (column >= 0) & (column < values.shape[1])   # NaN is not inside
+        row, column = (np.where(inside, number, 0).astype(np.int64) for number in (row, column))
+        return np.where(inside, values[row, column], np.nan), row
 
 
-def looks_of(ground: MeasuredGround) -> dict[int, RoadLook]:
-    """The RoadLook of every road by its number."""
-    return {road: RoadLook(ground, road) for road in ground.survey.store.roads()}
+class SideLook:
+    """A RoadLook from the track outward to one side, 1 left or -1 right."""
+
+    def __init__(self, look: RoadLook, sign: int):
+        self.look, self.sign = look, sign
+
+    def roughness(self, s: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """`RoadLook.roughness` at stations and outward offsets."""
+        return self.look.roughness(s, self.sign * u)
+
+    def road_height(self, s: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """`RoadLook.road_height` at stations and outward offsets."""
+        return self.look.road_height(s, self.sign * u)
+
+    def level_to(self, s: np.ndarray, u: np.ndarray, end_s: float, end_u: float) -> np.ndarray:
+        """(N,) bool, is the ground seen, and as high as the road, on the straight way from (N,) places to one?
+
+        s, u : (N,) m, stations and outward offsets; end_s, end_u : those of the one place
+        """
+        share = np.linspace(0.0, 1.0, SURFACE.places_between)[:, None]
+        off = self.look.off_road(s + share * (end_s - s), self.sign * (u + share * (end_u - u)))
+        seen = np.isfinite(off)
+        with np.errstate(invalid="ignore"):
+            level = np.abs(off) < SURFACE.max_height_deviation
+        return (seen.mean(0) >= SURFACE.min_seen_between) & (level.sum(0) >= SURFACE.min_level_between * seen.sum(0))

@@ -65,12 +65,13 @@ class RoadPoints:
         """An empty set for points of a survey, in its sections; the Survey lives as long as the road points and is closed with them."""
         dtype = point_dtype(ROAD_POINT, np.inf if survey.store.dtype["x"] == np.int64 else 0.0)
         store = SectionStore(dtype, survey.store.section_length, survey.executor.passing().folder, dict(corrected=np.nan, cluster=0, spacing=0))
-        store.at_close = survey.store.close
         return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves,
                    pass_sigma=survey.frame.pass_sigma, survey=survey)
 
     def close(self) -> None:
         self.store.close()
+        if self.survey is not None:
+            self.survey.store.close()
 
     def __len__(self) -> int:
         return self.store.count

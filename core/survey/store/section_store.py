@@ -340,6 +340,14 @@ class SectionStore:
         self.adopt(index, folder)
         self._count = count
 
+    def remove(self) -> None:
+        """Let the own columns go, and their files of a folder; the store that lies below stays."""
+        paths = {part.file for section in self._sections.values() for part in section.parts if isinstance(part.file, Path)}
+        self._release()
+        close_files()
+        for path in paths:
+            path.unlink(missing_ok=True)
+
     def close(self) -> None:
         self._release()
         if self.base is not None:

@@ -26,7 +26,6 @@ from ..opendrive.model import (
     MapRoad,
     OpenDriveMap,
     RoadLink,
-    RoadSurface,
     travel,
 )
 from ..opendrive.xodr import GEOMETRIES
@@ -41,7 +40,6 @@ MAX_HEIGHT_STEP = 0.02       # m within a road
 MAX_WIDTH_STEP = 0.02        # m of a border within a road
 LEAST_OVERLAP = 0.3          # share of the smaller of two roads that lies on the other
 FARTHEST_BOUND = 50.0        # m by which roads may reach beyond the bounds of the header
-FOLD_STEP = 1.0              # m between the places at which borders are held against the curvature
 
 
 def check_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> Findings:
@@ -133,13 +131,12 @@ class _RoadCheck:
         if abs(starts[0]) > MAX_LENGTH_ERROR or (np.diff(starts) <= 0).any() or starts[-1] >= road.length:
             self.add("section order", f"road {road.id}", f"Sections begin at {', '.join(f'{s:g}' for s in starts[:8])}.", road, 0.0)
             return
-        surface = RoadSurface(road)
         outlines = []
         for number, section in enumerate(road.sections):
             self._numbering(road, section)
             for lane in section.lanes.values():
                 self._lane(road, section.s, lane, f"road {road.id}, section {number}, lane {lane.id}", road.section_end(number) - section.s)
-            outlines.append(self._borders(road, surface, number))
+            outlines.append(self._borders(road, number))
         self._offset_steps(road, starts)
         if road.junction == "-1":
             self.areas[road.id] = shapely.union_all(outlines)
@@ -177,9 +174,10 @@ class _RoadCheck:
         if len(set(section.order)) != len(section.order):
             self.add("id twice", name, f"The lanes are {', '.join(map(str, section.order))}.", road, section.s)
 
-    def _borders(self, road, surface, number):
+    def _borders(self, road, number):
         """The outline of a section's driven lanes; whether its borders fold."""
-        s = surface.stations(number, FOLD_STEP)
+        surface = road.surface
+        s = surface.stations(number)
         offsets = surface.offsets(number, s)
         bend = road.plan.at(s)[2]
         for id, t in offsets.items():
@@ -378,7 +376,7 @@ class _Links:
             first, last = road.sections[key[1]].s, road.section_end(key[1])
             step = min(END_STEP, (last - first) / 2)
             s = np.array([first, first + step]) if end == "start" else np.array([last - step, last - 1e-6])
-            surface = RoadSurface(road)
+            surface = road.surface
             # the functions of a section hold up to its end: those of the next begin at the same s
             inner, outer = (self.whole.placed(line) for line in surface.borders(key[1], key[2], s, surface.offsets(key[1], s)))
             left, right = (inner, outer) if key[2] < 0 else (outer, inner)

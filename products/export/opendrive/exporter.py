@@ -15,8 +15,10 @@ from ....core.common.progress import Progress
 from ....core.common.setting import check_limits, setting
 from ..shared_borders import with_driven_middles
 from ..sources import NearestValues, RoadMapSource, sigma_of_lanes, stop_lines, walked_crossings
+from .geometry import Cubics
 from .model import OPEN_END, STEP, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
-from .road_shape import add_heights, add_lanes, centre_of, heights_above_road, shape_of
+from .road_shape import RoadShape, add_heights, add_lanes, centre_of, fit_borders, heights_above_road, shape_steps
+from .side_by_side import side_by_side
 from .strips import (
     Cell,
     Slice,
@@ -89,15 +91,15 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     drafting = _Drafting(local, origin, settings)
     draft = OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
     draft.notes += drafting.notes
-    strips, lost = drafting.strips()
-    if lost:
-        progress.info(f"Pieces of lanes that nobody drives, within junctions: {lost}. OpenDRIVE has no place for them there, and they were left out.")
+    strips = drafting.strips()
     directions = directions_where_met([cell for strip, _ in strips for part in strip for cell in part.cells])
-    for number, (strip, single) in enumerate(strips, start=1):
-        draft_road = drafting.road(strip, number, single, directions)
+    shaped = drafting.shaped([strip for strip, _ in strips], progress.part(0.0, 0.5))
+    borders = fit_borders(shaped, CURVES_SHARE * settings.tolerance, directions)
+    for number, (shape, functions, (_, single)) in enumerate(zip(shaped, borders, strips), start=1):
+        draft_road = drafting.road(*shape, functions, number, single)
         draft.roads.append(draft_road)
         draft.map.roads.append(draft_road.road)
-        progress.report(number / len(strips))
+        progress.report(0.5 + 0.5 * number / len(strips))
     draft.notes += _link_roads(draft.map, draft.roads)
     draft.notes += _said_open_ends(draft.map)
     _add_objects(draft.map, source.markings, origin)
@@ -127,44 +129,46 @@ class _Drafting:
             self.notes.append("No road has lanes in both directions; traffic was taken to keep right. Set Side of traffic where it keeps left.")
         return votes < 0
 
-    def strips(self) -> tuple[list[tuple[list[Slice], bool]], int]:
-        """((slices of a road, whether it is a way through a junction), ordinary roads first; how many cells within junctions are of none)."""
+    def strips(self) -> list[tuple[list[Slice], bool]]:
+        """(slices of a road, whether it is a way through a junction), ordinary roads first."""
         mark_junctions(self.slices, self.lanes)
-        ordinary, inside = self._parted()
+        ordinary, inside, beside = self._parted()
         inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)}
         ordinary, between = _between_junctions(ordinary, inside_ids)
-        inside += between
-        lost = sum(len(part.cells) for part in inside if not part.driven)
-        return _ordinary_roads(ordinary) + _ways_through([way for part in inside for way in part.ways()] + self.connectors), lost
+        return (_ordinary_roads(ordinary) + [(strip, False) for strip in strips_of(beside, set())]
+                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors))
 
-    def _parted(self) -> tuple[list[Slice], list[Slice]]:
-        """(slices of ordinary roads, slices within junctions): ways through a junction are cut off from the slices in which they begin or end."""
-        ordinary, inside = [], []
+    def _parted(self) -> tuple[list[Slice], list[Slice], list[Slice]]:
+        """(slices of ordinary roads, slices within junctions, slices that nobody drives and that touch a junction).
+
+        Ways through a junction are cut off from the slices in which they begin or end.
+        """
+        ordinary, inside, beside = [], [], []
         for part in self.slices:
-            if part.at_start and part.at_end and part.length < LONGEST_JUNCTION:
+            if (part.at_start or part.at_end) and not part.driven:
+                beside.append(part)
+            elif part.at_start and part.at_end and part.length < LONGEST_JUNCTION:
                 inside.append(part)
-                continue
-            for at_end in (False, True):
-                if not (part.at_end if at_end else part.at_start):
-                    continue
-                row = _cut_row(part, at_end)
-                if not row:   # too short for a way and a road
-                    inside.append(part)
-                    break
-                first, last = part.split(row)
-                way, part = (last, first) if at_end else (first, last)
-                inside.append(way)
             else:
-                ordinary.append(part)
-        return ordinary, inside
+                ways, rest = _ways_cut_off(part)
+                inside += ways
+                ordinary += rest
+        return ordinary, inside, beside
 
-    def road(self, strip: list[Slice], number: int, single: bool, directions: dict[int, float]) -> _DraftRoad:
+    def shaped(self, strips: list[list[Slice]], progress: Progress) -> list[tuple[RoadShape, list[Slice], list[int]]]:
+        """For each road its shape, its slices, and the number of the border in each at which lane 0 lies."""
+        centres = [[centre_of(part, self.left_hand) for part in strip] for strip in strips]
+        shapes = side_by_side([shape_steps(*road, self.settings.tolerance / 2) for road in zip(strips, centres)], progress)
+        if cornered := sum(not shape.follows for shape in shapes):
+            progress.info(f"The borders in the middle of {cornered} of {len(shapes)} roads have corners, which no reference line follows: smoother "
+                          "lines were tried, so that the export takes longer, and the lane offset leads from them to the borders.")
+        return list(zip(shapes, strips, centres))
+
+    def road(self, shape: RoadShape, strip: list[Slice], centres: list[int], borders: list[list[Cubics]], number: int, single: bool) -> _DraftRoad:
         tolerance = self.settings.tolerance
-        centres = [centre_of(part, self.left_hand) for part in strip]
-        shape = shape_of(strip, centres, tolerance / 2)
         roads = sorted({int(self.lanes.road[cell.piece]) for part in strip for cell in part.cells})
         road = MapRoad(str(number), shape.plan.length, shape.plan, f"Road {', '.join(map(str, roads))}", rule="LHT" if self.left_hand else "RHT")
-        numbers = add_lanes(road, shape, strip, centres, CURVES_SHARE * tolerance, directions)
+        numbers = add_lanes(road, shape, strip, centres, borders)
         add_heights(road, shape, tolerance)
         status: dict[str, float] = defaultdict(float)
         for row, (part, ids, section, centre) in enumerate(zip(strip, numbers, road.sections, centres)):
@@ -263,7 +267,7 @@ def _between_junctions(slices, inside):
     """(slices, those of them that are too short for a road and lie between ways through junctions)."""
     between = []
     while True:
-        short = [part for part in slices if part.length < SHORTEST_WAY and _lies_within(part, inside)]
+        short = [part for part in slices if part.driven and part.length < SHORTEST_WAY and _lies_within(part, inside)]
         if not short:
             return slices, between
         between += short
@@ -311,6 +315,20 @@ def _make_double(mark, left, right, lane):
 def _shares(status):
     """What userData says of the metres of each status, where not all is measured."""
     return {} if set(status) == {"measured"} else {f"lanewright:{name}_m": f"{metres:.1f}" for name, metres in sorted(status.items())}
+
+
+def _ways_cut_off(part: Slice) -> tuple[list[Slice], list[Slice]]:
+    """(the ways through junctions that begin or end in a slice, what is left of it): all of it is a way where it is too short for both."""
+    ways: list[Slice] = []
+    for at_end in (False, True):
+        if part.at_end if at_end else part.at_start:
+            row = _cut_row(part, at_end)
+            if not row:
+                return [*ways, part], []
+            first, last = part.split(row)
+            way, part = (last, first) if at_end else (first, last)
+            ways.append(way)
+    return ways, [part]
 
 
 def _cut_row(one: Slice, at_end: bool) -> int:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import solve_banded
@@ -78,7 +79,7 @@ class Cubics:
         return float(value[piece, column]), float(start[piece] + ds[piece, column])
 
 
-def _on_spirals(u, x, y, heading, bend, change):
+def on_spirals(u: np.ndarray, x: Any, y: Any, heading: Any, bend: Any, change: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths (N,) of one spiral, or of one for each; lines and arcs are spirals too."""
     nodes, weights = GAUSS_RULES[gauss_rule(float((np.abs(bend * u) + np.abs(change * u * u / 2)).max(initial=0.0)))]
     first = np.asarray(heading)[..., None]
@@ -111,7 +112,7 @@ class PlanElement:
         """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths u from its start."""
         u = np.asarray(u, float)
         if not self.is_polynomial:
-            return _on_spirals(u, self.x, self.y, self.heading, *self.bends())
+            return on_spirals(u, self.x, self.y, self.heading, *self.bends())
         p, a, b = self._parameter(u), np.array(self._polynomials()[0]), np.array(self._polynomials()[1])
         powers = np.stack([np.ones_like(p), p, p**2, p**3])
         slopes = np.stack([np.zeros_like(p), np.ones_like(p), 2 * p, 3 * p**2])
@@ -171,7 +172,7 @@ class PlanView:
         s = np.asarray(s, float)
         starts, table, polynomial = self._table
         owner = np.maximum(np.searchsorted(starts, s + 1e-9, side="right") - 1, 0)
-        places, heading, bend = _on_spirals(s - starts[owner], *table[:, owner])
+        places, heading, bend = on_spirals(s - starts[owner], *table[:, owner])
         for k in np.flatnonzero(polynomial):
             rows = owner == k
             if rows.any():
@@ -250,55 +251,204 @@ STEP_RUN = 0.005      # m along the road between places that are not of one step
 BAND = 3              # unknowns beside each other that one piece joins: levels and slopes at both of its ends
 
 
-def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: float, end: float, tolerance: float,
-               slopes: Sequence[tuple[float, float]] = (), broken: bool = False) -> list[Cubics]:
+class LineBundle(NamedTuple):
+    """Lines along a road that functions with common pieces follow, such as the borders of a section.
+
+    s, values : for each line (n,) metres, rising, and its values there
+    start, end : metres, of the functions; the first and last value are met there
+    tolerance : how far a value may be missed
+    slopes : for each line those at its start and end, NaN for any; none are given by default
+    broken : whether straight pieces lead from place to place everywhere, which are never below what they join
+    """
+
+    s: Sequence[np.ndarray]
+    values: Sequence[np.ndarray]
+    start: float
+    end: float
+    tolerance: float
+    slopes: Sequence[tuple[float, float]] = ()
+    broken: bool = False
+
+
+def fit_cubics(bundles: Sequence[LineBundle]) -> list[list[Cubics]]:
     """Functions with common pieces, whose values and slopes go on from piece to piece, but for corners and steps.
 
-    The places are those of lines, which the functions follow between the places too. Where even the shortest cubics miss them, as at a corner
-    or a step, straight pieces lead from place to place.
+    The functions follow the lines between their places too. Where even the shortest cubics miss them, as at a corner or a step, straight pieces
+    lead from place to place. All bundles are fitted at once: pieces that miss are halved until none does, with one system of equations a round.
 
     Parameters
     ----------
-    s, values : for each function (n,) metres, rising, and its values there
-    start, end : metres, of the functions; the first and last value are met there
-    tolerance : how far a value may be missed
-    slopes : for each function those at its start and end, NaN for any; none are given by default
-    broken : whether straight pieces lead from place to place everywhere, which are never below what they join
+    bundles : of any number of sections and roads
 
     Returns
     -------
-    list of Cubics, `start` counted as 0
+    for each bundle a list of Cubics, its `start` counted as 0
     """
-    knots, straight = np.array([start, end]), np.array([broken])
-    s, values = [np.asarray(x, float) for x in s], [np.asarray(x, float) for x in values]
-    while True:
-        fitted = [_hermite(x, value, knots, given, straight) for x, value, given in zip(s, values, slopes or [(np.nan, np.nan)] * len(s))]
-        bad = (_missed(s, values, fitted, knots) > tolerance) & ~straight
-        if not bad.any():
-            quarters = (knots[:-1, None] + np.diff(knots)[:, None] * np.array([0.25, 0.5, 0.75])).ravel()
-            bad = (_missed([quarters] * len(s), [np.interp(quarters, x, value) for x, value in zip(s, values)],
-                           fitted, knots) > tolerance) & ~straight
-        if not bad.any():
-            return _pieces(s, values, knots, fitted, straight)
-        inner = [(knots[k] + knots[k + 1]) / 2 for k in np.flatnonzero(bad) if len(knots) <= MOST_PIECES
-                 and _places_within(s, knots[k], knots[k + 1]) and knots[k + 1] - knots[k] > 2 * SHORTEST_CUBIC]
-        if not inner:
-            straight = straight | bad
-            continue
-        before, knots = knots, np.sort(np.append(knots, inner))
-        straight = straight[np.searchsorted(before, knots[1:]) - 1]
+    fitted: dict[int, list[Cubics]] = {}
+    divided = [_Division(number, bundle) for number, bundle in enumerate(bundles)]
+    while divided:
+        system = _System(divided)
+        rows = system.solved()
+        bad = system.missed(rows)
+        bad |= system.missed_between(rows, [bundle for bundle, missed in zip(divided, system.of_bundles(bad)) if not missed.any()])
+        left = []
+        for bundle, missed, first in zip(divided, system.of_bundles(bad), system.first):
+            if missed.any():
+                bundle.divide(missed)
+                left.append(bundle)
+            else:
+                fitted[bundle.number] = bundle.cubics(rows[first:])
+        divided = left
+    return [fitted[number] for number in range(len(bundles))]
 
 
-def _missed(s, values, fitted, knots):
-    """(pieces,) by how much the functions miss their values at most."""
-    worst = np.zeros(len(knots) - 1)
-    for x, value, (levels, rates) in zip(s, values, fitted):
-        np.maximum.at(worst, _piece_of(x, knots), np.abs(_evaluated(x, knots, levels, rates) - value))
-    return worst
+class _Division:
+    """A bundle and how it is divided into pieces.
+
+    knots : (K,) metres; straight : (K - 1,) whether the piece leads straight from place to place
+    """
+
+    def __init__(self, number, given):
+        self.number, self.given = number, given
+        self.s, self.values = ([np.asarray(line, float) for line in lines] for lines in (given.s, given.values))
+        self.slopes = given.slopes or [(np.nan, np.nan)] * len(self.s)
+        self.knots, self.straight = np.array([given.start, given.end], float), np.array([given.broken])
+
+    def divide(self, bad):
+        """Halve the pieces that miss their lines, (K - 1,) bool; where none can be halved, they become straight ones."""
+        knots = self.knots
+        has_places = np.any([np.searchsorted(x, knots[1:]) > np.searchsorted(x, knots[:-1], side="right") for x in self.s], axis=0)
+        halved = bad & has_places & (np.diff(knots) > 2 * SHORTEST_CUBIC) & (len(knots) <= MOST_PIECES)
+        if halved.any():
+            self.knots = np.sort(np.append(knots, ((knots[:-1] + knots[1:]) / 2)[halved]))
+            self.straight = np.repeat(self.straight, 1 + halved)
+        else:
+            self.straight = self.straight | bad
+
+    def piece_of(self, s):
+        """(n,) numbers of the pieces at s."""
+        return np.clip(np.searchsorted(self.knots, s, side="right") - 1, 0, len(self.knots) - 2)
+
+    def cubics(self, rows):
+        """The functions by the rows at the knots of all lines: a piece of a cubic has one, a straight piece one for each of its places."""
+        knots, count = self.knots, len(self.knots)
+        rows_of = [rows[number * count:(number + 1) * count - 1] for number in range(len(self.s))]
+        if not self.straight.any():
+            return [Cubics(row) for row in rows_of]
+        places = np.unique(np.concatenate(self.s))
+        piece = self.piece_of(places)
+        inner = self.straight[piece] & (places > knots[piece] + LEAST_STEP) & (places < knots[piece + 1] - LEAST_STEP)
+        breaks = np.concatenate([knots[:-1][self.straight], places[inner]])
+        order = np.argsort(breaks, kind="stable")
+        breaks, piece = breaks[order], np.append(np.flatnonzero(self.straight), piece[inner])[order]
+        ends_piece = np.append(piece[1:] > piece[:-1], True)
+        run = np.where(ends_piece, knots[piece + 1], np.append(breaks[1:], knots[-1])) - breaks
+        first, last = [], []
+        for number, (x, value) in enumerate(zip(self.s, self.values)):
+            levels = rows[number * count:(number + 1) * count, 1]
+            first.append(np.where(breaks == knots[piece], levels[piece], np.interp(breaks, x, value)))
+            last.append(np.where(ends_piece, levels[piece + 1], np.append(first[-1][1:], 0.0)))
+        rise = np.array(last) - np.array(first)
+        kept = (run > STEP_RUN) | (np.abs(rise) < run).all(0) | (breaks == knots[0])   # up to a step the piece before goes on
+        for number, row in enumerate(rows_of):
+            lines = np.c_[breaks - knots[0], first[number], rise[number] / run, np.zeros((len(run), 2))][kept]
+            both = np.concatenate([row[~self.straight], lines])
+            rows_of[number] = both[np.argsort(both[:, 0], kind="stable")]
+        return [Cubics(row) for row in rows_of]
 
 
-def _piece_of(s, knots):
-    return np.clip(np.searchsorted(knots, s, side="right") - 1, 0, len(knots) - 2)
+class _System:
+    """The equations of all lines of bundles: unknown are the level and the slope at every knot.
+
+    Knots and places lie one line after the other; the pieces between the last knot of a line and the first one of the next are none.
+    """
+
+    def __init__(self, divided):
+        self.divided = divided
+        self.lines = [(bundle, x, value, slopes) for bundle in divided for x, value, slopes in zip(bundle.s, bundle.values, bundle.slopes)]
+        self.knots = np.concatenate([bundle.knots for bundle, *_ in self.lines])
+        counts = np.array([len(bundle.knots) for bundle, *_ in self.lines])
+        self.last = np.cumsum(counts) - 1
+        self.begin = self.last - counts + 1
+        self.first = self.begin[np.cumsum([0, *(len(bundle.s) for bundle in divided)])[:-1]]
+        self.straight = np.concatenate([np.append(bundle.straight, False) for bundle, *_ in self.lines])
+        self.none = np.zeros(len(self.knots), bool)
+        self.none[self.last] = True
+        self.tolerance = np.repeat([bundle.given.tolerance for bundle, *_ in self.lines], counts)
+        self.span = np.where(self.none, 1.0, np.diff(self.knots, append=np.inf))
+        _, s, values, _ = zip(*self.lines)
+        self.s, self.values = np.concatenate(s), np.concatenate(values)
+        self.piece = np.concatenate([bundle.piece_of(x) + begin for (bundle, x, *_), begin in zip(self.lines, self.begin)])
+
+    def of_bundles(self, values):
+        """The values of all pieces, taken together for those of the lines of each bundle."""
+        return [values[first:first + len(bundle.s) * len(bundle.knots)].reshape(len(bundle.s), -1)[:, :-1].any(0)
+                for bundle, first in zip(self.divided, self.first)]
+
+    def solved(self):
+        """(K, 5) rows of Cubics at the knots, from the start of each bundle, by least squares; both ends are met, and their slopes where given."""
+        prescribed = self._prescribed()
+        smooth, pieces = ~self.straight[self.piece], np.flatnonzero(~self.straight & ~self.none)
+        s, values, k, h = self.s[smooth], self.values[smooth], self.piece[smooth], self.span
+        fit = np.stack(_basis((s - self.knots[k]) / h[k], h[k]), axis=1)
+        # bending of every piece: the integral of the squared second derivative, by its values at both ends
+        bending = [np.stack([a / h**2, b / h, c / h**2, d / h], axis=1)[pieces] for a, b, c, d in ((-6, -4, 6, -2), (6, 2, -6, 4))]
+        weights = np.concatenate([fit, *(STIFFNESS * block for block in bending)])
+        columns = 2 * np.concatenate([k, pieces, pieces])[:, None] + np.arange(4)   # level and slope of a knot lie side by side: a band
+        fixed = np.isfinite(prescribed)
+        target = np.append(values, np.zeros(2 * len(pieces))) - (weights * np.where(fixed, prescribed, 0.0)[columns]).sum(1)
+        weights = np.where(fixed[columns], 0.0, weights)
+        size, side = len(prescribed), np.arange(4)
+        index = (BAND + side[:, None] - side) * size + columns[:, None, :]   # of each product of two weights in the band
+        products = weights[:, :, None] * weights[:, None, :]
+        band = np.bincount(index.ravel(), products.ravel(), (2 * BAND + 1) * size).reshape(-1, size)
+        right = np.where(fixed, prescribed, 0.0) + np.bincount(columns.ravel(), (weights * target[:, None]).ravel(), size)
+        band[BAND, fixed] = 1.0
+        solution = solve_banded((BAND, BAND), band, right)
+        levels, slopes = solution[::2], solution[1::2]
+        rise, next_slopes = np.diff(levels, append=0.0), np.append(slopes[1:], 0.0)
+        start = np.repeat(self.knots[self.begin], self.last - self.begin + 1)
+        return np.c_[self.knots - start, levels, slopes, (3 * rise / h - 2 * slopes - next_slopes) / h, (slopes + next_slopes - 2 * rise / h) / h**2]
+
+    def _prescribed(self):
+        """(2 K,) level and slope of every knot that are given, else NaN: at the ends, and where straight pieces begin and end."""
+        prescribed = np.full((len(self.knots), 2), np.nan)
+        met = self.straight | np.roll(self.straight, 1)
+        for (_, x, value, _), begin, last in zip(self.lines, self.begin, self.last):
+            rows = begin + np.flatnonzero(met[begin:last + 1])
+            if len(rows):
+                prescribed[rows, 0] = np.interp(self.knots[rows], x, value)
+        for rows, outer, inner in ((self.begin, 0, 1), (self.last, -1, -2)):
+            # by the straight line through the outermost two places
+            (s, other), (level, other_level) = (np.array([[line[row][k] for line in self.lines] for k in (outer, inner)]) for row in (1, 2))
+            run = s - other
+            flat = np.abs(run) <= 1e-6
+            prescribed[rows, 0] = level + np.where(flat, 0.0, (level - other_level) / np.where(flat, 1.0, run) * (self.knots[rows] - s))
+            prescribed[rows, 1] = [slopes[outer] for *_, slopes in self.lines]
+        no_cubic = self.straight | self.none
+        prescribed[no_cubic & np.roll(no_cubic, 1), 1] = 0.0
+        return prescribed.ravel()
+
+    def missed(self, rows):
+        """(K,) bool of the pieces that miss their places."""
+        return self._missed(rows, self.s, self.values, self.piece)
+
+    def missed_between(self, rows, chosen):
+        """(K,) bool of the pieces of the chosen bundles that miss their lines between the places."""
+        quarters, shares = [(np.empty(0), np.empty(0), np.empty(0, int))], np.arange(1, 4) / 4
+        for (bundle, x, value, _), begin in zip(self.lines, self.begin):
+            if bundle in chosen:
+                s = (bundle.knots[:-1, None] + np.diff(bundle.knots)[:, None] * shares).ravel()
+                quarters.append((s, np.interp(s, x, value), begin + np.arange(len(s)) // len(shares)))
+        return self._missed(rows, *map(np.concatenate, zip(*quarters)))
+
+    def _missed(self, rows, s, values, k):
+        h = self.span[k]
+        a, b, c, d = _basis((s - self.knots[k]) / h, h)
+        miss = np.abs(a * rows[k, 1] + b * rows[k, 2] + c * rows[k + 1, 1] + d * rows[k + 1, 2] - values)
+        missed = np.zeros(len(self.knots), bool)
+        missed[k[miss > self.tolerance[k]]] = True
+        return missed & ~self.straight
 
 
 def difference(first: Cubics, second: Cubics) -> Cubics:
@@ -308,17 +458,23 @@ def difference(first: Cubics, second: Cubics) -> Cubics:
 
 def simplified(cubics: Cubics) -> Cubics:
     """Without pieces that only repeat the one before: constant and straight functions have one row."""
-    rows = cubics.rows
-    keep = [0]
+    rows, keep = cubics.rows, [0]
+    repeats = _missed_by(rows[:-1], rows[1:]) <= 1e-9
     for k in range(1, len(rows)):
-        ds = rows[k, 0] - rows[keep[-1], 0]
-        _, a, b, c, d = rows[keep[-1]]
-        moved = np.array([a + ds * (b + ds * (c + ds * d)), b + ds * (2 * c + ds * 3 * d), c + 3 * d * ds, d])
-        if np.abs(moved - rows[k, 1:]).max() > 1e-9:
+        last_is_before = keep[-1] == k - 1
+        if not (repeats[k - 1] if last_is_before else _missed_by(rows[keep[-1], None], rows[k, None])[0] <= 1e-9):
             keep.append(k)
     tiny = rows[keep].copy()
     tiny[:, 1:][np.abs(tiny[:, 1:]) < 1e-12] = 0.0
     return Cubics(tiny)
+
+
+def _missed_by(before, after):
+    """(n,) by how much coefficients of (n, 5) rows differ from those of the rows before, which go on."""
+    start, a, b, c, d = before.T
+    ds = after[:, 0] - start
+    moved = np.stack([a + ds * (b + ds * (c + ds * d)), b + ds * (2 * c + ds * 3 * d), c + 3 * d * ds, d], axis=1)
+    return np.abs(moved - after[:, 1:]).max(1)
 
 
 def risen(s: np.ndarray) -> np.ndarray:
@@ -326,78 +482,6 @@ def risen(s: np.ndarray) -> np.ndarray:
     return np.append(True, np.diff(np.maximum.accumulate(s)) > LEAST_STEP)
 
 
-def _places_within(s, first, last):
-    return max(int(((x > first) & (x < last)).sum()) for x in s)
-
-
 def _basis(u: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, ...]:
     """Hermite's functions: (value at start, slope at start, value at end, slope at end)."""
     return 2 * u**3 - 3 * u**2 + 1, h * (u**3 - 2 * u**2 + u), 3 * u**2 - 2 * u**3, h * (u**3 - u**2)
-
-
-def _hermite(s, values, knots, ends, straight):
-    """(K,) levels and slopes at the knots by least squares; both ends are met, and their slopes where they are given.
-
-    straight : (K - 1,) pieces that are led from place to place instead; at their knots the line is met
-    """
-    count, met = len(knots), np.append(straight, False) | np.append(False, straight)
-    prescribed = np.full(2 * count, np.nan)
-    prescribed[::2][met] = np.interp(knots[met], s, values)
-    prescribed[[0, -2]], prescribed[[1, -1]] = _at_ends(s, values, knots), ends
-    prescribed[1::2][np.append(straight, True) & np.append(True, straight)] = 0.0   # no cubic begins or ends there
-    if straight.any():
-        smooth = ~straight[_piece_of(s, knots)]
-        s, values = s[smooth], values[smooth]
-    k, h, j = _piece_of(s, knots), np.diff(knots), np.flatnonzero(~straight)
-    fit = np.stack(_basis((s - knots[k]) / h[k], h[k]), axis=1)
-    # bending of every piece: the integral of the squared second derivative, by its values at both ends
-    bending = [np.stack([a / h**2, b / h, c / h**2, d / h], axis=1)[j] for a, b, c, d in ((-6, -4, 6, -2), (6, 2, -6, 4))]
-    weights = np.concatenate([fit, *(STIFFNESS * block for block in bending)])
-    columns = 2 * np.concatenate([k, j, j])[:, None] + np.arange(4)   # level and slope of a knot lie side by side, so that the system has a band
-    fixed = np.isfinite(prescribed)
-    target = np.append(values, np.zeros(2 * len(j))) - (weights * np.where(fixed, prescribed, 0.0)[columns]).sum(1)
-    weights = np.where(fixed[columns], 0.0, weights)
-    size, side = 2 * count, np.arange(4)
-    index = (BAND + side[:, None] - side) * size + columns[:, None, :]   # of each product of two weights in the band
-    products = weights[:, :, None] * weights[:, None, :]
-    band = np.bincount(index.ravel(), products.ravel(), (2 * BAND + 1) * size).reshape(-1, size)
-    right = np.where(fixed, prescribed, 0.0) + np.bincount(columns.ravel(), (weights * target[:, None]).ravel(), size)
-    band[BAND, fixed] = 1.0
-    solution = solve_banded((BAND, BAND), band, right)
-    return solution[::2], solution[1::2]
-
-
-def _at_ends(s, values, knots):
-    """Values at the first and last knot, by the straight line through the outermost two places."""
-    levels = []
-    for knot, (i, j) in ((knots[0], (0, 1)), (knots[-1], (-1, -2))):
-        run = s[i] - s[j]
-        levels.append(float(values[i] + ((values[i] - values[j]) / run * (knot - s[i]) if abs(run) > 1e-6 else 0.0)))
-    return levels
-
-
-def _evaluated(s, knots, levels, slopes):
-    k = _piece_of(s, knots)
-    h = np.diff(knots)[k]
-    a, b, c, d = _basis((s - knots[k]) / h, h)
-    return a * levels[k] + b * slopes[k] + c * levels[k + 1] + d * slopes[k + 1]
-
-
-def _pieces(s, values, knots, fitted, straight):
-    """Cubics of the functions: a row for each piece, and in a straight one for each of its places."""
-    h, rows_of = np.diff(knots), []
-    for levels, slopes in fitted:
-        rise = np.diff(levels)
-        c = (3 * rise / h - 2 * slopes[:-1] - slopes[1:]) / h
-        d = (slopes[:-1] + slopes[1:] - 2 * rise / h) / h**2
-        rows_of.append(np.c_[knots[:-1] - knots[0], levels[:-1], slopes[:-1], c, d])
-    for k in np.flatnonzero(straight)[::-1]:
-        places = np.unique(np.concatenate([x[(x > knots[k] + LEAST_STEP) & (x < knots[k + 1] - LEAST_STEP)] for x in s]))
-        breaks = np.concatenate([[knots[k]], places, [knots[k + 1]]])
-        ordinates = np.array([[levels[k], *np.interp(places, x, value), levels[k + 1]] for x, value, (levels, _) in zip(s, values, fitted)])
-        run, rise = np.diff(breaks), np.diff(ordinates, axis=1)
-        kept = (run > STEP_RUN) | (np.abs(rise) < run).all(0) | (breaks[:-1] == knots[0])   # up to a step the piece before goes on
-        for number, rows in enumerate(rows_of):
-            lines = np.c_[breaks[:-1] - knots[0], ordinates[number, :-1], rise[number] / run, np.zeros((len(run), 2))][kept]
-            rows_of[number] = np.concatenate([rows[:k], lines, rows[k + 1:]])
-    return [Cubics(rows) for rows in rows_of]

@@ -12,7 +12,7 @@ from ....core.common.progress import Progress
 from ....core.driving.layers import Lanes
 from ..map_layers import MapLayers, MapLine, plan_length, without_repeats
 from ..sources import LEAST_CURB
-from .model import DRIVEN_TYPES, LaneNetwork, MapLane, OpenDriveMap, RoadSurface, travel
+from .model import DRIVEN_TYPES, LaneNetwork, MapLane, OpenDriveMap, travel
 
 LANE_TYPE_OF = {"shoulder": "shoulder", "stop": "shoulder", "border": "shoulder", "parking": "parking", "biking": "bicycle", "restricted": "hatched",
          "median": "median"}
@@ -37,7 +37,7 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     layers, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
     numbers, faults = _road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):
-        surface = RoadSurface(road)
+        surface = road.surface
         faults.jumps += [(road.id, *jump) for jump in surface.jumps() if jump[1] > BORDER_JUMP]
         for number, section in enumerate(road.sections):
             if road.section_end(number) - section.s > SHORTEST_SECTION:

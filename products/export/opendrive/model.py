@@ -99,6 +99,11 @@ class MapRoad:
     objects: list[dict[str, Any]] = field(default_factory=list)
     data: dict[str, str] = field(default_factory=dict)
 
+    @cached_property
+    def surface(self) -> RoadSurface:
+        """Where its borders lie, once it is whole."""
+        return RoadSurface(self)
+
     def section_end(self, number: int) -> float:
         """Metres at which a section ends."""
         return self.sections[number + 1].s if number + 1 < len(self.sections) else self.length
@@ -260,12 +265,18 @@ class RoadSurface:
     def __init__(self, road: MapRoad) -> None:
         self.road = road
         self._axis: tuple[np.ndarray, ...] = (np.empty(0),)   # s, and what all borders there share
+        self._stations: dict[int, np.ndarray] = {}
 
-    def stations(self, number: int, step: float = BORDER_STEP) -> np.ndarray:
+    def stations(self, number: int) -> np.ndarray:
         """(N,) metres of s at which a section is cut: evenly, wherever a function of it changes, and closer where a border bends."""
+        if number not in self._stations:
+            self._stations[number] = self._stations_of(number)
+        return self._stations[number]
+
+    def _stations_of(self, number):
         road, first, last = self.road, self.road.sections[number].s, self.road.section_end(number)
-        bend = np.abs(road.plan.at(np.linspace(first, last, max(int((last - first) / step), 1) + 1))[2]).max()
-        step = min(step, max(float(np.sqrt(8 * SAGITTA / max(bend, 1e-9))), LEAST_BORDER_STEP))
+        bend = np.abs(road.plan.at(np.linspace(first, last, max(int((last - first) / BORDER_STEP), 1) + 1))[2]).max()
+        step = min(BORDER_STEP, max(float(np.sqrt(8 * SAGITTA / max(bend, 1e-9))), LEAST_BORDER_STEP))
         even = np.linspace(first, last, max(int(np.ceil((last - first) / step - 1e-9)), 1) + 1)
         changes = [rows[:, 0] + first for lane in road.sections[number].lanes.values() for rows in (lane.width.rows, lane.heights)]
         heights = road.elevation.rows[:, 0], road.superelevation.rows[:, 0], road.shape[:, 0]

@@ -8,7 +8,8 @@ import numpy as np
 
 from ....core.curves.clothoid import GAUSS_RULES, gauss_rule
 from ..sources import wrapped
-from .geometry import STRAIGHT_BEND, PlanElement, PlanView
+from .geometry import STRAIGHT_BEND, PlanElement, PlanView, on_spirals
+from .side_by_side import Steps, side_by_side
 
 LEAST_PIECE = 1.0       # m of an element: shorter ones follow noise
 LEAST_STRAIGHT = 20.0   # m of a straight line that is looked for first: it may bend by a radius of 10 km at a tolerance of 1 cm
@@ -56,48 +57,60 @@ def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None
     ----------
     .. [1] Bertolazzi and Frego (2015), G1 fitting with clothoids, Mathematical Methods in the Applied Sciences 38(5), 881-897.
     """
+    plan, = side_by_side([reference_steps(points, tolerance, ends, turn_tolerance)])
+    return plan
+
+
+def reference_steps(points: np.ndarray, tolerance: float, ends: tuple[float | None, float | None] = (None, None),
+                    turn_tolerance: float = 0.01) -> Steps[PlanView | None]:
+    """`fit_reference` as a task, so that many lines are fitted side by side."""
     points = np.asarray(points, float)
-    fit, after = _Fit(points, tolerance, ends, turn_tolerance), None
-    if ends[1] is not None and abs(wrapped(fit.natural_heading(fit.last) - ends[1])) > turn_tolerance:
+    fit, after = (yield from _fit_of(points, tolerance, ends, turn_tolerance)), None
+    if ends[1] is not None and abs(wrapped((yield _smoothed, (fit, fit.last))[2] - ends[1])) > turn_tolerance:
         # a road that turns at its end does so along the longest element that leads there, which is found from the end backwards
-        back = _Fit(points[::-1], tolerance, (ends[1] + np.pi, None), turn_tolerance)
-        last = back.farthest(0, back.pose(0), back.last)
+        back = yield from _fit_of(points[::-1], tolerance, (ends[1] + np.pi, None), turn_tolerance)
+        last = yield from back.farthest(0, (yield from back.pose(0)), back.last)
         if last is None:
             return None
         reached, element, pose = last
         if reached < back.last:
             pose = pose._replace(heading=pose.heading + np.pi)
             points = np.concatenate([points[:back.last - reached], [pose[:2]]])
-            fit = _Fit(points, tolerance, (ends[0], pose.heading), turn_tolerance)
+            fit = yield from _fit_of(points, tolerance, (ends[0], pose.heading), turn_tolerance)
             after = PlanElement(0.0, pose.x, pose.y, pose.heading, element.length, element.kind, tuple(-value for value in element.values[::-1]))
-    elements = fit.run()
+    elements = yield from fit.run()
     return PlanView(_in_order([*elements, after] if after is not None else elements)) if elements is not None else None
 
 
+def _fit_of(points, tolerance, ends, turn_tolerance):
+    """A _Fit that knows its noise and its straight lines."""
+    fit = _Fit(points, tolerance, ends, turn_tolerance)
+    if fit.last >= FEWEST_PLACES:
+        fit.noise = yield _noise_of, fit
+    fit.straight = fit.straight_lines()
+    return fit
+
+
 class _Fit:
-    """One line of points on its way to elements."""
+    """One line of points on its way to elements; its methods with steps are tasks of `side_by_side`."""
 
     def __init__(self, points, tolerance, ends, turn_tolerance):
         self.points, self.tolerance, self.ends, self.turn_tolerance = points, tolerance, ends, turn_tolerance
         self.along = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
         self.last = len(points) - 1
-        self.known = {}
-        self.noise = 0.0
-        places = np.unique(np.linspace(0, self.last, NOISE_PLACES).astype(int))
-        self.noise = float(np.median([self._local(k, WINDOWS[-1])[1] for k in places])) if self.last >= FEWEST_PLACES else 0.0
-        self.straight = self._straight_lines()
+        self.known, self.noise, self.straight = {}, 0.0, {}
 
     def run(self):
         """The elements in order, None where even short ones miss the points."""
-        elements, start, pose = [], 0, self.pose(0)
+        elements, start, pose = [], 0, (yield from self.pose(0))
         starts = sorted(self.straight)
         while start < self.last:
             end = self.straight.get(start)
             if end is not None:
-                reached = end, *self._line(pose, end)
+                reached = end, *self._line(pose, end, self.known[end])
             else:
                 limit = next((k for k in starts if k > start), self.last)
-                reached = self.farthest(start, pose, limit)
+                reached = yield from self.farthest(start, pose, limit)
             if reached is None:
                 return None
             start, element, pose = reached
@@ -106,7 +119,7 @@ class _Fit:
 
     def farthest(self, here, pose, limit):
         """(place, element, pose at its end) of the element from a place that reaches farthest, None where none does."""
-        spiral = self._reach(here, pose, limit)
+        spiral = yield from self._reach(here, pose, limit)
         if spiral is None:
             return None
         length = self.along[spiral[0]] - self.along[here]
@@ -116,7 +129,7 @@ class _Fit:
         for end in (spiral[0], nearer):
             if end == limit or self.along[end] - self.along[here] >= LEAST_PIECE <= self.along[limit] - self.along[end]:
                 for plainer in (self._line, self._arc):
-                    fitted = self._good(plainer, here, pose, end)
+                    fitted = yield from self._good(plainer, here, pose, end)
                     if fitted is not None:
                         return end, *fitted
         return spiral
@@ -126,7 +139,7 @@ class _Fit:
         good, bad, step = None, limit + 1, FIRST_STEP
         tried = min(int(np.searchsorted(self.along, self.along[here] + LEAST_PIECE)), limit)
         while True:
-            fitted = self._good(self._spiral, here, pose, tried)
+            fitted = yield from self._good(self._spiral, here, pose, tried)
             if fitted is None:
                 bad = tried
             else:
@@ -145,35 +158,25 @@ class _Fit:
                 break
         if self.along[limit] - self.along[good[0]] < LEAST_PIECE:
             back = int(np.searchsorted(self.along, (self.along[here] + self.along[limit]) / 2))
-            fitted = self._good(self._spiral, here, pose, back) if here < back < limit else None
+            fitted = (yield from self._good(self._spiral, here, pose, back)) if here < back < limit else None
             return (back, *fitted) if fitted is not None else good
         return good
 
     def _good(self, make, here, pose, there):
         """(element, pose at its end) if no place between misses it by more than the tolerance, else None."""
-        fitted = make(pose, there)
+        fitted = make(pose, there, (yield from self.pose(there)))
         if fitted is None:
             return None
-        element, end = fitted
-        places = self.points[here:there + 1]
-        u = (self.along[here:there + 1] - self.along[here]) * (element.length / (self.along[there] - self.along[here]))
-        for _ in range(2):
-            foot, heading, bend = element.at(u)
-            offsets = places - foot
-            c, s = np.cos(heading), np.sin(heading)
-            offset = offsets[:, 1] * c - offsets[:, 0] * s
-            u = u + (offsets[:, 0] * c + offsets[:, 1] * s) / np.clip(1 - bend * offset, 0.2, 5.0)
-        return fitted if np.abs(offset).max() <= self.tolerance and (u[1:] > u[:-1] - self.tolerance).all() else None
+        u = (self.along[here:there + 1] - self.along[here]) * (fitted[0].length / (self.along[there] - self.along[here]))
+        return fitted if (yield _follow, (fitted[0], self.points[here:there + 1], u, self.tolerance)) else None
 
     # elements from a pose to a place
 
-    def _spiral(self, pose, there):
-        end = self.pose(there)
+    def _spiral(self, pose, there, end):
         element = _spiral_between(pose, end)
         return (element, end) if element is not None else None
 
-    def _arc(self, pose, there):
-        end = self.pose(there)
+    def _arc(self, pose, there, end):
         dx, dy = end.x - pose.x, end.y - pose.y
         angle = wrapped(np.arctan2(dy, dx) - pose.heading)
         if abs(angle) > MOST_ANGLE or abs(wrapped(pose.heading + 2 * angle - end.heading)) > self._turn(there):
@@ -185,8 +188,7 @@ class _Fit:
         element = PlanElement(0.0, *pose, 2 * float(angle) / bend, "arc", (bend,))
         return element, _Pose(*element.end())
 
-    def _line(self, pose, there):
-        end = self.pose(there)
+    def _line(self, pose, there, end):
         length = (end.x - pose.x) * np.cos(pose.heading) + (end.y - pose.y) * np.sin(pose.heading)
         if length <= 0 or abs(wrapped(pose.heading - end.heading)) > self._turn(there):
             return None
@@ -203,50 +205,21 @@ class _Fit:
     def pose(self, k):
         """The smoothed place and direction at a point; the first and last place are met, and the directions given there."""
         if k not in self.known:
-            self.known[k] = self._pose(k)
+            x, y, heading = yield _smoothed, (self, k)
+            if k in (0, self.last):
+                x, y = self.points[k]
+                given = self.ends[0 if k == 0 else 1]
+                heading = given if given is not None else heading
+            self.known[k] = _Pose(float(x), float(y), float(heading))
         return self.known[k]
 
-    def natural_heading(self, k):
-        """Radians of the points' own direction."""
-        return self._smoothed(k)[2]
+    def around(self, k, window):
+        """(first, last + 1) of the places around a point, FEWEST_PLACES at least."""
+        station, half = self.along[k], FEWEST_PLACES // 2
+        return (min(int(self.along.searchsorted(station - window)), max(k - half, 0)),
+                max(int(self.along.searchsorted(station + window + 1e-9)), min(k + half + 1, self.last + 1)))
 
-    def _smoothed(self, k):
-        allowed = NOISE_TIMES * self.noise + EXACT_SHARE * self.tolerance
-        for window in WINDOWS:
-            pose, _, worst = self._local(k, window)
-            if worst <= allowed:
-                break
-        return pose
-
-    def _pose(self, k):
-        x, y, heading = self._smoothed(k)
-        if k in (0, self.last):
-            x, y = self.points[k]
-            given = self.ends[0 if k == 0 else 1]
-            heading = given if given is not None else heading
-        return _Pose(float(x), float(y), float(heading))
-
-    def _local(self, k, window):
-        """(pose, standard deviation, largest distance) of a cubic through the places around a point."""
-        station = self.along[k]
-        first = min(self.along.searchsorted(station - window), max(k - FEWEST_PLACES // 2, 0))
-        last = max(self.along.searchsorted(station + window + 1e-9), min(k + FEWEST_PLACES // 2 + 1, self.last + 1))
-        s, offsets, count = self.along[first:last] - station, self.points[first:last] - self.points[k], last - first
-        degree = min(3, count - 2) if count > 2 else 1
-        s /= max(-s[0], s[-1], 1e-9)
-        powers = np.ones((degree + 1, count))
-        for power in range(1, degree + 1):
-            powers[power] = powers[power - 1] * s
-        square = powers @ powers.T
-        square.flat[::degree + 2] += np.finfo(float).eps * count   # places may coincide
-        coefficients = np.linalg.solve(square, powers @ offsets)
-        dx, dy = coefficients[1]
-        aside = np.array([-dy, dx]) / max(np.hypot(dx, dy), 1e-12)
-        missed = offsets @ aside - (coefficients @ aside) @ powers
-        spread = float(np.sqrt(missed @ missed / max(count - degree - 1, 1)))
-        return (*(self.points[k] + coefficients[0]), float(np.arctan2(dy, dx))), spread, float(np.abs(missed).max())
-
-    def _straight_lines(self):
+    def straight_lines(self):
         """{first place: last place} of long straight lines, whose places get a pose on them."""
         lines, start = {}, 0
         while start < self.last:
@@ -256,13 +229,7 @@ class _Fit:
             if not self._is_straight(start, least):
                 start = max(start + 1, int(np.searchsorted(self.along, self.along[start] + LEAST_STRAIGHT / 8)))
                 continue
-            good, bad, step = least, self.last + 1, least - start
-            while good < self.last and bad - good > 1:
-                tried = min(good + step, self.last) if bad > self.last else (good + bad) // 2
-                if self._is_straight(start, tried):
-                    good, step = tried, 2 * step
-                else:
-                    bad = tried
+            good = self._straight_to(start, least)
             first = start if start == 0 else int(np.searchsorted(self.along, self.along[start] + TRIMMED))
             last = good if good == self.last else int(np.searchsorted(self.along, self.along[good] - TRIMMED))
             if self.along[last] - self.along[first] >= LEAST_STRAIGHT / 2 and self._lay_on_line(first, last):
@@ -270,8 +237,25 @@ class _Fit:
             start = good + 1
         return lines
 
+    def _straight_to(self, start, good):
+        """The farthest place to which the line is straight, by doubling steps and halving; to `good` it is."""
+        bad, step = self.last + 1, good - start
+        while good < self.last and bad - good > 1:
+            tried = min(good + step, self.last) if bad > self.last else (good + bad) // 2
+            if self._is_straight(start, tried):
+                good, step = tried, 2 * step
+            else:
+                bad = tried
+        return good
+
     def _is_straight(self, first, last):
-        return bool(np.abs(_beside_line(self.points[first:last + 1])[0]).max() <= max(STRAIGHT_SHARE * self.tolerance, NOISE_TIMES * self.noise))
+        allowed = max(STRAIGHT_SHARE * self.tolerance, NOISE_TIMES * self.noise)
+        # a place that lies farther beside the chord than twice that leaves no such line
+        start, middle, end = self.points[first], self.points[(first + last) // 2], self.points[last]
+        aside = (middle[0] - start[0]) * (end[1] - start[1]) - (middle[1] - start[1]) * (end[0] - start[0])
+        if abs(aside) > 3 * allowed * np.hypot(*(end - start)):
+            return False
+        return bool(np.abs(_beside_line(self.points[first:last + 1])[0]).max() <= allowed)
 
     def _lay_on_line(self, first, last):
         """Give the ends of a straight line their poses; False where a direction that is given at an end is another."""
@@ -285,6 +269,68 @@ class _Fit:
         for k, point in zip((first, last), places):
             self.known[k] = _Pose(float(point[0]), float(point[1]), heading)
         return True
+
+
+def _noise_of(fits):
+    """For each of the fits the metres, standard deviation, by which its places lie beside short cubics."""
+    places = [np.unique(np.linspace(0, fit.last, NOISE_PLACES).astype(int)) for fit in fits]
+    spreads = iter([spread for _, spread, _ in _cubics_around([(fit, k, WINDOWS[-1]) for fit, rows in zip(fits, places) for k in rows])])
+    return [float(np.median([next(spreads) for _ in rows])) for rows in places]
+
+
+def _smoothed(asked):
+    """For each (fit, number of a place) the (x, y, heading) of a cubic through the places around, as many as it follows but for noise."""
+    poses: dict[int, tuple[float, float, float]] = {}
+    for windows in (WINDOWS[:1], WINDOWS[1:]):   # the first one mostly does
+        left = [number for number in range(len(asked)) if number not in poses]
+        cubics = _cubics_around([(*asked[number], window) for number in left for window in windows])
+        for row, number in enumerate(left):
+            fit, tried = asked[number][0], cubics[row * len(windows):(row + 1) * len(windows)]
+            followed = [pose for pose, _, worst in tried if worst <= NOISE_TIMES * fit.noise + EXACT_SHARE * fit.tolerance]
+            if followed or windows != WINDOWS[:1]:
+                poses[number] = [*followed, tried[-1][0]][0]
+    return [poses[number] for number in range(len(asked))]
+
+
+def _cubics_around(asked):
+    """For each (fit, number of a place, window) the (pose, standard deviation, largest distance) of a cubic through the places around it."""
+    if not asked:
+        return []
+    bounds = [fit.around(k, window) for fit, k, window in asked]
+    count = np.array([last - first for first, last in bounds])
+    s, offsets = np.zeros((len(asked), count.max())), np.zeros((len(asked), count.max(), 2))
+    for row, ((fit, k, _), (first, last)) in enumerate(zip(asked, bounds)):
+        s[row, :last - first], offsets[row, :last - first] = fit.along[first:last] - fit.along[k], fit.points[first:last] - fit.points[k]
+    degree, power = np.where(count > 2, np.minimum(3, count - 2), 1), np.arange(4)
+    s /= np.maximum(np.abs(s).max(1), 1e-9)[:, None]
+    used = power <= degree[:, None]
+    powers = np.stack([np.ones(s.shape), s, s * s, s * s * s], axis=1) * used[:, :, None] * (np.arange(count.max()) < count[:, None])[:, None, :]
+    square = powers @ powers.transpose(0, 2, 1)
+    square[:, power, power] += np.where(used, np.finfo(float).eps * count[:, None], 1.0)   # places may coincide
+    coefficients = np.linalg.solve(square, powers @ offsets)
+    heading = np.arctan2(coefficients[:, 1, 1], coefficients[:, 1, 0])
+    aside = np.stack([-np.sin(heading), np.cos(heading)], axis=1)[:, :, None]
+    missed = (offsets @ aside)[:, :, 0] - ((coefficients @ aside).transpose(0, 2, 1) @ powers)[:, 0]
+    spread, worst = np.sqrt((missed**2).sum(1) / np.maximum(count - degree - 1, 1)), np.abs(missed).max(1)
+    places = [fit.points[k] for fit, k, _ in asked] + coefficients[:, 0]
+    return [((x, y, way), deviation, largest) for (x, y), way, deviation, largest in zip(places.tolist(), heading.tolist(), spread, worst)]
+
+
+def _follow(asked):
+    """For each (element, (n, 2) places, (n,) metres along it nearby, tolerance) whether no place misses it by more than the tolerance."""
+    count = np.array([len(u) for _, _, u, _ in asked])
+    table = np.repeat(np.array([(element.x, element.y, element.heading, *element.bends()) for element, *_ in asked]).T, count, axis=1)
+    places, u = (np.concatenate([row[column] for row in asked]) for column in (1, 2))
+    for _ in range(2):
+        foot, heading, bend = on_spirals(u, *table)
+        offsets = places - foot
+        c, s = np.cos(heading), np.sin(heading)
+        offset = offsets[:, 1] * c - offsets[:, 0] * s
+        u = u + (offsets[:, 0] * c + offsets[:, 1] * s) / np.clip(1 - bend * offset, 0.2, 5.0)
+    tolerance, first = np.repeat([row[3] for row in asked], count), np.cumsum(count) - count
+    good = (np.abs(offset) <= tolerance) & (np.diff(u, prepend=u[0]) > -tolerance)
+    good[first] = np.abs(offset[first]) <= tolerance[first]   # the first place follows none
+    return np.logical_and.reduceat(good, first).tolist()
 
 
 def _beside_line(points):

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ..sources import LEAST_CURB
-from .geometry import LEAST_STEP, STEP_RUN, Cubics, PlanView, difference, fit_cubics, risen, simplified
+from .geometry import LEAST_STEP, STEP_RUN, Cubics, LineBundle, PlanView, difference, fit_cubics, risen, simplified
 from .model import LaneSection, MapLane, MapRoad, shape_height
-from .reference_line import fit_reference, polynomial_reference
+from .reference_line import polynomial_reference, reference_steps
+from .side_by_side import Steps
 from .strips import MOST_TURN, SLOPE_REACH, Slice
 
 NEAREST_POINTS = 0.005   # m within which two places of a guide line are one
@@ -31,12 +33,13 @@ LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 
 
 @dataclass
-class _RoadShape:
+class RoadShape:
     """plan : reference line; s, t, z : for each slice a (borders, n) array of its vertices; starts : (sections + 1,) metres.
     lifts : for each slice (cells, n) metres that its lanes lie above the road, as beyond a curb; z is that of the road
 
     courses : for each slice and border (3, n) s, t, z that reach from the start of its section to its end at least, s rising: sections are cut
         square, lanes are not
+    follows : whether the reference line lies on the border at which lane 0 is; else that has corners, which a smoother line cuts
     """
 
     plan: PlanView
@@ -46,6 +49,7 @@ class _RoadShape:
     lifts: list[np.ndarray]
     starts: np.ndarray
     courses: list[list[np.ndarray]]
+    follows: bool
 
 
 def centre_of(one: Slice, left_hand: bool) -> int:
@@ -60,8 +64,8 @@ def centre_of(one: Slice, left_hand: bool) -> int:
     return len(ways) if left_hand else 0
 
 
-def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> _RoadShape:
-    """The reference line through the borders at which lane 0 lies, and every vertex in its s and t.
+def shape_steps(strip: list[Slice], centres: list[int], tolerance: float) -> Steps[RoadShape]:
+    """A task of `side_by_side`: the reference line through the borders at which lane 0 lies, and every vertex in its s and t.
 
     Where lane 0 jumps aside, as where a lane for the opposite traffic begins, the reference line goes on beside it.
 
@@ -71,6 +75,27 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> _RoadS
     centres : number of a border in each
     tolerance : metres that the centre border may lie beside the reference line; what is missed is made up by the lane offset
     """
+    guide, index, along, keep = _guided(strip, centres)
+    for square in (False, True):
+        ends, widest = _end_headings(strip, guide, square)
+        plan, follows = yield from _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
+        shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
+        if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
+            shown, near = (list(values) for values in zip(*(_finer(part, s) for part, s in zip(strip, near))))
+        plan, s_all, t_all, is_square = _square_ends(plan, strip, shown, near)
+        if is_square:
+            break   # else a curve is too tight to go on in: the ends become square
+    strip = shown
+    for s in s_all:
+        _square_steps(s)
+    z_all, lifts = (list(values) for values in zip(*(part.levels(centre) for part, centre in zip(strip, centres))))
+    starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
+    courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
+    return RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses, follows)
+
+
+def _guided(strip, centres):
+    """((N, 2) places along lane 0, rows of them for each slice, (N,) metres along, (N,) bool: the places that tell a direction)."""
     guide, index = _guide(strip, centres)
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     if along[-1] < LEAST_GUIDE:
@@ -79,28 +104,18 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> _RoadS
     keep = np.append(True, np.diff(np.floor(along / GUIDE_STEP)) > 0)
     keep[np.flatnonzero(keep)[-1] if keep.sum() > 1 else -1] = False
     keep[-1] = True
-    for square in (False, True):
-        ends, widest = _end_headings(strip, guide, square)
-        plan, follows = _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
-        shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
-        if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
-            shown, near = (list(values) for values in zip(*(_finer(part, s) for part, s in zip(strip, near))))
-        for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
-            s_all, t_all = _frame(plan, shown, near)
-            before, after = _beyond_ends(strip, s_all, plan.length)
-            if max(before, after) < LEAST_STEP:
-                break
-            plan, near = plan.lengthened(before, after), [s + before for s in near]
-        else:   # a curve too tight to go on in: the ends become square
-            continue
-        break
-    strip = shown
-    for s in s_all:
-        _square_steps(s)
-    z_all, lifts = (list(values) for values in zip(*(part.levels(centre) for part, centre in zip(strip, centres))))
-    starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
-    courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
-    return _RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses)
+    return guide, index, along, keep
+
+
+def _square_ends(plan, strip, shown, near):
+    """(the reference line with what makes its ends square, s and t of the vertices from it, whether they are)."""
+    for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
+        s_all, t_all = _frame(plan, shown, near)
+        before, after = _beyond_ends(strip, s_all, plan.length)
+        if max(before, after) < LEAST_STEP:
+            return plan, s_all, t_all, True
+        plan, near = plan.lengthened(before, after), [s + before for s in near]
+    return plan, s_all, t_all, False
 
 
 def _finer(one, s):
@@ -216,11 +231,11 @@ def _reference(points, tolerance, ends, turn_tolerance, reach):
     """(the reference line, whether it follows the points within the tolerance); a border with a corner is cut short by it, and the lane offset
     has the rest."""
     # to meet other roads squarely matters more than to lie on the border, and no border may fold back in a curve
-    guides = [points, *(_smoothed(points, width) for width in SMOOTHER)]
     for headings in (ends, (None, None)):
-        for guide in guides:
+        for width in (0.0, *SMOOTHER):
+            guide = _smoothed(points, width) if width else points
             for loose in LOOSER:
-                plan = fit_reference(guide, loose * tolerance, headings, turn_tolerance)
+                plan = yield from reference_steps(guide, loose * tolerance, headings, turn_tolerance)
                 if plan is not None and not _folds(plan, points, reach):
                     return plan, guide is points and loose == LOOSER[0]
     return polynomial_reference(points), True
@@ -271,24 +286,50 @@ def _beside(line, place, end):
     return line + normal * (offset @ normal[end])
 
 
-def add_lanes(road: MapRoad, shape: _RoadShape, strip: list[Slice], centres: list[int], tolerance: float,
-              directions: dict[int, float]) -> list[list[int]]:
-    """Give a road its lane offset and sections with widths; the number of the lane of every cell of every slice.
+def fit_borders(roads: Sequence[tuple[RoadShape, list[Slice], list[int]]], tolerance: float,
+                directions: dict[int, float]) -> list[list[list[Cubics]]]:
+    """The borders of all sections of roads as functions of the metres from the start of the section.
 
-    `directions`: {number of a vertex: radians} of the borders where the road meets others.
+    Parameters
+    ----------
+    roads : the shape of each, its slices, and the number of the border in each at which lane 0 lies
+    tolerance : metres that a border may be missed
+    directions : {number of a vertex: radians} of the borders where roads meet others
+
+    Returns
+    -------
+    for each road and each of its sections the functions from left to right
     """
-    sections = []
-    for k, (courses, centre, start, end) in enumerate(zip(shape.courses, centres, shape.starts[:-1], shape.starts[1:])):
+    bundles = [bundle for shape, strip, _ in roads for bundle in _border_bundles(shape, strip, tolerance, directions)]
+    centres = [centre for *_, road_centres in roads for centre in road_centres]
+    fitted = fit_cubics(bundles)
+    crossing = [k for k, (functions, bundle) in enumerate(zip(fitted, bundles)) if _crossing(functions, bundle.end - bundle.start)]
+    untangled = [LineBundle([bundle.s[0]] * len(bundle.s), _untangled(bundle.s, bundle.values, centres[k]), bundle.start, bundle.end, tolerance,
+                            broken=True) for k, bundle in enumerate(bundles) if k in crossing]
+    for k, functions in zip(crossing, fit_cubics(untangled)):
+        fitted[k] = functions
+    sections = iter(fitted)
+    return [[next(sections) for _ in strip] for _, strip, _ in roads]
+
+
+def _border_bundles(shape, strip, tolerance, directions):
+    """The borders of every section of a road."""
+    bundles = []
+    for k, (courses, start, end) in enumerate(zip(shape.courses, shape.starts[:-1], shape.starts[1:])):
         s, t = zip(*(_within(start, end, *course[:2]) for course in courses))
-        slopes = [_slope_at(start, course) for course in courses], [_slope_at(end, course) for course in courses]
-        if k == 0:
-            slopes = _slopes_where_met(shape, strip, directions, False), slopes[1]
-        if k == len(strip) - 1:
-            slopes = slopes[0], _slopes_where_met(shape, strip, directions, True)
-        functions = fit_cubics(s, t, start, end, tolerance, list(zip(*slopes)))
-        if _crossing(functions, end - start):
-            functions = fit_cubics([s[0]] * len(s), _untangled(s, t, centre), start, end, tolerance, broken=True)
-        sections.append(functions)
+        slopes = [_slopes_where_met(shape, strip, directions, at_end) if k == outermost else [_slope_at(place, course) for course in courses]
+                  for at_end, place, outermost in ((False, start, 0), (True, end, len(strip) - 1))]
+        bundles.append(LineBundle(s, t, start, end, tolerance, list(zip(*slopes))))
+    return bundles
+
+
+def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list[int], sections: list[list[Cubics]]) -> list[list[int]]:
+    """Give a road its lane offset and sections with widths, by the functions of their borders.
+
+    Returns
+    -------
+    for every slice the numbers of the lanes of its cells
+    """
     offsets, numbers = [], []
     lines = _lines_of_lane_0(sections, centres, np.diff(shape.starts), int(np.argmax([part.length for part in strip])))
     for start, part, centre, functions, line in zip(shape.starts, strip, centres, sections, lines):
@@ -401,7 +442,7 @@ class _Profile(NamedTuple):
     z: np.ndarray
 
 
-def add_heights(road: MapRoad, shape: _RoadShape, tolerance: float) -> None:
+def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
     """Give a road its elevation, and a superelevation where the cross-section is a plane, else its shape, within a tolerance, m.
 
     A superelevation is taken only where its roll moves no border by more than a millimetre: readers differ on whether it does. The shape has
@@ -414,7 +455,8 @@ def add_heights(road: MapRoad, shape: _RoadShape, tolerance: float) -> None:
     profiles = _profiles(shape, np.zeros(0))
     s = np.array([profile.s for profile in profiles])
     middle = _at_reference(profiles, s)
-    road.elevation = simplified(fit_cubics([s], [middle], 0.0, road.length, tolerance / 2)[0])
+    (elevation,), = fit_cubics([LineBundle([s], [middle], 0.0, road.length, tolerance / 2)])
+    road.elevation = simplified(elevation)
     if max(float(np.abs(profile.z - level).max()) for profile, level in zip(profiles, middle)) < FLAT:
         return
     if _superelevation(road, profiles, middle, tolerance):
@@ -431,7 +473,7 @@ def add_heights(road: MapRoad, shape: _RoadShape, tolerance: float) -> None:
                 return
 
 
-def heights_above_road(shape: _RoadShape, number: int, cell: int) -> np.ndarray:
+def heights_above_road(shape: RoadShape, number: int, cell: int) -> np.ndarray:
     """(N, 3) metres from the start of a slice's section, heights of the inner and outer border of one of its lanes above the road."""
     lift, s = shape.lifts[number][cell], shape.s[number][cell:cell + 2].mean(0) - shape.starts[number]
     rows = [(0.0, lift[0])]
@@ -489,7 +531,8 @@ def _superelevation(road, profiles, middle, tolerance):
     if missed > tolerance / 4 or widest * (1 - np.cos(np.arctan(np.abs(slopes).max()))) > ROLLED:
         return False
     s = np.array([profile.s for profile in profiles])
-    road.superelevation = simplified(fit_cubics([s], [np.arctan(slopes)], 0.0, road.length, tolerance / 4 / max(widest, 1.0))[0])
+    (roll,), = fit_cubics([LineBundle([s], [np.arctan(slopes)], 0.0, road.length, tolerance / 4 / max(widest, 1.0))])
+    road.superelevation = simplified(roll)
     return True
 
 

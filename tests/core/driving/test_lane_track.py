@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.driving.lane_track import INFERRED, LaneTrack, led_over
-from lanewright.core.driving.lanes import _followed, _OpenLane
+from lanewright.core.driving.lane_track import INFERRED, MEASURED, LaneTrack, led_over
+from lanewright.core.driving.lanes import _without_steps
 
 S = np.arange(0.0, 60.0, 0.5)
 
@@ -53,19 +53,24 @@ def test_a_border_without_jumps_stays_as_it_is():
     assert led_over(S, wave, np.zeros(len(S), int)) is not wave and led_over(S, wave, np.zeros(len(S), int)) == pytest.approx(wave)
 
 
-def track(first, d, width=3.0):
-    """A lane at constant places across, from a grid station on."""
-    nothing = np.full(len(d), -1)
-    inferred, sure = np.full(len(d), INFERRED), np.ones(len(d))
-    return LaneTrack(first, np.array(d), np.full(len(d), width), inferred, sure > 0, *[nothing] * 4, sure, sure, sure, 1)
+def lane(d, status, beside_one, rows=-1):
+    """A lane from a grid station on, beside one line or between the two of `rows`."""
+    count, sure = len(d), np.ones(len(d))
+    return LaneTrack(0, np.array(d, float), np.full(count, 3.5), np.full(count, status), np.full(count, beside_one), *[np.full(count, rows)] * 4,
+                     sure, sure, sure, 1)
 
 
-def test_a_lane_whose_end_was_moved_to_meet_what_lies_before_goes_on_where_it_was_seen():
-    seen, moved = track(0, [0.0] * 10), track(0, [-0.2] * 10)
-    beyond = track(10, [0.95] * 10)
-    assert _followed([_OpenLane([seen], np.zeros(2))], [beyond], 10) == {0: 0}
-    assert _followed([_OpenLane([moved], np.array([-0.2, 0.0]))], [beyond], 10) == {0: 0}
-    assert _followed([_OpenLane([moved], np.zeros(2))], [beyond], 10) == {}
+@pytest.mark.parametrize("metres", [3.0, 5.0])
+def test_a_false_piece_of_line_moves_the_lane_behind_it_for_some_metres_alone(metres):
+    piece, behind = lane([0.4] * int(metres / 0.5), MEASURED, False, 1), lane([0.0] * 120, INFERRED, True)
+    track = _without_steps([piece, behind])
+    assert track.d[len(piece)] == pytest.approx(0.4) and np.abs(np.diff(track.d)).max() < 0.03
+    assert track.d[len(piece) + 20:] == pytest.approx(0.0) and track.aside[len(piece) + 20:] == pytest.approx(0.0)
+
+
+def test_what_parts_two_lanes_goes_on_beyond_the_end_of_its_paint_for_as_long_as_that_was():
+    track = _without_steps([lane([0.4] * 40, MEASURED, False, 1), lane([0.0] * 120, INFERRED, False)])
+    assert track.d[40:80] == pytest.approx(0.4) and track.d[100:] == pytest.approx(0.0)
 
 
 @pytest.mark.parametrize("beside_one, left", [(True, 80), (False, 120)])
@@ -75,3 +80,10 @@ def test_a_lane_beside_one_line_ends_where_it_is_less_probable_than_four_in_five
     track = LaneTrack(0, np.zeros(count), np.full(count, 3.5), np.full(count, INFERRED), unsure & beside_one, np.full(count, 1), np.full(count, 2),
                       np.full(count, -1), np.full(count, -1), np.where(unsure, 0.7, 0.99), np.full(count, 0.5), np.ones(count), 1)
     assert len(track.without_doubtful_ends()) == left
+
+
+def test_a_short_piece_between_two_doubtful_stretches_is_in_doubt_and_has_no_second_reading_of_its_own():
+    doubtful = lane(np.zeros(30), MEASURED, False)
+    doubtful.aside[:10] = doubtful.aside[12:] = 0.5
+    assert doubtful.in_doubt().all()
+    assert doubtful.said(slice(10, 12))["other"] == "" and doubtful.said(slice(0, 10))["other"]

@@ -67,13 +67,21 @@ def test_beyond_dashes_on_a_short_street_traffic_may_come_or_go():
     assert oncoming["confidence"] <= 0.6 and other_lanes(oncoming, -1.75) == [(1.75, 3.5, 1)]
 
 
-@pytest.mark.parametrize("curb, vehicle", [(4.2, -2.1), (4.6, -2.3)])
-def test_beside_a_curb_a_lane_is_as_wide_as_usual_or_reaches_up_to_it(curb, vehicle):
-    street = Street(vehicle=vehicle, again=(-vehicle,)).paint(0.0, kind="centre")
+@pytest.mark.parametrize("again", [True, False])
+@pytest.mark.parametrize("curb, driven, middle", [(3.9, 1.95, 1.95), (4.3, 2.15, 2.15), (5.0, 2.5, 2.5), (4.0, 1.7, 1.75), (5.6, 1.65, 1.7)])
+def test_beside_a_curb_a_lane_has_the_room_in_whose_middle_one_drives_and_so_has_the_one_across(curb, driven, middle, again):
+    """All of it, or all but a gutter or a row of parked cars."""
+    street = Street(vehicle=-driven, again=(driven,) if again else ()).paint(0.0, kind="centre")
     found = readings(street, edges=curbs(street, curb, -curb))
-    for offset, row in found.items():
-        assert row["confidence"] <= 0.6 and abs(abs(offset) - 1.75) < 0.02
-        assert other_lanes(row, vehicle) == [(np.sign(offset) * curb / 2, curb, row["direction"])]
+    assert sorted(found) == pytest.approx([-middle, middle], abs=0.1)
+
+
+def test_where_one_drives_between_the_middle_of_the_room_and_that_of_a_usual_lane_both_are_said():
+    street = Street(vehicle=-1.9, again=(1.9,)).paint(0.0, kind="centre")
+    for offset, row in readings(street, edges=curbs(street, 4.1, -4.1)).items():
+        assert row["confidence"] <= 0.6
+        (middle, width, way), = other_lanes(row, -1.9)
+        assert way == row["direction"] and abs(middle.expected - offset) > 0.15 and 3.2 < width.expected < 4.2
 
 
 def test_a_row_of_parked_cars_between_lane_and_curb_is_no_second_reading_where_one_drove_beside_it():

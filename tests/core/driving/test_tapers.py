@@ -150,7 +150,7 @@ def test_lanes_of_unequal_width_go_on_as_they_are_where_the_line_between_them_is
 
 
 @pytest.mark.parametrize("room", [2.75, 4.4])
-def test_beside_a_centre_line_alone_lanes_reach_as_far_as_the_edge_of_the_pavement_but_are_no_wider_than_usual(room):
+def test_beside_a_centre_line_alone_lanes_reach_as_far_as_the_edge_of_the_pavement_that_is_driven_in_the_middle(room):
     """A country road without edge lines: its asphalt ends at a verge, and the edge was seen but for a stretch."""
     street = Street(length=110.0, vehicle=-room / 2).paint(0.0, kind="centre", pattern="dashed")
     edges = Features("LineStringZ", list(ROAD_EDGES))
@@ -162,4 +162,4 @@ def test_beside_a_centre_line_alone_lanes_reach_as_far_as_the_edge_of_the_paveme
     lines = street.lanes(edges=edges, road_points=_points(street, np.full(60_000, -room), room))[0]
     assert sorted({row["direction"] for row in lines.rows}) == [-1, 1]
     for line, row in lines:
-        np.testing.assert_allclose(street.offsets(line), -row["direction"] * min(room, 3.5) / 2, atol=0.05)
+        np.testing.assert_allclose(street.offsets(line), -row["direction"] * room / 2, atol=0.05)

@@ -190,3 +190,19 @@ def with_step(length, rough, height=0.06, noise=0.002):
 def test_a_short_step_is_a_curb_where_road_lies_before_it_and_none_in_grass(length, rough, drawn):
     found = boundaries(with_step(length, rough), "both").edges
     assert found.length.sum() == pytest.approx(drawn, abs=1.5)
+
+
+def wider_behind_a_side_street():
+    """A street with a crossfall of 5.4 % whose left curb lies 3.5 m beside the track up to station 18, and 6.1 m from 29.5 to 37."""
+    before, behind = (np.array(street(left=left, length=60.0, camber=0.054, open_left=flush, seed=seed)) for left, flush, seed in
+                      ((3.5, (), 3), (6.1, ((-5.0, 29.5), (37.0, 70.0)), 4)))
+    return tuple(np.concatenate([before[:, before[0] < 18.0], behind[:, behind[0] >= 18.0]], axis=1))
+
+
+@pytest.mark.parametrize("method", ["profiles", "scanlines"])
+def test_behind_a_side_street_the_curb_of_the_wider_road_is_drawn_as_far_as_it_was_measured(method):
+    survey = survey_of(wider_behind_a_side_street(), driven(60.0))
+    points = find_curb_points(survey, BoundarySettings(method))[method]
+    behind = points[(points.side == "left") & (points.part == "bottom") & (points.height > 0.1) & (points.station > 18.0)]
+    assert behind.of_main_curb.all() and np.ptp(behind.station) == pytest.approx(7.0, abs=0.7)
+    np.testing.assert_allclose(behind.offset, 6.1, atol=0.02)

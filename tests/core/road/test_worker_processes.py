@@ -145,10 +145,12 @@ def test_threads_do_small_surveys_and_worker_processes_those_that_ask_for_them(p
     executor.close()
 
 
-@pytest.mark.parametrize(("points", "cores", "workers"), [(20_000_000, 4, 0), (10**9, 1, 0), (90_000_000, 2, 0), (110_000_000, 2, 2),
-                                                          (25_000_000, 4, 3), (50_000_000, 4, 4), (50_000_000, 16, 6), (10**9, 16, 8)])
-def test_a_large_survey_has_as_many_worker_processes_as_it_and_the_computer_can_use(monkeypatch, points, cores, workers):
+@pytest.mark.parametrize(("points", "cores", "gibibytes", "workers"), [
+    (9_000_000, 4, 16, 0), (10**9, 1, 16, 0), (10_000_000, 2, 16, 2), (17_000_000, 4, 16, 3), (50_000_000, 4, 16, 4), (50_000_000, 16, 64, 10),
+    (10**9, 16, 64, 16), (10**9, 16, 4, 4), (10**9, 16, 1, 0)])
+def test_a_large_survey_has_as_many_worker_processes_as_it_and_the_computer_can_use(monkeypatch, points, cores, gibibytes, workers):
     monkeypatch.setattr(choice.os, "sched_getaffinity", lambda _: set(range(cores)), raising=False)
+    monkeypatch.setattr(choice, "_memory", lambda: gibibytes * 2**30)
     assert choice.automatic_workers(points) == workers
 
 

@@ -5,14 +5,16 @@ import time
 import numpy as np
 import pytest
 import shapely
+from lanewright.core.common.progress import Progress
 from lanewright.core.driving.layers import Lanes
 from lanewright.products.export.check.lanelets import check_lanelets
 from lanewright.products.export.inferred_ways import with_inferred_ways
 from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
 from lanewright.products.export.map_layers import border_misses
+from lanewright.products.export.opendrive import geometry as fits
 from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.geometry import fit_cubics
+from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
 from lanewright.products.export.opendrive.layers import layers_of_opendrive
 from lanewright.products.export.opendrive.model import shape_height
 from lanewright.products.export.opendrive.reference_line import fit_reference
@@ -137,11 +139,12 @@ def test_roads_that_do_not_meet_in_height_are_named(tmp_path):
     assert "moved by up to 0.10 m" in note and "near x 40.0, y 0.0" in note
 
 
-def test_a_miss_between_the_vertices_of_a_border_is_seen_and_what_lies_beyond_its_end_is_not():
+def test_a_miss_between_the_vertices_of_a_border_is_seen_with_its_place_and_what_lies_beyond_its_end_is_not():
     ours, theirs = (Lanes.of_pieces([dict(left=np.array(left), right=np.array(right))]) for left, right in (
         ([[0.0, 0, 0], [10, 0, 0]], [[0.0, -3, 0], [10, -3, 0]]),
         ([[-1.0, 0, 0], [5, 0.05, 0], [12, 0, 0]], [[-1.0, -3, 0], [5, -3, 0], [12, -3, 0]])))
-    assert border_misses(ours, theirs)[0].largest == pytest.approx(0.05)
+    across, _ = border_misses(ours, theirs)
+    assert across.largest == pytest.approx(0.05) and across.worst == pytest.approx([5.0, 0.05, 0.0])
 
 
 def test_a_lane_that_begins_at_width_0_keeps_both_of_its_borders(tmp_path):
@@ -232,7 +235,7 @@ def test_the_work_for_heights_and_widths_grows_with_their_length():
     """Widths with jumps need hundreds of pieces, shapes hundreds of cross-sections."""
     s = np.linspace(0.0, 300.0, 1200)
     start = time.process_time()
-    fit_cubics([s] * 3, [np.floor(s / 3.0) % 2] * 3, 0.0, 300.0, 0.01)
+    fit_cubics([LineBundle([s] * 3, [np.floor(s / 3.0) % 2] * 3, 0.0, 300.0, 0.01)])
     shape = np.array([[at, t, 0.1 * t, 0.0, 0.0, 0.0] for at in s for t in (-3.5, 0.0, 3.5)])
     for _ in range(100):
         np.testing.assert_allclose(shape_height(shape, s, np.full(len(s), 3.5)), 0.35)
@@ -269,6 +272,34 @@ def test_ways_of_a_map_from_elsewhere_are_all_that_there_are(tmp_path):
     text = opendrive([arms, ways, outs], f'<junction id="9">{junction}</junction>')
     lanes = layers_of_opendrive(read_opendrive(written(tmp_path, text)), "EPSG:25832").lanes
     assert len(with_inferred_ways(checked(RoadMapSource(lanes))).lanes) == len(lanes)
+
+
+def test_the_steps_of_an_export_do_not_grow_with_the_number_of_roads(tmp_path, monkeypatch):
+    """What is fitted, is fitted for all roads at once: a map of many short roads would take many times as long as its import."""
+    steps = []
+    for solve, name in ((np.linalg, "solve"), (fits, "solve_banded")):
+        monkeypatch.setattr(solve, name, lambda *given, compute=getattr(solve, name): steps.append(given) or compute(*given))
+    counts = []
+    for count in (1, 12):
+        _, lanes = taken_in(tmp_path, "".join(road(geometry(0, 0, 20 * k, 0, 40, SPIRAL), 40, str(k), lanes=section(
+            left=lane(1), right=lane(-1, widths=GROWING))) for k in range(count)))
+        steps.clear()
+        draft_opendrive(with_shared_borders(checked(RoadMapSource(lanes))))
+        counts.append(len(steps))
+    assert counts[0] == counts[1] > 2
+
+
+def test_an_export_that_takes_longer_since_borders_have_corners_says_so(tmp_path):
+    """As maps do whose reference lines are made of chords, with a kink at the end of each."""
+    turns, places = np.tile([0.2, -0.2], 5), [(0.0, 0.0)]
+    for turn in turns:
+        places.append((places[-1][0] + 4 * np.cos(turn), places[-1][1] + 4 * np.sin(turn)))
+    kinked = road("".join(geometry(4 * k, *places[k], turn, 4) for k, turn in enumerate(turns)), 40)
+    for roads, said in ((kinked + road(geometry(0, 0, 50, 0, 40), 40, "2"), "1 of 2 roads have corners"), (road(LINE, 40), "")):
+        told, progress = [], Progress()
+        progress.info = told.append
+        draft_opendrive(with_shared_borders(checked(RoadMapSource(taken_in(tmp_path, roads)[1]))), progress=progress)
+        assert said in "".join(told) and bool(told) == bool(said)
 
 
 def test_a_map_without_crs_leaves_as_a_local_map(tmp_path):

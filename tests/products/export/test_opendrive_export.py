@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, Features
-from lanewright.core.common.progress import Progress
 from lanewright.products.export.check.roads import check_opendrive
 from lanewright.products.export.map_layers import border_misses, crs_of_reference, driving_line_misses, reference_of_crs
 from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
-from lanewright.products.export.opendrive.geometry import fit_cubics
+from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
 from lanewright.products.export.opendrive.layers import layers_of_opendrive
 from lanewright.products.export.opendrive.reference_line import fit_reference, polynomial_reference
 from lanewright.products.export.opendrive.xodr import opendrive_text, read_opendrive
@@ -104,7 +103,7 @@ def test_a_road_that_goes_straight_on_past_a_side_road_has_a_way_through_the_jun
     assert led == {(id, other) for id, others in zip(lanes.lane_id, lanes.successors) for other in others}
 
 
-def test_a_shoulder_within_a_junction_is_left_out_and_counted():
+def test_a_shoulder_within_a_junction_apart_from_its_ways_is_a_road_of_its_own(tmp_path):
     scene, line = LaneScene(), Axis(((100.0, 0.0, 0.0),))
     for piece, (first, last) in enumerate(((0, 40), (40, 60), (60, 100)), start=1):
         scene.add(line, 0.0, -3.5, first, last, lane=1, piece=piece, **kinds())
@@ -121,10 +120,10 @@ def test_a_shoulder_within_a_junction_is_left_out_and_counted():
         scene.add(side, 0.0, -3.5, road=2 + number, **kinds())
         turn = [hermite(line.at([at], [t])[0], side.at([0], [u])[0], heading, way) for t, u in ((0.0, 0.0), (outer, -3.5))]
         scene.piece(*turn, road=1, lane=8 + number, type="connector", **unmarked)
-    said, progress = [], Progress()
-    progress.info = said.append
-    draft_opendrive(checked(RoadMapSource(scene.lanes())), progress=progress)
-    assert any("within junctions: 1." in text for text in said)
+    lanes = scene.lanes()
+    draft, whole = exported(tmp_path, lanes)
+    assert not check_opendrive(whole).found and sorted(lane_names(draft).values()) == sorted(lanes.lane_id)
+    assert border_misses(lanes, layers_of_opendrive(whole).lanes)[0].largest < OpenDriveSettings().tolerance
 
 
 def test_in_left_hand_traffic_lanes_along_the_road_are_left_of_its_line(tmp_path):
@@ -166,15 +165,15 @@ def test_widths_never_fall_below_zero_where_a_lane_tapers_in(tmp_path):
               for id, lane in section.lanes.items() if id]
     assert min(widths) > -1e-9
     s = np.linspace(0, 10, 11)
-    line, = fit_cubics([s], [np.maximum(s - 5, 0)], 0.0, 10.0, 0.01, broken=True)
+    (line,), = fit_cubics([LineBundle([s], [np.maximum(s - 5, 0)], 0.0, 10.0, 0.01, broken=True)])
     assert line.least(10.0)[0] == 0.0 and line.at(7.5) == pytest.approx(2.5)
 
 
 def test_a_cubic_is_fitted_by_one_piece_and_a_step_by_many():
     s = np.linspace(0, 40, 41)
-    one, = fit_cubics([s], [3 + 0.1 * s - 0.01 * s**2 + 0.0002 * s**3], 0.0, 40.0, 0.001)
+    (one,), = fit_cubics([LineBundle([s], [3 + 0.1 * s - 0.01 * s**2 + 0.0002 * s**3], 0.0, 40.0, 0.001)])
     assert len(one) == 1
-    many, = fit_cubics([s], [np.where(s < 20, 3.0, 4.0)], 0.0, 40.0, 0.01)
+    (many,), = fit_cubics([LineBundle([s], [np.where(s < 20, 3.0, 4.0)], 0.0, 40.0, 0.01)])
     assert len(many) > 2 and np.abs(many.at(s) - np.where(s < 20, 3.0, 4.0)).max() < 0.02
 
 

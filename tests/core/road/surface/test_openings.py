@@ -40,6 +40,13 @@ def test_the_road_goes_on_into_a_street_as_far_as_it_was_scanned(scanned):
     np.testing.assert_array_equal(found[(STATIONS < 14) | (STATIONS > 24)], CURB)
 
 
+def test_a_wide_mouth_whose_corners_are_both_dropped_is_a_street():
+    height, ground = place((8, 32))
+    corner = (np.abs(STATIONS - 20.0) > 12.0)[:, None] & (OFFSETS < CURB + 6.5)
+    height, ground = np.where(corner, 0.0, height), ground | corner
+    assert limits(height, ground, (8, 32))[(STATIONS > 9) & (STATIONS < 31)].min() > 16.5
+
+
 def test_no_street_goes_farther_than_the_width_asked_for():
     assert limits(*place((14, 24)), (14, 24)).max() == 17.0
 

@@ -1,0 +1,140 @@
+"""How wide a lane is that has a painted line on one side only: what its curb, where one drove and the usual width say together.
+
+A lane between a line and a curb, or an edge of the pavement, has all the room, or a gutter or a row of parked cars has some of it. Each of these
+readings gives a width and how well it fits the room, the usual width of lanes and the drive; all three are normal, so what they say together is.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...countries.neutral import NEUTRAL
+from .candidates import Candidates
+from .evidence import Evidence
+from .weights import CURB, DOUBLE, ISLAND, PAVEMENT, SAME_LANE, SURFACE_END, EstimateWeights
+
+WIDTH, SECOND_WIDTH, NATS = range(3)   # columns of `lanes_beside`
+
+
+def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w: EstimateWeights) -> np.ndarray:
+    """(I, M, 2, 3) of a lane on the left and on the right of each boundary: its width, m, the next probable one, and by how many nats it is less so.
+
+    Without a second width the nats are inf.
+
+    Parameters
+    ----------
+    usual : m, width of lanes of the road; shown : whether the lines of the road show it
+    """
+    result = np.empty((*c.left.shape, 2, 3))
+    result[..., :] = usual, np.nan, np.inf
+    i, m = np.nonzero(c.valid & c.bounding)
+    if not len(i):
+        return result
+    i, m, side = np.tile(i, 2), np.tile(m, 2), np.repeat([0, 1], len(i))
+    step = np.where(side == 0, -1, 1)
+    # the surface may seem to end before the curb, at what hides it
+    beyond = m + step
+    beyond = np.where(SURFACE_END[c.made_of[i, beyond]], (beyond + step).clip(0, c.left.shape[1] - 1), beyond)
+    made = c.made_of[i, beyond]
+    line, far = np.where(side == 0, c.left[i, m], c.right[i, m]), np.where(side == 0, c.right[i, beyond], c.left[i, beyond])
+    row = 2 * c.rows[i, m, side] + side
+    places = _Along(row, (np.cumsum(c.length) - c.length / 2)[i], c.length[i])
+    across = np.abs(far - line)
+    room = np.where(np.isin(made, (CURB, PAVEMENT)), across, np.nan)
+    # where a line lies on the other side farther on, it shows how wide the lane is
+    lined = (made <= DOUBLE) & (across >= NEUTRAL.narrowest_lane) & (across <= NEUTRAL.widest_lane)
+    between = places.means(np.where(lined, across, np.nan), w.laid_out)
+    usual_there, like = np.where(np.isfinite(between), between, usual), w.like_lines * (shown | np.isfinite(between))
+    # beside an island all room is the lane's
+    offset = np.where(made == ISLAND, np.nan, step * (line - evidence.driven[:, i]))
+    near, passes = _driven_beside(offset, room, w)
+    driven = places.means(np.where(passes > 0, near, np.nan), w.laid_out)
+    sigma = w.track_sigma / np.sqrt(np.maximum(places.means(passes.astype(float), w.laid_out), 1e-9))
+    share = np.array([part for _, _, part in w.left_over_beside])
+    nats, width = _readings(room, driven, sigma, usual_there, like, share, w)
+    known = np.isfinite(room) & np.isfinite(driven) & np.isfinite(nats).any(axis=0)
+    if known.any():
+        # lanes nobody drove in are like those beside curbs that were driven on the same road
+        length, behind = c.length[i[known]], nats[:, known] - nats[:, known].min(axis=0)
+        fits = np.average(np.exp(-behind) / np.exp(-behind).sum(axis=0), axis=1, weights=length)
+        share = (share + w.alike_beside * fits[:-2].reshape(2, -1).sum(axis=0)) / (1 + w.alike_beside)
+        driven_width = np.average(width[nats.argmin(axis=0), np.arange(len(i))][known], weights=length)
+        usual_there = np.where(np.isfinite(between), between, driven_width)
+        alike = _readings(room, driven, sigma, usual_there, np.full(len(i), w.like_lines), share, w)
+        nats, width = (np.where(np.isnan(driven), *values) for values in zip(alike, (nats, width)))
+    result[i, m, side] = _chosen(places, room, lined, across, nats, width, w)
+    return result
+
+
+class _Along:
+    """Places along rows: (N,) rows, stations and lengths of road, m."""
+
+    def __init__(self, row, station, length):
+        self.order, self.length = np.lexsort((station, row)), length
+        self.far = station.max(initial=0.0) + 1.0
+        self.row, self.station = row[self.order], station[self.order]
+
+    def means(self, values, reach):
+        """(N,) means of what is not NaN of values, over `reach` m either way along the same row; NaN where there is none."""
+        place = self.row * (self.far + 2 * reach) + self.station
+        low, high = np.searchsorted(place, place - reach), np.searchsorted(place, place + reach, side="right")
+        weight = np.where(np.isfinite(values), self.length, 0.0)[self.order]
+        sums = [np.r_[0.0, np.cumsum(part)] for part in (weight * np.where(np.isfinite(values), values, 0.0)[self.order], weight)]
+        result = np.full(len(values), np.nan)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            result[self.order] = (sums[0][high] - sums[0][low]) / (sums[1][high] - sums[1][low])
+        return result
+
+
+def _driven_beside(offset, room, w):
+    """(N,) m, mean distance of the passes within reach of a line and within its room, and (N,) their number; `offset` : (P, N) m from the line."""
+    with np.errstate(invalid="ignore"):
+        inside = (offset > NEUTRAL.narrowest_lane / 3) & (offset < w.widest_beside / 2 + SAME_LANE) & ~(offset > room)
+    number = inside.sum(axis=0)
+    return np.where(inside, offset, 0.0).sum(axis=0) / np.maximum(number, 1), number
+
+
+def _readings(room, driven, track_sigma, usual, like, share, w):
+    """(R, N) nats and widths, m, of the readings of strips: of what is left over beside the lane, of lanes as wide as between lines and of others.
+
+    `like` : (N,) share of those as wide as between lines; `share` : of what is left over; the rest of it may be anything, the last two readings
+    """
+    left_over, scatter = (np.array(values)[:, None] for values in list(zip(*w.left_over_beside))[:2])
+    nats, width, spread = [], [], []
+    with np.errstate(divide="ignore"):
+        for sigma, of_sigma in ((w.width_sigma_lined, like), (w.width_sigma_beside, 1 - like)):
+            misfit, variance = room - left_over - usual, sigma**2 + scatter**2
+            fits = 0.5 * (misfit**2 / variance + np.log(2 * np.pi * variance)) - np.log(share)[:, None] - np.log(of_sigma)
+            nats.append(np.where(np.isfinite(room), fits, np.inf))
+            width.append(np.where(np.isfinite(room), usual + misfit * sigma**2 / variance, usual))
+            spread.append(np.broadcast_to(sigma**2 * scatter**2 / variance, misfit.shape))
+        for sigma, of_sigma in ((w.width_sigma_lined, like), (w.width_sigma_beside, 1 - like)):
+            of_rest = np.where(np.isfinite(room), (1 - share.sum()) / w.widest_beside, 1.0)
+            nats.append(-np.log(of_rest * of_sigma)[None])
+            width.append(usual[None])
+            spread.append(np.full((1, len(room)), sigma**2))
+    nats, width, spread = (np.concatenate(values) for values in (nats, width, spread))
+    # what the drive says
+    variance = spread + (2 * track_sigma) ** 2
+    shown = np.where(np.isfinite(driven), 2 * driven - width, 0.0)
+    nats = nats + np.where(np.isfinite(driven), 0.5 * (shown**2 / variance + np.log(2 * np.pi * variance)), 0.0)
+    width = width + np.where(np.isfinite(driven), shown * spread / variance, 0.0)
+    possible = (width >= NEUTRAL.narrowest_lane) & (width <= np.fmin(room, w.widest_beside) + SAME_LANE)
+    return np.where(possible, nats, np.inf), width
+
+
+def _chosen(places, room, lined, across, nats, width, w):
+    """(N, 3) width, second width and nats of the most probable reading; a road is laid out alike as far as its line goes on."""
+    alike = np.stack([places.means(np.where(np.isfinite(part), part, np.nan), w.repeats) for part in nats])
+    nats = np.where(np.isfinite(nats), alike, np.inf)
+    order, columns = np.argmin(nats, axis=0), np.arange(len(room))
+    first = width[order, columns]
+    apart = np.where(np.abs(width - first) > 2 * SAME_LANE, nats, np.inf)
+    second = np.argmin(apart, axis=0)
+    found = np.isfinite(apart[second, columns])
+    behind = np.where(found, np.where(found, apart[second, columns], 0.0) - nats[order, columns], np.inf)
+    # beyond the end of the curb, or of the other line, a lane goes on as wide as beside it
+    bounded = np.isfinite(room)
+    elsewhere = places.means(np.where(lined, across, np.where(bounded, first, np.nan)), w.laid_out)
+    first = np.where(~bounded & np.isfinite(elsewhere), elsewhere, first)
+    return np.column_stack([first, width[second, columns], behind])

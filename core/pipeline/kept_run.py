@@ -1,0 +1,65 @@
+"""What the stages of the last run gave, kept in a window so that a run with other corrections or late settings goes on from where it differs.
+
+A result is known by a digest of all that it depends on: the stages before it, settings, files and corrections. Of one run alone anything is kept.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+
+class KeptRun:
+    """The results of the stages of one run, in their order, from when `begin` is called until `end`; used by one run at a time."""
+
+    def __init__(self) -> None:
+        self._wanted, self._in_use = False, threading.Lock()
+        self._results: dict[str, tuple[str, Any, Callable[[], None]]] = {}   # {stage: (digest, result, what frees its disk space)}
+
+    def begin(self) -> None:
+        """Keep runs from now on."""
+        self._wanted = True
+
+    def end(self) -> None:
+        """Keep no run any more, and free the disk space of the last one."""
+        self._wanted = False
+        if self.take():
+            self.drop_from("")
+            self.give_back()
+
+    def take(self) -> bool:
+        """Whether the caller may use it, until `give_back`; another run that is at work has it."""
+        return self._in_use.acquire(blocking=False)
+
+    def give_back(self) -> None:
+        if not self._wanted:
+            self.drop_from("")
+        self._in_use.release()
+
+    @property
+    def wanted(self) -> bool:
+        return self._wanted
+
+    def known(self, stage: str, digest: str) -> bool:
+        """Whether the result of a stage is here; if another one is, it goes, and so does all that came after it."""
+        if stage in self._results and self._results[stage][0] != digest:
+            self.drop_from(stage)
+        return stage in self._results
+
+    def result(self, stage: str) -> Any:
+        return self._results[stage][1]
+
+    def keep(self, stage: str, digest: str, result: Any, free: Callable[[], None]) -> None:
+        """Keep the result of a stage. free : is called when it goes"""
+        self._results[stage] = digest, result, free
+
+    def drop_from(self, stage: str) -> None:
+        """Let the results of a stage and of those after it go, the last ones first; of all for "" """
+        for name in reversed(list(self._results)):
+            self._results.pop(name)[2]()
+            if name == stage:
+                return
+
+
+WINDOW = KeptRun()   # of the program's window, which calls its `begin`

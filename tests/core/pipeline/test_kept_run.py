@@ -1,0 +1,132 @@
+"""A run in the window goes on from where it differs from the last one, and gives what it would have given alone."""
+
+import numpy as np
+import pytest
+import shapely
+from lanewright.core.common.errors import Cancelled
+from lanewright.core.common.features import CORRECTIONS, Features
+from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.io.geotiff import IntensityImage
+from lanewright.core.pipeline import road_map as chain
+from lanewright.core.pipeline.kept_run import KeptRun
+from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
+from lanewright.core.survey.open_survey import SurveySettings
+
+pytestmark = pytest.mark.slow
+
+LAYERS = ("edges", "surface", "markings", "marking_lines", "driving_lines", "lanes", "curve_elements")
+READING = ("open_survey", "find_curb_points", "draw_boundaries")
+SURFACE = (*READING, "extract_road_surface", "correct_intensity", "make_intensity_image", "extract_markings", "remove_outliers", "cluster_markings")
+
+
+@pytest.fixture(scope="module")
+def street(made_survey):
+    return made_survey(length=24.0, pulse_rate=60_000.0, rotation_rate=90.0)
+
+
+@pytest.fixture
+def kept():
+    kept = KeptRun()
+    kept.begin()
+    yield kept
+    kept.end()
+
+
+def made(street, folder, kept=None, corrections=None, settings=RoadMapSettings()):
+    """(all layers, pixels of the image) of a run, and its RoadMap."""
+    sample, cloud = street
+    road_map = make_road_map([cloud], sample.trajectory, folder / "intensity.tif", settings, corrections=corrections, kept=kept or KeptRun())
+    layers = [road_map.layer(name) for name in LAYERS]
+    image = IntensityImage.open(folder / "intensity.tif")
+    found = [([g and shapely.to_wkb(g) for g in layer.geometries], repr(layer.rows)) for layer in layers], \
+        image.read_pixels(0, 0, image.width, image.height).tobytes(), repr([road_map.density, road_map.counts])
+    road_map.free()
+    return found, road_map
+
+
+def without(monkeypatch, stages):
+    def refused(*_, **__):
+        raise AssertionError("this stage was run again")
+
+    for stage in stages:
+        monkeypatch.setattr(chain, stage, refused)
+
+
+def moved_edge(road_map):
+    """The correction of an edge that lies 20 cm farther out."""
+    layer = Features("any", CORRECTIONS, crs=road_map.crs)
+    line = next(line for line, row in road_map.layer("edges") if row["side"] == "left" and row["status"] == "measured")
+    farther = shapely.transform(line, lambda places: places + [0.0, 0.2, 0.0], include_z=True)
+    layer.add(farther, action="move", target="edge", note="seen in the image")
+    return layer
+
+
+def without_lane(road_map):
+    layer = Features("any", CORRECTIONS, crs=road_map.crs)
+    layer.add(road_map.driving_lines.geometries[0], action="delete", target="lane")
+    return layer
+
+
+@pytest.fixture(scope="module")
+def alone(street, tmp_path_factory):
+    """What runs give that keep nothing: as surveyed, with an edge that is moved, and with a lane that is deleted."""
+    folder = tmp_path_factory.mktemp("alone")
+    found, road_map = made(street, folder)
+    return found, made(street, folder, corrections=moved_edge(road_map))[0], made(street, folder, corrections=without_lane(road_map))[0]
+
+
+def test_a_corrected_edge_or_lane_takes_the_stages_after_it_alone_and_gives_the_same(street, alone, tmp_path, monkeypatch, kept):
+    assert alone[0] != alone[1] and alone[0] != alone[2]
+    found, road_map = made(street, tmp_path, kept)
+    assert found == alone[0]
+    with monkeypatch.context() as patch:
+        without(patch, SURFACE)
+        assert made(street, tmp_path, kept, without_lane(road_map))[0] == alone[2]
+        assert made(street, tmp_path, kept)[0] == alone[0]
+    with monkeypatch.context() as patch:
+        without(patch, READING)
+        corrections = moved_edge(road_map)
+        assert made(street, tmp_path, kept, corrections)[0] == alone[1]
+        assert made(street, tmp_path, kept)[0] == alone[0]
+
+
+def test_a_run_that_was_cancelled_goes_on_where_it_was(street, alone, tmp_path, monkeypatch, kept):
+    def cancelled(*_, **__):
+        raise Cancelled
+
+    with monkeypatch.context() as patch:
+        patch.setattr(chain, "cluster_markings", cancelled)
+        with pytest.raises(Cancelled):
+            made(street, tmp_path, kept)
+    without(monkeypatch, SURFACE[:-1])
+    assert made(street, tmp_path, kept)[0] == alone[0]
+
+
+def test_of_one_run_alone_points_stay_on_the_disk(street, tmp_path, kept):
+    _, first = made(street, tmp_path, kept)
+    assert first.road_points.store.roads()
+    _, second = made(street, tmp_path, kept, settings=RoadMapSettings(survey=SurveySettings(section_length=7.0)))
+    assert not first.road_points.store.roads() and second.road_points.store.roads()
+    kept.end()
+    assert not second.road_points.store.roads()
+
+
+def test_worker_processes_start_again_for_a_correction_and_files_of_what_it_replaces_go(street, alone, tmp_path, monkeypatch, kept):
+    settings = RoadMapSettings(execution=ExecutionSettings(workers=2))
+    found, road_map = made(street, tmp_path, kept, settings=settings)
+    folder = road_map.road_points.survey.executor.folder
+    files = {path.name for path in folder.glob("*.bin")}
+    without(monkeypatch, READING)
+    assert found == alone[0] and made(street, tmp_path, kept, moved_edge(road_map), settings)[0] == alone[1]
+    again = {path.name for path in folder.glob("*.bin")}
+    assert files and len(again) == len(files) and not files & again
+    kept.end()
+    assert not folder.exists()
+
+
+def test_two_runs_at_once_do_not_share_and_outside_of_a_window_nothing_is_kept(street, alone, tmp_path, kept):
+    assert kept.take()
+    found, road_map = made(street, tmp_path, kept)
+    assert found == alone[0] and not road_map.road_points.store.roads()
+    kept.give_back()
+    assert np.isfinite(road_map.frame.origin).all() and not kept.known("survey", "")
