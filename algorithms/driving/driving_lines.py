@@ -20,8 +20,10 @@ DRIVING_SETTINGS = (
     SettingSpec("LINE_DISTANCE", DRIVING, "line_distance", tr("Distance from a line without partner, 0 = half a lane (m)"),
                 tr("How far beside a painted line the driving line runs where the lane has no second line."), advanced=True),
     SettingSpec("TRAFFIC_SIDE", DRIVING, "traffic_side", tr("Side of traffic"),
-                tr("The side one drives on; it gives the driving lines their direction. Automatic goes by where and which way the vehicle drove, and "
-                   "by lines that part the directions. A side named here counts more than the drive."), choices=("automatic", "right", "left")),
+                tr("The side one drives on; it gives lanes that nobody drove their direction. Automatic goes by where and which way the vehicle "
+                   "drove, by lines that part the directions, and a little by the country where the survey lies. A driven lane leads the way it "
+                   "was driven, whatever is named here."),
+                choices=("automatic", "right", "left")),
 )
 
 

@@ -12,7 +12,7 @@ from scipy.ndimage import distance_transform_edt, gaussian_filter1d, uniform_fil
 from ..common.progress import Progress
 from ..countries.catalogue import country
 from ..markings.cross_section.evidence import point_spacing
-from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
+from ..markings.cross_section.roads import EstimatedRoad, estimate_roads, usual_side
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
 from ..markings.cross_section.weights import HATCHING, OUTSIDE, TakenReading, share_within
 from ..markings.lines.painted_lines import PaintedLines
@@ -65,11 +65,12 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
                                settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width), pavement=pavement,
                                progress=progress.part(0.0, 0.4), taken=taken)
     progress.report(0.4)
+    if estimates.roads and settings.traffic_side == "automatic" and (usual := usual_side(frame)):
+        progress.info(f"Side of traffic: where the survey lies traffic drives on the {usual}, which counts a little.")
     if estimates.roads and not estimates.sure:
         progress.warn(f"The survey hardly shows on which side traffic drives; the {estimates.side} was taken. Set Side of traffic if that is wrong.")
     if estimates.against_arrows:
-        progress.warn("The vehicle drove against the arrows painted in its lanes; lanes lead the way it drove. Look at the times of the trajectory, "
-                      "or set Side of traffic if the arrows are right.")
+        progress.warn("The vehicle drove against the arrows painted in its lanes; lanes lead the way it drove. Look at the times of the trajectory.")
     for count, (number, estimated) in enumerate(estimates.roads.items()):
         part = progress.part(0.4 + 0.6 * count / len(estimates.roads), 0.4 + 0.6 * (count + 1) / len(estimates.roads))
         s = estimated.lines.s

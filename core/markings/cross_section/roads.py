@@ -11,6 +11,8 @@ import shapely
 from ...common.parallel import check_cancelled, ordered_map
 from ...common.progress import Progress
 from ...countries.neutral import NEUTRAL
+from ...countries.traffic_side import side_of_traffic
+from ...io.crs import horizontal_part, parse_crs, place_on_ground
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.frame.row_table import RowTable, stacked
@@ -77,8 +79,6 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     arrows, against = _arrows_and_drive(markings, frame, lines, drives, side == "automatic", weights)
     if width_asked:
         weights = replace(weights, width_sigma=weights.width_sigma_asked, other_width=0.0, odd_width=weights.odd_width_asked)
-    if side != "automatic":
-        weights = replace(weights, driven_against=weights.driven_against_asked)
     evidence = {}
     for k, (number, of_road) in enumerate(lines.items()):
         edges = [(sections or {}).get(number) for sections in (curbs, pavement)]
@@ -87,7 +87,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         progress.report(0.4 * (k + 1) / len(lines))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
     estimates = _estimates(evidence, sides, usual_width, weights, progress.part(0.4, 0.7))
-    best, named, behind, opposite = _best_side(estimates, weights)
+    best, named, behind, opposite = _best_side(estimates, usual_side(frame), weights)
     used = tuple(first for first in sides if first == best or behind < ROADS.sure_side or opposite < weights.doubt)
     width, shown = (usual_width, True) if width_asked else _usual_width(evidence, estimates[best], usual_width)
     # the road's own width tells lanes better than that of a country
@@ -125,20 +125,31 @@ def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, d
     return boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, s))
 
 
-def _best_side(estimates, weights):
+def usual_side(frame: RoadFrame) -> str:
+    """"right" or "left", the side of traffic of the country where the survey lies; "" where that is not known."""
+    crs = horizontal_part(parse_crs(frame.crs))
+    if crs is None or not crs.is_projected:
+        return ""
+    place = place_on_ground(crs, float(frame.origin[0]), float(frame.origin[1]))
+    return side_of_traffic(place.longitude, place.latitude)
+
+
+def _best_side(estimates, usual, weights):
     """The most probable side of traffic, whether names of lines decide it, and by how many nats the other is behind, once and as a second reading.
 
-    Names that decide the side are not made from the same evidence.
+    Names that decide the side are not made from the same evidence. What is seen again and again along a road was laid out and driven once.
     """
-    total, unnamed, once = ({first: sum(getattr(estimate, name) for estimate in of_roads.values()) + (weights.left_hand if first > 0 else 0.0)
-                             for first, of_roads in estimates.items()} for name in ("total", "unnamed_total", "once_total"))
-    best, best_unnamed = (min(nats, key=nats.__getitem__) for nats in (total, unnamed))
-    if len(estimates) == 1 or best != best_unnamed:
-        return best, best != best_unnamed, np.inf, np.inf
-    opposite = weights.left_hand * -best + sum(
-        (estimates[-best][number].unnamed_total - estimate.unnamed_total)
-        * min(1.0, weights.repeats / max(float(estimate.candidates.length.sum()), 1.0)) for number, estimate in estimates[best].items())
-    return best, False, once[-best] - once[best], opposite
+    if len(estimates) == 1:
+        return next(iter(estimates)), False, np.inf, np.inf
+    prior = {"left": -weights.foreign_side, "right": weights.foreign_side}.get(usual, weights.left_hand)
+    # nats by which traffic on the left is behind
+    total, unnamed, once = (prior + sum((getattr(left, name) - getattr(estimates[-1][number], name)) * min(
+        1.0, repeats / max(float(left.candidates.length.sum()), 1.0)) for number, left in estimates[1].items()) for name, repeats in (
+            ("total", weights.repeats), ("unnamed_total", weights.repeats), ("once_total", np.inf)))
+    best = 1 if total < 0 else -1
+    if total * unnamed < 0:
+        return best, True, np.inf, np.inf
+    return best, False, max(-best * once, 0.0), abs(unnamed)
 
 
 def _taken_on(taken, number, candidates, s):

@@ -73,7 +73,6 @@ class EstimateWeights:
     off_asphalt: float = 3.0   # of a lane on what is no road surface
     driven_rest: float = 8.0   # of a vehicle that drives where no lane is
     driven_against: float = 12.0   # of a vehicle that drives against its lane
-    driven_against_asked: float = 0.5   # the same where the user named the side of traffic
     driven_sigma: float = 0.8   # m, scatter of a vehicle about the middle of its lane
     driven_astride: float = 3.0   # the most that this costs
     hatched_lane: float = 8.0   # of a lane over a hatched area
@@ -93,7 +92,9 @@ class EstimateWeights:
     two_and_one: float = 0.4   # of two lanes one way and one the other
     two_way_carriageway: float = 4.0   # of two directions on one of two carriageways
     dashed_between_many: float = 1.5   # of dashes between the directions of a road of more than two lanes
-    left_hand: float = 0.7   # of traffic on the left, against traffic on the right
+    left_hand: float = 0.7   # of traffic on the left, against traffic on the right, where the place is not known
+    # of traffic on the side that is not that of the country there: of four hundred surveys one is of private grounds, or its CRS is another
+    foreign_side: float = 6.0
     # slope and offset of the curve by which probable lanes are right, over the log odds; fitted to 13 km of lanes of 32 simulated streets of two
     # simulators, and checked on others (docs/accuracy.md)
     calibration: tuple[float, float] = (0.38, 1.85)

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from lanewright.core.countries.traffic_side import side_of_traffic
+from lanewright.core.markings.cross_section.roads import usual_side
 from lined_streets import EAST, NORTH, Street, middle
 from shapely.geometry import Point
 
@@ -27,10 +29,27 @@ def test_a_vehicle_left_of_the_centre_line_means_left_hand_traffic():
     assert ways(two_lanes(vehicle=1.75)) == {-1.75: -1, 1.75: 1}
 
 
-def test_left_hand_traffic_swaps_the_directions_of_right_hand_traffic():
+def test_a_driven_lane_leads_the_way_it_was_driven_whatever_side_of_traffic_is_named():
     street = two_lanes(vehicle=-1.75)
     right, left = ways(street, traffic_side="right"), ways(street, traffic_side="left")
-    assert right == {lane: -way for lane, way in left.items()} == {-1.75: 1, 1.75: -1}
+    assert right == {-1.75: 1, 1.75: -1} and left[-1.75] == 1
+
+
+@pytest.mark.parametrize("crs, beside, side", [("EPSG:32632", 1, "right"), ("", 1, ""), ("EPSG:32755", -1, "left")])
+def test_two_lanes_driven_in_the_one_of_overtaking_lead_the_same_way_in_the_country_whose_side_that_is(crs, beside, side):
+    """A carriageway of a motorway in town, driven in its left lane in Bavaria, and in its right lane in Tasmania."""
+    street = Street(length=300.0, vehicle=1.75 * beside).paint(3.5, kind="edge").paint(0.0, pattern="dashed").paint(-3.5, kind="edge")
+    street.frame.crs = crs
+    assert usual_side(street.frame) == side
+    lines, _ = street.lanes()
+    assert {row["direction"] for row in lines.rows} == ({1} if side else {1, -1})
+
+
+@pytest.mark.parametrize("place, side", [((2.35, 48.86), "right"), ((-0.1, 51.5), "left"), ((139.7, 35.7), "left"), ((129.0, 35.1), "right"),
+                                         ((77.0, 28.6), "left"), ((116.4, 39.9), "right"), ((151.2, -33.9), "left"), ((28.0, -26.2), "left"),
+                                         ((-74.0, 40.7), "right"), ((13.2, -8.8), "right"), ((61.3, 28.0), ""), ((np.nan, 0.0), "")])
+def test_the_side_of_traffic_of_a_place_is_that_of_its_country(place, side):
+    assert side_of_traffic(*place) == side
 
 
 def test_four_lanes_part_at_the_double_line_even_if_it_is_not_in_the_middle():
