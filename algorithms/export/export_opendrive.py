@@ -66,8 +66,9 @@ class ExportOpenDrive(Algorithm):
         if not source.lanes.crs:
             notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))
         if across.largest > settings.tolerance or rise.largest > settings.tolerance:
+            x, y, _ = (across if across.largest > settings.tolerance else rise).worst
             notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
-                            "tolerance.").format(across=across.largest, rise=rise.largest))
+                            "tolerance, the farthest near x {x:.1f}, y {y:.1f}.").format(across=across.largest, rise=rise.largest, x=x, y=y))
         warn_of_faults(notes, check, progress)
         progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
             roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))

@@ -126,6 +126,8 @@ class LaneTrack:
                 readings.append(Reading(0.0, ((d - aside, width, self.direction),)))
             elif second is not None and second.nats < weights.doubt:
                 readings.append(second)
+        if not readings:
+            return ""   # in doubt between two doubtful stretches: neither reading is of these places
         ways = [tuple(way for _, _, way in reading.lanes) for reading in readings]
         usual = max(sorted(set(ways)), key=ways.count)
         alike = [reading for reading, way in zip(readings, ways) if way == usual]

@@ -157,12 +157,13 @@ BEYOND_END = 10.0     # m: a road of four lanes whose end is cut oblique by 30 d
 
 
 class Misses(NamedTuple):
-    """Metres: mean, 95th percentile, largest; and at how many places."""
+    """Metres: mean, 95th percentile, largest; at how many places; and the (3,) place of the largest."""
 
     mean: float
     p95: float
     largest: float
     places: int
+    worst: np.ndarray
 
 
 def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
@@ -174,8 +175,8 @@ def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
     ends = [end for border in _once(source_borders)[0] for end in (_gone_on(border), _gone_on(border[::-1]))]
     misses_of_source = _distances(source_borders, _segments(exported_borders))
     misses_of_exported = _distances(exported_borders, _segments(source_borders, True), apart_from=_segments(ends))
-    across, rise = (_summary(np.concatenate(misses)) for misses in zip(misses_of_source, misses_of_exported))
-    return across, rise
+    across, rise, places = (np.concatenate(misses) for misses in zip(misses_of_source, misses_of_exported))
+    return _summary(across, places), _summary(rise, places)
 
 
 def _joined(lines):
@@ -214,22 +215,23 @@ def driving_line_misses(driving_lines: Features | None, exported: Lanes, measure
 
     apart_from : (N, 2) places; what lies within LEFT_OUT_NEAR of one is left out
     """
-    middles = [(left + right) / 2 for left, right in (exported.borders(k) for k in range(len(exported))
-                                                      if exported.type[k] in ("driving", "connector"))]
+    middles = [sum(exported.borders(k)) / 2 for k in np.flatnonzero(np.isin(exported.type, ("driving", "connector")))]
     rows = [shapely.get_coordinates(geometry, include_z=True) for geometry, row in driving_lines or ()
             if geometry is not None and (not measured_only or row.get("status") in (None, "measured"))]
     places = np.concatenate([np.empty((0, 3)), *rows])
     if apart_from is not None and len(apart_from) and len(places):
         places = places[cKDTree(apart_from).query(places[:, :2])[0] > LEFT_OUT_NEAR]
     if not len(places) or not middles:
-        return _summary(np.empty(0))
-    return _summary(_distances([places], _segments(middles), NEAR_MIDDLE)[0])
+        return _summary(np.empty(0), places)
+    across, _, places = _distances([places], _segments(middles), NEAR_MIDDLE)
+    return _summary(across, places)
 
 
 def _distances(lines, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
-    """(across, in height) metres of the places of lines from (M, 7) segments, of those places from which one lies nearer than `farthest` metres.
+    """((N,) metres across, (N,) in height, (N, 3) places) of lines from (M, 7) segments, of places from which none lies nearer than `farthest`
+    metres infinite.
 
-    apart_from : (K, 7) segments; places to which one of them is nearer are left out
+    apart_from : (K, 7) segments; places to which one of them is nearer are infinite too
     """
     lines, index = _once(lines)
     places, begin = _joined(lines), np.cumsum([0, *map(len, lines)])
@@ -250,8 +252,8 @@ def _distances(lines, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
     # where borders of several roads lie on each other, the one at the place's own height is its own
     rise = _least(len(places), indices[counted], np.abs(places[indices, 2] - first[:, 2] - share * (last - first)[:, 2])[counted])
     rise[np.isinf(across)] = np.inf
-    across, rise = (np.concatenate([values[begin[number]:begin[number + 1]] for number in index]) for values in (across, rise))
-    return np.maximum(across[np.isfinite(across)], 0.0), rise[np.isfinite(rise)]
+    rows = np.concatenate([np.arange(begin[number], begin[number + 1]) for number in index])
+    return np.maximum(across, 0.0)[rows], rise[rows], places[rows]
 
 
 def _least(count, indices, values):
@@ -262,7 +264,8 @@ def _least(count, indices, values):
     return least
 
 
-def _summary(values):
+def _summary(values, places):
+    values, places = values[np.isfinite(values)], places[np.isfinite(values)]
     if not len(values):
-        return Misses(np.nan, np.nan, np.nan, 0)
-    return Misses(float(values.mean()), float(np.percentile(values, 95)), float(values.max()), len(values))
+        return Misses(np.nan, np.nan, np.nan, 0, np.full(3, np.nan))
+    return Misses(float(values.mean()), float(np.percentile(values, 95)), float(values.max()), len(values), places[np.argmax(values)])

@@ -68,11 +68,8 @@ def test_a_fence_is_seen_through_and_a_wall_is_not(true_points):
     assert len(behind["fence"]) > 500 and len(behind["wall"]) < 0.02 * len(behind["fence"])
 
 
-def test_what_stands_elsewhere_has_no_truth_and_rails_do():
+def test_what_stands_beside_another_street_has_no_truth():
     assert not len(survey("street", length=40.0).truth_roadside)
-    for scene, metres in (("motorway", 700.0), ("serpentine", 180.0)):
-        rows = survey(scene).truth_roadside.rows
-        assert {row["kind"] for row in rows} == {"guard_rail"} and sum(row["length_m"] for row in rows) > metres
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 Every .xodr of the folder is read by Import OpenDRIVE and written by Export OpenDRIVE (1.7 and 1.8) and Export Lanelet2; what was written is read
 again. The table has the CPU seconds of each step, and the largest distance of the borders of its lanes, sampled from the original here by plain
-evaluation of the standard's formulas, from the borders that were read. The folder is not changed.
+evaluation of the standard's formulas, from the borders that were read; "fault of the map" where the import named one. The folder is not changed.
 """
 
 import argparse
@@ -305,7 +305,7 @@ def shown(row):
         if one["fault"] or one.get("read"):
             parts.append(f"{name} {one['s']:.1f} s: {(one['fault'] or one['read'])[:150]}")
         else:
-            flag = "" if max(one["apart"][0], one["back"][0]) <= BORDER_LIMIT else " !"
+            flag = "" if max(one["apart"][0], one["back"][0]) <= BORDER_LIMIT else " (fault of the map)" if row["import"]["said"] else " !"
             parts.append(f"{name} {one['s']:.1f} s{' LATE' if one.get('late') else ''} {one['apart'][0]:.3f}/{one['apart'][1]:.3f} "
                          f"back {one['back'][0]:.3f}/{one['back'][1]:.3f}{flag}")
     return " | ".join(parts)

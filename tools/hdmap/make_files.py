@@ -59,16 +59,16 @@ def write(folder, name, one):
 
 def borders(path):
     """[road, section, lane, [[x, y], ...]] of every outer border as our own reader has it."""
-    from lanewright.products.export.opendrive.model import RoadSurface
     from lanewright.products.export.opendrive.xodr import read_opendrive
 
     found = []
     for road in read_opendrive(str(path)).roads:
-        surface = RoadSurface(road)
-        for number, section in enumerate(road.sections):
-            s = surface.stations(number, 0.1)
+        surface = road.surface
+        for number in range(len(road.sections)):
+            s = surface.stations(number)
+            s = np.unique(np.append(s, np.arange(s[0], s[-1], 0.1)))
             offsets = surface.offsets(number, s)
-            for lane in section.lanes:
+            for lane in road.sections[number].lanes:
                 if lane:
                     found.append([road.id, number, lane, surface.borders(number, lane, s, offsets)[1][:, :2].tolist()])
     return found
@@ -77,13 +77,13 @@ def borders(path):
 def driven_lanes(path):
     """Every driven lane of a section as our own reader has it: its road and number, stations along the road, way it is driven (1 along), middle
     [[x, y, z], ...] in the file's coordinates, and the (road, number) of the lanes that follow it."""
-    from lanewright.products.export.opendrive.model import DRIVEN_TYPES, LaneNetwork, RoadSurface, travel
+    from lanewright.products.export.opendrive.model import DRIVEN_TYPES, LaneNetwork, travel
     from lanewright.products.export.opendrive.xodr import read_opendrive
 
     whole = read_opendrive(str(path))
     network, found = LaneNetwork(whole), []
     for road in whole.roads:
-        surface = RoadSurface(road)
+        surface = road.surface
         for number, section in enumerate(road.sections):
             first, last = section.s, road.section_end(number)
             s = np.linspace(first, last - 1e-6, max(int((last - first) / STEP), 1) + 1)

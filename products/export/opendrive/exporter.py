@@ -93,10 +93,7 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     draft.notes += drafting.notes
     strips = drafting.strips()
     directions = directions_where_met([cell for strip, _ in strips for part in strip for cell in part.cells])
-    centres = [[centre_of(part, drafting.left_hand) for part in strip] for strip, _ in strips]
-    shapes = side_by_side([shape_steps(strip, road_centres, settings.tolerance / 2) for (strip, _), road_centres in zip(strips, centres)],
-                          progress.part(0.0, 0.5))
-    shaped = [(shape, strip, road_centres) for shape, (strip, _), road_centres in zip(shapes, strips, centres)]
+    shaped = drafting.shaped([strip for strip, _ in strips], progress.part(0.0, 0.5))
     borders = fit_borders(shaped, CURVES_SHARE * settings.tolerance, directions)
     for number, (shape, functions, (_, single)) in enumerate(zip(shaped, borders, strips), start=1):
         draft_road = drafting.road(*shape, functions, number, single)
@@ -150,23 +147,22 @@ class _Drafting:
         for part in self.slices:
             if (part.at_start or part.at_end) and not part.driven:
                 beside.append(part)
-                continue
-            if part.at_start and part.at_end and part.length < LONGEST_JUNCTION:
+            elif part.at_start and part.at_end and part.length < LONGEST_JUNCTION:
                 inside.append(part)
-                continue
-            for at_end in (False, True):
-                if not (part.at_end if at_end else part.at_start):
-                    continue
-                row = _cut_row(part, at_end)
-                if not row:   # too short for a way and a road
-                    inside.append(part)
-                    break
-                first, last = part.split(row)
-                way, part = (last, first) if at_end else (first, last)
-                inside.append(way)
             else:
-                ordinary.append(part)
+                ways, rest = _ways_cut_off(part)
+                inside += ways
+                ordinary += rest
         return ordinary, inside, beside
+
+    def shaped(self, strips: list[list[Slice]], progress: Progress) -> list[tuple[RoadShape, list[Slice], list[int]]]:
+        """For each road its shape, its slices, and the number of the border in each at which lane 0 lies."""
+        centres = [[centre_of(part, self.left_hand) for part in strip] for strip in strips]
+        shapes = side_by_side([shape_steps(*road, self.settings.tolerance / 2) for road in zip(strips, centres)], progress)
+        if cornered := sum(not shape.follows for shape in shapes):
+            progress.info(f"The borders in the middle of {cornered} of {len(shapes)} roads have corners, which no reference line follows: smoother "
+                          "lines were tried, so that the export takes longer, and the lane offset leads from them to the borders.")
+        return list(zip(shapes, strips, centres))
 
     def road(self, shape: RoadShape, strip: list[Slice], centres: list[int], borders: list[list[Cubics]], number: int, single: bool) -> _DraftRoad:
         tolerance = self.settings.tolerance
@@ -319,6 +315,20 @@ def _make_double(mark, left, right, lane):
 def _shares(status):
     """What userData says of the metres of each status, where not all is measured."""
     return {} if set(status) == {"measured"} else {f"lanewright:{name}_m": f"{metres:.1f}" for name, metres in sorted(status.items())}
+
+
+def _ways_cut_off(part: Slice) -> tuple[list[Slice], list[Slice]]:
+    """(the ways through junctions that begin or end in a slice, what is left of it): all of it is a way where it is too short for both."""
+    ways: list[Slice] = []
+    for at_end in (False, True):
+        if part.at_end if at_end else part.at_start:
+            row = _cut_row(part, at_end)
+            if not row:
+                return [*ways, part], []
+            first, last = part.split(row)
+            way, part = (last, first) if at_end else (first, last)
+            ways.append(way)
+    return ways, [part]
 
 
 def _cut_row(one: Slice, at_end: bool) -> int:

@@ -376,7 +376,8 @@ class _System:
         self.none[self.last] = True
         self.tolerance = np.repeat([bundle.given.tolerance for bundle, *_ in self.lines], counts)
         self.span = np.where(self.none, 1.0, np.diff(self.knots, append=np.inf))
-        self.s, self.values = (np.concatenate([line[row] for line in self.lines]) for row in (1, 2))
+        _, s, values, _ = zip(*self.lines)
+        self.s, self.values = np.concatenate(s), np.concatenate(values)
         self.piece = np.concatenate([bundle.piece_of(x) + begin for (bundle, x, *_), begin in zip(self.lines, self.begin)])
 
     def of_bundles(self, values):

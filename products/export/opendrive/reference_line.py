@@ -229,19 +229,24 @@ class _Fit:
             if not self._is_straight(start, least):
                 start = max(start + 1, int(np.searchsorted(self.along, self.along[start] + LEAST_STRAIGHT / 8)))
                 continue
-            good, bad, step = least, self.last + 1, least - start
-            while good < self.last and bad - good > 1:
-                tried = min(good + step, self.last) if bad > self.last else (good + bad) // 2
-                if self._is_straight(start, tried):
-                    good, step = tried, 2 * step
-                else:
-                    bad = tried
+            good = self._straight_to(start, least)
             first = start if start == 0 else int(np.searchsorted(self.along, self.along[start] + TRIMMED))
             last = good if good == self.last else int(np.searchsorted(self.along, self.along[good] - TRIMMED))
             if self.along[last] - self.along[first] >= LEAST_STRAIGHT / 2 and self._lay_on_line(first, last):
                 lines[first] = last
             start = good + 1
         return lines
+
+    def _straight_to(self, start, good):
+        """The farthest place to which the line is straight, by doubling steps and halving; to `good` it is."""
+        bad, step = self.last + 1, good - start
+        while good < self.last and bad - good > 1:
+            tried = min(good + step, self.last) if bad > self.last else (good + bad) // 2
+            if self._is_straight(start, tried):
+                good, step = tried, 2 * step
+            else:
+                bad = tried
+        return good
 
     def _is_straight(self, first, last):
         allowed = max(STRAIGHT_SHARE * self.tolerance, NOISE_TIMES * self.noise)
@@ -278,17 +283,19 @@ def _smoothed(asked):
     poses: dict[int, tuple[float, float, float]] = {}
     for windows in (WINDOWS[:1], WINDOWS[1:]):   # the first one mostly does
         left = [number for number in range(len(asked)) if number not in poses]
-        cubics = iter(_cubics_around([(*asked[number], window) for number in left for window in windows]) if left else ())
-        for number in left:
-            fit, tried = asked[number][0], [next(cubics) for _ in windows]
+        cubics = _cubics_around([(*asked[number], window) for number in left for window in windows])
+        for row, number in enumerate(left):
+            fit, tried = asked[number][0], cubics[row * len(windows):(row + 1) * len(windows)]
             followed = [pose for pose, _, worst in tried if worst <= NOISE_TIMES * fit.noise + EXACT_SHARE * fit.tolerance]
-            if followed or windows[-1] == WINDOWS[-1]:
-                poses[number] = followed[0] if followed else tried[-1][0]
+            if followed or windows != WINDOWS[:1]:
+                poses[number] = [*followed, tried[-1][0]][0]
     return [poses[number] for number in range(len(asked))]
 
 
 def _cubics_around(asked):
     """For each (fit, number of a place, window) the (pose, standard deviation, largest distance) of a cubic through the places around it."""
+    if not asked:
+        return []
     bounds = [fit.around(k, window) for fit, k, window in asked]
     count = np.array([last - first for first, last in bounds])
     s, offsets = np.zeros((len(asked), count.max())), np.zeros((len(asked), count.max(), 2))

@@ -39,6 +39,7 @@ class RoadShape:
 
     courses : for each slice and border (3, n) s, t, z that reach from the start of its section to its end at least, s rising: sections are cut
         square, lanes are not
+    follows : whether the reference line lies on the border at which lane 0 is; else that has corners, which a smoother line cuts
     """
 
     plan: PlanView
@@ -48,6 +49,7 @@ class RoadShape:
     lifts: list[np.ndarray]
     starts: np.ndarray
     courses: list[list[np.ndarray]]
+    follows: bool
 
 
 def centre_of(one: Slice, left_hand: bool) -> int:
@@ -73,6 +75,27 @@ def shape_steps(strip: list[Slice], centres: list[int], tolerance: float) -> Ste
     centres : number of a border in each
     tolerance : metres that the centre border may lie beside the reference line; what is missed is made up by the lane offset
     """
+    guide, index, along, keep = _guided(strip, centres)
+    for square in (False, True):
+        ends, widest = _end_headings(strip, guide, square)
+        plan, follows = yield from _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
+        shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
+        if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
+            shown, near = (list(values) for values in zip(*(_finer(part, s) for part, s in zip(strip, near))))
+        plan, s_all, t_all, is_square = _square_ends(plan, strip, shown, near)
+        if is_square:
+            break   # else a curve is too tight to go on in: the ends become square
+    strip = shown
+    for s in s_all:
+        _square_steps(s)
+    z_all, lifts = (list(values) for values in zip(*(part.levels(centre) for part, centre in zip(strip, centres))))
+    starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
+    courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
+    return RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses, follows)
+
+
+def _guided(strip, centres):
+    """((N, 2) places along lane 0, rows of them for each slice, (N,) metres along, (N,) bool: the places that tell a direction)."""
     guide, index = _guide(strip, centres)
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     if along[-1] < LEAST_GUIDE:
@@ -81,28 +104,18 @@ def shape_steps(strip: list[Slice], centres: list[int], tolerance: float) -> Ste
     keep = np.append(True, np.diff(np.floor(along / GUIDE_STEP)) > 0)
     keep[np.flatnonzero(keep)[-1] if keep.sum() > 1 else -1] = False
     keep[-1] = True
-    for square in (False, True):
-        ends, widest = _end_headings(strip, guide, square)
-        plan, follows = yield from _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
-        shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
-        if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
-            shown, near = (list(values) for values in zip(*(_finer(part, s) for part, s in zip(strip, near))))
-        for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
-            s_all, t_all = _frame(plan, shown, near)
-            before, after = _beyond_ends(strip, s_all, plan.length)
-            if max(before, after) < LEAST_STEP:
-                break
-            plan, near = plan.lengthened(before, after), [s + before for s in near]
-        else:   # a curve too tight to go on in: the ends become square
-            continue
-        break
-    strip = shown
-    for s in s_all:
-        _square_steps(s)
-    z_all, lifts = (list(values) for values in zip(*(part.levels(centre) for part, centre in zip(strip, centres))))
-    starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
-    courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
-    return RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses)
+    return guide, index, along, keep
+
+
+def _square_ends(plan, strip, shown, near):
+    """(the reference line with what makes its ends square, s and t of the vertices from it, whether they are)."""
+    for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
+        s_all, t_all = _frame(plan, shown, near)
+        before, after = _beyond_ends(strip, s_all, plan.length)
+        if max(before, after) < LEAST_STEP:
+            return plan, s_all, t_all, True
+        plan, near = plan.lengthened(before, after), [s + before for s in near]
+    return plan, s_all, t_all, False
 
 
 def _finer(one, s):

@@ -39,9 +39,8 @@ def test_three_threads_find_what_one_finds(by_threads):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("workers", [1, 3])
-def test_worker_processes_find_what_threads_find_and_leave_nothing(by_threads, python, workers):
-    executor = WorkerProcesses(python, workers)
+def test_worker_processes_find_what_threads_find_and_leave_nothing(by_threads, python):
+    executor = WorkerProcesses(python, 3)
     assert numbers_of(boundaries(executor)) == by_threads
     assert not executor.folder.exists()
 

@@ -17,19 +17,23 @@ CRS = "EPSG:32632"
 PATH = chain(ahead(80), bend(60, 60), ahead(60))
 
 
-@pytest.fixture
-def street(tmp_path):
+@pytest.fixture(scope="module")
+def street(tmp_path_factory):
     """(trajectory, points, path of their cloud) of a bend driven once."""
     trajectory = drive(PATH)
     points = surveyed_points(trajectory)
-    return trajectory, points, write_cloud(tmp_path / "street.laz", *points, crs=CRS)
+    return trajectory, points, write_cloud(tmp_path_factory.mktemp("street") / "street.laz", *points, crs=CRS)
 
 
-def test_every_point_gets_the_station_and_offset_it_was_made_with(street):
-    trajectory, (x, y, z, time), path = street
-    survey = open_survey([path], trajectory)
-    records = contents(survey)
-    assert len(records) == len(x)
+@pytest.fixture(scope="module")
+def surveyed(street):
+    """All records of the survey of `street`."""
+    return contents(open_survey([street[2]], street[0]))
+
+
+def test_every_point_gets_the_station_and_offset_it_was_made_with(street, surveyed):
+    records = surveyed
+    assert len(records) == len(street[1][0])
     offsets = np.unique(np.round(records["d"] * 1e-4 * 2) / 2)
     np.testing.assert_array_equal(offsets, np.arange(-6.0, 6.1, 0.5))
     middle = np.abs(records["s"] * 1e-4 - 110) < 60
@@ -53,21 +57,18 @@ def test_the_accuracy_that_the_trajectory_is_told_to_have_is_that_of_every_road(
         SurveySettings(trajectory_sigma=-0.02)
 
 
-@pytest.mark.parametrize("settings", [
-    SurveySettings(block=997), SurveySettings(section_length=7.0), SurveySettings(block=3001, section_length=50.0),
-])
-def test_block_size_and_section_length_change_no_point(street, settings):
+@pytest.mark.parametrize("settings", [SurveySettings(block=997, section_length=7.0), SurveySettings(block=3001, section_length=50.0)])
+def test_block_size_and_section_length_change_no_point(street, surveyed, settings):
     trajectory, _, path = street
-    np.testing.assert_array_equal(contents(open_survey([path], trajectory, settings)), contents(open_survey([path], trajectory)))
+    np.testing.assert_array_equal(contents(open_survey([path], trajectory, settings)), surveyed)
 
 
-def test_files_and_points_in_any_order_give_the_same_survey(street, tmp_path):
+def test_files_and_points_in_any_order_give_the_same_survey(street, surveyed, tmp_path):
     trajectory, points, path = street
     order = np.random.default_rng(8).permutation(len(points[0]))
     parts = [write_cloud(tmp_path / f"part{k}.laz", *(c[rows] for c in points), crs=CRS) for k, rows in enumerate(np.array_split(order, 3))]
-    whole = contents(open_survey([path], trajectory))
-    np.testing.assert_array_equal(contents(open_survey(parts, trajectory)), whole)
-    np.testing.assert_array_equal(contents(open_survey(parts[::-1], trajectory)), whole)
+    np.testing.assert_array_equal(contents(open_survey(parts, trajectory)), surveyed)
+    np.testing.assert_array_equal(contents(open_survey(parts[::-1], trajectory)), surveyed)
 
 
 def test_a_window_does_not_depend_on_where_sections_are_cut(street):
@@ -78,11 +79,11 @@ def test_a_window_does_not_depend_on_where_sections_are_cut(street):
     assert windows[0].s.min() >= 33.0 and windows[0].s.max() < 71.5
 
 
-def test_moving_the_survey_five_hundred_kilometres_changes_no_station(street, tmp_path):
+def test_moving_the_survey_five_hundred_kilometres_changes_no_station(street, surveyed, tmp_path):
     trajectory, (x, y, z, time), path = street
     moved = Trajectory(trajectory.time, trajectory.x + 500_000, trajectory.y - 500_000, trajectory.z)
     far = write_cloud(tmp_path / "far.laz", x + 500_000, y - 500_000, z, time, crs=CRS)
-    here, there = contents(open_survey([path], trajectory)), contents(open_survey([far], moved))
+    here, there = surveyed, contents(open_survey([far], moved))
     for name in ("x", "y", "z", "s", "d"):
         assert np.abs(here[name].astype(int) - there[name]).max() <= 1, "0.1 mm of rounding"
 
@@ -120,15 +121,12 @@ def test_a_place_seen_from_two_roads_belongs_to_the_pass_that_measured_it(tmp_pa
     assert survey.store.roads() == [road] and len(contents(survey)) == len(x)
 
 
-def test_without_gps_time_each_point_goes_to_the_nearest_foot(street, tmp_path):
-    trajectory, (x, y, z, _), path = street
-    for point_format, version in ((0, "1.2"), (2, "1.2")):
-        plain = write_cloud(tmp_path / f"plain{point_format}.las", x, y, z, point_format=point_format, version=version, crs=CRS)
-        survey = open_survey([plain], trajectory)
-        timed = contents(open_survey([path], trajectory))
-        assert not survey.has_time
-        assert len(contents(survey)) == pytest.approx(len(timed), rel=0.01)
-        assert survey.sensor_height[0] == pytest.approx(2.0, abs=0.01)
+def test_without_gps_time_each_point_goes_to_the_nearest_foot(street, surveyed, tmp_path):
+    trajectory, (x, y, z, _), _ = street
+    survey = open_survey([write_cloud(tmp_path / "plain.las", x, y, z, point_format=0, version="1.2", crs=CRS)], trajectory)
+    assert not survey.has_time
+    assert len(contents(survey)) == pytest.approx(len(surveyed), rel=0.01)
+    assert survey.sensor_height[0] == pytest.approx(2.0, abs=0.01)
 
 
 @pytest.mark.parametrize("lacking, said", [("points", "all points have the same gps_time"), ("trajectory", "the trajectory has no time")])
@@ -163,7 +161,7 @@ def test_a_cloud_in_degrees_is_refused(street, tmp_path):
 
 
 @pytest.mark.parametrize("other_crs", [25833, 31467], ids=["the next zone", "an old datum, a hundred metres off"])
-def test_a_trajectory_in_another_crs_is_brought_to_the_cloud(street, other_crs):
+def test_a_trajectory_in_another_crs_is_brought_to_the_cloud(street, surveyed, other_crs):
     from pyproj import Transformer
 
     trajectory, points, path = street
@@ -171,7 +169,7 @@ def test_a_trajectory_in_another_crs_is_brought_to_the_cloud(street, other_crs):
     other = Trajectory(trajectory.time, x, y, trajectory.z, crs=f"EPSG:{other_crs}")
     survey = open_survey([path], other)
     assert len(contents(survey)) == len(points[0])
-    np.testing.assert_allclose(contents(survey)["d"], contents(open_survey([path], trajectory))["d"], atol=50)
+    np.testing.assert_allclose(contents(survey)["d"], surveyed["d"], atol=50)
 
 
 def test_a_trajectory_elsewhere_is_refused_with_both_extents(street):
@@ -195,12 +193,12 @@ def test_a_trajectory_of_seconds_of_the_week_is_brought_to_adjusted_time(street,
     assert len(contents(survey)) == len(x)
 
 
-def test_a_scan_past_the_end_of_the_gps_week_is_one_drive(street, tmp_path):
+def test_a_scan_past_the_end_of_the_gps_week_is_one_drive(street, surveyed, tmp_path):
     trajectory, (x, y, z, time), path = street
     week = lambda t: (t - 1000.0 + 604_790.0) % 604_800.0  # noqa: E731
     cloud = write_cloud(tmp_path / "week.laz", x, y, z, week(time), crs=CRS, adjusted=False)
     survey = open_survey([cloud], Trajectory(week(trajectory.time), trajectory.x, trajectory.y, trajectory.z))
-    np.testing.assert_array_equal(contents(survey)[["s", "d"]], contents(open_survey([path], trajectory))[["s", "d"]])
+    np.testing.assert_array_equal(contents(survey)[["s", "d"]], surveyed[["s", "d"]])
 
 
 def test_points_far_above_and_below_the_road_are_left_out(street, tmp_path):
@@ -373,11 +371,11 @@ def test_a_trajectory_of_one_position_is_told_as_that(street, rows, said):
         open_survey([path], trajectory.rows(rows))
 
 
-def test_a_copy_among_the_files_counts_once(street, tmp_path):
+def test_a_copy_among_the_files_counts_once(street, surveyed, tmp_path):
     trajectory, points, path = street
     heard = Heard()
     survey = open_survey([path, write_cloud(tmp_path / "copy.laz", *points, crs=CRS)], trajectory, progress=heard)
-    np.testing.assert_array_equal(contents(survey), contents(open_survey([path], trajectory)))
+    np.testing.assert_array_equal(contents(survey), surveyed)
     assert ["copy.laz holds the same points as" in text for text in heard.warnings] == [True]
 
 

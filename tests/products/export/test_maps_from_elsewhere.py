@@ -5,6 +5,7 @@ import time
 import numpy as np
 import pytest
 import shapely
+from lanewright.core.common.progress import Progress
 from lanewright.core.driving.layers import Lanes
 from lanewright.products.export.check.lanelets import check_lanelets
 from lanewright.products.export.inferred_ways import with_inferred_ways
@@ -138,11 +139,12 @@ def test_roads_that_do_not_meet_in_height_are_named(tmp_path):
     assert "moved by up to 0.10 m" in note and "near x 40.0, y 0.0" in note
 
 
-def test_a_miss_between_the_vertices_of_a_border_is_seen_and_what_lies_beyond_its_end_is_not():
+def test_a_miss_between_the_vertices_of_a_border_is_seen_with_its_place_and_what_lies_beyond_its_end_is_not():
     ours, theirs = (Lanes.of_pieces([dict(left=np.array(left), right=np.array(right))]) for left, right in (
         ([[0.0, 0, 0], [10, 0, 0]], [[0.0, -3, 0], [10, -3, 0]]),
         ([[-1.0, 0, 0], [5, 0.05, 0], [12, 0, 0]], [[-1.0, -3, 0], [5, -3, 0], [12, -3, 0]])))
-    assert border_misses(ours, theirs)[0].largest == pytest.approx(0.05)
+    across, _ = border_misses(ours, theirs)
+    assert across.largest == pytest.approx(0.05) and across.worst == pytest.approx([5.0, 0.05, 0.0])
 
 
 def test_a_lane_that_begins_at_width_0_keeps_both_of_its_borders(tmp_path):
@@ -285,6 +287,19 @@ def test_the_steps_of_an_export_do_not_grow_with_the_number_of_roads(tmp_path, m
         draft_opendrive(with_shared_borders(checked(RoadMapSource(lanes))))
         counts.append(len(steps))
     assert counts[0] == counts[1] > 2
+
+
+def test_an_export_that_takes_longer_since_borders_have_corners_says_so(tmp_path):
+    """As maps do whose reference lines are made of chords, with a kink at the end of each."""
+    turns, places = np.tile([0.2, -0.2], 5), [(0.0, 0.0)]
+    for turn in turns:
+        places.append((places[-1][0] + 4 * np.cos(turn), places[-1][1] + 4 * np.sin(turn)))
+    kinked = road("".join(geometry(4 * k, *places[k], turn, 4) for k, turn in enumerate(turns)), 40)
+    for roads, said in ((kinked + road(geometry(0, 0, 50, 0, 40), 40, "2"), "1 of 2 roads have corners"), (road(LINE, 40), "")):
+        told, progress = [], Progress()
+        progress.info = told.append
+        draft_opendrive(with_shared_borders(checked(RoadMapSource(taken_in(tmp_path, roads)[1]))), progress=progress)
+        assert said in "".join(told) and bool(told) == bool(said)
 
 
 def test_a_map_without_crs_leaves_as_a_local_map(tmp_path):

@@ -82,10 +82,18 @@ def test_a_corner_begins_where_the_main_edge_ends():
     assert all(corner.coords[0] in ends or corner.coords[-1] in ends for corner in corners)
 
 
-@pytest.mark.parametrize(("island", "within"), [(shapely.buffer(shapely.LineString([(12, 2.2), (26, 2.2)]), 0.75), 0.05),
-                                                (shapely.box(12, 1.6, 26, 2.8), 0.3)])
+ROUND, SQUARE = shapely.buffer(shapely.LineString([(12, 2.2), (26, 2.2)]), 0.75), shapely.box(12, 1.6, 26, 2.8)
+
+
+@cache
+def survey_and_edges_of(island):
+    survey = survey_along(scan(shapely.union_all([sidewalks(7.0), island])), offset=-1.0)
+    return survey, fit_road_edges(detect_curbs(survey), survey.frame)
+
+
+@pytest.mark.parametrize(("island", "within"), [(ROUND, 0.05), (SQUARE, 0.3)])
 def test_an_island_is_surrounded(island, within):
-    edges = edges_of(scan(shapely.union_all([sidewalks(7.0), island])), offset=-1.0)
+    edges = survey_and_edges_of(island)[1]
     lines = in_plan(edges, "island")
     around = shapely.boundary(island)
     assert farthest(lines, around) < within
@@ -138,9 +146,8 @@ def test_a_speed_hump_is_no_island():
 
 @pytest.mark.parametrize("grade", [-0.06, 0.06])
 def test_a_superelevated_road_does_not_hide_its_island(grade):
-    island = shapely.box(12, 1.6, 26, 2.8)
-    edges = edges_of(scan(shapely.union_all([sidewalks(7.0), island]), grade=grade), offset=-1.0)
-    assert shapely.union_all(in_plan(edges, "island")).length > 0.8 * island.length
+    edges = edges_of(scan(shapely.union_all([sidewalks(7.0), SQUARE]), grade=grade), offset=-1.0)
+    assert shapely.union_all(in_plan(edges, "island")).length > 0.8 * SQUARE.length
 
 
 def test_the_order_of_the_points_does_not_matter():
@@ -152,8 +159,7 @@ def test_the_order_of_the_points_does_not_matter():
 
 
 def test_the_width_of_the_road_follows_from_its_own_curbs_alone():
-    survey = survey_along(scan(shapely.union_all([sidewalks(7.0), shapely.box(12, 1.6, 26, 2.8)])), offset=-1.0)
-    edges = fit_road_edges(detect_curbs(survey), survey.frame)
+    survey, edges = survey_and_edges_of(SQUARE)
     assert in_plan(edges, "island")
     stations = np.arange(2.0, LENGTH - 2.0, 1.0)
     left, seen = edge_offsets(RoadEdges.from_features(edges, survey.frame), 0, stations)["left"]

@@ -28,15 +28,12 @@ def close(drive, found, place=0.03, height=0.02):
 
 
 CASES = {
-    "two scanners, their planes crossed": dict(mirrors=BUTTERFLY),
     "one scanner straight across": dict(mirrors=[Mirror(0.0, 0.0)]),
-    "one turned and leaning": dict(mirrors=[Mirror(-40.0, -12.0)]),
     "leaning forward by as much as it is turned": dict(mirrors=[Mirror(30.0, 30.0)]),
     "the other way round": dict(mirrors=[Mirror(45.0, -20.0, rate=-100.0)]),
     "slow and sparse": dict(mirrors=[Mirror(45.0, -20.0, rate=20.0, pulses=6000.0)]),
     "two of different rates": dict(mirrors=[Mirror(-45.0, -20.0, (0.0, 0.4, 0.0), rate=80.0), Mirror(45.0, -20.0, (0.0, -0.4, 0.0), rate=120.0)]),
-    "a rotation that swings": dict(mirrors=BUTTERFLY, wander=0.005),
-    "a steep crown": dict(mirrors=BUTTERFLY, corners=section(crown=0.05), poses=swaying(crossfall=0.05)),
+    "a rotation that swings, over a steep crown": dict(mirrors=BUTTERFLY, wander=0.005, corners=section(crown=0.05), poses=swaying(crossfall=0.05)),
     "no walls": dict(mirrors=BUTTERFLY, corners=OPEN),
     "noisy ranges": dict(mirrors=BUTTERFLY, noise=0.03),
 }
@@ -55,15 +52,22 @@ def street():
     return mirror_drive(BUTTERFLY)
 
 
-def test_the_mounting_is_found(tmp_path, street):
-    poses = estimate_trajectory([street.write(tmp_path / "cloud.las")]).adjusted.poses
+@pytest.fixture(scope="module")
+def estimated(street, tmp_path_factory):
+    return estimate_trajectory([street.write(tmp_path_factory.mktemp("street") / "cloud.las")])
+
+
+def test_two_scanners_with_crossed_planes_give_the_trajectory_and_the_mounting(street, estimated):
+    assert estimated.method == "rays" and len(estimated.scanners) == 2
+    close(street, estimated)
+    poses = estimated.adjusted.poses
     np.testing.assert_allclose(np.degrees(poses.turn), [-45.0, 45.0], atol=0.3)
     np.testing.assert_allclose(np.degrees(poses.lean), [-20.0, -20.0], atol=0.3)
     np.testing.assert_allclose(poses.lever, [[0.0, 0.32, 0.0], [0.0, -0.32, 0.0]], atol=0.02)
 
 
-def test_attitude_follows_the_springs(tmp_path, street):
-    track = estimate_trajectory([street.write(tmp_path / "cloud.las")]).trajectory
+def test_attitude_follows_the_springs(street, estimated):
+    track = estimated.trajectory
     _, _, _, roll, pitch, yaw = street.poses(track.time)
     inner = slice(50, -50)
     for found, true in ((track.roll, np.degrees(roll)), (track.pitch, np.degrees(pitch)), (90.0 - track.heading, np.degrees(yaw))):
@@ -83,17 +87,15 @@ def test_the_uncertainty_grows_where_few_points_are(tmp_path, street):
     assert np.mean(np.hypot(ahead, left) <= 3 * found.sigma) > 0.9
 
 
-@pytest.mark.parametrize("keep", [4, 10], ids=["one in four", "one in ten"])
-def test_a_thinned_cloud_gives_the_same_trajectory(tmp_path, street, keep):
-    chosen = np.random.default_rng(1).random(len(street.time)) < 1 / keep
+def test_of_one_point_in_ten_the_trajectory_is_the_same(tmp_path, street):
+    chosen = np.random.default_rng(1).random(len(street.time)) < 1 / 10
     close(street, estimate_trajectory([street.write(tmp_path / "thin.las", chosen)]))
 
 
-@pytest.mark.parametrize("tick", [1e-5, 1e-4, 2.0**-11])
-def test_rounded_times_do_not_draw_the_scanner_to_what_it_sees_from_far(tmp_path, tick):
+def test_rounded_times_do_not_draw_the_scanner_to_what_it_sees_from_far(tmp_path):
     drive = mirror_drive([replace(mirror, rate=200.0) for mirror in BUTTERFLY], seconds=8.0)
     # as at the end of a survey: what lies beyond the street is not in the cloud, and the last seconds see it from ahead of its end
-    drive.time, inside = np.round(drive.time / tick) * tick, drive.place[:, 0] < 65.0
+    drive.time, inside = np.round(drive.time * 2**11) / 2**11, drive.place[:, 0] < 65.0
     found = estimate_trajectory([drive.write(tmp_path / "cloud.las", inside)])
     ahead, left, up = drive.errors(found.trajectory)
     assert np.sqrt(np.mean(left**2)) < 0.05 and np.sqrt(np.mean(up**2)) < 0.03
@@ -108,8 +110,8 @@ def test_times_that_are_not_rounded_are_taken_as_exact():
     assert rounding_of(np.round(time, 4), 3e8) == 1e-4 and rounding_of(np.round(time * 2**11) / 2**11, 3e8) == 2.0**-11
 
 
-def test_files_may_come_in_any_order_and_the_points_too(tmp_path, street):
-    whole = estimate_trajectory([street.write(tmp_path / "cloud.las")]).trajectory
+def test_files_may_come_in_any_order_and_the_points_too(tmp_path, street, estimated):
+    whole = estimated.trajectory
     mixed = np.random.default_rng(2).permutation(len(street.time))
     halves = [street.write(tmp_path / f"{name}.las", mixed[k::2]) for k, name in enumerate("ba")]
     parts = estimate_trajectory(halves).trajectory
@@ -142,7 +144,7 @@ def test_where_returns_keep_to_no_rays_the_uncertainty_and_a_note_say_so(tmp_pat
 
 
 def test_a_gap_in_time_makes_two_drives(tmp_path):
-    drive = mirror_drive(BUTTERFLY, seconds=14.0)
+    drive = mirror_drive(CROSSED, seconds=14.0)
     since = drive.time - START
     found = estimate_trajectory([drive.write(tmp_path / "cloud.las", (since < 6.0) | (since > 8.0))])
     at = found.trajectory.time - START
@@ -163,11 +165,10 @@ def test_without_time_the_ridge_of_density_is_followed_and_said_to_be_rough(tmp_
     assert np.abs(track.z[inner] - 100.0 - 2.5).max() < 0.5
 
 
-@pytest.mark.parametrize("unit, noted", [(0.3048, True), (1.0, False)])
-def test_a_cloud_in_feet_that_no_crs_tells_of_is_noted(tmp_path, unit, noted):
+def test_a_cloud_in_feet_that_no_crs_tells_of_is_noted(tmp_path):
     drive = mirror_drive(BUTTERFLY, corners=OPEN)
-    found = estimate_trajectory([write_cloud(tmp_path / "cloud.las", *drive.place.T / unit, drive.time, source=1 + drive.scanner)])
-    assert any("as if cloud and trajectory were in feet" in note for note in found.cloud_notes) == noted
+    found = estimate_trajectory([write_cloud(tmp_path / "cloud.las", *drive.place.T / 0.3048, drive.time, source=1 + drive.scanner)])
+    assert any("as if cloud and trajectory were in feet" in note for note in found.cloud_notes)
 
 
 def test_an_airborne_cloud_is_refused_by_name(tmp_path):
@@ -192,8 +193,8 @@ def along_the_street(seconds, metres):
 
 
 def test_a_vehicle_that_stands_at_a_red_light_most_of_the_time_is_no_tripod(tmp_path):
-    poses = along_the_street([0.0, 2.0, 4.0, 44.0, 46.0, 48.0], [0.0, 16.0, 20.0, 20.0, 24.0, 40.0])
-    drive = mirror_drive(CROSSED, seconds=48.0, poses=poses)
+    poses = along_the_street([0.0, 2.0, 4.0, 20.0, 22.0, 24.0], [0.0, 16.0, 20.0, 20.0, 24.0, 40.0])
+    drive = mirror_drive(CROSSED, seconds=24.0, poses=poses)
     close(drive, estimate_trajectory([drive.write(tmp_path / "cloud.las")]))
 
 
