@@ -11,5 +11,6 @@ __getattr__, __all__ = public(__name__, {
     "cluster": ("Cluster", "cluster_of"),
     "phase": ("Executor", "Phase", "Recipe", "THREADS", "Threads", "digest", "is_whole", "read_plain", "write_plain"),
     "processes": ("WorkerProcesses",),
+    "remembered": ("RememberedResults",),
     "work_folder": ("KeptResults", "WorkFolder"),
 })

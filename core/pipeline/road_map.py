@@ -29,6 +29,7 @@ from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..execution.choice import ExecutionSettings
 from ..execution.phase import digest
+from ..execution.remembered import RememberedResults
 from ..execution.work_folder import code_digest
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
@@ -242,6 +243,9 @@ def _paint(result, image_path, settings, stages, executor):
         result.road_points, result.intensity_report = stages.run(
             "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity, depends=settings.intensity,
             free=lambda made: made[1].reason or made[0].store.remove())
+    passing = executor.passing()
+    if stages.kept is not None:
+        stages.kept.remembered = passing = (stages.kept.remembered or RememberedResults()).of_next_run(passing)
     # without what they keep of the intensities they take a quarter less memory for the image
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
@@ -258,10 +262,10 @@ def _paint(result, image_path, settings, stages, executor):
     result.counts["marking_points"] = len(points)
     if len(points):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers,
-                            executor=executor.passing(), depends=settings.outliers)
+                            executor=passing, depends=settings.outliers)
     result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters,
-                                     executor=executor.passing(), depends=settings.clusters)
+                                     executor=passing, depends=settings.clusters)
     executor.forget()
     markings = correct_markings(markings, result.corrections)
     edges, readings = result.edges.densified(frame), result.corrections.taken(frame)
@@ -286,7 +290,8 @@ def _paint(result, image_path, settings, stages, executor):
     result.driving_lines, result.curve_elements = driving.to_features(frame), elements.to_features(frame)
     result.lanes = lanes.to_features(frame)
     if not len(result.markings):
-        result.without_paint = "No paint was found on this road, so there are no marking lines and no driving lines."
+        result.without_paint = "No paint was found on this road, so there are no marking lines" \
+            + (": driving lines lead between its borders." if len(driving) else " and no driving lines.")
         stages.progress.warn(result.without_paint)
 
 

@@ -71,7 +71,8 @@ class SurveyReader:
         self._settle()
         source = _PartsOfFiles(files, self.frame, self.store, self.choice, self.slots, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
         phase = Phase(_read_part, source, (), source.place, source.size, _join_parts)
-        for part in executor.run(phase, source.items(READING.part_points), progress.part(done / total, 1.0)):
+        points = block if self.store.folder is None else READING.part_points   # threads read block by block
+        for part in executor.run(phase, source.items(points), progress.part(done / total, 1.0)):
             self._take_part(part)
         self._end()
 
