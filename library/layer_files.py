@@ -19,6 +19,19 @@ KINDS = {"Point": POINT, "LineString": LINE, "Polygon": POLYGON, "None": TABLE}
 COLUMN_TYPES = {int: "int64", float: "float", str: "str"}
 
 
+def _shape(geometry):
+    """A geometry of fiona as shapely has it; lines and areas by arrays, whose coordinates shapely does not look at one by one."""
+    import numpy as np
+    from shapely.geometry import LineString, Polygon, shape
+
+    if geometry.type == "LineString":
+        return LineString(np.array(geometry.coordinates))
+    if geometry.type == "Polygon" and geometry.coordinates:
+        outline, *holes = (np.array(ring) for ring in geometry.coordinates)
+        return Polygon(outline, holes)
+    return shape(geometry)
+
+
 def file_and_table(value):
     """(path, table or "") of `map.gpkg`, `map.gpkg|layername=lanes` or `ogr:dbname='map.gpkg' table="lanes" (geom)`."""
     if package := package_and_table(value):
@@ -83,7 +96,6 @@ class LayerFile(VectorSource):
 
     def stored_rows(self, measures=False, check_validity=True):
         import shapely
-        from shapely.geometry import shape
 
         if measures and self.has_m:
             for number, wkb, values in measured_lines.rows(self.path, self.table, self.names, self.label):
@@ -93,7 +105,7 @@ class LayerFile(VectorSource):
         for record in self._records():
             self.feature_id = record["id"]
             try:
-                geometry = None if record["geometry"] is None else shape(record["geometry"])
+                geometry = None if record["geometry"] is None else _shape(record["geometry"])
             except (shapely.errors.GEOSException, ValueError):   # lines of one vertex, rings of three
                 wkb = b""
             else:

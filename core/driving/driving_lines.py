@@ -155,9 +155,9 @@ def _patterns(track, rows, way, lines):
     patterns = []
     for side in (track.left[rows], track.right[rows])[::way]:
         painted = (side >= 0) & (side < len(lines.d))
-        row = np.where(painted, side, 0)
-        drawn = lines.drawn[row, columns]
-        drawn = np.where(painted, np.where(drawn < 0, lines.usual[row], drawn), len(lines.names))
+        drawn = np.full(len(side), len(lines.names))
+        at_place, usual = lines.drawn[side[painted], columns[painted]], lines.usual[side[painted]]
+        drawn[painted] = np.where(at_place < 0, usual, at_place)
         patterns.append(names[np.bincount(drawn).argmax()] or "none")
     return "|".join(patterns)
 
@@ -186,7 +186,8 @@ def _curve_elements(rows: list[dict[str, Any]], crs: str, country_name: str) -> 
 
 def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:
     if not len(lines):
-        progress.warn("No lane was found: that takes marking lines with room for a lane beside them. So there are no driving lines.")
+        progress.warn("No lane was found: that takes marking lines with room for a lane beside them, or a drive between two borders. So there are no "
+                      "driving lines.")
         return
     lanes = len(set(zip(lines.road.tolist(), lines.lane.tolist())))
     length = {name: float(lines.length[lines.status == name].sum()) for name in LANE_STATUS}

@@ -131,7 +131,7 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     made_of = [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]
     seen = np.stack([boundaries.seen[row, rows] for row in sides])
     begin, width = lane_places(left, right, *made_of, span.count, lane_width, span.beside)
-    between_both = all(painted) or not line_distance and _has_all_room(made_of, seen, left - right - span.count * width)
+    between_both = all(painted) or not any(painted) or not line_distance and _has_all_room(made_of, seen, left - right - span.count * width)
     beside_one = any(painted) and not between_both
     if beside_one and (line_distance or beside_surface_end(*made_of)):
         # the end of the surface is ragged, a lane is not
@@ -139,7 +139,7 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
         begin = left if painted[0] else right + width * span.count
     d = begin - width * (span.count - span.place - 0.5)
     shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
-    status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 else INFERRED])
+    status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 and any(painted) else INFERRED])
     return _track_of(span, first, d, width, status, beside_one)
 
 

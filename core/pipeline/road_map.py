@@ -290,7 +290,8 @@ def _paint(result, image_path, settings, stages, executor):
     result.driving_lines, result.curve_elements = driving.to_features(frame), elements.to_features(frame)
     result.lanes = lanes.to_features(frame)
     if not len(result.markings):
-        result.without_paint = "No paint was found on this road, so there are no marking lines and no driving lines."
+        result.without_paint = "No paint was found on this road, so there are no marking lines" \
+            + (": driving lines lead between its borders." if len(driving) else " and no driving lines.")
         stages.progress.warn(result.without_paint)
 
 

@@ -306,6 +306,7 @@ ROWS = (
         ("tips of hatched areas", "cross_section.evidence:_tip", gives(np.empty((2, 0))), "exit of a motorway"),
         ("parking bays", "cross_section.evidence:rows_of_bays", gives([]), "street with bays of 5 m",
          "cross_section.evidence:rows_of_bays cross_section.evidence:places_of_bays"),
+        ("streets without paint", "cross_section.roads:_driven_bare", gives(np.empty(0)), "residential street, one-way street without paint"),
         ("where one drives beside a curb", "cross_section.beside:_driven_beside", lambda offset, *_: (np.zeros(offset.shape[1]),) * 2,
          "main streets whose lanes reach up to the curb, and those with gutters"),
         ("lanes beside islands", "cross_section.sequence:beside_island", gives(np.zeros((), bool)), "island beside an edge line"),

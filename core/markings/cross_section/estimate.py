@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.parallel import check_cancelled
+from ...countries.neutral import NEUTRAL
 from .beside import NATS, SECOND_WIDTH, WIDTH
 from .candidates import Candidates
 from .evidence import Evidence
@@ -82,7 +83,7 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     paint = candidates.painted
     shown = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1)
     choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))
-    lined, total, unnamed_total = np.flatnonzero(paint.any(1)), 0.0, 0.0
+    lined, total, unnamed_total = np.flatnonzero(paint.any(1) | evidence.bare), 0.0, 0.0
     # what named the lines is the same evidence
     cost = sections.cost - _by_stretch(lambda part: misnamed_costs(candidates.take(part), sections.take(part), weights), len(sections.cost))
     unnamed, (once, second) = np.argmin(cost, axis=1), np.full((2, *cost.shape), np.inf)
@@ -344,15 +345,27 @@ def _second_readings(estimate, lanes, own, way, part):
 
 
 def _second_places(estimate, lanes, strips, own, way):
-    """The Reading of another width for those of the lanes `own` that lie alone between a line and a curb or edge; None for the others."""
+    """The Reading of another width for those of the lanes `own` that lie alone between a line and a curb or edge; None for most others.
+
+    Between two borders without paint there may be one lane or two, where these have room.
+    """
     c, intervals, strip = estimate.candidates, lanes.interval[own], lanes.strip[own]
     left, right = strips.left[strip], strips.right[strip]
     open_left, open_right = UNPAINTED[c.made_of[intervals, left]], UNPAINTED[c.made_of[intervals, right]]
     beside = beside_of(c, intervals, left, right)
     d = np.where(open_left, c.left[intervals, right] + beside[:, SECOND_WIDTH] / 2, c.right[intervals, left] - beside[:, SECOND_WIDTH] / 2)
     known = (open_left ^ open_right) & (strips.number[strip] == 1) & np.isfinite(beside[:, NATS]) & (np.abs(d - lanes.d[own]) > SAME_LANE)
-    return [Reading(max(float(beside[k, NATS]), 0.0), ((float(d[k]), float(beside[k, SECOND_WIDTH]), int(way[k])),)) if known[k] else None
-            for k in range(len(own))]
+    result = [Reading(max(float(beside[k, NATS]), 0.0), ((float(d[k]), float(beside[k, SECOND_WIDTH]), int(way[k])),)) if known[k] else None
+              for k in range(len(own))]
+    begin, room = c.right[intervals, left], c.right[intervals, left] - c.left[intervals, right]
+    number = np.where(strips.number[strip] == 1, 2, 1)
+    for k in np.flatnonzero(open_left & open_right & (room / number >= NEUTRAL.narrowest_lane)).tolist():
+        width = float(room[k] / number[k])
+        lanes_there = tuple((float(begin[k]) - width * (place + 0.5), width, int(way[k])) for place in range(number[k]))
+        if number[k] == 2:
+            lanes_there = tuple((middle, wide, estimate.first_direction * sign) for (middle, wide, _), sign in zip(lanes_there, (1, -1)))
+        result[k] = Reading(estimate.weights.unpainted_divider, lanes_there)
+    return result
 
 
 def _driven_along(evidence, lanes):

@@ -45,6 +45,7 @@ class Evidence:
     arrows: np.ndarray   # (A, 3) interval, offset, and which way it points: 1 along the road, -1 against it, nearer 0 the less sure
     stops: np.ndarray   # (S, 3) interval, least and greatest offset
     divided: np.ndarray   # (I,) bool, whether the road is one carriageway of two
+    bare: np.ndarray   # (I,) bool, where it was driven between two borders without any paint
     taken: tuple[tuple[int, float, tuple[tuple[float, float, int], ...]], ...] = ()
 
     def part(self, first: int, end: int) -> Evidence:
@@ -53,7 +54,8 @@ class Evidence:
             return rows[(rows[:, 0] >= first) & (rows[:, 0] < end)] - [first, 0, 0]
 
         asphalt, hatched = (None if share is None else share[first:end] for share in (self.asphalt, self.hatched))
-        return Evidence(self.driven[:, first:end], self.directions, asphalt, hatched, of(self.arrows), of(self.stops), self.divided[first:end])
+        return Evidence(self.driven[:, first:end], self.directions, asphalt, hatched, of(self.arrows), of(self.stops), self.divided[first:end],
+                        self.bare[first:end])
 
 
 def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -196,12 +198,12 @@ def between_ends(ends: np.ndarray, likely: np.ndarray) -> tuple[np.ndarray, np.n
 
 def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, directions: np.ndarray, covered: np.ndarray | None = None,
                 hatched: np.ndarray | None = None, arrows: np.ndarray | None = None, markings: MarkingObjects | None = None, road: int = 0,
-                divided: np.ndarray | None = None) -> Evidence:
+                divided: np.ndarray | None = None, bare: np.ndarray | None = None) -> Evidence:
     """The Evidence of each interval, from what is known at each station.
 
     Parameters
     ----------
-    driven, directions : as `driven_offsets` gives them; divided : (K,) bool as `other_carriageway` gives it
+    driven, directions : as `driven_offsets` gives them; divided : (K,) bool as `other_carriageway` gives it; bare : (K,) bool as in Evidence
     covered, hatched : (K, BINS) bool; arrows : (A, 3) as `arrows_of` gives them; markings : of which stop lines count; each may be None
     """
     size = np.diff(np.r_[candidates.first, candidates.last[-1] + 1])
@@ -214,8 +216,9 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     with np.errstate(invalid="ignore", divide="ignore"):
         offsets = np.where(2 * count >= size, np.add.reduceat(np.where(driven_there, driven, 0.0), candidates.first, axis=1) / count, np.nan)
     stops = np.empty((0, 3)) if markings is None else _stop_lines(candidates, s, markings, road)
-    return Evidence(offsets, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops,
-                    np.zeros(len(size), bool) if divided is None else np.add.reduceat(divided, candidates.first) * 2 > size)
+    on_one_of_two, without_paint = (np.zeros(len(size), bool) if there is None else np.add.reduceat(there, candidates.first) * 2 > size
+                                    for there in (divided, bare))
+    return Evidence(offsets, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops, on_one_of_two, without_paint)
 
 
 def _extents(markings, road, kind):

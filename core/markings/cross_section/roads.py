@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
+from ...common.arrays import mask_runs
 from ...common.parallel import check_cancelled, ordered_map
 from ...common.progress import Progress
 from ...countries.neutral import NEUTRAL
@@ -34,7 +35,7 @@ from .evidence import (
     rows_of_bays,
     surface_coverage,
 )
-from .sections import STATION_STEP, CrossSections
+from .sections import STATION_STEP, CrossSections, no_lines
 from .weights import PAVEMENT, EstimateWeights, TakenReading
 
 
@@ -75,6 +76,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     width_asked : whether `usual_width` is the user's own
     taken : second readings that an analyst took
     """
+    lines, bare = _between_borders_too(lines, frame, curbs or {}, pavement or {})
     drives = {number: driven_offsets(frame, number, of_road.s) for number, of_road in lines.items()}
     arrows, against = _arrows_and_drive(markings, frame, lines, drives, side == "automatic", weights)
     if width_asked:
@@ -83,7 +85,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     for k, (number, of_road) in enumerate(lines.items()):
         edges = [(sections or {}).get(number) for sections in (curbs, pavement)]
         evidence[number] = _evidence_of_road(of_road, number, frame, edges, (road_points, paint), markings, arrows.get(number), drives[number],
-                                             usual_width, weights, taken)
+                                             usual_width, weights, taken, bare[number])
         progress.report(0.4 * (k + 1) / len(lines))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
     estimates = _estimates(evidence, sides, usual_width, weights, progress.part(0.4, 0.7))
@@ -105,6 +107,41 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     return RoadEstimates(roads, "right" if best < 0 else "left", behind >= ROADS.sure_side, width, against)
 
 
+def _between_borders_too(lines, frame, curbs, pavement):
+    """The lines of each road on stations as far as it was driven between two borders too, and where that is without any paint, (K,) bool each."""
+    result, bare = {}, {}
+    for number in sorted({*lines, *curbs, *pavement}):
+        of_road = lines.get(number, no_lines())
+        edges = [sections for sections in (curbs.get(number), pavement.get(number)) if sections is not None]
+        painted = np.rint(of_road.s[np.unique(of_road.d.spans.station[np.isfinite(of_road.d.values)])] / STATION_STEP)
+        driven_bare = [_driven_bare(p, edges, painted) for p in frame.passes_of(number)]
+        stations = np.concatenate([of_road.s, *driven_bare])
+        if not len(stations):
+            continue
+        first, count = stations.min(), int(np.rint(np.ptp(stations) / STATION_STEP)) + 1
+        by = int(np.rint((first - of_road.s[0]) / STATION_STEP)) if len(of_road.s) else 0
+        tables = {name: getattr(of_road, name).shifted(by, count) for name in ("d", "z", "seen", "drawn", "number", "width")}
+        result[number] = replace(of_road, s=first + STATION_STEP * np.arange(count), **tables)
+        bare[number] = np.zeros(count, bool)
+        for s in driven_bare:
+            bare[number][np.rint((s - first) / STATION_STEP).astype(int)] = True
+    return result, bare
+
+
+def _driven_bare(p, edges, painted):
+    """(N,) m, stations of long stretches that a pass drove between two borders, without paint; `painted` : (M,) the numbers of those with paint."""
+    s = STATION_STEP * np.arange(np.ceil(p.span[0] / STATION_STEP), np.floor(p.span[1] / STATION_STEP) + 1)
+    track, sides = p.at_station(s)[0], np.zeros((2, len(s)), bool)
+    for sections in edges:
+        d = sections.d.shifted(int(np.rint((s[0] - sections.s[0]) / STATION_STEP)), len(s))
+        along = np.array([kind != "island" for kind in sections.kinds], bool)[d.spans.owner]
+        across = d.values - track[d.spans.station]
+        for side, there in zip(sides, (across > 0, across < 0)):
+            side[d.spans.station[there & along]] = True
+    runs = mask_runs(sides.all(axis=0) & ~np.isin(np.rint(s / STATION_STEP), painted))
+    return np.concatenate([np.empty(0), *(s[first:end] for first, end in runs if (end - first) * STATION_STEP >= ROADS.shortest_bare)])
+
+
 def _arrows_and_drive(markings, frame, lines, drives, automatic, weights):
     """The arrows of each road, turned where the survey was driven against them, and whether it was: which lanes lead alike they tell even then."""
     arrows = {number: arrows_of(markings, frame, number) for number in lines} if markings is not None else {}
@@ -113,7 +150,7 @@ def _arrows_and_drive(markings, frame, lines, drives, automatic, weights):
     return {number: of_road * (1, 1, -1) for number, of_road in arrows.items()} if against else arrows, against
 
 
-def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, driven, usual_width, weights, taken):
+def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, driven, usual_width, weights, taken, bare):
     """Boundaries, Candidates and Evidence of one road; `edges` with and without a curb, `points` of the road and of paint, each may be None."""
     s, likely, (curbs, pavement) = of_road.s, _likely_ends(of_road, usual_width), edges
     covered, ends = _surface(*points, number, s, likely)
@@ -121,7 +158,7 @@ def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, d
     hatched, borders = _closed_areas(markings, frame, number, s, driven[0])
     boundaries = gather_boundaries(of_road, curbs, ends, open_ends, borders, pavement, dash_lengths(of_road, markings, number))
     candidates = boundary_candidates(boundaries, weights)
-    evidence = evidence_of(candidates, s, *driven, covered, hatched, arrows, markings, number, other_carriageway(frame, number, s))
+    evidence = evidence_of(candidates, s, *driven, covered, hatched, arrows, markings, number, other_carriageway(frame, number, s), bare)
     return boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, s))
 
 

@@ -41,6 +41,16 @@ class CrossSections:
         return np.array([self.names.index(pattern) for pattern in self.patterns], int)
 
 
+def _no_row(missing, kind=float):
+    return RowTable(RowSpans(np.empty(0, int), np.empty(0, int), 0), np.empty(0, kind), missing)
+
+
+def no_lines() -> CrossSections:
+    """CrossSections of a road without paint, on no stations."""
+    return CrossSections(np.empty(0), _no_row(np.nan), _no_row(np.nan), _no_row(False, bool), [], [], _no_row(-1, int), [], _no_row(-1, int),
+                         _no_row(np.nan))
+
+
 def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, pattern: np.ndarray, seen: np.ndarray,
                    width: np.ndarray | None = None) -> dict[int, CrossSections]:
     """CrossSections by number of the road: lines as offsets at common stations.

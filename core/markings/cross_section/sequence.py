@@ -131,7 +131,10 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     loose = any_paint & ~both_paint
     hidden = loose & beside_surface_end(made_left, made_right)
     uncovered = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
-    possible = ordered & ~outside & any_paint & (width < LANES.max_lanes * NEUTRAL.widest_lane)
+    # a street that was driven between two borders has a lane without any paint
+    border = np.isin(c.made_of, (CURB, PAVEMENT)) & evidence.bare[:, None]
+    bare = border[:, :, None] & border[:, None, :] & inside.any(0)
+    possible = ordered & ~outside & (any_paint | bare) & (width < LANES.max_lanes * NEUTRAL.widest_lane)
     base = scale * (through + hatched * w.hatched_lane + uncovered * w.off_asphalt)
     driven_there = inside.any(0)
     beside = np.where(UNPAINTED[made_left], c.beside[:, None, :, 0, WIDTH], c.beside[:, :, None, 1, WIDTH])

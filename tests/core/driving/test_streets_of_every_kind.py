@@ -230,3 +230,25 @@ def beside_a_bay(dash, gap, mirror):
 def test_dashes_shorter_than_those_between_lanes_are_the_edge_before_a_bay(mirror):
     assert beside_a_bay(1.0, 1.0, mirror) == {1.62: -1, -1.62: 1}
     assert len(beside_a_bay(3.0, 6.0, mirror)) == 3
+
+
+@pytest.mark.parametrize("half, vehicle, lanes", [(2.25, 0.0, {0.0: 1}), (1.6, 0.0, {0.0: 1}), (3.2, -1.6, {-1.6: 1, 1.6: -1})])
+def test_a_street_that_was_driven_between_two_curbs_has_lanes_without_any_paint(half, vehicle, lanes):
+    street = Street(vehicle=vehicle)
+    assert lanes_of(street, edges=curbs(street, half, -half)) == lanes
+    rows = street.lanes(edges=curbs(street, half, -half))[0].rows
+    assert all(row["confidence"] <= 0.6 for row in rows) == (half > 2.2), "where two lanes have no room it is one for sure"
+
+
+def test_lanes_go_on_between_the_curbs_where_the_paint_stops():
+    street = Street(vehicle=-1.75).paint(0.0, 5.0, 60.0, pattern="dashed")
+    lines, _ = street.lanes(edges=curbs(street, 3.5, -3.5))
+    for way in (1, -1):
+        parts = [line for line, row in lines if row["direction"] == way]
+        assert sum(line.length for line in parts) == pytest.approx(110.0, abs=2.0)
+        assert max(np.abs(street.offsets(line) + 1.75 * way).max() for line in parts) < 0.05
+
+
+def test_paint_that_stops_some_metres_before_the_curbs_do_gives_no_lane_of_its_own():
+    street = Street(vehicle=-1.75).paint(0.0, 5.0, 100.0, pattern="dashed")
+    assert max(line.bounds[2] for line, _ in street.lanes(edges=curbs(street, 3.5, -3.5))[0]) - EAST < 103.0
