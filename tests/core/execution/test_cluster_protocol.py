@@ -153,8 +153,9 @@ def few_rounds(monkeypatch):
 def test_successive_sections_go_to_a_worker_together_and_every_worker_has_rounds_of_work(by_threads, few_rounds):
     client = StandIn()
     assert numbers_of(boundaries(Cluster(client))) == by_threads
-    assert {len(some) for some in client.tasks if len(some[0]) == 2} == {3}, "all sections of a street of 51 m"
-    assert all(a[1] == b[0] for some in client.tasks for a, b in zip(some, some[1:]))
+    together = [some for some in client.tasks if len(some[0]) == 2]
+    assert {len(some) for some in together} == {3}, "all sections of a street of 51 m"
+    assert all(a[1] == b[0] for some in together for a, b in zip(some, some[1:]))
     shared = StandIn()
     assert numbers_of(boundaries(Cluster(shared, threads=100))) == by_threads
     assert max(map(len, shared.tasks)) == 1 and sorted(set(shared.items)) == sorted(set(client.items))
