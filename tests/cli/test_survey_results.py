@@ -1,6 +1,5 @@
 """`tools/survey_results.sh` and `tools/compare_results.sh`, as one uses them before and after a change of the code."""
 
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -21,12 +20,14 @@ def call(tool, *arguments):
 
 @pytest.fixture(scope="module")
 def surveys(sample_survey, tmp_path_factory):
-    """A folder with a short street, a survey whose cloud is damaged, and a folder that is no survey."""
+    """A folder with a short street whose cloud has no CRS, a survey whose cloud is damaged, and a folder that is no survey."""
     folder = tmp_path_factory.mktemp("surveys")
     for name in ("street", "broken", "notes"):
         (folder / name).mkdir()
     sample = sample_survey(LENGTH=30, PULSE_RATE=60000, ROTATION_RATE=100)
-    shutil.copy(sample / "s.laz", folder / "street" / "cloud.laz")
+    cloud = laspy.read(sample / "s.laz")
+    cloud.vlrs.clear()
+    cloud.write(folder / "street" / "cloud.laz")
     table = folder / "street" / "trajectory.csv"
     subprocess.run(["ogr2ogr", "-f", "CSV", "-sql", "SELECT time, ST_X(geom) x, ST_Y(geom) y, ST_Z(geom) z FROM drive", table,
                     sample / "drive.gpkg"], check=True, capture_output=True)
@@ -35,7 +36,7 @@ def surveys(sample_survey, tmp_path_factory):
     return folder
 
 
-def test_every_survey_has_its_results_one_that_fails_stops_no_other_and_a_second_run_gives_the_same(surveys, tmp_path):
+def test_every_survey_has_its_results_and_a_log_one_that_fails_stops_no_other_and_a_second_run_gives_the_same(surveys, tmp_path):
     stale = tmp_path / "first" / "broken" / "edges.gpkg"
     stale.parent.mkdir(parents=True)
     stale.touch()
@@ -45,6 +46,9 @@ def test_every_survey_has_its_results_one_that_fails_stops_no_other_and_a_second
     assert broken.startswith("broken") and "failed: " in broken and street.startswith("street") and street.endswith("made")
     assert FILES <= {path.name for path in (tmp_path / "first" / "street").iterdir()}
     assert not stale.exists() and "cloud.laz" in (tmp_path / "first" / "broken" / "log.txt").read_text()
+    said = (tmp_path / "first" / "street" / "log.txt").read_text().splitlines()
+    assert said[0].startswith("warning: ") and [line for line in said if line.startswith("warning: The point cloud carries no CRS")]
+    assert said[-1].startswith("info: "), "it begins with what was warned of"
 
     assert call("survey_results.sh", tmp_path / "second", "--surveys", surveys, "--only", "street").returncode == 0
     same = call("compare_results.sh", tmp_path / "first" / "street", tmp_path / "second" / "street")
@@ -52,18 +56,6 @@ def test_every_survey_has_its_results_one_that_fails_stops_no_other_and_a_second
     (tmp_path / "second" / "street" / "edges.gpkg").unlink()
     different = call("compare_results.sh", tmp_path / "first" / "street", tmp_path / "second" / "street")
     assert different.returncode == 1 and "different  edges.gpkg: only in the first folder" in different.stdout.splitlines()
-
-
-def test_the_log_of_a_survey_begins_with_what_was_warned_of(surveys, tmp_path):
-    cloud = laspy.read(surveys / "street" / "cloud.laz")
-    cloud.vlrs.clear()
-    (tmp_path / "bare").mkdir()
-    cloud.write(tmp_path / "bare" / "cloud.laz")
-    shutil.copy(surveys / "street" / "trajectory.csv", tmp_path / "bare")
-    assert call("survey_results.sh", tmp_path / "results", "--surveys", tmp_path, "--only", "bare").returncode == 0
-    said = (tmp_path / "results" / "bare" / "log.txt").read_text().splitlines()
-    assert said[0].startswith("warning: ") and [line for line in said if line.startswith("warning: The point cloud carries no CRS")]
-    assert said[-1].startswith("info: ")
 
 
 def test_a_name_that_no_survey_has_is_refused_with_those_there_are(surveys, tmp_path):

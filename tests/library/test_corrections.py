@@ -16,14 +16,8 @@ class Said(Progress):
         self.warnings.append(text)
 
 
-@pytest.fixture(scope="module")
-def survey(made_once):
-    return made_once("survey_to_correct", lambda folder: run(
-        "samplesurvey", LENGTH=40, PULSE_RATE=80_000, POINT_CLOUD=folder / "s.laz", TRAJECTORY=folder / "drive.gpkg"))
-
-
-def mapped(survey, folder, name, progress=Progress(), **more):
-    return run("roadmap", progress=progress, POINT_CLOUDS=[survey / "s.laz"], TRAJECTORY=survey / "drive.gpkg", BOUNDARY_METHOD="profiles",
+def mapped(street, folder, name, progress=Progress(), **more):
+    return run("roadmap", progress=progress, POINT_CLOUDS=[street / "s.laz"], TRAJECTORY=street / "drive.gpkg", BOUNDARY_METHOD="profiles",
                ROAD_EDGES=folder / f"{name}.gpkg", PASSES=folder / f"{name}_passes.gpkg", REPORT=folder / f"{name}.html", **more)
 
 
@@ -41,13 +35,13 @@ def write(path, crs, *corrections):
 
 
 @pytest.mark.slow
-def test_an_edge_is_deleted_another_kept_and_what_matches_nothing_is_listed(survey, tmp_path):
-    before = mapped(survey, tmp_path, "before")
+def test_an_edge_is_deleted_another_kept_and_what_matches_nothing_is_listed(street, tmp_path):
+    before = mapped(street, tmp_path, "before")
     edges, crs = rows(before["ROAD_EDGES"])
     gone = max((edge for edge in edges if edge[1]["kind"] == "main"), key=lambda edge: edge[1]["length_m"])
     far = [(x, y + 40) for x, y, _ in gone[0]]
     said = Said()
-    after = mapped(survey, tmp_path, "after", said, CORRECTIONS=write(
+    after = mapped(street, tmp_path, "after", said, CORRECTIONS=write(
         tmp_path / "corrections.gpkg", crs, (gone[0], "delete", "edge", "a wall"), (far, "delete", "edge", "no road here")))
     assert after["EDGE_LENGTH"] == pytest.approx(before["EDGE_LENGTH"] - gone[1]["length_m"], abs=0.01)
     assert (after["CORRECTIONS_MADE"], after["CORRECTIONS_UNMATCHED"]) == (1, 1)
@@ -58,6 +52,6 @@ def test_an_edge_is_deleted_another_kept_and_what_matches_nothing_is_listed(surv
     assert [row["direction"] for _, row in passes] == [1] and passes[0][1]["length_m"] > 60
 
 
-def test_a_layer_that_holds_no_corrections_is_refused_by_the_fields_it_lacks(survey, tmp_path):
+def test_a_layer_that_holds_no_corrections_is_refused_by_the_fields_it_lacks(street, tmp_path):
     with pytest.raises(RoadExtractionError, match="Corrections lacks the field.* action, target"):
-        mapped(survey, tmp_path, "map", CORRECTIONS=survey / "drive.gpkg")
+        mapped(street, tmp_path, "map", CORRECTIONS=street / "drive.gpkg")

@@ -19,16 +19,15 @@ LAYERS = ("ROAD_EDGES", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES", "
 
 
 @pytest.fixture(scope="module")
-def surveys(made_once):
+def surveys(street, made_once):
     """{"feet", "metres": (cloud, trajectory)} of one street."""
-    folder = made_once("survey_in_feet", _survey)
+    folder = made_once("survey_in_feet", lambda folder: _write(street, folder))
     return {name: (str(folder / f"{name}.laz"), str(folder / f"{name}.csv")) for name in ("feet", "metres")}
 
 
-def _survey(folder):
-    run("samplesurvey", LENGTH=40, PULSE_RATE=80_000, POINT_CLOUD=folder / "s.laz", TRAJECTORY=folder / "drive.gpkg")
-    cloud = laspy.read(folder / "s.laz")
-    with fiona.open(folder / "drive.gpkg") as layer:
+def _write(street, folder):
+    cloud = laspy.read(street / "s.laz")
+    with fiona.open(street / "drive.gpkg") as layer:
         driven = np.array([[row["properties"]["time"], *row["geometry"]["coordinates"]] for row in layer])
     shift = np.array([*(np.array(PLACE) - np.floor(cloud.header.mins[:2])), 0.0])
     for name, crs in (("feet", FEET), ("metres", METRES)):

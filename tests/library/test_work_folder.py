@@ -25,12 +25,12 @@ def finished_parts(work):
     return [path for path in work.glob("phase-*/*.plain") if ".part" not in path.name]
 
 
-def test_a_killed_run_that_is_begun_again_gives_what_an_undisturbed_one_gives(tmp_path):
-    survey = run("samplesurvey", LENGTH=40, PULSE_RATE=60000, POINT_CLOUD=tmp_path / "s.laz", TRAJECTORY=tmp_path / "drive.gpkg")
-    inputs = dict(POINT_CLOUDS=[survey["POINT_CLOUD"]], TRAJECTORY=survey["TRAJECTORY"])
+def test_a_killed_run_that_is_begun_again_gives_what_an_undisturbed_one_gives(street, tmp_path):
+    inputs = dict(POINT_CLOUDS=[street / "s.laz"], TRAJECTORY=street / "drive.gpkg")
     work, result = tmp_path / "work", tmp_path / "edges.gpkg"
-    command = [sys.executable, "-W", "ignore", "-c", PROGRAM.format(tests=str(ROOT / "tests")), "detectboundaries", "--POINT_CLOUDS",
-               survey["POINT_CLOUD"], "--TRAJECTORY", survey["TRAJECTORY"], "--WORK_FOLDER", str(work), "--WORKERS", "1", "--ROAD_EDGES", str(result)]
+    command = [sys.executable, "-W", "ignore", "-c", PROGRAM.format(tests=str(ROOT / "tests")), "detectboundaries",
+               "--POINT_CLOUDS", str(street / "s.laz"), "--TRAJECTORY", str(street / "drive.gpkg"),
+               "--WORK_FOLDER", str(work), "--WORKERS", "1", "--ROAD_EDGES", str(result)]
     program = subprocess.Popen(command, stderr=subprocess.DEVNULL)
     while program.poll() is None and not finished_parts(work):
         time.sleep(0.02)

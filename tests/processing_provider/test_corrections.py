@@ -6,12 +6,11 @@ from qgis.core import QgsFeature, QgsGeometry, QgsProcessingFeedback, QgsVectorL
 pytestmark = pytest.mark.slow
 
 
-def test_corrections_in_degrees_hold_in_a_road_map_and_their_lines_say_what_they_are(provider, sample_survey, tmp_path):
+def test_corrections_in_degrees_hold_in_a_road_map_and_their_lines_say_what_they_are(street, street_map, tmp_path):
     import processing
 
-    survey = sample_survey(LENGTH=40, PULSE_RATE=60000, ROTATION_RATE=100)
-    given = {"POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"], "BOUNDARY_METHOD": "profiles"}
-    edges = QgsVectorLayer(processing.run("lanewright:roadmap", {**given, "ROAD_EDGES": str(tmp_path / "edges.gpkg")})["ROAD_EDGES"])
+    given = {"POINT_CLOUDS": [street["POINT_CLOUD"]], "TRAJECTORY": street["TRAJECTORY"]}
+    edges = QgsVectorLayer(street_map["ROAD_EDGES"])
     longest = max(edges.getFeatures(), key=lambda feature: feature["length_m"])
     degrees = processing.run("native:reprojectlayer", {"INPUT": edges, "TARGET_CRS": "EPSG:4326", "OUTPUT": "memory:"})["OUTPUT"]
     layer = QgsVectorLayer("LineString?crs=EPSG:4326&field=action:string&field=target:string&field=note:string", "corrections", "memory")

@@ -65,23 +65,23 @@ def test_a_chain_with_more_holes_than_peaks_is_chance():
 @pytest.mark.parametrize("radius", [np.inf, 80.0])
 def test_lines_are_found_with_their_width_to_4_cm(method, radius):
     frame = drive(radius=radius)
-    paint = found_on(street(frame, [strip(10, 70, 1.2, 1.35)]), method, frame)
+    paint = found_on(street(frame, [strip(10, 50, 1.2, 1.35)]), method, frame)
     low, high = np.percentile(paint.d, [2.5, 97.5])
     assert (high - low) / 0.95 == pytest.approx(0.15, abs=0.04)
     assert (low + high) / 2 == pytest.approx(1.275, abs=0.01)
-    assert paint.s.min() == pytest.approx(10, abs=0.25) and paint.s.max() == pytest.approx(70, abs=0.25)
-    assert len(paint) > 0.85 * 60 * 0.15 * DENSITY
+    assert paint.s.min() == pytest.approx(10, abs=0.25) and paint.s.max() == pytest.approx(50, abs=0.25)
+    assert len(paint) > 0.85 * 40 * 0.15 * DENSITY
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("noise", [0.02, 0.08, 0.25])
+@pytest.mark.parametrize("noise", [0.02, 0.25])
 def test_a_road_without_paint_yields_nothing(method, noise):
     assert len(found_on(street(FRAME, noise=noise), method)) == 0
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_brightness_that_falls_with_distance_hides_no_line(method):
-    lines = [strip(10, 70, d, d + 0.15) for d in (-3.5, 0.2, 3.3)]
+    lines = [strip(10, 50, d, d + 0.15) for d in (-3.5, 0.2, 3.3)]
     records = street(FRAME, lines)
     records["intensity"] = records["intensity"] * (1.6 / (1 + 0.15 * (records["d"] * 1e-4 + 4)))
     paint = found_on(records, method)
@@ -136,7 +136,7 @@ def test_each_segment_has_a_threshold_of_its_own_between_asphalt_and_paint():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_neither_the_order_of_points_nor_the_length_of_sections_matters(method):
-    records = street(FRAME, [strip(10, 70, 1.2, 1.35), strip(39, 43, -2, -1.8)], density=500)
+    records = street(FRAME, [strip(10, 50, 1.2, 1.35), strip(39, 43, -2, -1.8)], density=500)
     plain = found_on(records, method).records
     assert len(plain)
     assert_same_points(plain, found_on(shuffled(records), method, section_length=7.0).records)
@@ -144,11 +144,11 @@ def test_neither_the_order_of_points_nor_the_length_of_sections_matters(method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_driving_the_other_way_finds_the_same_paint(method):
-    marks = [strip(10, 70, 1.2, 1.35)]
+    marks = [strip(10, 50, 1.2, 1.35)]
     ahead = found_on(street(FRAME, marks), method)
     mirrored = street(FRAME, marks)
     s, d = mirrored["s"].copy(), mirrored["d"].copy()
-    back = records_at(FRAME, 80.0 - s * 1e-4, -d * 1e-4, mirrored["intensity"].astype(float), 4.0)
+    back = records_at(FRAME, 60.0 - s * 1e-4, -d * 1e-4, mirrored["intensity"].astype(float), 4.0)
     back = found_on(back, method)
     assert len(back) == pytest.approx(len(ahead), rel=0.01)
     assert np.median(back.d) == pytest.approx(-np.median(ahead.d), abs=0.005)
@@ -157,7 +157,7 @@ def test_driving_the_other_way_finds_the_same_paint(method):
 @pytest.mark.parametrize("method", METHODS)
 def test_the_mask_covers_the_paint_in_the_pixels_of_the_image(tmp_path, method):
     pytest.importorskip("osgeo.gdal")
-    line, frame = strip(10, 70, 1.2, 1.35), drive(radius=80.0)
+    line, frame = strip(10, 50, 1.2, 1.35), drive(radius=80.0)
     records = street(frame, [line])
     points = road_points(records, frame)
     write_intensity_image(points, tmp_path / "image.tif")

@@ -1,6 +1,6 @@
 """Boundaries of a made street, found by any executor, and what of them must be the same to the last bit."""
 
-from curbed_streets import driven, parked_car, street, survey_of
+from curbed_streets import parked_car, street, survey_of
 from lanewright.core.common.progress import Progress
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 
@@ -22,7 +22,7 @@ class Heard(Progress):
 
 def boundaries(executor, method="both", progress=Progress(), **ground):
     """What is found on a street with an opening and a parked car; `ground` goes to `street`. The executor is closed."""
-    survey = survey_of(parked_car(street(open_left=[(14.0, 22.0)], length=36.0, **ground), start=28.0), driven(36.0))
+    survey = survey_of(parked_car(street(open_left=[(25.0, 33.0)], **ground), start=40.0))
     survey.executor = executor
     try:
         return draw_boundaries(find_curb_points(survey, BoundarySettings(method), progress), survey.frame)

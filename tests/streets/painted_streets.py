@@ -38,7 +38,7 @@ def strewn(length, left, right, density, seed=1):
     return ahead[:-1] / ahead[-1] * length, rng.uniform(right, left, count)
 
 
-def street(frame, marks=(), length=80.0, left=4.0, right=-4.0, density=DENSITY, noise=0.08, level=None, seed=1):
+def street(frame, marks=(), length=60.0, left=4.0, right=-4.0, density=DENSITY, noise=0.08, level=None, seed=1):
     """(N,) ROAD_POINT records of a carriageway; `level(s, d)` is asphalt's brightness as a factor."""
     s, d = strewn(length, left, right, density, seed)
     painted = np.any([mark(s, d) for mark in marks], axis=0) if len(marks) else np.zeros(len(s), bool)

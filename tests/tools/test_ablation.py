@@ -16,13 +16,12 @@ from ablation.swap import Watch, original_of, replaced, same  # noqa: E402
 from ablation.switches import DEFAULT, SWITCHES, Switch, gives, nearest_steps, nth  # noqa: E402
 from ablation.weight import rule_parts, weight  # noqa: E402
 from accuracy.otherwise import street_figures  # noqa: E402
-from accuracy.surveys import _make_sample, read_case  # noqa: E402
+from accuracy.surveys import read_case  # noqa: E402
 from accuracy.variants import Variant  # noqa: E402
 from lanewright.core.curves import robust  # noqa: E402
 from lanewright.core.markings.lines import selection  # noqa: E402
 from lanewright.core.road.common.corners import CurbSteps  # noqa: E402
 from lanewright.core.road.common.curb_limits import CurbLimits  # noqa: E402
-from lanewright.simulator.survey import SampleSettings  # noqa: E402
 
 
 @pytest.mark.parametrize("switch", SWITCHES.values(), ids=SWITCHES)
@@ -88,12 +87,11 @@ def test_stations_that_begin_earlier_lengthen_the_drive_straight_back():
 
 
 @pytest.fixture(scope="module")
-def short(tmp_path_factory):
-    """A survey of 40 m, its results as surveyed, and the table made of them."""
-    folder = tmp_path_factory.mktemp("ablation")
-    _make_sample(folder / "short", SampleSettings(length=40.0, speed_kmh=60.0, pulse_rate=150_000.0), "a short street")
-    chosen = {name: SWITCHES[name] for name in ("common trend", "lanes connected", "zigzag lines", "beams made alike", "correction of intensity")}
-    into = folder / "results" / "as surveyed.json"
+def short(short_street, tmp_path_factory):
+    """A survey of 40 m, the rules switched off, and its results as surveyed."""
+    folder = short_street
+    chosen = {name: SWITCHES[name] for name in ("common trend", "zigzag lines", "beams made alike", "correction of intensity")}
+    into = tmp_path_factory.mktemp("ablation") / "as surveyed.json"
     measure(folder / "short", "as surveyed", chosen, {"both": ["common trend", "zigzag lines"]}, into, _code())
     return folder, chosen, into
 

@@ -11,19 +11,16 @@ from accuracy import judge  # noqa: E402
 from accuracy.figures import figures_of  # noqa: E402
 from accuracy.page import page  # noqa: E402
 from accuracy.results import results  # noqa: E402
-from accuracy.surveys import _make_sample, read_case, surveys_in  # noqa: E402
+from accuracy.surveys import read_case, surveys_in  # noqa: E402
 from lanewright.core.common.features import Features, Field  # noqa: E402
-from lanewright.simulator.survey import SampleSettings  # noqa: E402
 from make_sample import write_layers  # noqa: E402
 from results_table import Results  # noqa: E402
 
 
 @pytest.fixture(scope="module")
-def measured(tmp_path_factory):
-    """A survey of 40 m, and its figures without the long tables."""
-    folder = tmp_path_factory.mktemp("surveys")
-    _make_sample(folder / "short", SampleSettings(length=40.0, speed_kmh=60.0, pulse_rate=150_000.0), "a short street")
-    return folder, figures_of(folder / "short", quick=True)
+def measured(short_street):
+    """The survey, and its figures without the long tables."""
+    return short_street, figures_of(short_street / "short", quick=True)
 
 
 @pytest.mark.slow

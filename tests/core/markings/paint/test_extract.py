@@ -33,7 +33,7 @@ def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None):
 
 
 def test_paint_and_mask_are_the_same_whether_the_image_is_read_from_its_file_or_not(tmp_path):
-    records = street(FRAME, [strip(10, 70, 1.0, 1.15), strip(20, 20.5, -3.0, 1.0)])
+    records = street(FRAME, [strip(10, 50, 1.0, 1.15), strip(20, 20.5, -3.0, 1.0)])
     usual = found_on(records, tmp_path, mask=tmp_path / "a.tif")
     image = make_intensity_image(road_points(records, FRAME))
     found = extract_markings(road_points(records, FRAME), image, FRAME, mask_path=tmp_path / "b.tif").all_points()
@@ -46,11 +46,11 @@ def test_paint_and_mask_are_the_same_whether_the_image_is_read_from_its_file_or_
 @pytest.mark.parametrize("radius", [np.inf, 80.0])
 def test_a_painted_strip_is_found_with_its_width_to_2_cm(tmp_path, radius):
     frame = drive(radius=radius)
-    paint = found_on(street(frame, [strip(10, 70, 1.0, 1.15)]), tmp_path, frame)
+    paint = found_on(street(frame, [strip(10, 50, 1.0, 1.15)]), tmp_path, frame)
     low, high = np.percentile(paint.d, [2.5, 97.5])
     assert (high - low) / 0.95 == pytest.approx(0.15, abs=0.02)
     assert (low + high) / 2 == pytest.approx(1.075, abs=0.01)
-    assert paint.s.min() == pytest.approx(10, abs=0.1) and paint.s.max() == pytest.approx(70, abs=0.1)
+    assert paint.s.min() == pytest.approx(10, abs=0.1) and paint.s.max() == pytest.approx(50, abs=0.1)
 
 
 def test_asphalt_without_paint_yields_nothing(tmp_path):
@@ -67,13 +67,13 @@ def test_patches_seams_and_worn_tracks_are_not_paint(tmp_path):
 
 def test_an_edge_line_behind_a_band_of_water_is_paint_and_no_gutter(tmp_path):
     """The strip beyond the water is as bright as the rest of the road, and its line is the brightest of it."""
-    line = strip(10, 70, 3.55, 3.67)
+    line = strip(10, 50, 3.55, 3.67)
     records = street(FRAME, [line], density=2500, level=lambda s, d: np.where((d > 2.0) & (d < 3.3), 0.25, 1.0))
     records["corrected"] = records["intensity"]
     points = replace(road_points(records, FRAME), has_corrected=True)
     paint = extract_markings(points, make_intensity_image(points), FRAME).all_points()
     on = line(paint.s, paint.d)
-    assert on.sum() > 0.9 * 2500 * 60 * 0.12 and on.mean() > 0.95
+    assert on.sum() > 0.9 * 2500 * 40 * 0.12 and on.mean() > 0.95
 
 
 def test_what_wear_has_left_between_two_runs_of_paint_is_paint_and_a_speck_on_its_own_is_not(tmp_path):
@@ -87,7 +87,7 @@ def test_what_wear_has_left_between_two_runs_of_paint_is_paint_and_a_speck_on_it
 
 
 def test_brightness_that_falls_with_distance_hides_no_line(tmp_path):
-    lines = [strip(10, 70, d, d + 0.15) for d in (-3.5, 0.0, 3.5)]
+    lines = [strip(10, 50, d, d + 0.15) for d in (-3.5, 0.0, 3.5)]
 
     def fall(d):
         return 1.6 / (1 + 0.15 * (d + 4))
@@ -109,35 +109,34 @@ def test_a_zebra_crossing_and_a_stop_line_are_not_erased(tmp_path):
 
 
 def test_a_concrete_gutter_is_left_out_and_the_edge_line_beside_it_kept(tmp_path):
-    line = strip(5, 75, 3.2, 3.35)
+    line = strip(5, 55, 3.2, 3.35)
     paint = found_on(street(FRAME, [line, strip(0, 80, 3.6, 4.0), strip(0, 80, -4.0, -3.6)]), tmp_path)
     assert line(paint.s, paint.d).mean() > 0.97
-    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * DENSITY
+    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 50 * 0.15 * DENSITY
 
 
-@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
-def test_what_parked_cars_leave_to_be_seen_of_a_gutter_is_no_paint(tmp_path, side):
-    line = strip(5, 75, *sorted((2.9 * side, 3.05 * side)))
-    records = street(FRAME, [line], level=lambda s, d: np.where(d * side > 3.65, 2.6, 1.0))
+def test_what_parked_cars_leave_to_be_seen_of_a_gutter_is_no_paint(tmp_path):
+    line = strip(5, 55, 2.9, 3.05)
+    records = street(FRAME, [line], level=lambda s, d: np.where(d > 3.65, 2.6, 1.0))
     # shadows oblique, as a scanner mounted at 45 degrees casts them over the parking strip and the lane beside it
-    s, d = records["s"] * 1e-4, records["d"] * side * 1e-4
+    s, d = records["s"] * 1e-4, records["d"] * 1e-4
     paint = found_on(records[~((d > -1.0) & ((s - d) % 6.0 < 4.0))], tmp_path)
     on_line = line(paint.s, paint.d)
     assert on_line.mean() > 0.97
-    assert np.count_nonzero(on_line) > 0.85 * 70 * 0.15 * DENSITY / 3
+    assert np.count_nonzero(on_line) > 0.85 * 50 * 0.15 * DENSITY / 3
 
 
 def test_an_edge_line_painted_right_beside_a_gutter_is_found_and_the_gutter_is_not(tmp_path):
-    line = strip(5, 75, 3.52, 3.67)
+    line = strip(5, 55, 3.52, 3.67)
     street_ = street(FRAME, [line], level=lambda s, d: np.where(np.abs(d) > 3.7, 2.0, 1.0))
     paint = found_on(street_, tmp_path)
     assert line(paint.s, paint.d).mean() > 0.97
-    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * DENSITY
+    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 50 * 0.15 * DENSITY
 
 
-@pytest.mark.parametrize("factor", [1.4, 1.7, 2.2])
+@pytest.mark.parametrize("factor", [1.4, 2.2])
 def test_a_pale_repair_in_a_lane_without_paint_is_road_and_a_line_across_it_is_paint(tmp_path, factor):
-    lines = [strip(5, 75, d, d + 0.15) for d in (-3.5, 0.1, 3.35)]
+    lines = [strip(5, 55, d, d + 0.15) for d in (-3.5, 0.1, 3.35)]
 
     def repair(s, d):
         return np.where((s > 26) & (s < 33) & (d > -2.6) & (d < 0.8), factor, 1.0)
@@ -151,7 +150,7 @@ def test_a_pale_repair_in_a_lane_without_paint_is_road_and_a_line_across_it_is_p
 @pytest.mark.slow
 def test_noisy_multi_beam_intensities_show_bars_of_paint_and_stay_silent_without(tmp_path):
     bar = strip(30, 34, 1.0, 1.3)
-    s, d = strewn(80, 4, -4, 3000)
+    s, d = strewn(48, 4, -4, 3000)
     rng = np.random.default_rng(9)
 
     def seen(painted):
@@ -182,7 +181,7 @@ class Listener(Progress):
 
 @pytest.mark.parametrize("ends, warnings", [((0, 100), 0), ((0, 84), 1), ((33, 100), 1)], ids=["whole", "bright end", "dark end"])
 def test_intensities_cut_off_at_an_end_are_warned_of_also_where_nothing_is_corrected(tmp_path, ends, warnings):
-    records, listener = street(FRAME, [strip(10, 70, 1.0, 1.15)]), Listener()
+    records, listener = street(FRAME, [strip(10, 50, 1.0, 1.15)]), Listener()
     low, high = np.percentile(records["intensity"], ends)
     records["intensity"] = np.rint(np.clip((records["intensity"] - low) / (high - low), 0, 1) * 1000)
     points = road_points(records, FRAME)
@@ -192,7 +191,7 @@ def test_intensities_cut_off_at_an_end_are_warned_of_also_where_nothing_is_corre
 
 
 def test_neither_the_order_of_points_nor_the_length_of_sections_matters(tmp_path):
-    records = street(FRAME, [strip(10, 70, 1.0, 1.15), strip(39, 43, -2, -1.5)], density=500)
+    records = street(FRAME, [strip(10, 50, 1.0, 1.15), strip(39, 43, -2, -1.5)], density=500)
     plain = found_on(records, tmp_path).records
     other = found_on(shuffled(records), tmp_path, section_length=7.0).records
     assert_same_points(plain, other)
@@ -201,7 +200,7 @@ def test_neither_the_order_of_points_nor_the_length_of_sections_matters(tmp_path
 @pytest.mark.slow
 def test_where_points_are_dense_a_share_of_them_gives_the_bins(tmp_path, monkeypatch):
     """Of 12 000 points a metre every fourth is used for the width of the bins."""
-    line = strip(5, 75, 1.0, 1.15)
+    line = strip(5, 55, 1.0, 1.15)
     records = street(FRAME, [line], density=1500)
     usual = found_on(records, tmp_path)
     monkeypatch.setattr(windows, "MAX_OFFSET_POINTS", 60_000)
@@ -211,15 +210,15 @@ def test_where_points_are_dense_a_share_of_them_gives_the_bins(tmp_path, monkeyp
     assert line(some.s, some.d).mean() > 0.97
 
 
-@pytest.mark.parametrize("threads", [1, 7])
-def test_paint_before_and_after_a_stretch_without_points_is_found_by_any_number_of_threads(tmp_path, monkeypatch, threads):
+def test_paint_before_and_after_a_stretch_without_points_is_found_by_any_number_of_threads(tmp_path, monkeypatch):
     line = strip(0, 150, 1.0, 1.15)
     frame = drive(160)
     records = street(frame, [line], length=160.0)
     s = records["s"] * 1e-4
     records = records[(s < 25) | ((s > 85) & (s < 95)) | (s > 130)]
+    monkeypatch.setattr(parallel.os, "cpu_count", lambda: 1)
     usual = found_on(records, tmp_path, frame)
-    monkeypatch.setattr(parallel.os, "cpu_count", lambda: threads)
+    monkeypatch.setattr(parallel.os, "cpu_count", lambda: 7)
     assert_same_points(usual.records, found_on(records, tmp_path, frame).records)
     on_line = line(records["s"] * 1e-4, records["d"] * 1e-4).sum()
     assert line(usual.s, usual.d).mean() > 0.97 and line(usual.s, usual.d).sum() > 0.9 * on_line
@@ -227,9 +226,9 @@ def test_paint_before_and_after_a_stretch_without_points_is_found_by_any_number_
 
 @pytest.mark.slow
 def test_the_mask_lies_on_the_image_and_covers_the_paint(tmp_path):
-    line = strip(10, 70, 1.0, 1.15)
+    line = strip(10, 50, 1.0, 1.15)
     frame = drive(radius=80.0)
-    records = street(frame, [line], length=160.0)
+    records = street(frame, [line])
     found_on(records, tmp_path, frame, mask=tmp_path / "mask.tif")
     image, mask = IntensityImage.open(tmp_path / "image.tif"), IntensityImage.open(tmp_path / "mask.tif")
     assert (mask.geotransform, mask.width, mask.height) == (image.geotransform, image.width, image.height)
@@ -274,10 +273,10 @@ def found_and_said(tiles, frame, folder):
 
 @pytest.mark.parametrize("noisy", [True, False], ids=["noisy", "quiet"])
 def test_a_tile_beside_of_another_scanner_leaves_the_method_on_this_street_as_it_is(tmp_path, noisy):
-    frame = drive(190)
-    street_ = noisy_bar(frame, 0, 0, 80, 0, noisy)
+    frame = drive(120)
+    street_ = noisy_bar(frame, 0, 0, 60, 0, noisy)
     alone, (said,) = found_and_said([(0, street_)], frame, tmp_path)
-    beside = noisy_bar(frame, 0, 80, 180, 1, not noisy, seed=8)
+    beside = noisy_bar(frame, 0, 60, 110, 1, not noisy, seed=8)
     both, (said_of_both,) = found_and_said([(0, np.concatenate([street_, beside]))], frame, tmp_path)
     on_bar = np.count_nonzero(BAR(street_["s"] * 1e-4, street_["d"] * 1e-4))
     assert np.count_nonzero(BAR(alone.s, alone.d)) > 0.8 * on_bar
@@ -289,18 +288,17 @@ def test_a_tile_beside_of_another_scanner_leaves_the_method_on_this_street_as_it
     assert "Along " in said_of_both and "scanner 0" in said_of_both and "scanner 1" in said_of_both
 
 
-@pytest.mark.parametrize("noisy", [True, False], ids=["noisy", "quiet"])
-def test_another_road_of_another_scanner_leaves_the_method_on_this_street_as_it_is(tmp_path, noisy):
-    s = np.arange(0.0, 90.0, 0.1)
+def test_another_road_of_a_noisy_scanner_leaves_the_method_on_this_street_as_it_is(tmp_path):
+    s = np.arange(0.0, 70.0, 0.1)
     frame = build_frame(Trajectory(np.r_[s / 10, s / 10 + 500], np.r_[s, s] + 500_000, np.repeat([5_400_000.0, 5_400_060.0], len(s)),
                                    np.full(2 * len(s), 102.0)))
     assert len(frame.roads) == 2
-    street_, other = noisy_bar(frame, 0, 0, 79.9, 0, noisy), noisy_bar(frame, 1, 0, 79.9, 1, not noisy, seed=8)
+    street_, other = noisy_bar(frame, 0, 0, 59.9, 0, noisy=False), noisy_bar(frame, 1, 0, 59.9, 1, noisy=True, seed=8)
     alone, _ = found_and_said([(0, street_)], frame, tmp_path)
     both, (said,) = found_and_said([(0, street_), (1, other)], frame, tmp_path)
     assert len(alone) > 500 and abs(len(both) - len(alone)) < 0.02 * len(alone)
     # one scatters by half of asphalt's level, the other by a twelfth
-    assert "Along 80 of 160 m" in said
+    assert "Along 60 of 120 m" in said
 
 
 def test_a_noisy_scanner_that_measured_forty_metres_of_a_quiet_street_is_known_there(tmp_path):
@@ -315,7 +313,7 @@ def test_a_noisy_scanner_that_measured_forty_metres_of_a_quiet_street_is_known_t
 
 @pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
 def test_points_without_a_corrected_intensity_among_corrected_ones_hide_no_paint(tmp_path, method):
-    line = strip(10, 70, 1.0, 1.15)
+    line = strip(10, 50, 1.0, 1.15)
     records = street(FRAME, [line])
     records["corrected"] = records["intensity"]
     records["corrected"][::7] = np.nan

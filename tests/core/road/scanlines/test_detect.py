@@ -26,7 +26,7 @@ def as_rows(features):
     return [(g.x, g.y, g.z, *sorted(r.items())) for g, r in features]
 
 
-@pytest.mark.parametrize("curb", [0.04, 0.12, 0.20])
+@pytest.mark.parametrize("curb", [0.04, 0.20])
 def test_without_noise_the_corners_are_right_to_the_millimetre(curb):
     curbs = found(street(curb=curb, noise=0.0))
     for side, offset in (("left", 3.5), ("right", -3.5)):
@@ -52,11 +52,10 @@ def test_a_leaning_face_has_its_bottom_before_its_top():
     np.testing.assert_allclose(corners(curbs, "left", "top")[:, 1], 3.56, atol=0.003)
 
 
-@pytest.mark.parametrize("angle", [0.0, 40.0])
-def test_a_bevelled_curb_is_found_unless_an_upright_face_is_asked_for(angle):
+def test_a_bevelled_curb_is_found_unless_an_upright_face_is_asked_for():
     bevelled = street(curb=0.10, face=0.10)
     assert len(found(bevelled, ScanlineBoundarySettings(vertical_angle=60.0))) == 0
-    curbs = found(bevelled, ScanlineBoundarySettings(vertical_angle=angle))
+    curbs = found(bevelled, ScanlineBoundarySettings(vertical_angle=40.0))
     np.testing.assert_allclose(corners(curbs, "left")[:, 1], 3.5, atol=0.005)
     np.testing.assert_allclose(corners(curbs, "left", "top")[1:-1, 1], 3.6, atol=0.005)
 
@@ -96,14 +95,9 @@ def test_a_bend_is_followed():
         np.testing.assert_allclose(np.hypot(bottoms[:, 0], bottoms[:, 1] - radius), radius - offset, atol=0.01)
 
 
-def test_the_order_of_points_changes_nothing():
-    points = street()
-    assert as_rows(found(points)) == as_rows(found(points, shuffled=1))
-
-
-def test_sections_of_the_store_change_nothing():
+def test_the_order_of_points_and_sections_of_the_store_change_nothing():
     points = parked_car(street(), start=25.0)
-    assert as_rows(found(points)) == as_rows(found(points, section_length=7.0))
+    assert as_rows(found(points)) == as_rows(found(points, shuffled=1, section_length=7.0))
 
 
 def test_driven_backwards_the_sides_swap_and_the_corners_stay():

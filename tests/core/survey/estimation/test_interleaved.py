@@ -38,9 +38,9 @@ def test_their_trajectory_is_that_of_both(tmp_path, street):
     np.testing.assert_allclose(np.sort(np.degrees(found.adjusted.poses.turn)), [-45.0, 45.0], atol=0.3)
 
 
-@pytest.mark.parametrize("mirrors", [UNEQUAL, THREE, tuple(Mirror(turn, -25.0, (0.0, -turn / 100.0, 0.0), rate, 10_000.0) for turn, rate in
-                                                         ((-50.0, 100.0), (0.0, 60.0), (50.0, 100.0)))],
-                         ids=["one of few pulses", "one straight across beside a butterfly", "a fan of which one turns more slowly"])
+@pytest.mark.parametrize("mirrors", [UNEQUAL, tuple(Mirror(turn, -25.0, (0.0, -turn / 100.0, 0.0), rate, 10_000.0) for turn, rate in
+                                                  ((-50.0, 100.0), (0.0, 60.0), (50.0, 100.0)))],
+                         ids=["one of few pulses", "a fan of which one turns more slowly"])
 def test_as_many_scanners_as_there_are_directions_of_scan_lines_are_told_apart(tmp_path, mirrors):
     street = mirror_drive(mirrors)
     found = estimate_trajectory([street.write(tmp_path / "cloud.las", merged=True)])
@@ -64,7 +64,7 @@ def test_a_field_that_does_not_number_the_scanners_is_not_believed(tmp_path, ids
               "two of three scanners": street.scanner // 2}[ids]
     path = write_cloud(tmp_path / "cloud.las", *(street.place + [500_000.0, 5_400_000.0, 100.0]).T, street.time, source=1 + number)
     found = estimate_trajectory([path])
-    assert told_apart(len(mirrors)) in found.notes
+    assert told_apart(len(mirrors)) in found.notes and not any("in feet" in note for note in found.cloud_notes)
     on_map(street, mirrors, found)
 
 

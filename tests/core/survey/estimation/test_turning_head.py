@@ -22,7 +22,7 @@ def place_at(time, speed=SPEED):
 def spun_cloud(path, by_turn, seconds=6.0, speed=SPEED, clockwise=True, half=HALF):
     """A cloud of a street between walls; `by_turn` sees each turn from the place of its middle, as clouds of frames are."""
     rng = np.random.default_rng(4)
-    step = np.arange(0.0, seconds, TURN / 400)
+    step = np.arange(0.0, seconds, TURN / 240)
     time, beam = (a.ravel() for a in np.meshgrid(step, np.arange(len(ELEVATIONS)), indexing="ij"))
     head, yaw = place_at((np.floor(time / TURN) + 0.5) * TURN if by_turn else time, speed)
     bearing = yaw + (-1 if clockwise else 1) * 2 * np.pi * time / TURN
