@@ -131,6 +131,9 @@ def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german, 
      "CJJ 37-2012: der Radius erlaubt 60 km/h, die Länge 11 m liegt unter 25 m, der kleinsten für 30 km/h"),
     ("Measure more points. No paint was found on this road, so there are no marking lines and no driving lines.",
      "Mehr Punkte messen. Auf dieser Straße wurde keine Farbe gefunden; es gibt daher keine Markierungslinien und keine Fahrlinien."),
+    ("No paint was found on this road, so there are no marking lines: driving lines lead between its borders.",
+     "Auf dieser Straße wurde keine Farbe gefunden; es gibt daher keine Markierungslinien: "
+     "Die Fahrlinien verlaufen zwischen den Rändern der Straße."),
     ("kink at a link", "Knick an einer Verknüpfung"),
     ("0.12 rad between it and lane -2 of road 7 at its start.", "0.12 rad zwischen ihm und Streifen -2 der Straße 7 an seinem Anfang."),
     ("The column 'Time' of a.csv holds times of a clock such as '1/2/2021 23:46'. GPS seconds are needed, and day and month cannot be distinguished. "

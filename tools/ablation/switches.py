@@ -13,7 +13,6 @@ from lanewright.core.markings.cross_section.weights import EstimateWeights
 from lanewright.core.markings.lines.selection import merged_pieces
 from lanewright.core.markings.lines.strands import trace_strands
 from lanewright.core.pipeline.road_map import RoadMapSettings
-from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_points import CurbPoints
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.curb_returns.steps import PlanSteps
@@ -159,7 +158,7 @@ ROWS = (
         ("averages of noisy profiles", "profiles.detect:_steps_by_noise", _unaveraged, "many-beam scanner (Karlsruhe)",
          "profiles.averaged_steps:find_averaged_steps profiles.detect:_steps_by_noise"),
         ("profiles: ground stays up", "profiles.steps:_stays_up", all_of(3)),
-        ("profiles: passes merged", "profiles.detect:merged_passes", lambda found: CurbSteps.join(found)),
+        ("passes merged", "common.side_curbs:merged_passes", lambda found: type(found[0]).join(found)),
         ("scanlines: ground stays up", "scanlines.candidates:_stays_up", all_of(1)),
         ("scanlines: measured itself", "scanlines.candidates:_measured_itself", all_of(1)),
         ("scanlines: neighbours agree", "scanlines.candidates:_persistent", all_of(0)),
@@ -311,7 +310,7 @@ ROWS = (
          "main streets whose lanes reach up to the curb, and those with gutters"),
         ("lanes beside islands", "cross_section.sequence:beside_island", gives(np.zeros((), bool)), "island beside an edge line"),
         ("lanes beside the surface's end", "cross_section.sequence:beside_surface_end", gives(np.zeros((), bool))),
-        ("the road's own lane width", "cross_section.roads:_usual_width", nth(2))),
+        ("the road's own lane width", "cross_section.roads:_usual_width", lambda _known, _estimates, usual: (usual, False))),
     *_room("lanes", "driving",
         ("tapers", "lanes:laid_out", nth(0), "slip road that joins"),
         ("lanes to the ends of their borders", "lanes:_to_its_ends", nth(0)),
@@ -343,7 +342,7 @@ ROWS = (
     _evidence("which way arrows point and stop lines", arrow_against=0.0, split_stop=0.0),
     _evidence("how many lanes lead which way", one_way=(0.0,) * 4, uneven=0.0, two_and_one=0.0),
     _evidence("another carriageway driven beside this one", two_way_carriageway=0.0),
-    _evidence("traffic keeps to its side", wrong_side=0.0, left_hand=0.0),
+    _evidence("traffic keeps to its side", wrong_side=0.0, left_hand=0.0, foreign_side=0.0),
     _evidence("lanes go on along the road", change=0.0, turn=0.0, divider_change=0.0),
 )
 SWITCHES = {switch.name: switch for switch in ROWS}
