@@ -158,13 +158,16 @@ def left_as_it_is(places):
 
 
 def road_map_of(street, folder, there, backwards):
-    """The road map of the same drive, without its angles, in other places, or at reversed time."""
+    """The road map of the same drive, without its angles, in other places, or at reversed time.
+
+    It has no CRS, for both put traffic on the left, which the country of the street would speak against.
+    """
     points, drive = laspy.read(street[1]), street[0].trajectory
     places, track = (there(np.c_[np.asarray(p.x), np.asarray(p.y)]) for p in (points, drive))
     ends = drive.time[0] + drive.time[-1]
     header = laspy.LasHeader(point_format=6, version="1.4")
     header.scales, header.offsets = np.full(3, 1e-4), np.floor(places.min(axis=0)).tolist() + [0.0]
-    header.vlrs, header.global_encoding = points.header.vlrs, points.header.global_encoding
+    header.global_encoding.gps_time_type = points.header.global_encoding.gps_time_type
     cloud = laspy.LasData(header)
     order = slice(None, None, -1 if backwards else 1)
     cloud.x, cloud.y, cloud.z = places[order, 0], places[order, 1], np.asarray(points.z)[order]
@@ -173,7 +176,7 @@ def road_map_of(street, folder, there, backwards):
         cloud[name] = np.asarray(points[name])[order]
     cloud.write(folder / "cloud.las")
     time = ends - drive.time if backwards else drive.time
-    trajectory = Trajectory(time[order], track[order, 0], track[order, 1], drive.z[order], crs=drive.crs)
+    trajectory = Trajectory(time[order], track[order, 0], track[order, 1], drive.z[order])
     return make_road_map([folder / "cloud.las"], trajectory, folder / "intensity.tif")
 
 
