@@ -98,9 +98,7 @@ class SegmentIndex:
         reach : metres; only with `max_angle`
         progress : Progress
 
-        Returns
-        -------
-        NearestPoints
+        Returns NearestPoints
         """
         if not len(self.a) or not len(xy):
             return _no_nearest_points(len(xy))

@@ -189,10 +189,7 @@ def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> Cur
     x, y : (N,) metres, N >= 6, ordered along the line
     max_misfit : metres; a fit with a larger root mean square residual is given up once steps gain little
 
-    Raises
-    ------
-    RoadExtractionError
-        If the points turn by less than 60 degrees or do not lie on an ellipse.
+    Raises RoadExtractionError if the points turn by less than 60 degrees or do not lie on an ellipse.
 
     References
     ----------
@@ -342,10 +339,7 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
     x, y : (N,) metres, N >= degree + 1, ordered along the line
     degree : int, 0 to 9
 
-    Raises
-    ------
-    RoadExtractionError
-        If the points turn back along their chord, which no polynomial can follow.
+    Raises RoadExtractionError if the points turn back along their chord, which no polynomial can follow.
     """
     x, y = checked_points(x, y, degree + 1)
     middle_x, middle_y, tilt = (float(values[0]) for values in chords(PointGroups([len(x)]), x, y))

@@ -271,10 +271,7 @@ def write_intensity_image(road_points: RoadPoints, path: str | PathLike, setting
     ----------
     path : of the GeoTIFF; it appears when it is complete
 
-    Raises
-    ------
-    RoadExtractionError
-        If there are no points, the image has too many tiles, or the file cannot be written.
+    Raises RoadExtractionError if there are no points, the image has too many tiles, or the file cannot be written.
 
     Notes
     -----

@@ -88,10 +88,8 @@ class NumberTable:
 def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
     """The table of numbers in a text file with any delimiter, with or without a header, in UTF-8, UTF-16 or another encoding like ASCII.
 
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be read, holds no table of at least three columns of numbers, or uses the comma for columns and decimals alike.
+    Raises RoadExtractionError if the file cannot be read, holds no table of at least three columns of numbers, or uses the comma for columns and
+    decimals alike.
     """
     data = _without_quotes(_text_bytes(path))
     lines = _sample_lines(data)

@@ -64,9 +64,7 @@ def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> 
 def cubes_of_stretch(road_points: RoadPoints, stretch: Stretch) -> list[list[tuple[np.ndarray, np.ndarray] | None]]:
     """The phase that counts points in cubes, section by section.
 
-    Returns
-    -------
-    for each section of the survey [(keys of the occupied cubes, their counts)] of all points and of those on the road; None without points
+    Returns for each section of the survey [(keys of the occupied cubes, their counts)] of all points and of those on the road; None without points
     """
     return [[_counted(points.section(*key)) for points in (road_points.survey, road_points)] for key in road_points.survey.store.in_stretch(stretch)]
 

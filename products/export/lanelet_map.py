@@ -274,10 +274,7 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
         but sea, has local coordinates: local_x and local_y, or metres from latitude and longitude 0
     crs : WKT, "" where coordinates are local
 
-    Raises
-    ------
-    RoadExtractionError
-        If the CRS is not in metres, or nodes have neither latitude nor local coordinates.
+    Raises RoadExtractionError if the CRS is not in metres, or nodes have neither latitude nor local coordinates.
     """
     from pyproj import Transformer
 

@@ -102,9 +102,7 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     ----------
     lanes : Lanes in metres; lanes of one road with vertices in the same cross-sections, as the layer LANES has them
 
-    Returns
-    -------
-    SharedBorders; the number and order of vertices stay as they are
+    Returns SharedBorders; the number and order of vertices stay as they are
     """
     rows = np.concatenate([lanes.left, lanes.right])
     nodes, first = numbered(rows)

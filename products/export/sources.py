@@ -75,11 +75,8 @@ def is_stated(lanes: Lanes) -> bool:
 def checked(source: RoadMapSource) -> RoadMapSource:
     """The same source without successors that are not there, proven fit for a map.
 
-    Raises
-    ------
-    RoadExtractionError
-        If there are no lanes, the CRS is not in metres, a lane has no width or borders that cross, heights are missing, two roads lie at
-        one place, or a layer is of another survey.
+    Raises RoadExtractionError if there are no lanes, the CRS is not in metres, a lane has no width or borders that cross, heights are missing, two
+    roads lie at one place, or a layer is of another survey.
     """
     lanes = source.lanes
     if not len(lanes):
@@ -211,9 +208,7 @@ def sigma_of_lanes(lanes: Lanes, driving_lines: Features | None) -> np.ndarray:
     ----------
     driving_lines : Features DRIVING_LINES with `sigma_m`, or None
 
-    Returns
-    -------
-    (P,) m, NaN where no driving line of the same road and lane says it
+    Returns (P,) m, NaN where no driving line of the same road and lane says it
     """
     square, length = np.zeros(len(lanes)), np.zeros(len(lanes))
     for row in driving_lines.rows if driving_lines is not None else ():
@@ -248,10 +243,7 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
         border without any
     share : 0 to 1, of the vertices that have points
 
-    Raises
-    ------
-    RoadExtractionError
-        If no vertex has points.
+    Raises RoadExtractionError if no vertex has points.
     """
     from scipy.spatial import cKDTree
 

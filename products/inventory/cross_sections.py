@@ -119,10 +119,7 @@ def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers()
     survey : Survey, opened with enough height above the road for the clearance
     layers : BorderLayers, of which any may be missing. Without edges and lines a lane of the country's usual width about the track is measured
 
-    Raises
-    ------
-    RoadExtractionError
-        If no section lies on the survey.
+    Raises RoadExtractionError if no section lies on the survey.
     """
     borders = RoadBorders(layers, survey.frame, country(settings.country))
     stretch = min(settings.interval, STRETCH)

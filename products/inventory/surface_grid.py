@@ -323,9 +323,7 @@ def rut_depths(d: np.ndarray, profiles: np.ndarray, lane: tuple[float, float], c
     lane, carriageway : (right, left) m, between whose borders the edge is laid
     sigma : (I,) m, of the height of one cell
 
-    Returns
-    -------
-    (2, I) m, >= 0, of the right and the left wheel path, seen along the road; NaN where the profile has gaps
+    Returns (2, I) m, >= 0, of the right and the left wheel path, seen along the road; NaN where the profile has gaps
 
     References
     ----------

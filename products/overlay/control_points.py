@@ -92,10 +92,7 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     what : name of the table for error messages
     crs : WKT of the map coordinates in the table, "" where unknown
 
-    Raises
-    ------
-    RoadExtractionError
-        If a needed column is missing, no row is of this image or has numbers, or the points lie outside the image.
+    Raises RoadExtractionError if a needed column is missing, no row is of this image or has numbers, or the points lie outside the image.
     """
     if not rows:
         raise RoadExtractionError(f"{what} holds no control points. It needs a row for each: pixel, line, easting, northing.")
@@ -299,10 +296,7 @@ def read_control_points(path: str | Path, image: SourceImage, crs: str = "") -> 
     image : SourceImage that the points belong to; rows that name another image are passed over
     crs : WKT of the map coordinates where the file names none
 
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be read, its columns or its CRS are not recognised, or no row is of this image.
+    Raises RoadExtractionError if the file cannot be read, its columns or its CRS are not recognised, or no row is of this image.
     """
     lines, named = _lines(path)
     delimiter = _delimiter(lines)

@@ -112,12 +112,8 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
     ----------
     points : ControlPoints in a projected CRS in metres, or in local metres
 
-    Raises
-    ------
-    RoadExtractionError
-        If there are fewer than 1, 3, 6, 10 control points for order 0, 1, 2, 3; if they lie on a line or do not determine
-        the polynomial; if the polynomial mirrors or folds the image; if the CRS is not in metres; or if the image of
-        a shift has no position.
+    Raises RoadExtractionError if there are fewer than 1, 3, 6, 10 control points for order 0, 1, 2, 3; if they lie on a line or do not determine the
+    polynomial; if the polynomial mirrors or folds the image; if the CRS is not in metres; or if the image of a shift has no position.
     """
     from ...core.io.crs import check_metric, parse_crs
 

@@ -54,10 +54,7 @@ def rough_place(image: SourceImage, crs: str, reach: float, pixel_size: float = 
     pixel_size : m; 0 where unknown
     points : two or more ControlPoints in that CRS, or None
 
-    Raises
-    ------
-    RoadExtractionError
-        If nothing says how large the pixels are on the ground, or the points are too few.
+    Raises RoadExtractionError if nothing says how large the pixels are on the ground, or the points are too few.
     """
     middle = np.array([image.width / 2, image.height / 2])
     if points is not None:

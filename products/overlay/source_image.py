@@ -49,10 +49,7 @@ class SourceImage:
         -------
         pixel, line : (N,)
 
-        Raises
-        ------
-        ValueError
-            If the image has no position.
+        Raises ValueError if the image has no position.
         """
         if self.geotransform is None:
             raise ValueError("the image has no position")
@@ -80,10 +77,7 @@ def open_image(path: str | Path) -> SourceImage:
     ----------
     path : of a file that GDAL reads
 
-    Raises
-    ------
-    RoadExtractionError
-        If there is no such file, or it is no raster with bands.
+    Raises RoadExtractionError if there is no such file, or it is no raster with bands.
     """
     from osgeo import gdal
 

@@ -72,14 +72,10 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
     crs : WKT for clouds that carry none
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
 
-    Returns
-    -------
-    EstimatedTrajectory, on the clock of the points
+    Returns EstimatedTrajectory, on the clock of the points
 
-    Raises
-    ------
-    RoadExtractionError
-        If a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a road.
+    Raises RoadExtractionError if a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a
+    road.
     """
     copies: list[str] = []
     files = without_copies(read_headers(paths, copies.append, crs), copies.append)

@@ -70,10 +70,7 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
     sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
     units : of its coordinates, where it does not state them by its CRS
 
-    Raises
-    ------
-    RoadExtractionError
-        If the file is missing, is not a LAS or LAZ file, is damaged, or cannot be read.
+    Raises RoadExtractionError if the file is missing, is not a LAS or LAZ file, is damaged, or cannot be read.
     """
     reader = _open(path, _mended(path) if known is None else _as_known(path, known), layers, sparse)
     _to_metres(reader.header, _stated_units(reader.header, units) if known is None else known.units)
@@ -215,10 +212,7 @@ def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], 
     warn : is told what headers state otherwise than their files show
     given : WKT of the CRS of those that state none
 
-    Raises
-    ------
-    RoadExtractionError
-        If there is no file, a file cannot be read, or all files are empty.
+    Raises RoadExtractionError if there is no file, a file cannot be read, or all files are empty.
     """
     by_real_path: dict[str, str] = {}
     for path in paths:

@@ -264,10 +264,7 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
     system : "gps" (seconds since 1980), "adjusted" (the same minus 1e9), "week", "day", or "automatic"
     adjusted : whether the header of the cloud states adjusted standard GPS time
 
-    Raises
-    ------
-    RoadExtractionError
-        If the time system is not known, the trajectory has no times, or cloud and trajectory overlap in no time system.
+    Raises RoadExtractionError if the time system is not known, the trajectory has no times, or cloud and trajectory overlap in no time system.
     """
     if system not in TIME_SYSTEMS:
         raise RoadExtractionError(f"The time system {system!r} is not known; choose one of {', '.join(TIME_SYSTEMS)}.")

@@ -74,10 +74,7 @@ def clean_trajectory(trajectory: Trajectory) -> Trajectory:
 
     Standstills remain, since time goes on while the vehicle waits; the road's reference line, which is sampled by distance, does not contain them.
 
-    Raises
-    ------
-    RoadExtractionError
-        If fewer than two different positions remain, they are in degrees, or there are two drives at the same time.
+    Raises RoadExtractionError if fewer than two different positions remain, they are in degrees, or there are two drives at the same time.
     """
     notes = list(trajectory.notes)
     _refuse_degrees(trajectory)
@@ -182,11 +179,8 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
     It is unchanged where its CRS or the target is unknown. Heights stay as they are; whether they are ellipsoidal or orthometric is absorbed by the
     estimated height of the sensor.
 
-    Raises
-    ------
-    RoadExtractionError
-        If the target is not projected, the source is of a kind that has no map coordinates, units contradict the CRS, or positions cannot be
-        brought to the target.
+    Raises RoadExtractionError if the target is not projected, the source is of a kind that has no map coordinates, units contradict the CRS, or
+    positions cannot be brought to the target.
     """
     from pyproj import Transformer
     from pyproj.exceptions import ProjError

@@ -280,9 +280,7 @@ def fit_cubics(bundles: Sequence[LineBundle]) -> list[list[Cubics]]:
     ----------
     bundles : of any number of sections and roads
 
-    Returns
-    -------
-    for each bundle a list of Cubics, its `start` counted as 0
+    Returns for each bundle a list of Cubics, its `start` counted as 0
     """
     fitted: dict[int, list[Cubics]] = {}
     divided = [_Division(number, bundle) for number, bundle in enumerate(bundles)]

@@ -296,9 +296,7 @@ def fit_borders(roads: Sequence[tuple[RoadShape, list[Slice], list[int]]], toler
     tolerance : metres that a border may be missed
     directions : {number of a vertex: radians} of the borders where roads meet others
 
-    Returns
-    -------
-    for each road and each of its sections the functions from left to right
+    Returns for each road and each of its sections the functions from left to right
     """
     bundles = [bundle for shape, strip, _ in roads for bundle in _border_bundles(shape, strip, tolerance, directions)]
     centres = [centre for *_, road_centres in roads for centre in road_centres]
@@ -326,9 +324,7 @@ def _border_bundles(shape, strip, tolerance, directions):
 def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list[int], sections: list[list[Cubics]]) -> list[list[int]]:
     """Give a road its lane offset and sections with widths, by the functions of their borders.
 
-    Returns
-    -------
-    for every slice the numbers of the lanes of its cells
+    Returns for every slice the numbers of the lanes of its cells
     """
     offsets, numbers = [], []
     lines = _lines_of_lane_0(sections, centres, np.diff(shape.starts), int(np.argmax([part.length for part in strip])))

@@ -259,9 +259,7 @@ def pulses_at(gaps: Gaps, side: int, s: np.ndarray, d: np.ndarray, h: np.ndarray
     across : (2, N) m from the point to the scanner, ahead and left along the road
     up : (N,) m that the scanner is higher above the road
 
-    Returns
-    -------
-    (3, K) pulses that passed each slice of all gaps, one after the other, that met something there, and that something before it stopped
+    Returns (3, K) pulses that passed each slice of all gaps, one after the other, that met something there, and that something before it stopped
     """
     length = gaps.last - gaps.first + 1
     start = np.cumsum(length) - length

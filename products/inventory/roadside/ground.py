@@ -239,9 +239,7 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
     side : 1 left, -1 right
     edge : function of stations that gives the offset of the edge of that side
 
-    Returns
-    -------
-    Uprights whose `top` is how deep the gutter lies below its outer side; one for each UPRIGHT_SLICE
+    Returns Uprights whose `top` is how deep the gutter lies below its outer side; one for each UPRIGHT_SLICE
     """
     s = start + (np.arange(slices) + 0.5) * SLICE_LENGTH
     edges = edge(s)

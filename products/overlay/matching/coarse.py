@@ -76,9 +76,7 @@ def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bound
     bounds : Bounds, of the pixels of `photo`
     sign : 1, or -1 where paint is darker than the road
 
-    Returns
-    -------
-    list of Place, each some metres or a turn away from the others
+    Returns list of Place, each some metres or a turn away from the others
     """
     middle_size = float(np.sqrt(bounds.sizes[0] * bounds.sizes[1]))
     half = 0.5 * max(photo.shape) * middle_size
@@ -215,14 +213,9 @@ def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace
     ----------
     rough : RoughPlace in its CRS
 
-    Returns
-    -------
-    SurveyedPaint, Bounds in its local coordinates, for the pixels of the image itself
+    Returns SurveyedPaint, Bounds in its local coordinates, for the pixels of the image itself
 
-    Raises
-    ------
-    RoadExtractionError
-        If the image covers too much ground, the intensity image has nothing there, or too much would have to be searched.
+    Raises RoadExtractionError if the image covers too much ground, the intensity image has nothing there, or too much would have to be searched.
     """
     ground = max(image.width, image.height) * rough.size
     if ground > MOST_GROUND:

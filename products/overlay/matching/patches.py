@@ -49,9 +49,7 @@ def find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarra
     half : m, half the side of a patch
     search : m, how far off it may be
 
-    Returns
-    -------
-    Found, without patches that lie too near the border, hold no paint, or were found at the border of their window
+    Returns Found, without patches that lie too near the border, hold no paint, or were found at the border of their window
     """
     margin = max(2, round(search / cell))
     exclusion = max(2, round(_OTHER_PEAK * half / cell))

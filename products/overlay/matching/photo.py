@@ -95,10 +95,7 @@ def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
     size : m of a pixel, roughly
     cell : m of a cell of the intensity image
 
-    Raises
-    ------
-    RoadExtractionError
-        If the image cannot be read.
+    Raises RoadExtractionError if the image cannot be read.
     """
     from osgeo import gdal
 

@@ -37,10 +37,7 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     intensity : IntensityImage in a projected CRS in metres
     rough : RoughPlace in that CRS
 
-    Raises
-    ------
-    RoadExtractionError
-        If the image does not lie over the intensity image, covers too much ground, or shows other paint.
+    Raises RoadExtractionError if the image does not lie over the intensity image, covers too much ground, or shows other paint.
     """
     settings = settings or ProposalSettings()
     paint, bounds = paint_about(image, intensity, rough)
