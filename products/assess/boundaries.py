@@ -20,15 +20,7 @@ from ...core.common.progress import Progress
 from ...core.common.setting import check_limits, setting
 from ...core.curves.line_segments import SegmentIndex, single_lines
 from .driving_lines import checked_tolerances
-from .matching import (
-    LinePoints,
-    ReferenceStationing,
-    Stations,
-    TrajectoryStationing,
-    constant_runs,
-    cut_runs,
-    sample_lines,
-)
+from .matching import LinePoints, ReferenceStationing, Stations, TrajectoryStationing, constant_runs, cut_runs, sample_lines
 from .metrics import NAN, Errors, Rates
 
 SIDE_NAMES = {1: "left", -1: "right", 0: ""}
