@@ -227,14 +227,11 @@ def unit_note(height: float, crs: str) -> str:
 
 @dataclass(frozen=True)
 class _MapPlace:
-    """A place of the map on the ground: degrees from Greenwich, of the CRS's own datum.
-
-    scale : length on the map per length on the ground, in the direction where it is farthest from 1; NaN where the projection is not defined
-    """
+    """A place of the map on the ground: degrees from Greenwich, of the CRS's own datum."""
 
     longitude: float
     latitude: float
-    scale: float
+    scale: float   # length on the map per length on the ground, in the direction where it is farthest from 1; NaN where the projection is not defined
 
     @property
     def true_to_scale(self) -> bool:

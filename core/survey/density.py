@@ -21,16 +21,11 @@ POINTS_PER_CHUNK = 1 << 15   # cost: points counted at a time: fits the processo
 
 @dataclass(frozen=True)
 class CubeDensity:
-    """Point density in cubes of 1 m.
+    """Point density in cubes of 1 m."""
 
-    points : number of points
-    mean : points per m³, mean over occupied cubes
-    of_a_point : points per m³, mean over points of the density of their own cube
-    """
-
-    points: int
-    mean: float
-    of_a_point: float
+    points: int   # number of points
+    mean: float   # points per m³, mean over occupied cubes
+    of_a_point: float   # points per m³, mean over points of the density of their own cube
 
 
 def cube_density(sections: Iterable, points_of: Callable[..., Points] = lambda section: section,

@@ -27,12 +27,11 @@ FACING_TRIED = 4          # vertices around one that may face it
 
 @dataclass(frozen=True)
 class SharedBorders:
-    """lanes : Lanes with common borders; gaps : (P, 2) median metres between the stripes at each left and right border, 0 for one line;
-    moved : largest metres that a border was moved."""
+    """lanes : Lanes with common borders; gaps : (P, 2) median metres between the stripes at each left and right border, 0 for one line;"""
 
     lanes: Lanes
     gaps: np.ndarray
-    moved: float
+    moved: float   # largest metres that a border was moved
 
 
 def with_shared_borders(source: RoadMapSource) -> RoadMapSource:

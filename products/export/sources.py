@@ -29,20 +29,16 @@ FARTHEST_LAYER = 50.0    # m from the lanes: a layer that lies farther away is o
 class RoadMapSource:
     """Lanes with the other layers of their road map.
 
-    lanes : Lanes in map coordinates
-    driving_lines, marking_lines, road_edges, markings : Features or None
-    notes : sentences for the user, filled by `checked`
-    gaps : (P, 2) metres between the two stripes at the left and right border of each lane, None or 0 where there is one
     middles : (V, 3) of the lanes between their own stripes, vertex by vertex; None where they are the middles of the lanes
     """
 
-    lanes: Lanes
-    driving_lines: Features | None = None
+    lanes: Lanes   # Lanes in map coordinates
+    driving_lines: Features | None = None   # driving_lines, marking_lines, road_edges, markings: Features or None
     marking_lines: Features | None = None
     road_edges: Features | None = None
     markings: Features | None = None
-    notes: list[str] = field(default_factory=list)
-    gaps: np.ndarray | None = None
+    notes: list[str] = field(default_factory=list)   # sentences for the user, filled by `checked`
+    gaps: np.ndarray | None = None   # (P, 2) metres between the two stripes at the left and right border of each lane, None or 0 where there is one
     middles: np.ndarray | None = None
 
     def led_to_middles(self) -> np.ndarray:

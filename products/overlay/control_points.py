@@ -48,25 +48,17 @@ NUMBER_ORDERS = (("pixel", "line", "easting", "northing"), ("easting", "northing
 
 @dataclass(frozen=True)
 class ControlPoints:
-    """N control points.
+    """N control points."""
 
-    pixel, line : (N,) in the image, lines counted downward
-    easting, northing, height : (N,) m; height is NaN where it is unknown
-    names : N texts
-    roles : (N,) texts: "control" (used in the fit), "check" (compared with it) or "disabled"
-    crs : WKT of the map coordinates, "" where unknown
-    left_out : count of rows of the table without numbers
-    """
-
-    pixel: np.ndarray
+    pixel: np.ndarray   # pixel, line: (N,) in the image, lines counted downward
     line: np.ndarray
-    easting: np.ndarray
+    easting: np.ndarray   # easting, northing, height: (N,) m; height is NaN where it is unknown
     northing: np.ndarray
     height: np.ndarray
-    names: tuple[str, ...]
-    roles: np.ndarray
-    crs: str = ""
-    left_out: int = 0
+    names: tuple[str, ...]   # N texts
+    roles: np.ndarray   # (N,) texts: "control" (used in the fit), "check" (compared with it) or "disabled"
+    crs: str = ""   # WKT of the map coordinates, "" where unknown
+    left_out: int = 0   # count of rows of the table without numbers
 
     def __len__(self) -> int:
         return len(self.pixel)

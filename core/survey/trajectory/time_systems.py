@@ -44,19 +44,13 @@ FIRST_SURVEY, LAST_SURVEY = "1990-01-01", "2050-01-01"
 
 @dataclass(frozen=True)
 class ClockTimes:
-    """Clock times that were written as text, or as days.
+    """Clock times that were written as text, or as days."""
 
-    seconds : (N,) since 6 January 1980 as the clock counts, or since its midnight where no date is written; NaN where a text is no time
-    dated, order_known : whether dates are written, and whether day and month can be distinguished
-    zone : "UTC" or "GPS" where the texts say so, "" otherwise; times with an offset from UTC are brought to UTC
-    kind, first : what was written, and the first of them
-    """
-
-    seconds: np.ndarray
-    dated: bool
-    zone: str
+    seconds: np.ndarray   # (N,) since 6 January 1980 as the clock counts, or since its midnight where no date is written; NaN where a text is no time
+    dated: bool   # dated, order_known: whether dates are written, and whether day and month can be distinguished
+    zone: str   # "UTC" or "GPS" where the texts say so, "" otherwise; times with an offset from UTC are brought to UTC
     order_known: bool
-    kind: str = "times of a clock"
+    kind: str = "times of a clock"   # kind, first: what was written, and the first of them
     first: str = ""
 
 

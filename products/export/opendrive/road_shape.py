@@ -35,21 +35,18 @@ LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 @dataclass
 class RoadShape:
     """plan : reference line; s, t, z : for each slice a (borders, n) array of its vertices; starts : (sections + 1,) metres.
-    lifts : for each slice (cells, n) metres that its lanes lie above the road, as beyond a curb; z is that of the road
-
     courses : for each slice and border (3, n) s, t, z that reach from the start of its section to its end at least, s rising: sections are cut
         square, lanes are not
-    follows : whether the reference line lies on the border at which lane 0 is; else that has corners, which a smoother line cuts
     """
 
     plan: PlanView
     s: list[np.ndarray]
     t: list[np.ndarray]
     z: list[np.ndarray]
-    lifts: list[np.ndarray]
+    lifts: list[np.ndarray]   # for each slice (cells, n) metres that its lanes lie above the road, as beyond a curb; z is that of the road
     starts: np.ndarray
     courses: list[list[np.ndarray]]
-    follows: bool
+    follows: bool   # whether the reference line lies on the border at which lane 0 is; else that has corners, which a smoother line cuts
 
 
 def centre_of(one: Slice, left_hand: bool) -> int:

@@ -26,38 +26,25 @@ _FINER = (0.5, 0.25)      # of a step, tried about each place in the second roun
 
 
 class Place(NamedTuple):
-    """A similarity from the photo's middle to the map.
+    """A similarity from the photo's middle to the map."""
 
-    x, y : m, local, of the photo's middle
-    turn : radians, counter-clockwise, from the rows of the photo to east
-    size : m of a pixel
-    sign : 1, or -1 where paint is darker than the road
-    score : 0 to 1, correlation of the contrasts where both are known
-    """
-
-    x: float
+    x: float   # x, y: m, local, of the photo's middle
     y: float
-    turn: float
-    size: float
-    sign: int
-    score: float
+    turn: float   # radians, counter-clockwise, from the rows of the photo to east
+    size: float   # m of a pixel
+    sign: int   # 1, or -1 where paint is darker than the road
+    score: float   # 0 to 1, correlation of the contrasts where both are known
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """What is tried.
+    """What is tried."""
 
-    x, y : m, local, about where the photo's middle lies
-    reach : m, how far off that may be; infinite where nothing is known
-    turns : (from, to) radians
-    sizes : (from, to) m of a pixel
-    """
-
-    x: float
+    x: float   # x, y: m, local, about where the photo's middle lies
     y: float
-    reach: float
-    turns: tuple[float, float]
-    sizes: tuple[float, float]
+    reach: float   # m, how far off that may be; infinite where nothing is known
+    turns: tuple[float, float]   # (from, to) radians
+    sizes: tuple[float, float]   # (from, to) m of a pixel
 
     def of_pixels(self, factor: int) -> Bounds:
         """The same for a photo whose pixels are `factor` times as wide."""

@@ -27,14 +27,10 @@ _NODE = 16  # cells between places whose pixels are computed; between them they 
 
 @dataclass(frozen=True)
 class Placement:
-    """From local map coordinates to pixel and line.
+    """From local map coordinates to pixel and line."""
 
-    polynomial : ImagePolynomial whose input is x and y, m, and whose output is pixel and line
-    sign : -1 where paint is darker than the road
-    """
-
-    polynomial: ImagePolynomial
-    sign: int = 1
+    polynomial: ImagePolynomial   # ImagePolynomial whose input is x and y, m, and whose output is pixel and line
+    sign: int = 1   # -1 where paint is darker than the road
 
     @classmethod
     def fitted(cls, x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray, order: int, sign: int = 1) -> Placement:
