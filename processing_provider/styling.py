@@ -15,7 +15,6 @@ from .results.attributes import explain_attributes
 from .results.layer_tree import place_layer
 from .results.ready_styles import add_ready_styles, load_look
 from .results.runs import GROUP
-from .texts import tr
 
 STYLES = Path(__file__).resolve().parents[1] / "resources" / "styles"
 

@@ -1,13 +1,13 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
-<qgis styleCategories="Symbology|Labeling|Rendering" hasScaleBasedVisibilityFlag="1" simplifyDrawingTol="1" simplifyAlgorithm="0" simplifyMaxScale="1" maxScale="0" autoRefreshTime="0" version="3.40.6-Bratislava" simplifyDrawingHints="1" simplifyLocal="1" symbologyReferenceScale="-1" minScale="2000" autoRefreshMode="Disabled" labelsEnabled="0">
- <renderer-v2 referencescale="-1" symbollevels="0" enableorderby="0" forceraster="0" type="RuleRenderer">
+<qgis simplifyDrawingTol="1" maxScale="0" autoRefreshTime="0" simplifyLocal="1" symbologyReferenceScale="-1" styleCategories="Symbology|Labeling|Rendering" labelsEnabled="0" version="3.40.6-Bratislava" simplifyDrawingHints="1" simplifyMaxScale="1" simplifyAlgorithm="0" minScale="2000" autoRefreshMode="Disabled" hasScaleBasedVisibilityFlag="1">
+ <renderer-v2 referencescale="-1" forceraster="0" symbollevels="0" type="RuleRenderer" enableorderby="0">
   <rules key="{6867bead-0219-53c7-b6a0-e032f3d70a1e}">
-   <rule symbol="0" key="{a6dcdfb4-0bab-54c8-a798-f960a872ef2a}" filter="&quot;pattern&quot; &lt;> 'dashed' and coalesce(&quot;status&quot;, '') &lt;> 'bridged'" label="Solid line"/>
-   <rule symbol="1" key="{3ccd8a8d-c782-59bf-8751-ab4c1c6652b2}" filter="&quot;pattern&quot; = 'dashed' and coalesce(&quot;status&quot;, '') &lt;> 'bridged'" label="Dashed line"/>
-   <rule symbol="2" key="{c5ed0f55-8509-5a7e-9115-baed5585aba3}" filter="&quot;status&quot; = 'bridged'" label="Bridged"/>
+   <rule symbol="0" label="Solid line" key="{a6dcdfb4-0bab-54c8-a798-f960a872ef2a}" filter="&quot;pattern&quot; &lt;> 'dashed' and coalesce(&quot;status&quot;, '') &lt;> 'bridged'"/>
+   <rule symbol="1" label="Dashed line" key="{3ccd8a8d-c782-59bf-8751-ab4c1c6652b2}" filter="&quot;pattern&quot; = 'dashed' and coalesce(&quot;status&quot;, '') &lt;> 'bridged'"/>
+   <rule symbol="2" label="Bridged" key="{c5ed0f55-8509-5a7e-9115-baed5585aba3}" filter="&quot;status&quot; = 'bridged'"/>
   </rules>
   <symbols>
-   <symbol clip_to_extent="1" force_rhr="0" name="0" is_animated="0" alpha="1" type="line" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="0" alpha="1" clip_to_extent="1" type="line" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -15,7 +15,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{d901ec0d-533c-59e7-b273-24117858444d}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{d901ec0d-533c-59e7-b273-24117858444d}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -59,7 +59,7 @@
       </Option>
      </data_defined_properties>
     </layer>
-    <layer pass="0" id="{30f4032e-e40c-568f-b11b-23d0c9afb21a}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{30f4032e-e40c-568f-b11b-23d0c9afb21a}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -104,7 +104,7 @@
      </data_defined_properties>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="1" is_animated="0" alpha="1" type="line" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="1" alpha="1" clip_to_extent="1" type="line" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -112,51 +112,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{10288798-490f-5f61-90ea-ef1f0a8360be}" class="SimpleLine" enabled="1" locked="0">
-     <Option type="Map">
-      <Option value="0" name="align_dash_pattern" type="QString"/>
-      <Option value="flat" name="capstyle" type="QString"/>
-      <Option value="5;2" name="customdash" type="QString"/>
-      <Option value="3x:0,0,0,0,0,0" name="customdash_map_unit_scale" type="QString"/>
-      <Option value="MM" name="customdash_unit" type="QString"/>
-      <Option value="0" name="dash_pattern_offset" type="QString"/>
-      <Option value="3x:0,0,0,0,0,0" name="dash_pattern_offset_map_unit_scale" type="QString"/>
-      <Option value="MM" name="dash_pattern_offset_unit" type="QString"/>
-      <Option value="0" name="draw_inside_polygon" type="QString"/>
-      <Option value="round" name="joinstyle" type="QString"/>
-      <Option value="141,146,153,255,rgb:0.55294117647058827,0.5725490196078431,0.59999999999999998,1" name="line_color" type="QString"/>
-      <Option value="solid" name="line_style" type="QString"/>
-      <Option value="0.3" name="line_width" type="QString"/>
-      <Option value="MM" name="line_width_unit" type="QString"/>
-      <Option value="0" name="offset" type="QString"/>
-      <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
-      <Option value="MM" name="offset_unit" type="QString"/>
-      <Option value="0" name="ring_filter" type="QString"/>
-      <Option value="0" name="trim_distance_end" type="QString"/>
-      <Option value="3x:0,0,0,0,0,0" name="trim_distance_end_map_unit_scale" type="QString"/>
-      <Option value="MM" name="trim_distance_end_unit" type="QString"/>
-      <Option value="0" name="trim_distance_start" type="QString"/>
-      <Option value="3x:0,0,0,0,0,0" name="trim_distance_start_map_unit_scale" type="QString"/>
-      <Option value="MM" name="trim_distance_start_unit" type="QString"/>
-      <Option value="0" name="tweak_dash_pattern_on_corners" type="QString"/>
-      <Option value="0" name="use_custom_dash" type="QString"/>
-      <Option value="3x:0,0,0,0,0,0" name="width_map_unit_scale" type="QString"/>
-     </Option>
-     <data_defined_properties>
-      <Option type="Map">
-       <Option value="" name="name" type="QString"/>
-       <Option name="properties" type="Map">
-        <Option name="outlineWidth" type="Map">
-         <Option value="true" name="active" type="bool"/>
-         <Option value="if(@map_scale > 1200, 0.18, 0.3)" name="expression" type="QString"/>
-         <Option value="3" name="type" type="int"/>
-        </Option>
-       </Option>
-       <Option value="collection" name="type" type="QString"/>
-      </Option>
-     </data_defined_properties>
-    </layer>
-    <layer pass="0" id="{b597608f-32e9-5127-8b85-11ad69e60815}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{10288798-490f-5f61-90ea-ef1f0a8360be}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -168,7 +124,7 @@
       <Option value="MM" name="dash_pattern_offset_unit" type="QString"/>
       <Option value="0" name="draw_inside_polygon" type="QString"/>
       <Option value="round" name="joinstyle" type="QString"/>
-      <Option value="238,241,244,255,rgb:0.93333333333333335,0.94509803921568625,0.95686274509803926,1" name="line_color" type="QString"/>
+      <Option value="211,216,221,255,rgb:0.82745098039215681,0.84705882352941175,0.8666666666666667,1" name="line_color" type="QString"/>
       <Option value="solid" name="line_style" type="QString"/>
       <Option value="0.13" name="line_width" type="QString"/>
       <Option value="MM" name="line_width_unit" type="QString"/>
@@ -201,7 +157,7 @@
      </data_defined_properties>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="2" is_animated="0" alpha="1" type="line" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="2" alpha="1" clip_to_extent="1" type="line" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -209,7 +165,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{cd2615db-c880-5dba-a0f4-d12e5583af7b}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{b597608f-32e9-5127-8b85-11ad69e60815}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>

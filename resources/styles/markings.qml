@@ -1,23 +1,23 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
-<qgis styleCategories="Symbology|Labeling|Rendering" hasScaleBasedVisibilityFlag="1" simplifyDrawingTol="1" simplifyAlgorithm="0" simplifyMaxScale="1" maxScale="0" autoRefreshTime="0" version="3.40.6-Bratislava" simplifyDrawingHints="1" simplifyLocal="1" symbologyReferenceScale="-1" minScale="2000" autoRefreshMode="Disabled" labelsEnabled="0">
- <renderer-v2 referencescale="-1" symbollevels="0" enableorderby="0" forceraster="0" attr="class" type="categorizedSymbol">
+<qgis simplifyDrawingTol="1" maxScale="0" autoRefreshTime="0" simplifyLocal="1" symbologyReferenceScale="-1" styleCategories="Symbology|Labeling|Rendering" labelsEnabled="0" version="3.40.6-Bratislava" simplifyDrawingHints="1" simplifyMaxScale="1" simplifyAlgorithm="0" minScale="2000" autoRefreshMode="Disabled" hasScaleBasedVisibilityFlag="1">
+ <renderer-v2 attr="class" referencescale="-1" forceraster="0" symbollevels="0" type="categorizedSymbol" enableorderby="0">
   <categories>
-   <category symbol="0" value="edge" uuid="{4b521581-8fd3-54f5-ae82-9d2d0433c34a}" type="string" label="Edge line" render="true"/>
-   <category symbol="1" value="lane" uuid="{aef07399-7c69-567b-9aaa-a5211414e8e0}" type="string" label="Lane line" render="true"/>
-   <category symbol="2" value="centre" uuid="{eb8abaa0-ff41-5c4b-a753-3282ba579ff3}" type="string" label="Centre line" render="true"/>
-   <category symbol="3" value="zebra" uuid="{8cbc01b6-4328-5cfb-acee-69bbb4770036}" type="string" label="Zebra crossing" render="true"/>
-   <category symbol="4" value="stop" uuid="{1eb2a098-98f5-55b1-82a6-e511a7a5220e}" type="string" label="Stop line" render="true"/>
-   <category symbol="5" value="give_way" uuid="{f672ecd5-b03a-59bf-a27d-dab32c788b0a}" type="string" label="Give-way line" render="true"/>
-   <category symbol="6" value="zigzag" uuid="{16d40e64-4f55-5335-a2f5-41dcafecd222}" type="string" label="Zigzag line" render="true"/>
-   <category symbol="7" value="arrow" uuid="{cece5e9f-d4d5-5c69-9a20-085777903d20}" type="string" label="Arrow" render="true"/>
-   <category symbol="8" value="bicycle" uuid="{ae85fbe6-f9c8-5418-8eb8-8069259cb016}" type="string" label="Bicycle symbol" render="true"/>
-   <category symbol="9" value="bus" uuid="{4c1d2a69-fa9a-569a-bf81-795c5d0ca778}" type="string" label="Word BUS" render="true"/>
-   <category symbol="10" value="symbol" uuid="{51ac9108-847d-5668-9235-9e2550d439a2}" type="string" label="Symbol" render="true"/>
-   <category symbol="11" value="hatch" uuid="{1594fd82-ecdf-57f7-a5b0-13c69efe5c3e}" type="string" label="Hatching" render="true"/>
-   <category symbol="12" value="" uuid="{b98b9de0-45fe-56db-a7a7-a14570be85b5}" type="string" label="Other paint" render="true"/>
+   <category symbol="0" label="Edge line" value="edge" uuid="{4b521581-8fd3-54f5-ae82-9d2d0433c34a}" type="string" render="true"/>
+   <category symbol="1" label="Lane line" value="lane" uuid="{aef07399-7c69-567b-9aaa-a5211414e8e0}" type="string" render="true"/>
+   <category symbol="2" label="Centre line" value="centre" uuid="{eb8abaa0-ff41-5c4b-a753-3282ba579ff3}" type="string" render="true"/>
+   <category symbol="3" label="Zebra crossing" value="zebra" uuid="{8cbc01b6-4328-5cfb-acee-69bbb4770036}" type="string" render="true"/>
+   <category symbol="4" label="Stop line" value="stop" uuid="{1eb2a098-98f5-55b1-82a6-e511a7a5220e}" type="string" render="true"/>
+   <category symbol="5" label="Give-way line" value="give_way" uuid="{f672ecd5-b03a-59bf-a27d-dab32c788b0a}" type="string" render="true"/>
+   <category symbol="6" label="Zigzag line" value="zigzag" uuid="{16d40e64-4f55-5335-a2f5-41dcafecd222}" type="string" render="true"/>
+   <category symbol="7" label="Arrow" value="arrow" uuid="{cece5e9f-d4d5-5c69-9a20-085777903d20}" type="string" render="true"/>
+   <category symbol="8" label="Bicycle symbol" value="bicycle" uuid="{ae85fbe6-f9c8-5418-8eb8-8069259cb016}" type="string" render="true"/>
+   <category symbol="9" label="Word BUS" value="bus" uuid="{4c1d2a69-fa9a-569a-bf81-795c5d0ca778}" type="string" render="true"/>
+   <category symbol="10" label="Symbol" value="symbol" uuid="{51ac9108-847d-5668-9235-9e2550d439a2}" type="string" render="true"/>
+   <category symbol="11" label="Hatching" value="hatch" uuid="{1594fd82-ecdf-57f7-a5b0-13c69efe5c3e}" type="string" render="true"/>
+   <category symbol="12" label="Other paint" value="" uuid="{b98b9de0-45fe-56db-a7a7-a14570be85b5}" type="string" render="true"/>
   </categories>
   <symbols>
-   <symbol clip_to_extent="1" force_rhr="0" name="0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -25,7 +25,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{2b575d78-03cc-5018-a46c-21514d987a4f}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{2b575d78-03cc-5018-a46c-21514d987a4f}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -38,7 +38,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@0@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@0@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -46,7 +46,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{051e74f4-ab20-5c24-abda-843c1ea95326}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{051e74f4-ab20-5c24-abda-843c1ea95326}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -54,9 +54,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -71,7 +71,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="1" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="1" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -79,7 +79,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{f362f283-ff06-5228-bc91-38c80ce19d55}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{f362f283-ff06-5228-bc91-38c80ce19d55}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -92,7 +92,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@1@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@1@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -100,7 +100,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{460bf586-5494-50d8-9c92-face2dc691b7}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{460bf586-5494-50d8-9c92-face2dc691b7}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -108,9 +108,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -125,7 +125,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="10" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="10" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -133,7 +133,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{8a0349eb-71bb-59b4-9109-7ecf6f9d221e}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{8a0349eb-71bb-59b4-9109-7ecf6f9d221e}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -146,7 +146,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@10@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@10@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -154,7 +154,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{6929254b-3c19-52bc-aa1c-0bc26451a3e6}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{6929254b-3c19-52bc-aa1c-0bc26451a3e6}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -162,9 +162,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -179,7 +179,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="11" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="11" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -187,7 +187,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{bd55f7e3-18f5-55af-bcef-94bd54a6f5ab}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{bd55f7e3-18f5-55af-bcef-94bd54a6f5ab}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -200,7 +200,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@11@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@11@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -208,7 +208,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{78a5e2ec-6b66-511e-92f2-6841513704f0}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{78a5e2ec-6b66-511e-92f2-6841513704f0}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -216,9 +216,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -233,7 +233,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="12" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="12" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -241,7 +241,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{82c5fb67-d0e6-5cfb-ba01-92de412b4a44}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{82c5fb67-d0e6-5cfb-ba01-92de412b4a44}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -254,7 +254,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@12@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@12@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -262,7 +262,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{1f656f83-d64b-552f-b6f8-17cd15bbd5e3}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{1f656f83-d64b-552f-b6f8-17cd15bbd5e3}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -270,9 +270,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -287,7 +287,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="2" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="2" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -295,7 +295,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{bb1f2e30-e4eb-5d5a-bbc7-d7715a9d1b0d}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{bb1f2e30-e4eb-5d5a-bbc7-d7715a9d1b0d}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -308,7 +308,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@2@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@2@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -316,7 +316,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{5379093d-f2c0-5850-b983-1fafb2b45d5f}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{5379093d-f2c0-5850-b983-1fafb2b45d5f}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -324,9 +324,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -341,7 +341,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="3" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="3" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -349,7 +349,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{654ba08c-8066-5775-815f-70c24d4ce9ba}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{654ba08c-8066-5775-815f-70c24d4ce9ba}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -362,7 +362,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@3@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@3@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -370,7 +370,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{ef4d06d2-824e-5368-ae81-9f5ba8e010c3}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{ef4d06d2-824e-5368-ae81-9f5ba8e010c3}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -378,9 +378,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -395,7 +395,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="4" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="4" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -403,7 +403,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{a61cdd7a-0834-5dfd-bd04-8219bae1bc13}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{a61cdd7a-0834-5dfd-bd04-8219bae1bc13}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -416,7 +416,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@4@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@4@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -424,7 +424,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{fce76b2f-51f2-5bf0-9d39-a582cd9532d6}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{fce76b2f-51f2-5bf0-9d39-a582cd9532d6}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -432,9 +432,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -449,7 +449,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="5" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="5" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -457,7 +457,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{8b4c07cf-4f6b-586a-b174-54d49d0a2627}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{8b4c07cf-4f6b-586a-b174-54d49d0a2627}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -470,7 +470,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@5@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@5@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -478,7 +478,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{29c42b47-e035-57eb-bf4b-ed06c1eb6a0e}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{29c42b47-e035-57eb-bf4b-ed06c1eb6a0e}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -486,9 +486,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -503,7 +503,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="6" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="6" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -511,7 +511,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{7a588d76-d23a-50d8-b743-eb3096ae269a}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{7a588d76-d23a-50d8-b743-eb3096ae269a}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -524,7 +524,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@6@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@6@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -532,7 +532,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{d05158d3-ad12-59ba-ab31-92c5dcc27133}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{d05158d3-ad12-59ba-ab31-92c5dcc27133}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -540,9 +540,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -557,7 +557,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="7" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="7" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -565,7 +565,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{fd5b5394-39c9-5f70-9075-16f91b5e154d}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{fd5b5394-39c9-5f70-9075-16f91b5e154d}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -578,7 +578,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@7@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@7@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -586,7 +586,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{b397648a-e036-5deb-8c80-90cb0c5e29a3}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{b397648a-e036-5deb-8c80-90cb0c5e29a3}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -594,9 +594,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -611,7 +611,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="8" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="8" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -619,7 +619,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{9680f3cd-5a5d-590c-aa6e-ed7c11a54ef4}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{9680f3cd-5a5d-590c-aa6e-ed7c11a54ef4}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -632,7 +632,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@8@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@8@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -640,7 +640,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{9d48049e-826c-5ff7-803c-2ed630004659}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{9d48049e-826c-5ff7-803c-2ed630004659}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -648,9 +648,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>
@@ -665,7 +665,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="9" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="9" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -673,7 +673,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{68948562-3742-53a8-a4dd-4b13643c9089}" class="GeometryGenerator" enabled="1" locked="0">
+    <layer id="{68948562-3742-53a8-a4dd-4b13643c9089}" locked="0" class="GeometryGenerator" enabled="1" pass="0">
      <Option type="Map">
       <Option value="Fill" name="SymbolType" type="QString"/>
       <Option value="with_variable('box', oriented_bbox($geometry), if(area($geometry) > 0.72 * area(@box), @box, smooth(simplify($geometry, 0.04), 1, 0.25)))" name="geometryModifier" type="QString"/>
@@ -686,7 +686,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@9@0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@9@0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -694,7 +694,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{d9b33e75-ae6b-5797-acac-953f9c03dba2}" class="SimpleFill" enabled="1" locked="0">
+      <layer id="{d9b33e75-ae6b-5797-acac-953f9c03dba2}" locked="0" class="SimpleFill" enabled="1" pass="0">
        <Option type="Map">
         <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
         <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -702,9 +702,9 @@
         <Option value="0,0" name="offset" type="QString"/>
         <Option value="3x:0,0,0,0,0,0" name="offset_map_unit_scale" type="QString"/>
         <Option value="MM" name="offset_unit" type="QString"/>
-        <Option value="154,160,166,255,rgb:0.60392156862745094,0.62745098039215685,0.65098039215686276,1" name="outline_color" type="QString"/>
+        <Option value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1" name="outline_color" type="QString"/>
         <Option value="solid" name="outline_style" type="QString"/>
-        <Option value="0.08" name="outline_width" type="QString"/>
+        <Option value="0.04" name="outline_width" type="QString"/>
         <Option value="MM" name="outline_width_unit" type="QString"/>
         <Option value="solid" name="style" type="QString"/>
        </Option>

@@ -1,17 +1,17 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
-<qgis styleCategories="Symbology|Labeling" version="3.40.6-Bratislava" labelsEnabled="1">
- <renderer-v2 referencescale="-1" symbollevels="0" enableorderby="0" forceraster="0" attr="if(&quot;part&quot; = 'top', 'top', concat(if(&quot;edge&quot; = 'pavement', 'pavement', if(&quot;edge&quot; = 'dropped', 'dropped', 'curb')), ' ', if(coalesce(&quot;status&quot;, 'measured') in ('bridged', 'inferred'), 'bridged', 'measured')))" type="categorizedSymbol">
+<qgis styleCategories="Symbology|Labeling" labelsEnabled="1" version="3.40.6-Bratislava">
+ <renderer-v2 attr="if(&quot;part&quot; = 'top', 'top', concat(if(&quot;edge&quot; = 'pavement', 'pavement', if(&quot;edge&quot; = 'dropped', 'dropped', 'curb')), ' ', if(coalesce(&quot;status&quot;, 'measured') in ('bridged', 'inferred'), 'bridged', 'measured')))" referencescale="-1" forceraster="0" symbollevels="0" type="categorizedSymbol" enableorderby="0">
   <categories>
-   <category symbol="0" value="curb measured" uuid="{4f2e6d21-813e-5e05-995f-76129fdadff9}" type="string" label="Curb" render="true"/>
-   <category symbol="1" value="curb bridged" uuid="{6a07415b-ef45-54bc-ba13-9aa82e693274}" type="string" label="Curb, bridged" render="true"/>
-   <category symbol="2" value="dropped measured" uuid="{743a46a3-b1ef-5645-bf90-12660ea2e294}" type="string" label="Dropped curb" render="true"/>
-   <category symbol="3" value="dropped bridged" uuid="{de04e51b-d305-5725-b9e2-4b0fd5b53f77}" type="string" label="Dropped curb, bridged" render="true"/>
-   <category symbol="4" value="pavement measured" uuid="{63ab7551-72bf-55a5-b1b6-46bd03a6beb0}" type="string" label="Edge of the pavement, no curb" render="true"/>
-   <category symbol="5" value="top" uuid="{86e7bec2-f705-52fc-971a-5f5846ede322}" type="string" label="Top of the curb" render="true"/>
-   <category symbol="6" value="pavement bridged" uuid="{b75a890d-59c3-55b8-8250-87f9ff5bb993}" type="string" label="Edge of the pavement, bridged" render="true"/>
+   <category symbol="0" label="Curb" value="curb measured" uuid="{4f2e6d21-813e-5e05-995f-76129fdadff9}" type="string" render="true"/>
+   <category symbol="1" label="Curb, bridged" value="curb bridged" uuid="{6a07415b-ef45-54bc-ba13-9aa82e693274}" type="string" render="true"/>
+   <category symbol="2" label="Dropped curb" value="dropped measured" uuid="{743a46a3-b1ef-5645-bf90-12660ea2e294}" type="string" render="true"/>
+   <category symbol="3" label="Dropped curb, bridged" value="dropped bridged" uuid="{de04e51b-d305-5725-b9e2-4b0fd5b53f77}" type="string" render="true"/>
+   <category symbol="4" label="Edge of the pavement, no curb" value="pavement measured" uuid="{63ab7551-72bf-55a5-b1b6-46bd03a6beb0}" type="string" render="true"/>
+   <category symbol="5" label="Top of the curb" value="top" uuid="{86e7bec2-f705-52fc-971a-5f5846ede322}" type="string" render="true"/>
+   <category symbol="6" label="Edge of the pavement, bridged" value="pavement bridged" uuid="{b75a890d-59c3-55b8-8250-87f9ff5bb993}" type="string" render="true"/>
   </categories>
   <symbols>
-   <symbol clip_to_extent="1" force_rhr="0" name="0" is_animated="0" alpha="1" type="line" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="0" alpha="1" clip_to_extent="1" type="line" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -19,7 +19,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{adcedbe4-4ee1-5fd8-aef4-ee96c13c4ac1}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{adcedbe4-4ee1-5fd8-aef4-ee96c13c4ac1}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -63,7 +63,7 @@
       </Option>
      </data_defined_properties>
     </layer>
-    <layer pass="0" id="{975dc45a-f904-55bf-82d8-793cbfb702f3}" class="HashLine" enabled="1" locked="0">
+    <layer id="{975dc45a-f904-55bf-82d8-793cbfb702f3}" locked="0" class="HashLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="4" name="average_angle_length" type="QString"/>
       <Option value="3x:0,0,0,0,0,0" name="average_angle_map_unit_scale" type="QString"/>
@@ -99,7 +99,7 @@
        <Option value="collection" name="type" type="QString"/>
       </Option>
      </data_defined_properties>
-     <symbol clip_to_extent="1" force_rhr="0" name="@0@1" is_animated="0" alpha="1" type="line" frame_rate="10">
+     <symbol frame_rate="10" force_rhr="0" name="@0@1" alpha="1" clip_to_extent="1" type="line" is_animated="0">
       <data_defined_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -107,7 +107,7 @@
         <Option value="collection" name="type" type="QString"/>
        </Option>
       </data_defined_properties>
-      <layer pass="0" id="{f316e243-7031-5b5c-8c8b-f031ed143848}" class="SimpleLine" enabled="1" locked="0">
+      <layer id="{f316e243-7031-5b5c-8c8b-f031ed143848}" locked="0" class="SimpleLine" enabled="1" pass="0">
        <Option type="Map">
         <Option value="0" name="align_dash_pattern" type="QString"/>
         <Option value="flat" name="capstyle" type="QString"/>
@@ -154,7 +154,7 @@
      </symbol>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="1" is_animated="0" alpha="1" type="line" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="1" alpha="1" clip_to_extent="1" type="line" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -162,7 +162,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{d1072fe2-de98-55d8-be83-205a3867fbe7}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{d1072fe2-de98-55d8-be83-205a3867fbe7}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -207,7 +207,7 @@
      </data_defined_properties>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="2" is_animated="0" alpha="1" type="line" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="2" alpha="1" clip_to_extent="1" type="line" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -215,7 +215,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{32d58db0-98e1-5a44-84ec-e883c104ef65}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{32d58db0-98e1-5a44-84ec-e883c104ef65}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -259,7 +259,7 @@
       </Option>
      </data_defined_properties>
     </layer>
-    <layer pass="0" id="{00745cc6-1f19-5df5-a81c-147bcd68364a}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{00745cc6-1f19-5df5-a81c-147bcd68364a}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -304,7 +304,7 @@
      </data_defined_properties>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="3" is_animated="0" alpha="1" type="line" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="3" alpha="1" clip_to_extent="1" type="line" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -312,7 +312,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{7a09389e-35c7-5e8e-a43a-6d2f1044a378}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{7a09389e-35c7-5e8e-a43a-6d2f1044a378}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -357,7 +357,7 @@
      </data_defined_properties>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="4" is_animated="0" alpha="1" type="line" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="4" alpha="1" clip_to_extent="1" type="line" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -365,7 +365,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{f6e23d14-1aed-55a2-b3a1-0e72520ed54b}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{f6e23d14-1aed-55a2-b3a1-0e72520ed54b}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -410,7 +410,7 @@
      </data_defined_properties>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="5" is_animated="0" alpha="1" type="line" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="5" alpha="1" clip_to_extent="1" type="line" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -418,7 +418,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{249e7827-d0af-5446-988a-295dbb6b5750}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{249e7827-d0af-5446-988a-295dbb6b5750}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -463,7 +463,7 @@
      </data_defined_properties>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="6" is_animated="0" alpha="1" type="line" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="6" alpha="1" clip_to_extent="1" type="line" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -471,7 +471,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{f1fbd053-14f5-5275-92f8-cb28a94826ab}" class="SimpleLine" enabled="1" locked="0">
+    <layer id="{f1fbd053-14f5-5275-92f8-cb28a94826ab}" locked="0" class="SimpleLine" enabled="1" pass="0">
      <Option type="Map">
       <Option value="0" name="align_dash_pattern" type="QString"/>
       <Option value="flat" name="capstyle" type="QString"/>
@@ -532,14 +532,14 @@
  </selection>
  <labeling type="rule-based">
   <rules key="{35e0384a-2372-524a-bc38-739efb908f9b}">
-   <rule key="{f183c18a-cebb-5de1-9a34-8ab1831b8504}" scalemaxdenom="400" filter="&quot;edge&quot; &lt;> 'pavement' and coalesce(&quot;part&quot;, '') &lt;> 'top' and coalesce(&quot;height_m&quot;, 0) > 0.01 and &quot;length_m&quot; > 6">
+   <rule scalemaxdenom="400" key="{f183c18a-cebb-5de1-9a34-8ab1831b8504}" filter="&quot;edge&quot; &lt;> 'pavement' and coalesce(&quot;part&quot;, '') &lt;> 'top' and coalesce(&quot;height_m&quot;, 0) > 0.01 and &quot;length_m&quot; > 6">
     <settings calloutType="simple">
-     <text-style previewBkgrdColor="255,255,255,255,rgb:1,1,1,1" useSubstitutions="0" namedStyle="" blendMode="0" legendString="Aa" fontLetterSpacing="0" fontSizeMapUnitScale="3x:0,0,0,0,0,0" fontFamily="Noto Sans" fontSize="6" multilineHeight="1" tabStopDistance="6" textOpacity="1" fontWeight="50" fontKerning="1" fontItalic="0" capitalization="0" forcedItalic="0" fontWordSpacing="0" fieldName="concat(format_number(100 * &quot;height_m&quot;, 0), ' cm')" isExpression="1" forcedBold="0" fontSizeUnit="Point" tabStopDistanceUnit="Percentage" fontUnderline="0" fontStrikeout="0" textOrientation="horizontal" textColor="38,40,43,255,rgb:0.14901960784313725,0.15686274509803921,0.16862745098039217,1" multilineHeightUnit="Percentage" tabStopDistanceMapUnitScale="3x:0,0,0,0,0,0" allowHtml="0">
+     <text-style fontStrikeout="0" previewBkgrdColor="255,255,255,255,rgb:1,1,1,1" multilineHeight="1" namedStyle="" capitalization="0" blendMode="0" fontItalic="0" multilineHeightUnit="Percentage" fieldName="concat(format_number(100 * &quot;height_m&quot;, 0), ' cm')" fontUnderline="0" fontKerning="1" fontWordSpacing="0" textOpacity="1" fontLetterSpacing="0" textColor="38,40,43,255,rgb:0.14901960784313725,0.15686274509803921,0.16862745098039217,1" allowHtml="0" useSubstitutions="0" fontFamily="Noto Sans" tabStopDistance="6" fontSizeMapUnitScale="3x:0,0,0,0,0,0" textOrientation="horizontal" tabStopDistanceMapUnitScale="3x:0,0,0,0,0,0" legendString="Aa" fontWeight="50" forcedBold="0" forcedItalic="0" fontSizeUnit="Point" tabStopDistanceUnit="Percentage" isExpression="1" fontSize="6">
       <families/>
-      <text-buffer bufferColor="255,255,255,255,rgb:1,1,1,1" bufferSize="0.69999999999999996" bufferOpacity="0.75" bufferJoinStyle="128" bufferDraw="1" bufferSizeMapUnitScale="3x:0,0,0,0,0,0" bufferNoFill="1" bufferSizeUnits="MM" bufferBlendMode="0"/>
-      <text-mask maskJoinStyle="128" maskSize="1.5" maskSize2="1.5" maskType="0" maskOpacity="1" maskSizeUnits="MM" maskedSymbolLayers="" maskEnabled="0" maskSizeMapUnitScale="3x:0,0,0,0,0,0"/>
-      <background shapeFillColor="255,255,255,255,rgb:1,1,1,1" shapeSizeY="0" shapeType="0" shapeRadiiX="0" shapeBorderColor="128,128,128,255,rgb:0.50196078431372548,0.50196078431372548,0.50196078431372548,1" shapeBorderWidth="0" shapeOffsetUnit="MM" shapeOffsetX="0" shapeSizeType="0" shapeJoinStyle="64" shapeRadiiY="0" shapeRotation="0" shapeSizeUnit="MM" shapeSizeX="0" shapeRotationType="0" shapeBorderWidthUnit="MM" shapeRadiiMapUnitScale="3x:0,0,0,0,0,0" shapeBorderWidthMapUnitScale="3x:0,0,0,0,0,0" shapeOpacity="1" shapeSVGFile="" shapeOffsetMapUnitScale="3x:0,0,0,0,0,0" shapeRadiiUnit="MM" shapeOffsetY="0" shapeSizeMapUnitScale="3x:0,0,0,0,0,0" shapeDraw="0" shapeBlendMode="0">
-       <symbol clip_to_extent="1" force_rhr="0" name="fillSymbol" is_animated="0" alpha="1" type="fill" frame_rate="10">
+      <text-buffer bufferSizeMapUnitScale="3x:0,0,0,0,0,0" bufferColor="255,255,255,255,rgb:1,1,1,1" bufferOpacity="0.75" bufferDraw="1" bufferJoinStyle="128" bufferSizeUnits="MM" bufferSize="0.69999999999999996" bufferNoFill="1" bufferBlendMode="0"/>
+      <text-mask maskEnabled="0" maskSize="1.5" maskJoinStyle="128" maskOpacity="1" maskSizeUnits="MM" maskedSymbolLayers="" maskSize2="1.5" maskType="0" maskSizeMapUnitScale="3x:0,0,0,0,0,0"/>
+      <background shapeOffsetY="0" shapeSizeMapUnitScale="3x:0,0,0,0,0,0" shapeRotation="0" shapeOpacity="1" shapeRadiiX="0" shapeSizeUnit="MM" shapeBorderWidth="0" shapeOffsetX="0" shapeRadiiY="0" shapeBorderWidthUnit="MM" shapeSVGFile="" shapeBlendMode="0" shapeRadiiUnit="MM" shapeRotationType="0" shapeRadiiMapUnitScale="3x:0,0,0,0,0,0" shapeBorderColor="128,128,128,255,rgb:0.50196078431372548,0.50196078431372548,0.50196078431372548,1" shapeType="0" shapeSizeType="0" shapeOffsetMapUnitScale="3x:0,0,0,0,0,0" shapeFillColor="255,255,255,255,rgb:1,1,1,1" shapeDraw="0" shapeSizeY="0" shapeOffsetUnit="MM" shapeSizeX="0" shapeBorderWidthMapUnitScale="3x:0,0,0,0,0,0" shapeJoinStyle="64">
+       <symbol frame_rate="10" force_rhr="0" name="fillSymbol" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
         <data_defined_properties>
          <Option type="Map">
           <Option value="" name="name" type="QString"/>
@@ -547,7 +547,7 @@
           <Option value="collection" name="type" type="QString"/>
          </Option>
         </data_defined_properties>
-        <layer pass="0" id="" class="SimpleFill" enabled="1" locked="0">
+        <layer id="" locked="0" class="SimpleFill" enabled="1" pass="0">
          <Option type="Map">
           <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
           <Option value="255,255,255,255,rgb:1,1,1,1" name="color" type="QString"/>
@@ -571,7 +571,7 @@
         </layer>
        </symbol>
       </background>
-      <shadow shadowOffsetDist="1" shadowRadiusAlphaOnly="0" shadowOffsetMapUnitScale="3x:0,0,0,0,0,0" shadowOpacity="0.69999999999999996" shadowOffsetUnit="MM" shadowRadiusUnit="MM" shadowOffsetAngle="135" shadowUnder="0" shadowDraw="0" shadowColor="0,0,0,255,rgb:0,0,0,1" shadowRadius="1.5" shadowRadiusMapUnitScale="3x:0,0,0,0,0,0" shadowBlendMode="6" shadowOffsetGlobal="1" shadowScale="100"/>
+      <shadow shadowOpacity="0.69999999999999996" shadowOffsetGlobal="1" shadowOffsetDist="1" shadowRadiusUnit="MM" shadowOffsetMapUnitScale="3x:0,0,0,0,0,0" shadowScale="100" shadowDraw="0" shadowRadius="1.5" shadowOffsetAngle="135" shadowColor="0,0,0,255,rgb:0,0,0,1" shadowUnder="0" shadowOffsetUnit="MM" shadowBlendMode="6" shadowRadiusMapUnitScale="3x:0,0,0,0,0,0" shadowRadiusAlphaOnly="0"/>
       <dd_properties>
        <Option type="Map">
         <Option value="" name="name" type="QString"/>
@@ -581,9 +581,9 @@
       </dd_properties>
       <substitutions/>
      </text-style>
-     <text-format wrapChar="" addDirectionSymbol="0" formatNumbers="0" rightDirectionSymbol=">" useMaxLineLengthForAutoWrap="1" autoWrapLength="0" multilineAlign="3" leftDirectionSymbol="&lt;" reverseDirectionSymbol="0" placeDirectionSymbol="0" decimals="3" plussign="0"/>
-     <placement layerType="UnknownGeometry" repeatDistance="0" centroidInside="0" distMapUnitScale="3x:0,0,0,0,0,0" allowDegraded="0" preserveRotation="1" lineAnchorType="0" overrunDistance="0" dist="0" polygonPlacementFlags="2" yOffset="0" geometryGenerator="" geometryGeneratorType="PointGeometry" offsetUnits="MM" priority="5" placementFlags="10" overrunDistanceUnit="MM" prioritization="PreferCloser" centroidWhole="0" repeatDistanceMapUnitScale="3x:0,0,0,0,0,0" maximumDistanceMapUnitScale="3x:0,0,0,0,0,0" repeatDistanceUnits="MM" xOffset="0" quadOffset="4" rotationUnit="AngleDegrees" distUnits="MM" maximumDistanceUnit="MM" labelOffsetMapUnitScale="3x:0,0,0,0,0,0" maxCurvedCharAngleOut="-25" maximumDistance="0" overlapHandling="PreventOverlap" geometryGeneratorEnabled="0" lineAnchorClipping="0" placement="2" maxCurvedCharAngleIn="25" lineAnchorPercent="0.5" fitInPolygonOnly="0" rotationAngle="0" offsetType="0" lineAnchorTextPoint="FollowPlacement" predefinedPositionOrder="TR,TL,BR,BL,R,L,TSR,BSR" overrunDistanceMapUnitScale="3x:0,0,0,0,0,0"/>
-     <rendering obstacle="1" mergeLines="0" labelPerPart="0" drawLabels="1" obstacleFactor="1" scaleMin="0" fontMinPixelSize="0" fontMaxPixelSize="10000" fontLimitPixelSize="0" upsidedownLabels="0" scaleMax="400" obstacleType="1" unplacedVisibility="0" zIndex="0" maxNumLabels="2000" scaleVisibility="1" limitNumLabels="0" minFeatureSize="0"/>
+     <text-format wrapChar="" rightDirectionSymbol=">" formatNumbers="0" leftDirectionSymbol="&lt;" multilineAlign="3" placeDirectionSymbol="0" addDirectionSymbol="0" plussign="0" decimals="3" autoWrapLength="0" useMaxLineLengthForAutoWrap="1" reverseDirectionSymbol="0"/>
+     <placement geometryGenerator="" layerType="UnknownGeometry" maxCurvedCharAngleOut="-25" preserveRotation="1" xOffset="0" repeatDistanceUnits="MM" offsetType="0" geometryGeneratorEnabled="0" fitInPolygonOnly="0" predefinedPositionOrder="TR,TL,BR,BL,R,L,TSR,BSR" centroidInside="0" lineAnchorPercent="0.5" repeatDistance="0" rotationAngle="0" labelOffsetMapUnitScale="3x:0,0,0,0,0,0" distUnits="MM" polygonPlacementFlags="2" maximumDistanceUnit="MM" repeatDistanceMapUnitScale="3x:0,0,0,0,0,0" overlapHandling="PreventOverlap" lineAnchorType="0" lineAnchorTextPoint="FollowPlacement" overrunDistanceMapUnitScale="3x:0,0,0,0,0,0" yOffset="0" offsetUnits="MM" maximumDistanceMapUnitScale="3x:0,0,0,0,0,0" rotationUnit="AngleDegrees" maxCurvedCharAngleIn="25" placementFlags="10" quadOffset="4" placement="2" overrunDistance="0" lineAnchorClipping="0" distMapUnitScale="3x:0,0,0,0,0,0" maximumDistance="0" dist="0" centroidWhole="0" overrunDistanceUnit="MM" prioritization="PreferCloser" allowDegraded="0" priority="5" geometryGeneratorType="PointGeometry"/>
+     <rendering maxNumLabels="2000" fontMaxPixelSize="10000" upsidedownLabels="0" mergeLines="0" fontLimitPixelSize="0" obstacleFactor="1" scaleMin="0" drawLabels="1" labelPerPart="0" zIndex="0" unplacedVisibility="0" scaleMax="400" obstacleType="1" obstacle="1" limitNumLabels="0" fontMinPixelSize="0" minFeatureSize="0" scaleVisibility="1"/>
      <dd_properties>
       <Option type="Map">
        <Option value="" name="name" type="QString"/>
@@ -603,7 +603,7 @@
        <Option value="false" name="drawToAllParts" type="bool"/>
        <Option value="0" name="enabled" type="QString"/>
        <Option value="point_on_exterior" name="labelAnchorPoint" type="QString"/>
-       <Option value="&lt;symbol clip_to_extent=&quot;1&quot; force_rhr=&quot;0&quot; name=&quot;symbol&quot; is_animated=&quot;0&quot; alpha=&quot;1&quot; type=&quot;line&quot; frame_rate=&quot;10&quot;>&lt;data_defined_properties>&lt;Option type=&quot;Map&quot;>&lt;Option value=&quot;&quot; name=&quot;name&quot; type=&quot;QString&quot;/>&lt;Option name=&quot;properties&quot;/>&lt;Option value=&quot;collection&quot; name=&quot;type&quot; type=&quot;QString&quot;/>&lt;/Option>&lt;/data_defined_properties>&lt;layer pass=&quot;0&quot; id=&quot;{bcca57fb-de38-51d7-afad-7a5a65610223}&quot; class=&quot;SimpleLine&quot; enabled=&quot;1&quot; locked=&quot;0&quot;>&lt;Option type=&quot;Map&quot;>&lt;Option value=&quot;0&quot; name=&quot;align_dash_pattern&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;square&quot; name=&quot;capstyle&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;5;2&quot; name=&quot;customdash&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;customdash_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;customdash_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;dash_pattern_offset&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;dash_pattern_offset_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;dash_pattern_offset_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;draw_inside_polygon&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;bevel&quot; name=&quot;joinstyle&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;60,60,60,255,rgb:0.23529411764705882,0.23529411764705882,0.23529411764705882,1&quot; name=&quot;line_color&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;solid&quot; name=&quot;line_style&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0.3&quot; name=&quot;line_width&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;line_width_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;offset&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;offset_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;offset_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;ring_filter&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;trim_distance_end&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;trim_distance_end_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;trim_distance_end_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;trim_distance_start&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;trim_distance_start_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;trim_distance_start_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;tweak_dash_pattern_on_corners&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;use_custom_dash&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;width_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;/Option>&lt;data_defined_properties>&lt;Option type=&quot;Map&quot;>&lt;Option value=&quot;&quot; name=&quot;name&quot; type=&quot;QString&quot;/>&lt;Option name=&quot;properties&quot;/>&lt;Option value=&quot;collection&quot; name=&quot;type&quot; type=&quot;QString&quot;/>&lt;/Option>&lt;/data_defined_properties>&lt;/layer>&lt;/symbol>" name="lineSymbol" type="QString"/>
+       <Option value="&lt;symbol frame_rate=&quot;10&quot; force_rhr=&quot;0&quot; name=&quot;symbol&quot; alpha=&quot;1&quot; clip_to_extent=&quot;1&quot; type=&quot;line&quot; is_animated=&quot;0&quot;>&lt;data_defined_properties>&lt;Option type=&quot;Map&quot;>&lt;Option value=&quot;&quot; name=&quot;name&quot; type=&quot;QString&quot;/>&lt;Option name=&quot;properties&quot;/>&lt;Option value=&quot;collection&quot; name=&quot;type&quot; type=&quot;QString&quot;/>&lt;/Option>&lt;/data_defined_properties>&lt;layer id=&quot;{bcca57fb-de38-51d7-afad-7a5a65610223}&quot; locked=&quot;0&quot; class=&quot;SimpleLine&quot; enabled=&quot;1&quot; pass=&quot;0&quot;>&lt;Option type=&quot;Map&quot;>&lt;Option value=&quot;0&quot; name=&quot;align_dash_pattern&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;square&quot; name=&quot;capstyle&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;5;2&quot; name=&quot;customdash&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;customdash_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;customdash_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;dash_pattern_offset&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;dash_pattern_offset_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;dash_pattern_offset_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;draw_inside_polygon&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;bevel&quot; name=&quot;joinstyle&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;60,60,60,255,rgb:0.23529411764705882,0.23529411764705882,0.23529411764705882,1&quot; name=&quot;line_color&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;solid&quot; name=&quot;line_style&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0.3&quot; name=&quot;line_width&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;line_width_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;offset&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;offset_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;offset_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;ring_filter&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;trim_distance_end&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;trim_distance_end_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;trim_distance_end_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;trim_distance_start&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;trim_distance_start_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;MM&quot; name=&quot;trim_distance_start_unit&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;tweak_dash_pattern_on_corners&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;0&quot; name=&quot;use_custom_dash&quot; type=&quot;QString&quot;/>&lt;Option value=&quot;3x:0,0,0,0,0,0&quot; name=&quot;width_map_unit_scale&quot; type=&quot;QString&quot;/>&lt;/Option>&lt;data_defined_properties>&lt;Option type=&quot;Map&quot;>&lt;Option value=&quot;&quot; name=&quot;name&quot; type=&quot;QString&quot;/>&lt;Option name=&quot;properties&quot;/>&lt;Option value=&quot;collection&quot; name=&quot;type&quot; type=&quot;QString&quot;/>&lt;/Option>&lt;/data_defined_properties>&lt;/layer>&lt;/symbol>" name="lineSymbol" type="QString"/>
        <Option value="0" name="minLength" type="double"/>
        <Option value="3x:0,0,0,0,0,0" name="minLengthMapUnitScale" type="QString"/>
        <Option value="MM" name="minLengthUnit" type="QString"/>

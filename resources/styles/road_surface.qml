@@ -1,12 +1,12 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
-<qgis styleCategories="Symbology|Labeling" version="3.40.6-Bratislava" labelsEnabled="0">
- <renderer-v2 referencescale="-1" symbollevels="0" enableorderby="0" forceraster="0" attr="status" type="categorizedSymbol">
+<qgis styleCategories="Symbology|Labeling" labelsEnabled="0" version="3.40.6-Bratislava">
+ <renderer-v2 attr="status" referencescale="-1" forceraster="0" symbollevels="0" type="categorizedSymbol" enableorderby="0">
   <categories>
-   <category symbol="0" value="measured" uuid="{dc2d8315-ca9e-554f-a6e1-fe897f657866}" type="string" label="Road surface" render="true"/>
-   <category symbol="1" value="grown" uuid="{085bd1e4-4446-52ba-b844-8722673072b6}" type="string" label="Road surface, its edge not seen" render="true"/>
+   <category symbol="0" label="Road surface" value="measured" uuid="{dc2d8315-ca9e-554f-a6e1-fe897f657866}" type="string" render="true"/>
+   <category symbol="1" label="Road surface, its edge not seen" value="grown" uuid="{085bd1e4-4446-52ba-b844-8722673072b6}" type="string" render="true"/>
   </categories>
   <symbols>
-   <symbol clip_to_extent="1" force_rhr="0" name="0" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="0" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -14,7 +14,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{f01b96db-101d-512a-a143-619541f9f28d}" class="SimpleFill" enabled="1" locked="0">
+    <layer id="{f01b96db-101d-512a-a143-619541f9f28d}" locked="0" class="SimpleFill" enabled="1" pass="0">
      <Option type="Map">
       <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
       <Option value="141,146,153,255,rgb:0.55294117647058827,0.5725490196078431,0.59999999999999998,1" name="color" type="QString"/>
@@ -37,7 +37,7 @@
      </data_defined_properties>
     </layer>
    </symbol>
-   <symbol clip_to_extent="1" force_rhr="0" name="1" is_animated="0" alpha="1" type="fill" frame_rate="10">
+   <symbol frame_rate="10" force_rhr="0" name="1" alpha="1" clip_to_extent="1" type="fill" is_animated="0">
     <data_defined_properties>
      <Option type="Map">
       <Option value="" name="name" type="QString"/>
@@ -45,7 +45,7 @@
       <Option value="collection" name="type" type="QString"/>
      </Option>
     </data_defined_properties>
-    <layer pass="0" id="{07d760a4-ffce-5196-9545-5c4aa9876fcd}" class="SimpleFill" enabled="1" locked="0">
+    <layer id="{07d760a4-ffce-5196-9545-5c4aa9876fcd}" locked="0" class="SimpleFill" enabled="1" pass="0">
      <Option type="Map">
       <Option value="3x:0,0,0,0,0,0" name="border_width_map_unit_scale" type="QString"/>
       <Option value="163,167,172,255,rgb:0.63921568627450975,0.65490196078431373,0.67450980392156867,1" name="color" type="QString"/>
