@@ -2,15 +2,7 @@
 
 from __future__ import annotations
 
-from qgis.core import (
-    Qgis,
-    QgsCategorizedSymbolRenderer,
-    QgsGraduatedSymbolRenderer,
-    QgsRendererCategory,
-    QgsRendererRange,
-    QgsSymbol,
-    QgsVectorLayer,
-)
+from qgis.core import Qgis, QgsCategorizedSymbolRenderer, QgsGraduatedSymbolRenderer, QgsRendererCategory, QgsRendererRange, QgsSymbol, QgsVectorLayer
 from qgis.PyQt.QtGui import QColor
 
 from ..texts import tr
