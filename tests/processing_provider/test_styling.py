@@ -106,7 +106,8 @@ def test_what_was_bridged_beside_the_road_is_paler_than_what_was_measured(qgis_a
 
 
 @pytest.mark.parametrize("edge, status, part, value", [
-    ("curb", "measured", "bottom", "curb measured"), ("curb", "accepted", "bottom", "curb measured"), ("dropped", "bridged", "bottom", "dropped bridged"),
+    ("curb", "measured", "bottom", "curb measured"), ("curb", "accepted", "bottom", "curb measured"),
+    ("dropped", "bridged", "bottom", "dropped bridged"),
     ("pavement", "inferred", "", "pavement bridged"), (None, None, "bottom", "curb measured"), ("curb", "measured", "top", "top")])
 def test_a_road_plan_draws_every_edge_of_the_road(qgis_app, edge, status, part, value):
     layer = layer_of("LineStringZ", ROAD_EDGES)
