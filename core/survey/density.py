@@ -21,16 +21,11 @@ POINTS_PER_CHUNK = 1 << 15   # cost: points counted at a time: fits the processo
 
 @dataclass(frozen=True)
 class CubeDensity:
-    """Point density in cubes of 1 m.
+    """Point density in cubes of 1 m."""
 
-    points : number of points
-    mean : points per m³, mean over occupied cubes
-    of_a_point : points per m³, mean over points of the density of their own cube
-    """
-
-    points: int
-    mean: float
-    of_a_point: float
+    points: int   # number of points
+    mean: float   # points per m³, mean over occupied cubes
+    of_a_point: float   # points per m³, mean over points of the density of their own cube
 
 
 def cube_density(sections: Iterable, points_of: Callable[..., Points] = lambda section: section,
@@ -64,9 +59,7 @@ def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> 
 def cubes_of_stretch(road_points: RoadPoints, stretch: Stretch) -> list[list[tuple[np.ndarray, np.ndarray] | None]]:
     """The phase that counts points in cubes, section by section.
 
-    Returns
-    -------
-    for each section of the survey [(keys of the occupied cubes, their counts)] of all points and of those on the road; None without points
+    Returns for each section of the survey [(keys of the occupied cubes, their counts)] of all points and of those on the road; None without points
     """
     return [[_counted(points.section(*key)) for points in (road_points.survey, road_points)] for key in road_points.survey.store.in_stretch(stretch)]
 
