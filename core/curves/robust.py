@@ -71,7 +71,7 @@ class CurveProblem:
 
         An even share of many points comes first. A curve from which a twentieth of all points lie farther than `max_misfit`, m, stays at that.
         """
-        rows = evenly_spread(len(self.x), FITS.coarse_points)
+        rows = np.rint(np.linspace(0, len(self.x) - 1, min(len(self.x), FITS.coarse_points))).astype(np.int64)
         part = self.of(rows)
         unknown, scale, along = part.start()
         unknown, along = _least_soft_l1(part, unknown, scale, along, FITS.fit_tolerance if len(rows) == len(self.x) else FITS.coarse_fit_tolerance)
@@ -80,11 +80,6 @@ class CurveProblem:
             unknown, along = _least_soft_l1(self, unknown, scale, along)
         distances, _, along = self.evaluate(unknown, along)
         return unknown, distances, along
-
-
-def evenly_spread(count: int, most: int) -> np.ndarray:
-    """Rows of at most `most` of `count` points, evenly spread, with the first and the last."""
-    return np.rint(np.linspace(0, count - 1, min(count, most))).astype(np.int64)
 
 
 def _least_soft_l1(problem, unknown, scale, along, tolerance=FITS.fit_tolerance):
