@@ -101,7 +101,7 @@ def killed_while_it_reads(executor):
     def kill():
         while not (list(executor.folder.glob("points/points-*")) and executor._all):
             time.sleep(0.005)
-        next(iter(executor._all))._process.kill()
+        next(iter(executor._all)).process.kill()
 
     threading.Thread(target=kill, daemon=True).start()
     return executor
@@ -114,7 +114,7 @@ def test_a_worker_that_is_killed_while_it_reads_is_replaced_and_nothing_is_lost(
 
 
 def test_where_workers_keep_ending_the_file_is_named(street, python, monkeypatch):
-    monkeypatch.setattr(processes, "EXECUTION", replace(processes.EXECUTION, trials=0))
+    monkeypatch.setattr(processes._Worker, "answer_to", lambda worker, task: worker.process.kill())
     executor = WorkerProcesses(python, 1)
     with pytest.raises(RoadExtractionError, match=r"drive\d.la[sz], points [\d,]+ to [\d,]+.*fewer workers"):
         opened(street, executor)
@@ -135,7 +135,7 @@ def test_a_cancel_ends_the_reading_workers_within_two_seconds(street, python):
     with pytest.raises(Cancelled):
         opened(street, executor, impatient)
     assert time.monotonic() - impatient.at < 2.0
-    assert not executor.folder.exists() and all(worker._process.poll() is not None for worker in workers)
+    assert not executor.folder.exists() and all(worker.process.poll() is not None for worker in workers)
 
 
 def test_a_folder_that_cannot_be_used_is_named(street, python):
