@@ -16,9 +16,8 @@ from lanewright.core.execution.choice import ExecutionSettings, executor_for
 from lanewright.core.execution.phase import NoSource, Phase, Threads, read_plain, write_plain
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.markings.objects.figures import figures_of_group
+from lanewright.core.road.surface.ground_grid import ground_of_windows
 from lanewright.core.survey.blocks import sensor_height_of
-from lanewright.core.survey.density import cubes_of_stretch
-from lanewright.core.survey.store.road_points import RoadPoints
 
 
 @pytest.fixture(scope="module")
@@ -82,16 +81,14 @@ def tasks_of_a_thread(phase, items, results):
 
 
 def test_workers_that_forget_what_they_read_go_on_with_the_next_phase(python):
-    points = RoadPoints.of_survey(survey_of(street()))
-    stretches = points.survey.store.stretches()[:4]
+    survey = survey_of(street())
     with closing(WorkerProcesses(python, 1)) as executor:
         found, workers = [], []
         for _ in range(2):
-            counted = executor.run(Phase(cubes_of_stretch, points), stretches)
-            found.append([[part.tolist() for part in section] for stretch in counted for section, _ in stretch])
+            found.append([part.tolist() for part, _ in executor.run_together(Phase(ground_of_windows, survey, (0,)), [(0, True, False)] * 2, 1)])
             workers.append([worker.process.pid for worker in executor._all])
             executor.forget()
-    assert found[0] == found[1] and found[0]
+    assert str(found[0]) == str(found[1]) and found[0]
     assert workers[0] == workers[1] and len(workers[0]) == 1
 
 

@@ -17,8 +17,8 @@ from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey import survey_reader
-from lanewright.core.survey import survey_reader as ordering
 from lanewright.core.survey.open_survey import open_survey
+from lanewright.core.survey.store import section_store
 from lanewright.core.survey.survey import SurveySettings, survey_in_folder
 
 SETTINGS = SurveySettings(block=700)   # points
@@ -28,7 +28,7 @@ SETTINGS = SurveySettings(block=700)   # points
 def small_parts(monkeypatch):
     # few samples of the height: only the first blocks are read by the caller
     monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=2000, height_samples=20))
-    monkeypatch.setattr(ordering, "STRETCH_POINTS", 2000)
+    monkeypatch.setattr(section_store, "STRETCH_POINTS", 2000)
 
 
 @pytest.fixture(scope="module")
