@@ -144,7 +144,7 @@ class Work:
     def name(self) -> str:
         return self.phase.function.__name__
 
-    def submit(self, parts, together=1):
+    def submit(self, parts: Sequence[_Part], together: int = 1) -> None:
         """Send parts, so many successive ones in a task, the largest tasks first."""
         tasks = [parts[k:k + together] for k in range(0, len(parts), together)]
         for task in sorted(tasks, key=lambda task: -sum(part.size for part in task)):
@@ -154,7 +154,7 @@ class Work:
             self.pending[future] = task, items
             future.add_done_callback(self._ended.put)
 
-    def take(self):
+    def take(self) -> None:
         """Wait a moment for a task to end, and see what became of it."""
         try:
             future = self._ended.get(timeout=POLL_INTERVAL)
@@ -212,7 +212,7 @@ class Work:
         part.halves = tuple(_Part(half, self.executor.new_file(), part.size, part) for half in ((first, middle), (middle, last)))
         self.submit(part.halves)
 
-    def result(self, part):
+    def result(self, part: _Part) -> Any:
         until = time.monotonic() + EXECUTION.result_time
         while not part.file.exists() and time.monotonic() < until:
             time.sleep(POLL_INTERVAL)

@@ -19,8 +19,8 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from .weights import EXECUTION
 
-LEAST_TASKS = 16   # cost: that the work of a phase is divided into where there is enough of it, so that all workers end at about the same time
 PACKAGE = __name__.rpartition(".core.")[0]   # whose functions are sent: the package of `core` and `products`
 
 
@@ -115,7 +115,7 @@ class Executor:
 
     def run_together(self, phase: Phase, items: Sequence[Any], together: int, progress: Progress = Progress()) -> Iterator[Any]:
         """Yield the results of items of a phase whose function is given lists of them, `together` at most, and returns lists of results."""
-        size = max(min(together, len(items) // LEAST_TASKS), 1)
+        size = max(min(together, len(items) // EXECUTION.least_tasks), 1)
         for results in self.run(phase, [items[k:k + size] for k in range(0, len(items), size)], progress):
             yield from results
 

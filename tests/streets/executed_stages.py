@@ -20,7 +20,6 @@ from lanewright.core.markings.objects import grouping as linking
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.outliers import remove_outliers
 from lanewright.core.markings.paint import extract as extraction
-from lanewright.core.markings.paint import extract as scatter
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.surface import ground_grid
@@ -42,7 +41,6 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, looked_windows=1))
         patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, pieces_per_task=3))
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
-        patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
         patch.setattr(outliers, "TASK_WINDOWS", 1)
         patch.setattr(heights, "HEIGHT_POINTS", 1)

@@ -103,7 +103,6 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
 # scanners, a sixth under mirror scanners. A scanner is judged by all roads of a survey.
 
 MAX_SCATTER_POINTS = 100_000   # derived: of a window that are examined; of twice as many an evenly spread share
-EXAMINED_WINDOWS = 16   # derived: windows of 20 m that are looked at together
 SAMPLED_WINDOW_STEP = 4   # derived: every fourth window of a road is examined; the others only for scanners that are in none of these
 
 WindowKey = tuple[int, int]   # road, number of the window
@@ -129,7 +128,7 @@ class ScannerScatter:
         phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)))
 
         def run(items, part):
-            return list(executor.run_together(phase, items, EXAMINED_WINDOWS, part))
+            return list(executor.run_together(phase, items, WINDOWS_PER_TASK, part))
 
         measured = run([(*key, key in sampled) for key in windows], progress)
         counts = {key: count for key, (count, _) in zip(windows, measured)}

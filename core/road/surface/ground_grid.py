@@ -436,6 +436,10 @@ def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> l
         profiles = SurfaceProfiles.of(points, row * SURFACE.row_length, SURFACE.window_rows * SURFACE.row_length, FRAME.corridor, height,
                                       lambda seen: ahead_of_vehicle(survey, seen, seen.s)) if with_profiles else None
         cells = _ground_cells(points, row, SURFACE.window_rows, FRAME.corridor, height) if with_cells else None
-        result.append(tuple(None if part is None else np.array([getattr(part, name) for name in names], np.float32)
-                            for part, names in ((cells, CELL_NAMES), (profiles, SurfaceProfiles.NAMES))))
+        result.append((_stacked(cells, CELL_NAMES), _stacked(profiles, SurfaceProfiles.NAMES)))
     return result
+
+
+def _stacked(part, names):
+    """Attributes of a part as one array; None where there is none."""
+    return None if part is None else np.array([getattr(part, name) for name in names], np.float32)

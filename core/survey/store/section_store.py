@@ -15,7 +15,7 @@ import numpy as np
 
 from ...common.arrays import RADIX_BITS, above_least, bucket_argsort, order_by
 from ...common.parallel import ScratchBuffers, check_cancelled, column_buffers
-from ...execution.phase import LEAST_TASKS
+from ...execution.weights import EXECUTION
 from ..weights import STORE
 from .array_file import ArrayFile, close_files, new_file, opened
 from .columns import Columns, columns_in_order
@@ -184,7 +184,7 @@ class SectionStore:
     def stretches(self, numbers: Sequence[int] | None = None) -> list[Stretch]:
         """Stretches of road with STRETCH_POINTS each, or fewer where there would be few stretches: of all roads, or of some `numbers`."""
         stretches: list[Stretch] = []
-        points = max(min(STRETCH_POINTS, self._count // LEAST_TASKS), 1)
+        points = max(min(STRETCH_POINTS, self._count // EXECUTION.least_tasks), 1)
         for road in self.roads() if numbers is None else numbers:
             sections = np.array(self.sections(road))
             ends = np.cumsum([self.size(road, number) for number in sections.tolist()])
