@@ -2,15 +2,7 @@
 
 from pathlib import Path
 
-from qgis.core import (
-    Qgis,
-    QgsApplication,
-    QgsDataSourceUri,
-    QgsProviderConnectionException,
-    QgsProviderRegistry,
-    QgsRasterLayer,
-    QgsVectorLayer,
-)
+from qgis.core import Qgis, QgsApplication, QgsDataSourceUri, QgsProviderConnectionException, QgsProviderRegistry, QgsRasterLayer, QgsVectorLayer
 
 from ..algorithms.destinations import destination_path
 from .results.origin import describe_origin

@@ -51,12 +51,6 @@ class Inspection:
 
     per_area, per_volume : points per m² and per m³: mean, median and largest over occupied
         cells, and of_a_point, the mean over points of the density of their own cell
-    density : ((H, W) float32 points per m², row 0 in the north, NaN where empty;
-        (min x, max y) of its corner)
-    intensity : (65536,) counts of each value
-    scanners : LAS field that distinguishes them or None, and its values
-    drive : _InspectedDrive: roads, passes, sensor height, height profile; None without a usable trajectory
-    near_share, in_time_share : share of points measured near and during the trajectory, None without one
     """
 
     files: list
@@ -66,18 +60,18 @@ class Inspection:
     maximum: np.ndarray
     per_area: dict
     per_volume: dict
-    density: tuple
-    intensity: np.ndarray
+    density: tuple   # ((H, W) float32 points per m², row 0 in the north, NaN where empty; (min x, max y) of its corner)
+    intensity: np.ndarray   # (65536,) counts of each value
     time_span: tuple
     scanner_field: str
-    scanners: list
+    scanners: list   # LAS field that distinguishes them or None, and its values
     returns: dict
     classes: dict
     settings: InspectionSettings
-    near_share: float | None = None
+    near_share: float | None = None   # near_share, in_time_share: share of points measured near and during the trajectory, None without one
     in_time_share: float | None = None
     trajectory: Trajectory | None = None
-    drive: _InspectedDrive | None = None
+    drive: _InspectedDrive | None = None   # _InspectedDrive: roads, passes, sensor height, height profile; None without a usable trajectory
     notes: list = field(default_factory=list)
 
 
@@ -287,20 +281,13 @@ def _judge_trajectory(found, wkt, has_time, progress):
 
 @dataclass(frozen=True)
 class _InspectedDrive:
-    """Findings about a trajectory; metres and seconds.
+    """Findings about a trajectory; metres and seconds."""
 
-    roads : length of each road
-    passes : rows of (number, road, direction, first station, last station, first time, last time)
-    driven : metres driven, without the position noise at standstills
-    sensor_height : metres from the trajectory down to the road, None where too few points lie on the track
-    profile : (M, 3) metres driven, map height of the trajectory, map height of the road (NaN where unseen)
-    """
-
-    roads: list[float]
-    passes: list[tuple]
-    driven: float
-    sensor_height: float | None
-    profile: np.ndarray
+    roads: list[float]   # length of each road
+    passes: list[tuple]   # rows of (number, road, direction, first station, last station, first time, last time)
+    driven: float   # metres driven, without the position noise at standstills
+    sensor_height: float | None   # metres from the trajectory down to the road, None where too few points lie on the track
+    profile: np.ndarray   # (M, 3) metres driven, map height of the trajectory, map height of the road (NaN where unseen)
 
 
 def _inspect_drive(trajectory: Trajectory, rows: np.ndarray, heights: np.ndarray) -> _InspectedDrive:

@@ -216,12 +216,9 @@ SCANLINE_DIMENSIONS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pas
 
 @dataclass(frozen=True)
 class ResamplingSettings:
-    """Points along scanlines.
+    """Points along scanlines."""
 
-    spacing : m between points along a scanline
-    """
-
-    spacing: float = setting(0.05, 0.005, 5.0, "The point spacing", "m")
+    spacing: float = setting(0.05, 0.005, 5.0, "The point spacing", "m")   # m between points along a scanline
 
     def __post_init__(self):
         check_limits(self)

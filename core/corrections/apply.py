@@ -71,9 +71,7 @@ def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections:
     Accepted stretches get the status `accepted`. What is drawn or moved replaces what lies along its new place, has the status `drawn`
     and the heights of the map around it.
 
-    Returns
-    -------
-    pieces, the rows of the corrections that something was found for, and whether anything changed
+    Returns pieces, the rows of the corrections that something was found for, and whether anything changed
     """
     matched: set[int] = set()
     changed = False

@@ -107,14 +107,9 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
     frame : RoadFrame
     crs : WKT of the survey; corrections in another CRS are brought there, those that say none are taken to be in it
 
-    Returns
-    -------
-    Corrections
+    Returns Corrections
 
-    Raises
-    ------
-    RoadExtractionError
-        If an action or target is unknown, a row has no place, or what is moved or drawn has no line.
+    Raises RoadExtractionError if an action or target is unknown, a row has no place, or what is moved or drawn has no line.
     """
     result = Corrections()
     for number, (geometry, row) in enumerate(zip(_in_crs(features, crs), features.rows), start=1):

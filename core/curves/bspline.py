@@ -131,14 +131,10 @@ def _roughness(count):
 
 @dataclass(frozen=True)
 class Spline(TabulatedCurve):
-    """A cubic B-spline t -> (x, y).
+    """A cubic B-spline t -> (x, y)."""
 
-    knots : (K + 4,) metres
-    control_x, control_y : (K,) control points, metres
-    """
-
-    knots: tuple
-    control_x: tuple
+    knots: tuple   # (K + 4,) metres
+    control_x: tuple   # control_x, control_y: (K,) control points, metres
     control_y: tuple
     _splines: dict = field(default_factory=dict, repr=False, compare=False)
 

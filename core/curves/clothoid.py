@@ -31,21 +31,14 @@ def gauss_rule(turn: float | np.ndarray) -> int | np.ndarray:
 
 @dataclass(frozen=True)
 class Clothoid(Curve):
-    """``theta(u) = direction + bend u + change u^2 / 2``, from (x, y).
+    """``theta(u) = direction + bend u + change u^2 / 2``, from (x, y)."""
 
-    x, y : start, metres
-    direction : heading at the start, radians
-    bend : curvature at the start, 1/m, positive to the left
-    change : change of curvature, 1/m^2
-    length : metres
-    """
-
-    x: float
+    x: float   # x, y: start, metres
     y: float
-    direction: float
-    bend: float
-    change: float
-    length: float
+    direction: float   # heading at the start, radians
+    bend: float   # curvature at the start, 1/m, positive to the left
+    change: float   # change of curvature, 1/m^2
+    length: float   # metres
 
     kind = "clothoid"
 

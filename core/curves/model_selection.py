@@ -34,10 +34,7 @@ def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: in
     curve : one of CURVES
     degree : of the polynomial
 
-    Raises
-    ------
-    RoadExtractionError
-        If the kind is unknown or these points do not allow it.
+    Raises RoadExtractionError if the kind is unknown or these points do not allow it.
     """
     if curve not in CURVES:
         raise RoadExtractionError(f"There is no curve called {curve!r}. Choose one of {', '.join(CURVES)}.")

@@ -146,20 +146,14 @@ class _LineProblem(_CircleProblem):
 
 @dataclass(frozen=True)
 class Ellipse(TabulatedCurve):
-    """An elliptic arc.
+    """An elliptic arc."""
 
-    x, y : centre, metres
-    a, b : semi-axes, metres
-    tilt : direction of axis a, radians
-    first, last : eccentric angles at start and end, radians; `first` is above `last` where the curve turns right
-    """
-
-    x: float
+    x: float   # x, y: centre, metres
     y: float
-    a: float
+    a: float   # a, b: semi-axes, metres
     b: float
-    tilt: float
-    first: float
+    tilt: float   # direction of axis a, radians
+    first: float   # first, last: eccentric angles at start and end, radians; `first` is above `last` where the curve turns right
     last: float
 
     kind = "ellipse"
@@ -189,10 +183,7 @@ def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> Cur
     x, y : (N,) metres, N >= 6, ordered along the line
     max_misfit : metres; a fit with a larger root mean square residual is given up once steps gain little
 
-    Raises
-    ------
-    RoadExtractionError
-        If the points turn by less than 60 degrees or do not lie on an ellipse.
+    Raises RoadExtractionError if the points turn by less than 60 degrees or do not lie on an ellipse.
 
     References
     ----------
@@ -291,21 +282,14 @@ def _nearest_angle(x, y, unknown):
 
 @dataclass(frozen=True)
 class Polynomial(TabulatedCurve):
-    """``across = sum c_k (along / scale)^k`` in a frame at (x, y) whose axis has the direction `tilt`.
+    """``across = sum c_k (along / scale)^k`` in a frame at (x, y) whose axis has the direction `tilt`."""
 
-    x, y : origin of the frame, metres
-    tilt : direction of its axis, radians
-    scale : metres
-    coefficients : metres, constant first
-    first, last : range of `along`, metres
-    """
-
-    x: float
+    x: float   # x, y: origin of the frame, metres
     y: float
-    tilt: float
-    scale: float
-    coefficients: tuple
-    first: float
+    tilt: float   # direction of its axis, radians
+    scale: float   # metres
+    coefficients: tuple   # metres, constant first
+    first: float   # first, last: range of `along`, metres
     last: float
 
     kind = "polynomial"
@@ -342,10 +326,7 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
     x, y : (N,) metres, N >= degree + 1, ordered along the line
     degree : int, 0 to 9
 
-    Raises
-    ------
-    RoadExtractionError
-        If the points turn back along their chord, which no polynomial can follow.
+    Raises RoadExtractionError if the points turn back along their chord, which no polynomial can follow.
     """
     x, y = checked_points(x, y, degree + 1)
     middle_x, middle_y, tilt = (float(values[0]) for values in chords(PointGroups([len(x)]), x, y))

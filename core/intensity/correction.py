@@ -44,11 +44,10 @@ SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
 class Saturation:
     """The ends of the range of a road's intensities.
 
-    lowest, highest : intensities, raw counts
     at_lowest, at_highest : shares of points within 1.1 % of their scanner's lowest and highest, 0 where they do not accumulate there
     """
 
-    lowest: float = float("nan")
+    lowest: float = float("nan")   # lowest, highest: intensities, raw counts
     at_lowest: float = 0.0
     highest: float = float("nan")
     at_highest: float = 0.0
@@ -103,12 +102,9 @@ def saturation_of(road_points: RoadPoints) -> Saturation:
 
 @dataclass(frozen=True)
 class IntensitySettings:
-    """How intensity is corrected.
+    """How intensity is corrected."""
 
-    scale : "automatic" decides between linear and logarithmic by the spread of asphalt; "linear" multiplies, "logarithmic" adds
-    """
-
-    scale: str = "automatic"
+    scale: str = "automatic"   # "automatic" decides between linear and logarithmic by the spread of asphalt; "linear" multiplies, "logarithmic" adds
 
     def __post_init__(self) -> None:
         if self.scale not in ("automatic", "linear", "logarithmic"):
@@ -119,28 +115,21 @@ class IntensitySettings:
 class IntensityReport:
     """Result of a correction in numbers.
 
-    scale : "linear", "logarithmic", or "" where nothing was corrected
-    reference : the intensity that asphalt was brought to
     scanners : a dict per scanner: scanner, points, nearest and farthest (m from the track), asphalt_before, asphalt_after (medians over the
         distances), fall_before, fall_after (highest over lowest asphalt), spread_before, spread_after (coefficient of variation of asphalt over the
         distances, %)
-    between_before, between_after : highest over lowest scanner's asphalt
-    spread_before, spread_after : coefficient of variation of asphalt over distances and scanners, %
-    beams : how many beams of spinning scanners were equalised, 0 where there are none
-    saturation : whether intensities were cut off at an end
-    reason : why nothing was corrected, "" where it was
     """
 
-    scale: str = ""
-    reference: float = float("nan")
+    scale: str = ""   # "linear", "logarithmic", or "" where nothing was corrected
+    reference: float = float("nan")   # the intensity that asphalt was brought to
     scanners: list[dict[str, Any]] = field(default_factory=list)
-    between_before: float = float("nan")
+    between_before: float = float("nan")   # between_before, between_after: highest over lowest scanner's asphalt
     between_after: float = float("nan")
-    spread_before: float = float("nan")
+    spread_before: float = float("nan")   # spread_before, spread_after: coefficient of variation of asphalt over distances and scanners, %
     spread_after: float = float("nan")
-    beams: int = 0
-    saturation: Saturation = Saturation()
-    reason: str = ""
+    beams: int = 0   # how many beams of spinning scanners were equalised, 0 where there are none
+    saturation: Saturation = Saturation()   # whether intensities were cut off at an end
+    reason: str = ""   # why nothing was corrected, "" where it was
 
     @property
     def saturation_warning(self) -> str:

@@ -37,18 +37,12 @@ _thread = threading.local()   # the kernels of each thread
 
 @dataclass(frozen=True)
 class ImageSettings:
-    """How the image is interpolated.
+    """How the image is interpolated."""
 
-    cell_size : m; paint of 0.15 m survives at 0.04
-    power : of the distance
-    beta : share of the weight that follows brightness; 0 is plain inverse distance
-    radius_cells : search radius, in cells
-    """
-
-    cell_size: float = setting(0.04, 0.005, 10.0, "The cell size", "m")
-    power: float = setting(2.0, 0.1, 10.0, "The power of the distance")
-    beta: float = setting(0.5, 0.0, 1.0, "The weight of brightness")
-    radius_cells: float = setting(2.0, 0.71, 10.0, "The search radius", "cells")
+    cell_size: float = setting(0.04, 0.005, 10.0, "The cell size", "m")   # m; paint of 0.15 m survives at 0.04
+    power: float = setting(2.0, 0.1, 10.0, "The power of the distance")   # of the distance
+    beta: float = setting(0.5, 0.0, 1.0, "The weight of brightness")   # share of the weight that follows brightness; 0 is plain inverse distance
+    radius_cells: float = setting(2.0, 0.71, 10.0, "The search radius", "cells")   # search radius, in cells
 
     def __post_init__(self) -> None:
         check_limits(self)
@@ -56,15 +50,11 @@ class ImageSettings:
 
 @dataclass
 class _WeightedSums:
-    """Sums of weights and of weighted values on a rectangle of cells.
+    """Sums of weights and of weighted values on a rectangle of cells."""
 
-    column, row : of the lattice (eastward, northward) of the north-western cell
-    total, weights : (rows, columns) float32, weighted values and weights; both 0 where no point is within the radius
-    """
-
-    column: int
+    column: int   # column, row: of the lattice (eastward, northward) of the north-western cell
     row: int
-    total: np.ndarray
+    total: np.ndarray   # total, weights: (rows, columns) float32, weighted values and weights; both 0 where no point is within the radius
     weights: np.ndarray
 
     def add_to(self, other: _WeightedSums) -> None:
@@ -222,19 +212,13 @@ Tile = tuple[int, int]   # column and row of tiles
 
 @dataclass(frozen=True)
 class _Piece:
-    """A piece of road that is interpolated at once.
+    """A piece of road that is interpolated at once."""
 
-    road, number : of the road, and of the piece along it
-    extent : Extent of the cells that its points reach
-    step : one of so many points weighs on farther cells
-    limits : 1 % and 99 % of the intensities about it
-    """
-
-    road: int
+    road: int   # road, number: of the road, and of the piece along it
     number: int
-    extent: Extent
-    step: int
-    limits: tuple[float, float]
+    extent: Extent   # Extent of the cells that its points reach
+    step: int   # one of so many points weighs on farther cells
+    limits: tuple[float, float]   # 1 % and 99 % of the intensities about it
 
 
 def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = ImageSettings(), progress: Progress = Progress(),
@@ -271,10 +255,7 @@ def write_intensity_image(road_points: RoadPoints, path: str | PathLike, setting
     ----------
     path : of the GeoTIFF; it appears when it is complete
 
-    Raises
-    ------
-    RoadExtractionError
-        If there are no points, the image has too many tiles, or the file cannot be written.
+    Raises RoadExtractionError if there are no points, the image has too many tiles, or the file cannot be written.
 
     Notes
     -----

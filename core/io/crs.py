@@ -132,15 +132,10 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
     files : CloudHeader of each point cloud
     given, trajectory_crs : WKT or "EPSG:n", the first for clouds without a CRS; "" where unknown
 
-    Returns
-    -------
-    WKT, metric; "" where no CRS is known
+    Returns WKT, metric; "" where no CRS is known
 
-    Raises
-    ------
-    RoadExtractionError
-        If clouds contradict themselves or each other, the CRS is geographic or none but the coordinates look so, the CRS is of another kind
-        that has no metres, lengths in it are not those on the ground, or x and y are exchanged.
+    Raises RoadExtractionError if clouds contradict themselves or each other, the CRS is geographic or none but the coordinates look so, the CRS is of
+    another kind that has no metres, lengths in it are not those on the ground, or x and y are exchanged.
     """
     stated = _crs_of_clouds(files, given)
     wkt = stated or given or trajectory_crs
@@ -232,14 +227,11 @@ def unit_note(height: float, crs: str) -> str:
 
 @dataclass(frozen=True)
 class _MapPlace:
-    """A place of the map on the ground: degrees from Greenwich, of the CRS's own datum.
-
-    scale : length on the map per length on the ground, in the direction where it is farthest from 1; NaN where the projection is not defined
-    """
+    """A place of the map on the ground: degrees from Greenwich, of the CRS's own datum."""
 
     longitude: float
     latitude: float
-    scale: float
+    scale: float   # length on the map per length on the ground, in the direction where it is farthest from 1; NaN where the projection is not defined
 
     @property
     def true_to_scale(self) -> bool:
@@ -281,14 +273,9 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
     place : (x, y) of the survey, metres
     what : the subject of the message, such as "The point cloud"
 
-    Returns
-    -------
-    A sentence on a survey that lies far outside the area of its CRS; "" where there is nothing to note
+    Returns a sentence on a survey that lies far outside the area of its CRS; "" where there is nothing to note
 
-    Raises
-    ------
-    RoadExtractionError
-        If lengths differ by more than 5 per mille, or the survey lies in the area only with x and y exchanged.
+    Raises RoadExtractionError if lengths differ by more than 5 per mille, or the survey lies in the area only with x and y exchanged.
     """
     crs = horizontal_part(parse_crs(wkt))
     if not crs.is_projected:

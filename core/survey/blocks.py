@@ -28,16 +28,12 @@ DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "cla
 
 @dataclass
 class BlockSummary:
-    """What points contribute to the knowledge of the whole cloud.
+    """What points contribute to the knowledge of the whole cloud."""
 
-    census : of the fields that may distinguish scanners; darkest, brightest : lowest and highest intensity
-    without_time, excluded : numbers of points at a time of no pass, and of those that are withheld or classified as noise
-    """
-
-    census: ScannerCensus = field(default_factory=ScannerCensus)
-    darkest: int = MAX_INTENSITY
+    census: ScannerCensus = field(default_factory=ScannerCensus)   # of the fields that may distinguish scanners
+    darkest: int = MAX_INTENSITY   # darkest, brightest: lowest and highest intensity
     brightest: int = 0
-    without_time: int = 0
+    without_time: int = 0   # without_time, excluded: numbers of points at a time of no pass, and of those that are withheld or classified as noise
     excluded: int = 0
 
     def join(self, other: BlockSummary) -> None:
@@ -83,18 +79,13 @@ class HeightFilter:
 
 @dataclass(frozen=True)
 class PointChoice:
-    """Which points of the files are taken, and how.
+    """Which points of the files are taken, and how."""
 
-    corridor, above_road : metres either side, and metres above the road up to which points are kept
-    has_time : whether points are assigned to passes by their time; else by the nearest point on a road
-    week_ends : whether the GPS week ends during the scan; intensity : what the intensity of points is read from
-    """
-
-    corridor: float
-    has_time: bool
-    week_ends: bool = False
+    corridor: float   # corridor, above_road: metres either side, and metres above the road up to which points are kept
+    has_time: bool   # whether points are assigned to passes by their time; else by the nearest point on a road
+    week_ends: bool = False   # whether the GPS week ends during the scan
     above_road: float = READING.kept_above_road
-    intensity: IntensitySource = IntensitySource()
+    intensity: IntensitySource = IntensitySource()   # what the intensity of points is read from
 
     @property
     def layers(self) -> tuple[str, ...]:

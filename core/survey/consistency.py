@@ -29,10 +29,7 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
     features : Features with the fields `road` and `station_m`, and maybe `offset_m`
     label : name of the input, as at the beginning of a sentence
 
-    Raises
-    ------
-    RoadExtractionError
-        If more than half of them disagree.
+    Raises RoadExtractionError if more than half of them disagree.
     """
     import shapely
 
@@ -60,9 +57,7 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
     features : Features in map coordinates, which are changed: points and polygons go whole, of lines the vertices far away
     label : name of the input, as at the beginning of a sentence
 
-    Returns
-    -------
-    What to tell of it, "" where all lies near
+    Returns what to tell of it, "" where all lies near
     """
     import shapely
     from scipy.spatial import cKDTree
@@ -99,10 +94,7 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
     ----------
     label : name of the input, as at the beginning of a sentence
 
-    Raises
-    ------
-    RoadExtractionError
-        If more than half of the sampled points disagree.
+    Raises RoadExtractionError if more than half of the sampled points disagree.
     """
     agree, aside, above = [], [], []
     for road, x, y, s, d, z in sample_road_points(road_points):

@@ -17,16 +17,11 @@ CountedCubes = tuple[np.ndarray, np.ndarray] | None   # keys of the occupied cub
 
 @dataclass(frozen=True)
 class CubeDensity:
-    """Point density in cubes of 1 m.
+    """Point density in cubes of 1 m."""
 
-    points : number of points
-    mean : points per m³, mean over occupied cubes
-    of_a_point : points per m³, mean over points of the density of their own cube
-    """
-
-    points: int
-    mean: float
-    of_a_point: float
+    points: int   # number of points
+    mean: float   # points per m³, mean over occupied cubes
+    of_a_point: float   # points per m³, mean over points of the density of their own cube
 
 
 def cube_density(parts: Iterable[CountedCubes]) -> CubeDensity:

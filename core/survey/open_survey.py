@@ -48,9 +48,7 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     trajectory, settings, progress : as in `read_survey`
     execution : who runs the phases that read from the survey, and the work folder
 
-    Returns
-    -------
-    Survey; closing its store ends everything that was started for it
+    Returns Survey; closing its store ends everything that was started for it
 
     Raises
     ------
@@ -165,10 +163,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     trajectory : Trajectory in any CRS and time system
     shared : who reads, where the points are to lie in a folder; None for threads of this process and its memory
 
-    Raises
-    ------
-    RoadExtractionError
-        If a file cannot be read, the CRS is geographic or not in metres, or the trajectory does not overlap the cloud in space or time.
+    Raises RoadExtractionError if a file cannot be read, the CRS is geographic or not in metres, or the trajectory does not overlap the cloud in space
+    or time.
     """
     check_coloured(files, settings.intensity_from)
     crs = _metric_crs(files, trajectory, settings, progress)

@@ -126,15 +126,12 @@ class SurveyReader:
 
 @dataclass(frozen=True)
 class _PartOfFiles:
-    """What a range of points shows: where those lie that were kept, and what all contribute to the knowledge of the cloud.
-
-    drops : {pass number: counts of its HeightHistogram}; times, places : (N,) s and (N, 3) units of 0.1 mm of the sampled points
-    """
+    """What a range of points shows: where those lie that were kept, and what all contribute to the knowledge of the cloud."""
 
     index: StoreIndex
     summary: BlockSummary
-    drops: dict[int, np.ndarray]
-    times: np.ndarray
+    drops: dict[int, np.ndarray]   # {pass number: counts of its HeightHistogram}
+    times: np.ndarray   # times, places: (N,) s and (N, 3) units of 0.1 mm of the sampled points
     places: np.ndarray
 
 
@@ -261,18 +258,15 @@ def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
 class Finishing:
     """Finishes the points of sections: numbers their scanners from 0, and tells those near the height of the road.
 
-    sensor_height : {pass number: metres from the trajectory down to the road}
     scanner_field, scanners : LAS field that identifies the scanners, None if there is one, and its values, see `ScannerCensus.choose`
-    splitter : distinguishes scanners that no field distinguishes; None where there is no need
-    above_road : metres above the road up to which points are kept
     """
 
     frame: RoadFrame
-    sensor_height: dict[int, float]
+    sensor_height: dict[int, float]   # {pass number: metres from the trajectory down to the road}
     scanner_field: str | None
     scanners: list[Any]
-    splitter: ScannerSplitter | None
-    above_road: float
+    splitter: ScannerSplitter | None   # distinguishes scanners that no field distinguishes; None where there is no need
+    above_road: float   # metres above the road up to which points are kept
 
     def __call__(self, road: int, records: Columns) -> np.ndarray | None:
         """Number the scanners of (N,) records of a section, N > 0, and tell which lie near the height of the road: (N,) bool, None for all."""

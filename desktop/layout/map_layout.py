@@ -72,9 +72,7 @@ def road_map_layout(project: QgsProject, layers: list[QgsMapLayer], title: str, 
         and an atlas of pages of 1 : 500 where that would be smaller than 1 : 1000
     credit : whose data lie below, as their licence wants it said on the map
 
-    Returns
-    -------
-    QgsPrintLayout, not yet added to the project's layouts.
+    Returns QgsPrintLayout, not yet added to the project's layouts.
     """
     crs = map_crs(layers, project)
     centre, angle, length, width = lie_of_the_road(layers, crs, project)

@@ -24,27 +24,17 @@ LIKELY_WRONG = {"gap": 0.5, "grown": 0.5, "lane_end": 5.0, "warning": 1.0}
 
 @dataclass(frozen=True)
 class DoubtfulPiece:
-    """One piece of a line or lane that is doubtful, or something that is not there.
+    """One piece of a line or lane that is doubtful, or something that is not there."""
 
-    text : what is doubtful
-    kind : edge, marking, lane, surface or warning
-    line : its course
-    road, station : where it begins along the road
-    doubt : m of it that are likely to be wrong
-    target : what a correction calls it; "" where there is nothing that a correction could be about
-    offset : where it begins across the road
-    other : the second reading of the program, as the layer holds it; "" where there is none
-    """
-
-    text: str
-    kind: str
-    line: QgsGeometry
-    road: int
+    text: str   # what is doubtful
+    kind: str   # edge, marking, lane, surface or warning
+    line: QgsGeometry   # its course
+    road: int   # road, station: where it begins along the road
     station: float
-    doubt: float
-    target: str = ""
-    offset: float | None = None
-    other: str = ""
+    doubt: float   # m of it that are likely to be wrong
+    target: str = ""   # what a correction calls it; "" where there is nothing that a correction could be about
+    offset: float | None = None   # where it begins across the road
+    other: str = ""   # the second reading of the program, as the layer holds it; "" where there is none
 
     @property
     def key(self) -> str:

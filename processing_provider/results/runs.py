@@ -16,16 +16,11 @@ SURVEY_OF_RUN = "lanewright_survey"  # what the stages of a model tell each othe
 
 @dataclass(frozen=True)
 class Run:
-    """One run of an algorithm.
+    """One run of an algorithm."""
 
-    provenance : what its layers say of it
-    survey : name of the survey, "" where none is known
-    group : name of the layer group, "" for none
-    """
-
-    provenance: Provenance
-    survey: str
-    group: str
+    provenance: Provenance   # what its layers say of it
+    survey: str   # name of the survey, "" where none is known
+    group: str   # name of the layer group, "" for none
 
 
 def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsProcessingContext, group: str | None = None) -> Run:

@@ -28,18 +28,12 @@ def _ignore(text: str) -> None:
 
 @dataclass
 class AssessedLayer:
-    """A layer with its attributes.
+    """A layer with its attributes."""
 
-    label : its name in messages
-    geometries : list of shapely geometries
-    rows : list of dict, field name to value, one per geometry
-    crs : WKT, "" if unknown
-    """
-
-    label: str
-    geometries: list[Any]
-    rows: list[dict[str, Any]] = field(default_factory=list)
-    crs: str = ""
+    label: str   # its name in messages
+    geometries: list[Any]   # list of shapely geometries
+    rows: list[dict[str, Any]] = field(default_factory=list)   # list of dict, field name to value, one per geometry
+    crs: str = ""   # WKT, "" if unknown
 
     def column(self, name: str) -> list[Any]:
         """Values of a field, None where the layer or the row has none; the case of the name is ignored."""

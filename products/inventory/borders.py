@@ -35,20 +35,15 @@ class BorderLayers:
 class Strip:
     """A lane or the carriageway at one section.
 
-    right, left : m, offsets of its borders
-    lane : number of the lane, 0 for the carriageway
-    type : as in LANES; "carriageway" for the carriageway
-    direction : of travel, 1 along the road, -1 against it, 0 where unknown
-    borders : what they were taken from: lanes, lines, edges or track
     curbs : whether its right and left border may be a curb: road edges that are not said to be the edge of a pavement without one
     """
 
-    right: float
+    right: float   # right, left: m, offsets of its borders
     left: float
-    lane: int
-    type: str
-    direction: int
-    borders: str
+    lane: int   # number of the lane, 0 for the carriageway
+    type: str   # as in LANES; "carriageway" for the carriageway
+    direction: int   # of travel, 1 along the road, -1 against it, 0 where unknown
+    borders: str   # what they were taken from: lanes, lines, edges or track
     curbs: tuple[bool, bool] = (False, False)
 
     @property

@@ -52,61 +52,40 @@ LEAST_STRETCHED = 0.3        # m along a strip for each m of station, where a be
 
 @dataclass(frozen=True)
 class _StripMeasures:
-    """What was measured of a strip; NaN where it could not be. Left and right are seen along the road.
+    """What was measured of a strip; NaN where it could not be. Left and right are seen along the road."""
 
-    strip : Strip
-    crossfall, crossfall_sigma : m/m, positive where the road falls to the right
-    grade : m/m, positive where it climbs along the road
-    ruts : (right, left) m
-    curbs : (right, left) m, of the carriageway alone
-    clearance : m
-    seen : share of its width that was seen
-    """
-
-    strip: Strip
-    crossfall: float
+    strip: Strip   # Strip
+    crossfall: float   # crossfall, crossfall_sigma: m/m, positive where the road falls to the right
     crossfall_sigma: float
-    grade: float
-    ruts: tuple[float, float]
-    curbs: tuple[float, float]
-    clearance: float
-    seen: float
+    grade: float   # m/m, positive where it climbs along the road
+    ruts: tuple[float, float]   # (right, left) m
+    curbs: tuple[float, float]   # (right, left) m, of the carriageway alone
+    clearance: float   # m
+    seen: float   # share of its width that was seen
 
 
 @dataclass(frozen=True)
 class _RoadSection:
-    """One section.
+    """One section."""
 
-    road, station : where
-    heading : tangent of the angle between the carriageway and the road's reference line, by which widths across are shortened
-    d, z : (J,) offset and local height of the surface, m; NaN where it was not seen
-    parts : the carriageway, then its lanes from right to left
-    """
-
-    road: int
+    road: int   # road, station: where
     station: float
-    heading: float
-    d: np.ndarray
+    heading: float   # tangent of the angle between the carriageway and the road's reference line, by which widths across are shortened
+    d: np.ndarray   # d, z: (J,) offset and local height of the surface, m; NaN where it was not seen
     z: np.ndarray
-    parts: list[_StripMeasures]
+    parts: list[_StripMeasures]   # the carriageway, then its lanes from right to left
 
 
 @dataclass
 class RoadSections:
-    """All sections of a survey.
+    """All sections of a survey."""
 
-    sections : in order of road and station
-    errors : {road: HeightErrors} between passes and scanners
-    without_ruts : number of lanes whose points are too noisy for rut depths
-    frame, crs, settings : what they were made with
-    """
-
-    sections: list[_RoadSection]
-    errors: dict[int, HeightErrors]
-    frame: RoadFrame
+    sections: list[_RoadSection]   # in order of road and station
+    errors: dict[int, HeightErrors]   # {road: HeightErrors} between passes and scanners
+    frame: RoadFrame   # frame, crs, settings: what they were made with
     crs: str
     settings: CrossSectionSettings
-    without_ruts: int = 0
+    without_ruts: int = 0   # number of lanes whose points are too noisy for rut depths
     notes: list[str] = field(default_factory=list)
 
 
@@ -119,10 +98,7 @@ def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers()
     survey : Survey, opened with enough height above the road for the clearance
     layers : BorderLayers, of which any may be missing. Without edges and lines a lane of the country's usual width about the track is measured
 
-    Raises
-    ------
-    RoadExtractionError
-        If no section lies on the survey.
+    Raises RoadExtractionError if no section lies on the survey.
     """
     borders = RoadBorders(layers, survey.frame, country(settings.country))
     stretch = min(settings.interval, STRETCH)

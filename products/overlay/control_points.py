@@ -48,25 +48,17 @@ NUMBER_ORDERS = (("pixel", "line", "easting", "northing"), ("easting", "northing
 
 @dataclass(frozen=True)
 class ControlPoints:
-    """N control points.
+    """N control points."""
 
-    pixel, line : (N,) in the image, lines counted downward
-    easting, northing, height : (N,) m; height is NaN where it is unknown
-    names : N texts
-    roles : (N,) texts: "control" (used in the fit), "check" (compared with it) or "disabled"
-    crs : WKT of the map coordinates, "" where unknown
-    left_out : count of rows of the table without numbers
-    """
-
-    pixel: np.ndarray
+    pixel: np.ndarray   # pixel, line: (N,) in the image, lines counted downward
     line: np.ndarray
-    easting: np.ndarray
+    easting: np.ndarray   # easting, northing, height: (N,) m; height is NaN where it is unknown
     northing: np.ndarray
     height: np.ndarray
-    names: tuple[str, ...]
-    roles: np.ndarray
-    crs: str = ""
-    left_out: int = 0
+    names: tuple[str, ...]   # N texts
+    roles: np.ndarray   # (N,) texts: "control" (used in the fit), "check" (compared with it) or "disabled"
+    crs: str = ""   # WKT of the map coordinates, "" where unknown
+    left_out: int = 0   # count of rows of the table without numbers
 
     def __len__(self) -> int:
         return len(self.pixel)
@@ -92,10 +84,7 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     what : name of the table for error messages
     crs : WKT of the map coordinates in the table, "" where unknown
 
-    Raises
-    ------
-    RoadExtractionError
-        If a needed column is missing, no row is of this image or has numbers, or the points lie outside the image.
+    Raises RoadExtractionError if a needed column is missing, no row is of this image or has numbers, or the points lie outside the image.
     """
     if not rows:
         raise RoadExtractionError(f"{what} holds no control points. It needs a row for each: pixel, line, easting, northing.")
@@ -299,10 +288,7 @@ def read_control_points(path: str | Path, image: SourceImage, crs: str = "") -> 
     image : SourceImage that the points belong to; rows that name another image are passed over
     crs : WKT of the map coordinates where the file names none
 
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be read, its columns or its CRS are not recognised, or no row is of this image.
+    Raises RoadExtractionError if the file cannot be read, its columns or its CRS are not recognised, or no row is of this image.
     """
     lines, named = _lines(path)
     delimiter = _delimiter(lines)

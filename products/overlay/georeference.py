@@ -39,19 +39,16 @@ _MAX_SCALE_ERROR = 0.01  # of the scale of the map projection, above which it is
 class GeoreferenceSettings:
     """How the image is georeferenced and drawn.
 
-    order : of the polynomial, 1 to 3; 0 is a shift
     pixel_size : m, of the result (and of the image, for a shift of an image without position); 0 = as the image
     extrapolation : what is drawn of the image outside the hull of the control points: "draw", "leave-out" or
         "automatic", which leaves it out at order 3
-    resampling : "bilinear", "nearest" or "cubic"
-    check_disabled : whether disabled points are used as check points
     """
 
-    order: int = setting(2, 0, 3, "The order of the polynomial")
+    order: int = setting(2, 0, 3, "The order of the polynomial")   # of the polynomial, 1 to 3; 0 is a shift
     pixel_size: float = setting(0.0, 0.0, 999.0, "The pixel size", "m")
     extrapolation: str = "automatic"
-    resampling: str = "bilinear"
-    check_disabled: bool = False
+    resampling: str = "bilinear"   # "bilinear", "nearest" or "cubic"
+    check_disabled: bool = False   # whether disabled points are used as check points
 
     def __post_init__(self):
         """Check the limits of all settings, and the texts of the choices."""
@@ -65,30 +62,19 @@ class GeoreferenceSettings:
 
 @dataclass(frozen=True)
 class Georeferencing:
-    """The result of `georeference` for N points.
+    """The result of `georeference` for N points."""
 
-    image, points, settings : as given; disabled points used as check points have the role "check"
-    fit : ControlPointFit of the control points
-    pixel_size : m, of the image to be drawn
-    hull : shapely polygon around the control points in pixel and line; None for a shift
-    outside : 0 to 1, share of the area of the image outside the hull
-    cut : whether only the hull is drawn
-    errors : (N, 2) m, map coordinates of every point minus those of the polynomial
-    left_out : (N, 2) m, the same where the point is left out of the fit; NaN where the other points are not enough
-    notes : warnings for the user, one sentence each
-    """
-
-    image: SourceImage
+    image: SourceImage   # image, points, settings: as given; disabled points used as check points have the role "check"
     points: ControlPoints
     settings: GeoreferenceSettings
-    fit: ControlPointFit
-    pixel_size: float
-    hull: shapely.Geometry | None
-    outside: float
-    cut: bool
-    errors: np.ndarray
-    left_out: np.ndarray
-    notes: list[str] = field(default_factory=list)
+    fit: ControlPointFit   # ControlPointFit of the control points
+    pixel_size: float   # m, of the image to be drawn
+    hull: shapely.Geometry | None   # shapely polygon around the control points in pixel and line; None for a shift
+    outside: float   # 0 to 1, share of the area of the image outside the hull
+    cut: bool   # whether only the hull is drawn
+    errors: np.ndarray   # (N, 2) m, map coordinates of every point minus those of the polynomial
+    left_out: np.ndarray   # (N, 2) m, the same where the point is left out of the fit; NaN where the other points are not enough
+    notes: list[str] = field(default_factory=list)   # warnings for the user, one sentence each
 
     def rmse(self, role: str = CONTROL) -> float:
         """Root mean square of the lengths of the residuals of a role, m: sqrt(sum(dx^2 + dy^2) / n); NaN without points."""
@@ -112,12 +98,8 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
     ----------
     points : ControlPoints in a projected CRS in metres, or in local metres
 
-    Raises
-    ------
-    RoadExtractionError
-        If there are fewer than 1, 3, 6, 10 control points for order 0, 1, 2, 3; if they lie on a line or do not determine
-        the polynomial; if the polynomial mirrors or folds the image; if the CRS is not in metres; or if the image of
-        a shift has no position.
+    Raises RoadExtractionError if there are fewer than 1, 3, 6, 10 control points for order 0, 1, 2, 3; if they lie on a line or do not determine the
+    polynomial; if the polynomial mirrors or folds the image; if the CRS is not in metres; or if the image of a shift has no position.
     """
     from ...core.io.crs import check_metric, parse_crs
 

@@ -26,19 +26,13 @@ class ImagePolynomial:
 
     Coordinates are centred, rotated to their principal axes and scaled to unit spread, so that all terms are of
     similar size: u = (p - centre) @ whiten.
-
-    order : of the polynomial; a shift is stored as a polynomial of order 1
-    centre : (2,) pixel and line
-    whiten : (2, 2)
-    origin : (2,) m, map coordinates subtracted before the fit
-    coefficients : (K, 2) m of the terms in `term_powers(order)`, for easting and northing
     """
 
-    order: int
-    centre: np.ndarray
-    whiten: np.ndarray
-    origin: np.ndarray
-    coefficients: np.ndarray
+    order: int   # of the polynomial; a shift is stored as a polynomial of order 1
+    centre: np.ndarray   # (2,) pixel and line
+    whiten: np.ndarray   # (2, 2)
+    origin: np.ndarray   # (2,) m, map coordinates subtracted before the fit
+    coefficients: np.ndarray   # (K, 2) m of the terms in `term_powers(order)`, for easting and northing
 
     def terms(self, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
         """(N, K) values of the terms at N places in the image."""
@@ -71,20 +65,13 @@ def _terms(u, order):
 
 @dataclass(frozen=True)
 class ControlPointFit:
-    """A polynomial fitted to N control points, with the quality of the fit.
+    """A polynomial fitted to N control points, with the quality of the fit."""
 
-    polynomial : ImagePolynomial
-    residuals : (N, 2) m, map coordinates of the points minus those of the polynomial
-    leverage : (N,) 0 to 1, influence of each point on its own residual
-    triangle : (K, K) matrix R of the QR decomposition of the terms
-    order : 0 for a shift
-    """
-
-    polynomial: ImagePolynomial
-    residuals: np.ndarray
-    leverage: np.ndarray
-    triangle: np.ndarray
-    order: int
+    polynomial: ImagePolynomial   # ImagePolynomial
+    residuals: np.ndarray   # (N, 2) m, map coordinates of the points minus those of the polynomial
+    leverage: np.ndarray   # (N,) 0 to 1, influence of each point on its own residual
+    triangle: np.ndarray   # (K, K) matrix R of the QR decomposition of the terms
+    order: int   # 0 for a shift
 
     @property
     def free(self) -> int:

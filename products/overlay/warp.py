@@ -44,10 +44,7 @@ def output_grid(found: Georeferencing) -> tuple[tuple[float, float, float, float
     bounds : (min x, min y, max x, max y), m
     width, height : pixels
 
-    Raises
-    ------
-    RoadExtractionError
-        If the result would have more than MAX_RESULT_PIXELS.
+    Raises RoadExtractionError if the result would have more than MAX_RESULT_PIXELS.
     """
     outline = drawn_area(found).exterior
     outline = shapely.get_coordinates(outline.segmentize(max(outline.length / 400, 1e-6)))
@@ -82,14 +79,9 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
     ----------
     path : of the GeoTIFF
 
-    Returns
-    -------
-    pixels, greatest distance between the places where GDAL and the polynomial put a pixel
+    Returns pixels, greatest distance between the places where GDAL and the polynomial put a pixel
 
-    Raises
-    ------
-    RoadExtractionError
-        If the result would be too large, the image cannot be read, or the file cannot be written.
+    Raises RoadExtractionError if the result would be too large, the image cannot be read, or the file cannot be written.
     """
     from osgeo import gdal
 

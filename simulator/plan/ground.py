@@ -67,19 +67,13 @@ def curb_heights(places: np.ndarray, height: float, lowered: Sequence[shapely.Po
 
 @dataclass
 class Surface:
-    """The ground at (N,) places.
+    """The ground at (N,) places."""
 
-    z : m
-    slope_x, slope_y : m per m
-    away : m beyond the edge of the carriageway, negative on it
-    strip : int16, 0 on the carriageway, else the number of the strip among those of all profiles, from 1
-    """
-
-    z: np.ndarray
-    slope_x: np.ndarray
+    z: np.ndarray   # m
+    slope_x: np.ndarray   # slope_x, slope_y: m per m
     slope_y: np.ndarray
-    away: np.ndarray
-    strip: np.ndarray
+    away: np.ndarray   # m beyond the edge of the carriageway, negative on it
+    strip: np.ndarray   # int16, 0 on the carriageway, else the number of the strip among those of all profiles, from 1
 
 
 class Ground:

@@ -365,19 +365,14 @@ def _further(places):
 
 
 class Beside(NamedTuple):
-    """Two roads, `one` and `other`, that run beside each other.
-
-    stations, places : (N,) m on the first, middles of windows of `correction_step`, and on the second
-    apart : (N,) m of offset, left positive, from the first to the second
-    up : (N,) m by which the points of the second lie higher, NaN where both hardly see the same
-    """
+    """Two roads, `one` and `other`, that run beside each other."""
 
     one: int
     other: int
-    stations: np.ndarray
+    stations: np.ndarray   # stations, places: (N,) m on the first, middles of windows of `correction_step`, and on the second
     places: np.ndarray
-    apart: np.ndarray
-    up: np.ndarray
+    apart: np.ndarray   # (N,) m of offset, left positive, from the first to the second
+    up: np.ndarray   # (N,) m by which the points of the second lie higher, NaN where both hardly see the same
 
 
 def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:

@@ -93,21 +93,15 @@ ROUGH_LAGS = 2 * np.arange(-_ROUGH_REACH, _ROUGH_REACH + 1)   # narrower than ha
 
 @dataclass(frozen=True)
 class PassOffsets:
-    """Offsets to be added to pass `other` to match pass `one`, window by window of a road.
+    """Offsets to be added to pass `other` to match pass `one`, window by window of a road."""
 
-    one, other : pass numbers
-    stations : (N,) middles of the windows, m
-    along, left, up : (N,) metres, NaN where unknown
-    far : (K,) middles of the windows in which the offset seems to exceed `max_offset`
-    """
-
-    one: int
+    one: int   # one, other: pass numbers
     other: int
-    stations: np.ndarray
-    along: np.ndarray
+    stations: np.ndarray   # (N,) middles of the windows, m
+    along: np.ndarray   # along, left, up: (N,) metres, NaN where unknown
     left: np.ndarray
     up: np.ndarray
-    far: np.ndarray
+    far: np.ndarray   # (K,) middles of the windows in which the offset seems to exceed `max_offset`
 
     def everywhere(self, axis: str) -> np.ndarray:
         """(N,) metres along an axis, interpolated where unknown; 0 where nothing is known."""
@@ -120,12 +114,11 @@ class PassOffsets:
 class Strips:
     """One pass, or one scanner of it, in one window: rows of cells of height and intensity without their slow variations.
 
-    heights, steps : (rows, cells) float32, m, NaN where unknown; offsets are measured along a row
     paint : (rows, cells) float32, intensity in units of its robust standard deviation, NaN where unknown and at faces, of whose brightness each
         drive sees another side
     """
 
-    heights: np.ndarray
+    heights: np.ndarray   # heights, steps: (rows, cells) float32, m, NaN where unknown; offsets are measured along a row
     steps: np.ndarray
     paint: np.ndarray
 

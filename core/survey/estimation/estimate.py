@@ -29,20 +29,17 @@ WAYS = {"rays": "the rays of the mirrors", "turns": "the turns of a many-beam he
 class EstimatedTrajectory:
     """A trajectory of the middle of the scanners, and how well it is known.
 
-    sigma, sigma_height : (N,) m, standard deviation of the place on the map and of the height
-    method : "rays" of mirrors, "turns" of a many-beam head, or "density" of points alone, which is rough
     scanners, adjusted : that took part, and the adjustment of their poses; none with density alone
-    above_road : m, median height above the road where it was measured, NaN where it was not
     notes, cloud_notes : sentences for the user, the latter on the point clouds, which whoever reads them with this trajectory says too
     """
 
     trajectory: Trajectory
-    sigma: np.ndarray
+    sigma: np.ndarray   # sigma, sigma_height: (N,) m, standard deviation of the place on the map and of the height
     sigma_height: np.ndarray
-    method: str
+    method: str   # "rays" of mirrors, "turns" of a many-beam head, or "density" of points alone, which is rough
     scanners: list[Spinning] = field(default_factory=list)
     adjusted: Adjusted | None = None
-    above_road: float = np.nan
+    above_road: float = np.nan   # m, median height above the road where it was measured, NaN where it was not
     notes: list[str] = field(default_factory=list)
     cloud_notes: list[str] = field(default_factory=list)
 
@@ -72,14 +69,10 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
     crs : WKT for clouds that carry none
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
 
-    Returns
-    -------
-    EstimatedTrajectory, on the clock of the points
+    Returns EstimatedTrajectory, on the clock of the points
 
-    Raises
-    ------
-    RoadExtractionError
-        If a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a road.
+    Raises RoadExtractionError if a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a
+    road.
     """
     copies: list[str] = []
     files = without_copies(read_headers(paths, copies.append, crs), copies.append)

@@ -18,20 +18,15 @@ from .samples import FirstTrack, Samples, headings_of, thinned
 
 @dataclass
 class HeadTrack:
-    """Places of the head, one a turn.
+    """Places of the head, one a turn."""
 
-    time : (T,) s; place : (T, 2) m; sigma : (T,) m; heading : (T,) radians counter-clockwise from east
-    speed : (T, 2) m/s by which the head moves in a turn; nothing in clouds whose turns were moved to one place each
-    noise : radians, usual residual of a bearing; rate : turns per second, negative clockwise
-    """
-
-    time: np.ndarray
-    place: np.ndarray
-    sigma: np.ndarray
-    heading: np.ndarray
-    speed: np.ndarray
-    noise: float
-    rate: float
+    time: np.ndarray   # (T,) s
+    place: np.ndarray   # (T, 2) m
+    sigma: np.ndarray   # (T,) m
+    heading: np.ndarray   # (T,) radians counter-clockwise from east
+    speed: np.ndarray   # (T, 2) m/s by which the head moves in a turn; nothing in clouds whose turns were moved to one place each
+    noise: float   # radians, usual residual of a bearing
+    rate: float   # turns per second, negative clockwise
 
 
 def turning_heads(samples: Samples, tracks: list[FirstTrack]) -> list[HeadTrack] | None:

@@ -51,20 +51,14 @@ LINE_VERTEX_SPACING = 0.5  # cost: m between vertices at most: straight on the m
 
 @dataclass(frozen=True)
 class FrameLines:
-    """L lines, stored vertex by vertex.
+    """L lines, stored vertex by vertex."""
 
-    road : (L,) int, number of the road; -1 where a line lies on none
-    start : (L + 1,) int, first vertex of each line, and V
-    x, y, z : (V,) local metres (map coordinates less the origin of the frame); z is NaN where there is none
-    s, d : (V,) metres, station and offset; NaN where a vertex has no foot on its road
-    """
-
-    road: np.ndarray
-    start: np.ndarray
-    x: np.ndarray
+    road: np.ndarray   # (L,) int, number of the road; -1 where a line lies on none
+    start: np.ndarray   # (L + 1,) int, first vertex of each line, and V
+    x: np.ndarray   # x, y, z: (V,) local metres (map coordinates less the origin of the frame); z is NaN where there is none
     y: np.ndarray
     z: np.ndarray
-    s: np.ndarray
+    s: np.ndarray   # s, d: (V,) metres, station and offset; NaN where a vertex has no foot on its road
     d: np.ndarray
 
     def __len__(self) -> int:

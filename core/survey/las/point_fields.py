@@ -147,18 +147,13 @@ MAX_POWER = 290.0         # derived: of ten, with which a double can be multipli
 
 @dataclass(frozen=True)
 class IntensitySource:
-    """How the intensity of points is read.
+    """How the intensity of points is read."""
 
-    field : "intensity", an extra field, or "rgb" for the luminance of colours; signed : whether values from SIGN on stand for negative ones
-    per_decibel : values that make a decibel, 0 where they are linear; zero : of linear values, what counts as 0
-    factor : by which linear values, or those of decibels made linear, are multiplied
-    """
-
-    field: str = "intensity"
-    signed: bool = False
-    per_decibel: float = 0.0
-    zero: float = 0.0
-    factor: float = 1.0
+    field: str = "intensity"   # "intensity", an extra field, or "rgb" for the luminance of colours
+    signed: bool = False   # whether values from SIGN on stand for negative ones
+    per_decibel: float = 0.0   # values that make a decibel, 0 where they are linear
+    zero: float = 0.0   # of linear values, what counts as 0
+    factor: float = 1.0   # by which linear values, or those of decibels made linear, are multiplied
 
     @property
     def layers(self) -> tuple[str, ...]:

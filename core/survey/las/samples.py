@@ -129,10 +129,7 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
     x, y : map coordinates of the middle
     radius : m, half the side of the square
 
-    Raises
-    ------
-    RoadExtractionError
-        If a file is missing or cannot be read.
+    Raises RoadExtractionError if a file is missing or cannot be read.
     """
     files = read_headers(paths, progress.warn)
     units = files[0].units   # of the map, in which the results of these clouds are

@@ -35,15 +35,10 @@ def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str
     target_crs : WKT or "EPSG:n"; where it is given and the trajectory's CRS is known, the trajectory is reprojected
     columns : of a text table, as `assigned_columns` takes them; "" recognises them
 
-    Returns
-    -------
-    Trajectory, not yet cleaned: rows in file order, angles in degrees; `notes` state what was recognised. Longitude and latitude stay in degrees
-    (x is the longitude) when no `target_crs` is given.
+    Returns Trajectory, not yet cleaned: rows in file order, angles in degrees; `notes` state what was recognised. Longitude and latitude stay in
+    degrees (x is the longitude) when no `target_crs` is given.
 
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be read or its columns are not recognised.
+    Raises RoadExtractionError if the file cannot be read or its columns are not recognised.
     """
     path = Path(path)
     if not path.is_file():
@@ -70,10 +65,7 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
     label, notes : of the source for messages, and of the Trajectory so far
     stated_units : (role, "metres" or "feet") of x, y and z where their columns state a unit
 
-    Raises
-    ------
-    RoadExtractionError
-        If x, y or z is missing, or coordinates and CRS contradict each other.
+    Raises RoadExtractionError if x, y or z is missing, or coordinates and CRS contradict each other.
     """
     columns = {role: finite_or_nan(np.asarray(values, float)) for role, values in columns.items()}
     remarks = list(notes)
@@ -103,10 +95,7 @@ def trajectory_from_rows(titles: Sequence[str], rows: Sequence[Sequence[object]]
     crs : WKT or "EPSG:n" of x, y; "" where unknown
     heights_needed : without them 0 is taken where no height is known
 
-    Raises
-    ------
-    RoadExtractionError
-        If x, y or z is missing, times cannot be read, or coordinates and CRS contradict each other.
+    Raises RoadExtractionError if x, y or z is missing, times cannot be read, or coordinates and CRS contradict each other.
     """
     columns = columns_of_rows(titles, rows)
     # positions from the geometry are not mixed with those in fields

@@ -128,21 +128,14 @@ AXIS_STEP = 1.0       # m between heights of an axis
 
 @dataclass(frozen=True)
 class Alignment:
-    """A line for construction.
+    """A line for construction."""
 
-    name : of the road or lane; description : what it is
-    plan : PlanView in map coordinates; None where no short elements follow the line: `places` then holds it
-    places : (N, 3) map coordinates
-    profile : (M, 2) station and height, metres, of the tangents' intersections
-    missed : metres that a place lies beside the elements at most
-    """
-
-    name: str
-    description: str
-    plan: PlanView | None
-    places: np.ndarray
-    profile: np.ndarray
-    missed: float = 0.0
+    name: str   # of the road or lane
+    description: str   # what it is
+    plan: PlanView | None   # PlanView in map coordinates; None where no short elements follow the line: `places` then holds it
+    places: np.ndarray   # (N, 3) map coordinates
+    profile: np.ndarray   # (M, 2) station and height, metres, of the tangents' intersections
+    missed: float = 0.0   # metres that a place lies beside the elements at most
 
     def in_file(self, units: FileUnits) -> Alignment:
         """The same in the units of a file; its heights have those of x and y."""

@@ -40,30 +40,20 @@ class SideEdges:
 
 @dataclass(frozen=True)
 class SideLine:
-    """A line beside the road.
+    """A line beside the road."""
 
-    kind : guard_rail, barrier, wall, fence, hedge or gutter
-    chain : Chain
-    foot : m, lower end of what is seen of it above the ground
-    """
-
-    kind: str
-    chain: Chain
-    foot: float
+    kind: str   # guard_rail, barrier, wall, fence, hedge or gutter
+    chain: Chain   # Chain
+    foot: float   # m, lower end of what is seen of it above the ground
 
 
 @dataclass
 class Roadside:
-    """What was found beside the roads of a survey.
+    """What was found beside the roads of a survey."""
 
-    lines : in order of road, side and station
-    poles : {road: list of Pole}
-    edges : {road: SideEdges}
-    """
-
-    lines: list[SideLine]
-    poles: dict[int, list[Pole]]
-    edges: dict[int, SideEdges]
+    lines: list[SideLine]   # in order of road, side and station
+    poles: dict[int, list[Pole]]   # {road: list of Pole}
+    edges: dict[int, SideEdges]   # {road: SideEdges}
     frame: RoadFrame
     crs: str
     settings: RoadsideSettings

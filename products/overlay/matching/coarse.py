@@ -26,38 +26,25 @@ _FINER = (0.5, 0.25)      # of a step, tried about each place in the second roun
 
 
 class Place(NamedTuple):
-    """A similarity from the photo's middle to the map.
+    """A similarity from the photo's middle to the map."""
 
-    x, y : m, local, of the photo's middle
-    turn : radians, counter-clockwise, from the rows of the photo to east
-    size : m of a pixel
-    sign : 1, or -1 where paint is darker than the road
-    score : 0 to 1, correlation of the contrasts where both are known
-    """
-
-    x: float
+    x: float   # x, y: m, local, of the photo's middle
     y: float
-    turn: float
-    size: float
-    sign: int
-    score: float
+    turn: float   # radians, counter-clockwise, from the rows of the photo to east
+    size: float   # m of a pixel
+    sign: int   # 1, or -1 where paint is darker than the road
+    score: float   # 0 to 1, correlation of the contrasts where both are known
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """What is tried.
+    """What is tried."""
 
-    x, y : m, local, about where the photo's middle lies
-    reach : m, how far off that may be; infinite where nothing is known
-    turns : (from, to) radians
-    sizes : (from, to) m of a pixel
-    """
-
-    x: float
+    x: float   # x, y: m, local, about where the photo's middle lies
     y: float
-    reach: float
-    turns: tuple[float, float]
-    sizes: tuple[float, float]
+    reach: float   # m, how far off that may be; infinite where nothing is known
+    turns: tuple[float, float]   # (from, to) radians
+    sizes: tuple[float, float]   # (from, to) m of a pixel
 
     def of_pixels(self, factor: int) -> Bounds:
         """The same for a photo whose pixels are `factor` times as wide."""
@@ -76,9 +63,7 @@ def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bound
     bounds : Bounds, of the pixels of `photo`
     sign : 1, or -1 where paint is darker than the road
 
-    Returns
-    -------
-    list of Place, each some metres or a turn away from the others
+    Returns list of Place, each some metres or a turn away from the others
     """
     middle_size = float(np.sqrt(bounds.sizes[0] * bounds.sizes[1]))
     half = 0.5 * max(photo.shape) * middle_size
@@ -215,14 +200,9 @@ def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace
     ----------
     rough : RoughPlace in its CRS
 
-    Returns
-    -------
-    SurveyedPaint, Bounds in its local coordinates, for the pixels of the image itself
+    Returns SurveyedPaint, Bounds in its local coordinates, for the pixels of the image itself
 
-    Raises
-    ------
-    RoadExtractionError
-        If the image covers too much ground, the intensity image has nothing there, or too much would have to be searched.
+    Raises RoadExtractionError if the image covers too much ground, the intensity image has nothing there, or too much would have to be searched.
     """
     ground = max(image.width, image.height) * rough.size
     if ground > MOST_GROUND:

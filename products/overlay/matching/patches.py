@@ -15,22 +15,15 @@ _LEAST_STRUCTURE = 0.02   # mean square contrast of a patch, below which there i
 
 
 class Found(NamedTuple):
-    """Patches found again.
+    """Patches found again."""
 
-    x, y : (N,) m, local, middles of the patches
-    dx, dy : (N,) m, from there to where the drawn photo has them
-    score : (N,) correlation, 0 to 1
-    second : (N,) the largest correlation elsewhere in the window, as a share of the best
-    sharpness : (N,) how fast the correlation falls in the direction in which it falls slowest, per m²
-    """
-
-    x: np.ndarray
+    x: np.ndarray   # x, y: (N,) m, local, middles of the patches
     y: np.ndarray
-    dx: np.ndarray
+    dx: np.ndarray   # dx, dy: (N,) m, from there to where the drawn photo has them
     dy: np.ndarray
-    score: np.ndarray
-    second: np.ndarray
-    sharpness: np.ndarray
+    score: np.ndarray   # (N,) correlation, 0 to 1
+    second: np.ndarray   # (N,) the largest correlation elsewhere in the window, as a share of the best
+    sharpness: np.ndarray   # (N,) how fast the correlation falls in the direction in which it falls slowest, per m²
 
     def where(self, kept: np.ndarray) -> Found:
         """The patches of a (N,) bool or index array."""
@@ -49,9 +42,7 @@ def find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarra
     half : m, half the side of a patch
     search : m, how far off it may be
 
-    Returns
-    -------
-    Found, without patches that lie too near the border, hold no paint, or were found at the border of their window
+    Returns Found, without patches that lie too near the border, hold no paint, or were found at the border of their window
     """
     margin = max(2, round(search / cell))
     exclusion = max(2, round(_OTHER_PEAK * half / cell))

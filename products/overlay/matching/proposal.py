@@ -22,17 +22,14 @@ from .placement import Placement
 class ProposalSettings:
     """How pairs are found and accepted.
 
-    search : m, how far off the rough position may be
     tolerance : m, largest distance of a pair that is accepted from where the others place it
-    min_score : smallest correlation of the two cut-outs of a pair that is accepted
-    count : most pairs that are accepted
     pixel_size : m on the ground of the image's pixels, roughly; 0: as its position or its tags say
     """
 
-    search: float = setting(15.0, 1.0, 100.0, "The search distance", "m")
+    search: float = setting(15.0, 1.0, 100.0, "The search distance", "m")   # m, how far off the rough position may be
     tolerance: float = setting(0.10, 0.01, 1.0, "The tolerance", "m")
-    min_score: float = setting(0.6, 0.3, 0.99, "The smallest score")
-    count: int = setting(40, 6, 400, "The number of pairs")
+    min_score: float = setting(0.6, 0.3, 0.99, "The smallest score")   # smallest correlation of the two cut-outs of a pair that is accepted
+    count: int = setting(40, 6, 400, "The number of pairs")   # most pairs that are accepted
     pixel_size: float = setting(0.0, 0.001, 1.0, "The pixel size", "m", zero="as the image says")
 
     def __post_init__(self) -> None:
@@ -42,42 +39,26 @@ class ProposalSettings:
 
 @dataclass(frozen=True)
 class Proposal:
-    """N pairs of places, in the image and on the map, the most certain first.
+    """N pairs of places, in the image and on the map, the most certain first."""
 
-    image, intensity : as given
-    settings : ProposalSettings
-    rough : RoughPlace
-    crs : WKT of the map
-    easting, northing : (N,) m, in the intensity image
-    pixel, line : (N,) in the image
-    score : (N,) correlation of the two cut-outs
-    residual : (N,) m, distance from where the accepted pairs without this one place it
-    accepted : (N,) bool, by default
-    why : N texts, why a pair is not accepted
-    order : of the polynomial that the residuals belong to
-    turn, size : radians and m, of the image on the map
-    rival : the most likely other place, None where there is none
-    notes : warnings for the user, one sentence each
-    """
-
-    image: SourceImage
+    image: SourceImage   # image, intensity: as given
     intensity: IntensityImage
-    settings: ProposalSettings
-    rough: RoughPlace
-    crs: str
-    easting: np.ndarray
+    settings: ProposalSettings   # ProposalSettings
+    rough: RoughPlace   # RoughPlace
+    crs: str   # WKT of the map
+    easting: np.ndarray   # easting, northing: (N,) m, in the intensity image
     northing: np.ndarray
-    pixel: np.ndarray
+    pixel: np.ndarray   # pixel, line: (N,) in the image
     line: np.ndarray
-    score: np.ndarray
-    residual: np.ndarray
-    accepted: np.ndarray
-    why: tuple[str, ...]
-    order: int
-    turn: float
+    score: np.ndarray   # (N,) correlation of the two cut-outs
+    residual: np.ndarray   # (N,) m, distance from where the accepted pairs without this one place it
+    accepted: np.ndarray   # (N,) bool, by default
+    why: tuple[str, ...]   # N texts, why a pair is not accepted
+    order: int   # of the polynomial that the residuals belong to
+    turn: float   # turn, size: radians and m, of the image on the map
     size: float
-    rival: _Rival | None
-    notes: list[str] = field(default_factory=list)
+    rival: _Rival | None   # the most likely other place, None where there is none
+    notes: list[str] = field(default_factory=list)   # warnings for the user, one sentence each
 
     def __len__(self) -> int:
         return len(self.pixel)
@@ -117,15 +98,11 @@ _UNLIKE = 0.4         # correlation below which a corner is not what lies there
 
 
 class _Rival(NamedTuple):
-    """Another place that the paint might allow.
+    """Another place that the paint might allow."""
 
-    dx, dy : m, from the place
-    votes_for, votes_against : corners that speak for the place, and for the rival
-    """
-
-    dx: float
+    dx: float   # dx, dy: m, from the place
     dy: float
-    votes_for: float
+    votes_for: float   # votes_for, votes_against: corners that speak for the place, and for the rival
     votes_against: float
 
     @property

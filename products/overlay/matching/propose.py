@@ -37,10 +37,7 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     intensity : IntensityImage in a projected CRS in metres
     rough : RoughPlace in that CRS
 
-    Raises
-    ------
-    RoadExtractionError
-        If the image does not lie over the intensity image, covers too much ground, or shows other paint.
+    Raises RoadExtractionError if the image does not lie over the intensity image, covers too much ground, or shows other paint.
     """
     settings = settings or ProposalSettings()
     paint, bounds = paint_about(image, intensity, rough)
@@ -221,26 +218,17 @@ WEAK, REPEATS, AWAY = "looks different", "repeats nearby", "does not fit the oth
 
 
 class Pairs(NamedTuple):
-    """N corners of paint and where the image has them.
+    """N corners of paint and where the image has them."""
 
-    placement : Placement that those that agree were fitted to
-    order : of the polynomial that the residuals belong to
-    x, y : (N,) m, local
-    pixel, line : (N,)
-    score : (N,) correlation of the two cut-outs
-    residual : (N,) m, from where the pairs that agree place it, each without itself
-    why : (N,) texts, why a pair is false or doubtful; "" for a sound one
-    """
-
-    placement: Placement
-    order: int
-    x: np.ndarray
+    placement: Placement   # Placement that those that agree were fitted to
+    order: int   # of the polynomial that the residuals belong to
+    x: np.ndarray   # x, y: (N,) m, local
     y: np.ndarray
-    pixel: np.ndarray
+    pixel: np.ndarray   # pixel, line: (N,)
     line: np.ndarray
-    score: np.ndarray
-    residual: np.ndarray
-    why: np.ndarray
+    score: np.ndarray   # (N,) correlation of the two cut-outs
+    residual: np.ndarray   # (N,) m, from where the pairs that agree place it, each without itself
+    why: np.ndarray   # (N,) texts, why a pair is false or doubtful; "" for a sound one
 
 
 def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray, settings: ProposalSettings) -> Pairs | None:
