@@ -70,7 +70,6 @@ class Phase:
         there, and gives the Recipe
     arguments : plain values that all items share
     place : names the stretch of road that an item is, for messages
-    size : distinguishes items by how long they take; any unit
     together : so many items, one after the other along the road, are best given to one worker, which keeps what they share
     join : the result of an item from those of the two halves of its range of numbers; None where an item cannot be halved
     """
@@ -79,7 +78,6 @@ class Phase:
     source: Any
     arguments: tuple[Any, ...] = ()
     place: Callable[[Any], str] = field(default=str, compare=False)
-    size: Callable[[Any], float] = field(default=lambda item: 0.0, compare=False)
     join: Callable[[list[Any]], Any] | None = field(default=None, compare=False)
     together: int = field(default=1, compare=False)
 
