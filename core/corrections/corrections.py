@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -15,9 +15,7 @@ from ..common.features import Features
 from ..io.crs import horizontal_part, parse_crs, same_crs
 from ..markings.cross_section.weights import TakenReading
 from ..survey.frame.placement import LINE_VERTEX_SPACING
-
-if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
+from ..survey.frame.road_frame import RoadFrame
 
 ACTIONS = ("accept", "delete", "move", "draw", "take")
 TARGETS = ("edge", "marking", "lane")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -15,6 +15,9 @@ from ...core.common.progress import Progress
 from ...core.countries.catalogue import country
 from ...core.countries.model import SectionLimits
 from ...core.curves.robust import MAD_TO_SIGMA
+from ...core.survey.frame.road_frame import RoadFrame
+from ...core.survey.store.records import Points
+from ...core.survey.survey import Survey
 from .borders import BorderLayers, RoadBorders, Strip
 from .settings import CrossSectionSettings
 from .surface_grid import (
@@ -28,11 +31,6 @@ from .surface_grid import (
     solve_height_errors,
     surface_grid,
 )
-
-if TYPE_CHECKING:
-    from ...core.survey.frame.road_frame import RoadFrame
-    from ...core.survey.store.records import Points
-    from ...core.survey.survey import Survey
 
 STRETCH = 10.0               # m of road about a section from which grade and ruts are measured; shorter where the interval is
 READ_BESIDE = 1.0                 # m beyond the borders that are read too, for the curbs' tops

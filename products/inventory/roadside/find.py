@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ....core.common.parallel import ordered_map
 from ....core.common.progress import Progress
 from ....core.countries.catalogue import country
+from ....core.survey.survey import Survey
 from ..borders import BorderLayers, RoadBorders
 from ..settings import RoadsideSettings
 from ..surface_grid import SLICE_LENGTH
@@ -18,9 +18,6 @@ from .chains import find_chains, gaps_by_window, judged, pulses_at, things_of
 from .ground import GROUND_CELL, find_gutters, level_views, lines_of_sight, local_ground
 from .result import Roadside, SideEdges, SideLine, along_faces, told_once
 from .uprights import UPRIGHT_SLICE, Uprights, find_poles, find_uprights
-
-if TYPE_CHECKING:
-    from ....core.survey.survey import Survey
 
 ROADSIDE_WINDOW = 20.0            # m of road looked at at a time; results do not depend on it
 ROADSIDE_MARGIN = 5.0      # m before and after it, for the ground
