@@ -10,7 +10,7 @@ import numpy as np
 from ...core.common.features import Features
 from ...core.common.texts import language, tr, word
 from ..inventory.cross_sections import RoadSections
-from ..inventory.roadside.result import Roadside
+from ..inventory.roadside.find import Roadside
 from .figures import Chart
 from .page import html_page
 

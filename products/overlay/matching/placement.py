@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....core.lazy import cv2
-from ..polynomial import (
+from ..georeference import (
     COLLINEAR_RATIO,
     MIN_CONTROL_POINTS,
     MIN_INVERSE_CONDITION,
