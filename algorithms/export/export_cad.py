@@ -15,7 +15,6 @@ CAD_SETTINGS = (
 )
 
 
-
 class ExportCad(Algorithm):
     ID, TITLE, GROUP = "exportcad", "Export CAD", "Export"
     SUMMARY = "Writes the road map for the design office: 3D polylines as DXF, or alignments of lines, curves and spirals with profile as LandXML."

@@ -52,7 +52,6 @@ def row_medians(values: np.ndarray) -> np.ndarray:
 # one array.
 
 
-
 class PointGroups:
     """Points of L lines in one array, one line after the other.
 
@@ -267,7 +266,6 @@ class _SingleCurve:
 
 
 # Robust smoothing of evenly spaced values, with gaps.
-
 
 
 def robustly_smoothed(values: np.ndarray, weight: np.ndarray, stiffness: float) -> np.ndarray:

@@ -143,7 +143,6 @@ class _LineProblem(_CircleProblem):
 # An ellipse through points.
 
 
-
 @dataclass(frozen=True)
 class Ellipse(TabulatedCurve):
     """An elliptic arc."""
@@ -277,7 +276,6 @@ def _nearest_angle(x, y, unknown):
 
 
 # A polynomial of degree k across the chord of the points.
-
 
 
 @dataclass(frozen=True)

@@ -153,10 +153,7 @@ def _add_mounting(equations, poses, guess):
         equations.common[every] -= RAYS.held * poses.lever[:, axis].sum()
 
 
-
-
 # The adjustment, begun where the poses are known well enough and grown along time from there.
-
 
 
 def grown_poses(poses: Poses, known: np.ndarray, returns: Returns, progress: Progress = Progress()) -> Adjusted:
@@ -371,10 +368,7 @@ class _BandedEquations:
                               axis=1).reshape(3 * blocks, columns, columns)[:knots]
 
 
-
-
 # How the road is inclined across under the vehicle, by the returns on its own way.
-
 
 
 def _crossfall_of(poses: Poses, returns: Returns) -> np.ndarray:

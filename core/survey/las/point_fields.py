@@ -303,7 +303,6 @@ def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
 # Coordinates of a LAS file, stored as integers, converted to the local integers of a record.
 
 
-
 class LasAxis:
     """One coordinate axis of a file, "X", "Y" or "Z": its integers, with scale and offset in metres, converted to units of 0.1 mm from an origin."""
 
