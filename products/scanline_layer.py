@@ -249,7 +249,6 @@ class ResampledPoints:
     path : of the file
     origin : (3,) m, map coordinates of the local origin
     crs : WKT, "" where unknown
-    settings : ResamplingSettings
     farthest : m in x or y from the origin, of the farthest point; beyond 214 km coordinates are rounded to 1 mm
     """
 

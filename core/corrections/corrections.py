@@ -102,7 +102,6 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
     ----------
     features : Features of points, lines or rows without geometry, in map coordinates. `action` and `target` are needed; a row without
         geometry lies at its `road`, `station_m` and `offset_m`; `note`, `kind` and `pattern` are used where they are
-    frame : RoadFrame
     crs : WKT of the survey; corrections in another CRS are brought there, those that say none are taken to be in it
 
     Returns Corrections

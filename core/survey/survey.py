@@ -56,7 +56,7 @@ class Survey:
     """An open survey: points by section, the road frame and statistics of the whole survey."""
 
     files: list[CloudHeader]   # headers of the point clouds
-    frame: RoadFrame   # RoadFrame
+    frame: RoadFrame
     store: SectionStore   # SectionStore of the points
     crs: str   # WKT, "" where unknown
     sensor_height: dict[int, float]   # {pass number: metres from the trajectory down to the road}

@@ -165,7 +165,6 @@ def wrapped(angle: Any) -> Any:
 class NearestValues:
     """A number of the line or area of a layer that is nearest to a place.
 
-    layer : Features, or None
     name : of the field; features without a value are left out
     """
 

@@ -68,8 +68,6 @@ class RoadBorders:
 
     Parameters
     ----------
-    layers : BorderLayers
-    frame : RoadFrame
     country : whose lanes tell two lines that bound a lane
     """
 

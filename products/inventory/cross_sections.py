@@ -52,7 +52,7 @@ LEAST_STRETCHED = 0.3        # m along a strip for each m of station, where a be
 class _StripMeasures:
     """What was measured of a strip; NaN where it could not be. Left and right are seen along the road."""
 
-    strip: Strip   # Strip
+    strip: Strip
     crossfall: float   # crossfall, crossfall_sigma: m/m, positive where the road falls to the right
     crossfall_sigma: float
     grade: float   # m/m, positive where it climbs along the road

@@ -378,7 +378,7 @@ def _terms(u, order):
 class ControlPointFit:
     """A polynomial fitted to N control points, with the quality of the fit."""
 
-    polynomial: ImagePolynomial   # ImagePolynomial
+    polynomial: ImagePolynomial
     residuals: np.ndarray   # (N, 2) m, map coordinates of the points minus those of the polynomial
     leverage: np.ndarray   # (N,) 0 to 1, influence of each point on its own residual
     triangle: np.ndarray   # (K, K) matrix R of the QR decomposition of the terms

@@ -214,7 +214,7 @@ class SideLine:
     """A line beside the road."""
 
     kind: str   # guard_rail, barrier, wall, fence, hedge or gutter
-    chain: Chain   # Chain
+    chain: Chain
     foot: float   # m, lower end of what is seen of it above the ground
 
 

@@ -286,8 +286,8 @@ class Proposal:
 
     image: SourceImage   # image, intensity: as given
     intensity: IntensityImage
-    settings: ProposalSettings   # ProposalSettings
-    rough: RoughPlace   # RoughPlace
+    settings: ProposalSettings
+    rough: RoughPlace
     crs: str   # WKT of the map
     easting: np.ndarray   # easting, northing: (N,) m, in the intensity image
     northing: np.ndarray
