@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..execution.phase import Phase
 from .store.records import Points
@@ -28,20 +27,8 @@ class CubeDensity:
     of_a_point: float   # points per m³, mean over points of the density of their own cube
 
 
-def cube_density(sections: Iterable, points_of: Callable[..., Points] = lambda section: section,
-                 progress: Progress = Progress()) -> CubeDensity:
-    """Density of points in cubes aligned with the local coordinates, so that a cube shared by two sections counts once.
-
-    Parameters
-    ----------
-    sections : one entry per section of road
-    points_of : function of an entry that returns its Points
-    """
-    return _density_of_parts(ordered_map(lambda section: _counted(points_of(section)), sections, progress))
-
-
 def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> tuple[CubeDensity, CubeDensity]:
-    """`cube_density` of all points of a survey and of those on its road, counted together by the executor of the road points.
+    """CubeDensity of all points of a survey and of those on its road, counted together by the executor of the road points.
 
     Parameters
     ----------
@@ -52,7 +39,7 @@ def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> 
     phase = Phase(cubes_of_stretch, road_points, (), lambda item: survey.stretch(item[0], item[1] * length, item[2] * length))
     stretches = survey.store.stretches(STRETCH_POINTS if road_points.executor.folder else 0)
     parts = list(road_points.executor.run(phase, stretches, progress))
-    of_survey, of_road = (_density_of_parts(counted[k] for of_stretch in parts for counted in of_stretch) for k in (0, 1))
+    of_survey, of_road = (density_of_parts(counted[k] for of_stretch in parts for counted in of_stretch) for k in (0, 1))
     return of_survey, of_road
 
 
@@ -61,11 +48,12 @@ def cubes_of_stretch(road_points: RoadPoints, stretch: Stretch) -> list[list[tup
 
     Returns for each section of the survey [(keys of the occupied cubes, their counts)] of all points and of those on the road; None without points
     """
-    return [[_counted(points.section(*key)) for points in (road_points.survey, road_points)] for key in road_points.survey.store.in_stretch(stretch)]
+    survey = road_points.survey
+    return [[counted_cubes(points.section(*key)) for points in (survey, road_points)] for key in survey.store.in_stretch(stretch)]
 
 
-def _density_of_parts(parts):
-    """CubeDensity of the counts of sections."""
+def density_of_parts(parts: Iterable[tuple[np.ndarray, np.ndarray] | None]) -> CubeDensity:
+    """CubeDensity of the counts of sections, as `counted_cubes` gives them: a cube shared by two sections counts once."""
     counted = [part for part in parts if part is not None]
     if not counted:
         return CubeDensity(0, float("nan"), float("nan"))
@@ -76,7 +64,7 @@ def _density_of_parts(parts):
     return CubeDensity(total, float(number.mean()), float((number**2).sum() / number.sum()))
 
 
-def _counted(points):
+def counted_cubes(points: Points) -> tuple[np.ndarray, np.ndarray] | None:
     """Keys of the occupied cubes, and how many points they hold; None without points."""
     if not len(points):
         return None

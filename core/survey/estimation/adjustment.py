@@ -42,7 +42,6 @@ class Adjusted:
     misfit: np.ndarray   # misfit, noise: (K, S) m, mean misfit of each interval and scanner, NaN without returns, and by which returns were weighted
     noise: np.ndarray
     place_covariance: np.ndarray   # (K, 3, 3) m^2 of each control value's place; includes what the mounting leaves open
-    mounting_sigma: np.ndarray   # (S, 5) radians and metres
 
 
 def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Returns, noise: np.ndarray,
@@ -68,7 +67,7 @@ def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Re
     place_covariance = conditional + np.einsum("kia,ab,kjb->kij", by_mounting, covariance, by_mounting)
     usual = float(np.median(misfit[count > 0]))
     unexplained = float(np.median(np.maximum(misfit - RAYS.most_of_mean * by_rounding, 0.0)[count > 0]))
-    return Adjusted(poses, usual, unexplained, misfit, noise, place_covariance, np.sqrt(np.diag(covariance)).reshape(-1, MOUNTING))
+    return Adjusted(poses, usual, unexplained, misfit, noise, place_covariance)
 
 
 def _equations(poses, guess, crossfall, returns, noise, progress):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.survey.density import cube_density
+from lanewright.core.survey.density import counted_cubes, density_of_parts
 from lanewright.core.survey.store.records import SURVEY_POINT, Points, to_units
 
 
@@ -11,6 +11,10 @@ def cloud(x, y, z):
     for name, axis in zip("xyz", (x, y, z)):
         records[name] = to_units(axis)
     return Points(records)
+
+
+def cube_density(sections):
+    return density_of_parts(map(counted_cubes, sections))
 
 
 def test_a_cube_of_three_points_and_one_of_one():
