@@ -135,8 +135,8 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     beside_one = any(painted) and not between_both
     if beside_one and (line_distance or beside_surface_end(*made_of)):
         # the end of the surface is ragged, a lane is not
-        width = np.full(len(left), 2 * line_distance or np.median(width))
-        begin = left if painted[0] else right + width * span.count
+        even = np.full(len(left), 2 * line_distance or np.median(width))
+        begin, width = begin if painted[0] else begin + (even - width) * span.count, even
     d = begin - width * (span.count - span.place - 0.5)
     shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 and any(painted) else INFERRED])

@@ -147,7 +147,7 @@ class Candidates:
     named: np.ndarray   # (I, M) what the layer says that a boundary separates, -1 where it does not
     wide: np.ndarray   # (I, M) as there, NaN of double lines
     short: np.ndarray
-    beside: np.ndarray   # (I, M, 2, 3) as `lanes_beside` gives it; NaN before
+    beside: np.ndarray   # (I, M, 2, 4) as `lanes_beside` gives it; NaN before
 
     @property
     def bounding(self) -> np.ndarray:
@@ -306,4 +306,4 @@ def _table(groups, boundaries, first, last):
     rows = np.stack([column(groups[name], -1) for name in ("row", "right_row")], axis=2)
     return Candidates(first, last, left, right, column(groups["made"], OUTSIDE), column(groups["trust"], 0.0), column(groups["seen"], 0.0), rows,
                       valid, column(boundaries.named[groups["row"]], -1), column(groups["wide"], np.nan),
-                      column(groups["short"], np.nan), np.full((*shape, 2, 3), np.nan))
+                      column(groups["short"], np.nan), np.full((*shape, 2, 4), np.nan))

@@ -64,8 +64,10 @@ class EstimateWeights:
     width_sigma_lined: float = 0.15   # m, scatter of the widths of these,
     width_sigma_beside: float = 0.8   # and of others about the usual one
     widest_beside: float = 5.5   # m, of them
-    track_sigma: float = 0.15   # m, scatter of where vehicles keep within a lane about its middle, on average over a block
+    track_sigma: float = 0.1   # m, scatter of where vehicles keep within a lane about its middle, on average over a block
     alike_beside: float = 4.0   # by how many times more lanes of the same road that were driven tell what is left over than what is usual
+    between_widths: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75)   # shares of the way between two readings, at which a lane's width is tried,
+    nearer: float = 0.5   # and what it counts that a lane is right to 5 cm, against to 15 cm
     unpainted_divider: float = 2.2   # of a border between the two directions where nothing is painted
     unpainted_lane_line: float = 3.2   # of one between two lanes of a direction
     unused_asphalt: tuple[float, float] = (4.5, 2.0)   # as wide as a lane, between two lines, and beside a curb, an end of surface or short dashes

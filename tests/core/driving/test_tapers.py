@@ -163,3 +163,15 @@ def test_beside_a_centre_line_alone_lanes_reach_as_far_as_the_edge_of_the_paveme
     assert sorted({row["direction"] for row in lines.rows}) == [-1, 1]
     for line, row in lines:
         np.testing.assert_allclose(street.offsets(line), -row["direction"] * room / 2, atol=0.05)
+
+
+def test_a_lane_goes_on_where_it_is_driven_while_the_line_beside_it_moves_aside_for_a_turning_lane():
+    street = Street(length=LENGTH, vehicle=-2.2).paint(0.0, 5.0, 110.0, pattern="dashed").paint(0.0, 130.0, 195.0)
+    street.paint(lambda s: 3.0 * np.clip((s - 110.0) / 20.0, 0.0, 1.0), 110.0, 195.0)
+    edges, along = Features("LineStringZ", list(ROAD_EDGES)), np.arange(5.0, 195.0, 0.5)
+    for chain, left in enumerate((4.4 + 1.6 * np.clip((along - 110.0) / 20.0, 0.0, 1.0), np.full(len(along), -4.4))):
+        edges.add(LineString(np.c_[street.places(along, left), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
+                  part="bottom", chain=chain, side="right" if chain else "left")
+    places = np.concatenate([np.c_[np.asarray(line.coords)[:, 0] - EAST, street.offsets(line)] for line, _ in street.lanes(edges=edges)[0]])
+    opening = places[(places[:, 0] > 110.0) & (places[:, 0] < 119.0) & (places[:, 1] < 0.9)]
+    assert len(opening) and np.abs(opening[:, 1] + 2.2).max() < 0.15

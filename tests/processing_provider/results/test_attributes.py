@@ -100,12 +100,17 @@ def test_a_name_is_short_and_keeps_its_unit(alias, short):
     assert short_alias(alias) == short
 
 
-def test_looks_by_status_and_confidence_stand_ready_and_the_usual_one_is_in_force(qgis_app):
-    layer = loaded("LANES", status="measured", confidence=0.9)
-    assert set(layer.styleManager().styles()) == {"By class", "By confidence", "By status"}
-    assert layer.styleManager().currentStyle() == "By class"
+def test_the_road_plan_is_in_force_and_further_looks_stand_ready(qgis_app):
+    layer = loaded("DRIVING_LINES", status="measured", confidence=0.9)
+    assert set(layer.styleManager().styles()) == {"Road plan", "By class", "By confidence", "By status", "By uncertainty"}
+    assert layer.styleManager().currentStyle() == "Road plan" and layer.hasScaleBasedVisibility()
+    layer.styleManager().setCurrentStyle("By class")
+    assert not layer.hasScaleBasedVisibility() and not layer.labelsEnabled()
     layer.styleManager().setCurrentStyle("By status")
     assert layer.renderer().classAttribute() == "status"
+    layer.styleManager().setCurrentStyle("By uncertainty")
+    assert layer.renderer().classAttribute() == "sigma_m"
+    assert set(loaded("CURB_POINTS", status="measured").styleManager().styles()) >= {"By class", "By status"}
     assert layer.displayExpression() and layer.attributeAlias(layer.fields().lookupField("direction")) == "Direction"
 
 
