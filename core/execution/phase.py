@@ -19,6 +19,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from .weights import EXECUTION
 
 PACKAGE = __name__.rpartition(".core.")[0]   # whose functions are sent: the package of `core` and `products`
 
@@ -111,6 +112,12 @@ class Executor:
             Whatever the function raises.
         """
         raise NotImplementedError
+
+    def run_together(self, phase: Phase, items: Sequence[Any], together: int, progress: Progress = Progress()) -> Iterator[Any]:
+        """Yield the results of items of a phase whose function is given lists of them, `together` at most, and returns lists of results."""
+        size = max(min(together, len(items) // EXECUTION.least_tasks), 1)
+        for results in self.run(phase, [items[k:k + size] for k in range(0, len(items), size)], progress):
+            yield from results
 
     def passing(self) -> Executor:
         """Who runs phases whose results are not worth keeping for a later run."""

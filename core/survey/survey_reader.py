@@ -27,7 +27,7 @@ from .las.samples import TimeSlots
 from .store.array_file import close_files
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, road_of
-from .store.section_store import STRETCH_POINTS, SectionStore, StoreIndex, Stretch, opened_store
+from .store.section_store import SectionStore, StoreIndex, Stretch, opened_store
 from .weights import READING
 
 
@@ -229,7 +229,7 @@ class UnorderedPoints:
             return self.store.points_between(item[0], item[1] * length, item[2] * length)
 
         phase = Phase(_order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length), points)
-        parts = list(executor.run(phase, self.store.stretches(STRETCH_POINTS, self.store.numbers()), progress))
+        parts = list(executor.run(phase, self.store.stretches(self.store.numbers()), progress))
         self.store.take_over(StoreIndex.join(parts), self.folder)
 
 
