@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 import shapely
 
-from ...core.common.errors import RoadExtractionError
-from ...core.common.features import Features
-from ...core.io.crs import FOOT, US_SURVEY_FOOT, FileUnits, as_in_file, horizontal_part, parse_crs
-from ...core.io.local_files import gdal_exceptions
-from ...core.io.weights import IO
-from .opendrive.exporter import OpenDriveSettings, draft_opendrive
-from .opendrive.geometry import PlanElement, PlanView
-from .opendrive.reference_line import fit_reference
-from .sources import RoadMapSource
-from .xml_tree import XmlElement, xml_text
+from ..core.common.errors import RoadExtractionError
+from ..core.common.features import Features
+from ..core.io.crs import FOOT, US_SURVEY_FOOT, FileUnits, as_in_file, horizontal_part, parse_crs
+from ..core.io.local_files import gdal_exceptions
+from ..core.io.weights import IO
+from .export.opendrive.exporter import OpenDriveSettings, draft_opendrive
+from .export.opendrive.geometry import PlanElement, PlanView
+from .export.opendrive.reference_line import fit_reference
+from .export.sources import RoadMapSource
+from .export.xml_tree import XmlElement, xml_text
 
 COLOURS = {"LANE_BORDER": "#808080", "DRIVING_LINE": "#00a0ff", "MARKING_EDGE": "#ffffff", "MARKING_LANE": "#e0e0e0", "MARKING_CENTRE": "#ffd040",
            "ROAD_EDGE": "#ff8000", "MARKING_AREA": "#ffff00"}
