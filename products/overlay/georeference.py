@@ -57,7 +57,7 @@ class Georeferencing:
     image: SourceImage   # image, points, settings: as given; disabled points used as check points have the role "check"
     points: ControlPoints
     settings: GeoreferenceSettings
-    fit: ControlPointFit   # ControlPointFit of the control points
+    fit: _ControlPointFit   # _ControlPointFit of the control points
     pixel_size: float   # m, of the image to be drawn
     hull: shapely.Geometry | None   # shapely polygon around the control points in pixel and line; None for a shift
     outside: float   # 0 to 1, share of the area of the image outside the hull
@@ -218,7 +218,7 @@ def node_grid(bounds: tuple[float, float, float, float], count: int) -> tuple[np
     return across.ravel(), down.ravel()
 
 
-def own_pixel_size(fit: ControlPointFit, area: shapely.Geometry) -> float:
+def own_pixel_size(fit: _ControlPointFit, area: shapely.Geometry) -> float:
     """Pixel size of the image on the map.
 
     area : shapely polygon in pixel and line
@@ -375,7 +375,7 @@ def _terms(u, order):
 
 
 @dataclass(frozen=True)
-class ControlPointFit:
+class _ControlPointFit:
     """A polynomial fitted to N control points, with the quality of the fit."""
 
     polynomial: ImagePolynomial
@@ -432,7 +432,7 @@ def _frame(places):
     return centre, turned.T / (singular / np.sqrt(len(places)))
 
 
-def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray, order: int) -> ControlPointFit:
+def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray, order: int) -> _ControlPointFit:
     """Fit a polynomial of order 1 to 3: X = sum a_ij u^i v^j, and Y likewise.
 
     Parameters
@@ -454,11 +454,11 @@ def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarra
     basis, triangle = np.linalg.qr(terms)
     coefficients = np.linalg.solve(triangle, basis.T @ (target - origin))
     residuals = target - origin - terms @ coefficients
-    return ControlPointFit(ImagePolynomial(order, centre, whiten, origin, coefficients), residuals, np.sum(basis**2, axis=1), triangle, order)
+    return _ControlPointFit(ImagePolynomial(order, centre, whiten, origin, coefficients), residuals, np.sum(basis**2, axis=1), triangle, order)
 
 
 def fit_shift(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray,
-              geotransform: tuple[float, ...]) -> ControlPointFit:
+              geotransform: tuple[float, ...]) -> _ControlPointFit:
     """Fit of order 0: the image keeps the scale and rotation of its approximate position and is only shifted.
 
     pixel, line : (N,) in the image
@@ -472,5 +472,5 @@ def fit_shift(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing
     origin = target.mean(axis=0)
     coefficients = np.vstack([np.zeros(2), slope.T])
     residuals = target - origin - (places - centre) @ slope.T
-    return ControlPointFit(ImagePolynomial(1, centre, np.eye(2), origin, coefficients), residuals,
+    return _ControlPointFit(ImagePolynomial(1, centre, np.eye(2), origin, coefficients), residuals,
                np.full(count, 1.0 / count), np.array([[np.sqrt(count)]]), 0)

@@ -65,7 +65,7 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
             if sort == "gutter":
                 classified = [("gutter", chain) for chain in chains]
             else:
-                classified = along_faces([piece for chain in chains for piece in things_of(chain, settings.min_length)])
+                classified = _along_faces([piece for chain in chains for piece in things_of(chain, settings.min_length)])
             for kind, part in classified:
                 roadside.lines.append(SideLine(kind, part, float(np.median(part.members.foot))))
     if unknown:
@@ -284,7 +284,7 @@ def _away(found, road, s, d, side):
 
 # What is thick and loose, as a hedge, shows uprights on its face and inside it, and may be followed along either: it is told once, by its face.
 
-def along_faces(things: list[tuple[str, Chain]]) -> list[tuple[str, Chain]]:
+def _along_faces(things: list[tuple[str, Chain]]) -> list[tuple[str, Chain]]:
     """Things of which those of one kind that run beside each other, nearer than two things stand, are one.
 
     things : kinds and chains of one side of a road

@@ -56,9 +56,9 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
             pairs = _pair_corners(chosen.placement, paint, photo, x, y, settings)
             if pairs is not None:
                 middle = _middle_on_map(chosen.placement, image)
-                rivals = [rival_elsewhere(chosen.scores, candidate.scores, tuple((_middle_on_map(candidate.placement, image) - middle).tolist()))
+                rivals = [_rival_elsewhere(chosen.scores, candidate.scores, tuple((_middle_on_map(candidate.placement, image) - middle).tolist()))
                           for candidate in tried if candidate is not chosen]
-                near = nearby_rival(pairs.placement, paint, photo, x, y)
+                near = _nearby_rival(pairs.placement, paint, photo, x, y)
                 rival = min([*rivals, *([near] if near else [])], key=lambda one: one.margin, default=None)
                 return _proposal(image, intensity, rough, settings, pairs, rival, paint)
     raise RoadExtractionError(
@@ -76,7 +76,7 @@ def _followed(image, photo, paint, bounds, sign, x, y, progress):
         start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, (image.width / 2, image.height / 2), place.sign)
         placement = _align(start, paint, photo, progress)
         if placement is not None and not any(_same(placement, candidate.placement, x, y) for candidate in tried):
-            tried.append(_Tried(placement, corner_scores(placement, paint, photo, x, y)))
+            tried.append(_Tried(placement, _corner_scores(placement, paint, photo, x, y)))
     progress.report(1.0)
     return sorted(tried, key=lambda one: -one.total)
 
@@ -195,7 +195,7 @@ def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: P
         drawn = placement.sign * placement.drawn(photo.contrast, photo, cell_size, small.shape, reduction=placement.reduction(photo, cell_size))
         height, width = (n * cell_size for n in small.shape)
         x, y = (axis.ravel() for axis in np.meshgrid(np.arange(half / 2, width, half), -np.arange(half / 2, height, half)))
-        patches = find_patches(small, drawn, cell_size, x, y, half, search)
+        patches = _find_patches(small, drawn, cell_size, x, y, half, search)
         patches = patches.where((patches.score > _LEAST_SCORE) & (patches.second < _MOST_SECOND_OF_PATCHES))
         fitted = robust_placement(placement, patches.x, patches.y, np.column_stack([patches.dx, patches.dy]), tolerance, patches.score, 2)
         if fitted is None:
@@ -238,7 +238,7 @@ def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
     for search, times in _ROUNDS:
         drawn = placement.sign * placement.drawn(photo.contrast, photo, paint.cell, paint.contrast.shape,
                                                  reduction=placement.reduction(photo, paint.cell))
-        patches = find_patches(paint.contrast, drawn, paint.cell, x, y, _PATCH, search)
+        patches = _find_patches(paint.contrast, drawn, paint.cell, x, y, _PATCH, search)
         patches = patches.where(patches.score > _LISTED_SCORE)
         alike = (patches.score >= settings.min_score) & (patches.second <= _MOST_SECOND)
         moved = np.column_stack([patches.dx, patches.dy])
@@ -355,7 +355,7 @@ class _Rival(NamedTuple):
         return (self.votes_for - self.votes_against) / needed
 
 
-def corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+def _corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """How well the photo fits about corners of paint.
 
     x, y : (N,) m, local
@@ -365,10 +365,10 @@ def corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
     return np.array([np.nan if match is None else match.max() for match in maps])
 
 
-def nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
+def _nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
     """The shift by some metres that the corners allow best, besides none at all.
 
-    as of `corner_scores`
+    as of `_corner_scores`
     Returns _Rival, None where no corner lies in the photo
     """
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
@@ -385,10 +385,10 @@ def nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np
     return _Rival((column - middle) * _CELL, -(row - middle) * _CELL, int((better > _DECISIVE).sum()), int((better < -_DECISIVE).sum()))
 
 
-def rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, float]) -> _Rival:
+def _rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, float]) -> _Rival:
     """A place against another one that lies too far away to be compared corner by corner: by the corners that look unlike at each.
 
-    best, other : (N,) `corner_scores` of the two placements, NaN outside the photo
+    best, other : (N,) `_corner_scores` of the two placements, NaN outside the photo
     shift : m, from the one to the other
     """
     best_scores, other_scores = best[np.isfinite(best)], other[np.isfinite(other)]
@@ -402,7 +402,7 @@ def _maps(placement, paint, photo, x, y, search):
     small = reduced(paint.contrast, factor)
     cell = paint.cell * factor
     drawn = placement.sign * placement.drawn(photo.contrast, photo, cell, small.shape, reduction=placement.reduction(photo, cell))
-    return correlation_maps(small, drawn, cell, x, y, _HALF, search)
+    return _correlation_maps(small, drawn, cell, x, y, _HALF, search)
 
 
 # Patches of the intensity image found again in the photo, once that lies roughly on the map.
@@ -428,7 +428,7 @@ class Found(NamedTuple):
         return Found(*(column[kept] for column in self))
 
 
-def find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float, search: float) -> Found:
+def _find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float, search: float) -> Found:
     """Find patches of the intensity image in the photo drawn on the same cells.
 
     Parameters
@@ -445,7 +445,7 @@ def find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarra
     margin = max(2, round(search / cell))
     exclusion = max(2, round(_OTHER_PEAK * half / cell))
     rows: list[tuple[float, ...]] = []
-    for at_x, at_y, match in zip(x, y, correlation_maps(paint, drawn, cell, x, y, half, search)):
+    for at_x, at_y, match in zip(x, y, _correlation_maps(paint, drawn, cell, x, y, half, search)):
         best = None if match is None else _peak(match, exclusion)
         if best is not None:
             right, down, score, second, sharpness = best
@@ -453,11 +453,11 @@ def find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarra
     return Found(*np.array(rows, float).reshape(-1, 7).T)
 
 
-def correlation_maps(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float,
+def _correlation_maps(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float,
                      search: float) -> Iterator[np.ndarray | None]:
     """The correlation of each patch with the photo, for every shift by whole cells.
 
-    as of `find_patches`
+    as of `_find_patches`
     Returns iterator of (2 n + 1, 2 n + 1) float32, the shift by nothing in the middle; None where a patch holds no paint or the photo is empty
     """
     reach, margin = max(2, round(half / cell)), max(2, round(search / cell))
