@@ -96,7 +96,6 @@ class _StraightProblem(_CircleProblem):
 # An ellipse through points.
 
 
-
 @dataclass(frozen=True)
 class Ellipse(TabulatedCurve):
     """An elliptic arc."""
@@ -220,7 +219,6 @@ def _nearest_angle(x, y, unknown):
 
 
 # A polynomial of degree k across the chord of the points.
-
 
 
 @dataclass(frozen=True)

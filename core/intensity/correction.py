@@ -98,8 +98,6 @@ def saturation_of(road_points: RoadPoints) -> Saturation:
     return Saturation.from_levels(counts.reshape(SCANNER_NUMBERS, INTENSITY_LEVELS))
 
 
-
-
 @dataclass(frozen=True)
 class IntensitySettings:
     """How intensity is corrected."""

@@ -448,7 +448,6 @@ class _Grid:
 # Whether an intensity image shows the road points it is used with.
 
 
-
 def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     """Refuse an image of another road, and the 8-bit picture for viewing.
 

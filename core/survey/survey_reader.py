@@ -123,7 +123,6 @@ class SurveyReader:
 # The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.
 
 
-
 @dataclass(frozen=True)
 class _PartOfFiles:
     """What a range of points shows: where those lie that were kept, and what all contribute to the knowledge of the cloud."""
@@ -243,7 +242,6 @@ def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
 
 
 # What is done with the points of a section before they are put in order: scanners are numbered, and those far above or below the road go.
-
 
 
 @dataclass(frozen=True)
