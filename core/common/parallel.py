@@ -1,4 +1,4 @@
-"""Worker threads with ordered results, work of this process while others do theirs, and cancellation of long work."""
+"""Worker threads with ordered results, and cancellation of long work."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from ..lazy import LazyModule
 from .errors import Cancelled, RoadExtractionError
-from .progress import Progress, RememberedMessages
+from .progress import Progress
 
 if TYPE_CHECKING:
     import numpy as np
@@ -98,57 +98,6 @@ def check_cancelled() -> None:
     check = getattr(_thread, "check", None)
     if check is not None:
         check()
-
-
-class InBackground(Generic[Result]):
-    """A function of a Progress that a thread of its own computes; use it as a context, which the thread does not outlive.
-
-    What the function reads must not change meanwhile.
-    """
-
-    def __init__(self, function: Callable[[Progress], Result]):
-        self._function, self._progress = function, _MessagesForLater()
-        self._future: Future[Result] = Future()
-        self._thread = threading.Thread(target=self._work, daemon=True)
-
-    def _work(self) -> None:
-        try:
-            with cancellation_scope(self._progress):
-                self._future.set_result(self._function(self._progress))
-        except BaseException as error:
-            self._future.set_exception(error)
-
-    def __enter__(self) -> InBackground[Result]:
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._progress.ended.set()
-        self._thread.join()
-
-    def result(self, progress: Progress = Progress()) -> Result:
-        """What the function returns or raises, as soon as it does; what it had to say is said now, in its order."""
-        while self._thread.is_alive():
-            progress.check_cancelled()
-            self._thread.join(POLL_INTERVAL)
-        for say, text in self._progress.messages:
-            getattr(progress, say)(text)
-        return self._future.result()
-
-
-class _MessagesForLater(RememberedMessages):
-    """Keeps messages, as a dialog is spoken to by one thread only, and ends work whose result is not wanted any more."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.ended = threading.Event()
-
-    def report(self, fraction: float) -> None:
-        self.check_cancelled()
-
-    def check_cancelled(self) -> None:
-        if self.ended.is_set():
-            raise Cancelled
 
 
 # Reused working memory, work on some rows of a long table at a time, and the return of freed memory to the operating system.

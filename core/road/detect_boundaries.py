@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..common.arrays import mask_runs, stretch_of
 from ..common.errors import RoadExtractionError
-from ..common.parallel import InBackground
 from ..common.progress import Progress
 from ..execution.phase import THREADS, NoSource, Phase
 from ..survey.frame.road_frame import RoadFrame
@@ -97,25 +95,12 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
     least = settings.scanlines.limits.least_height
-    with (closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing, least)) as decimation,
-          _lattice_meanwhile(survey, settings) as lattice):
-        return _find_curb_points(decimation, lattice, settings, progress, ground or MeasuredGround(survey))
+    with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing, least)) as decimation:
+        return _find_curb_points(decimation, settings, progress, ground or MeasuredGround(survey))
 
 
-@contextmanager
-def _lattice_meanwhile(survey, settings):
-    """A function of a Progress that gives the scan lattice; with both methods this process finds it while others find the curbs on profiles."""
-    find = partial(find_lattice, survey, settings.planes.rotation_frequency)
-    # points that are not yet where others see them are moved there as the phase begins: nobody may read them meanwhile
-    if settings.method == "both" and survey.executor.folder is not None and survey.folder is not None:
-        with InBackground(find) as finding:
-            yield finding.result
-    else:
-        yield find
-
-
-def _find_curb_points(decimation, lattice, settings, progress, ground):
-    """`find_curb_points` with the points of a PointDecimation and a function that gives the lattice."""
+def _find_curb_points(decimation, settings, progress, ground):
+    """`find_curb_points` with the points of a PointDecimation."""
     survey, both_methods, points = decimation.survey, settings.method == "both", {}
     occlusion: dict[int, dict[str, OcclusionGrid]] = {}
     occlusion_of_scanlines: dict[int, dict[str, OcclusionGrid]] = {}
@@ -125,7 +110,8 @@ def _find_curb_points(decimation, lattice, settings, progress, ground):
         points["profiles"] = detect_curbs(survey, settings.curbs, part, not both_methods, decimation, occlusion, chains[0], ground)
     if settings.method != "profiles":
         part = progress.part(BOUNDARY.profiles_progress if both_methods else 0.0, 1.0)
-        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice(part.part(0.0, BOUNDARY.lattice_progress)),
+        lattice = find_lattice(survey, settings.planes.rotation_frequency, part.part(0.0, BOUNDARY.lattice_progress))
+        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice,
                                  level=_level_for(decimation, settings.scanlines))
         corners = part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)
         points["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, corners,

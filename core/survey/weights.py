@@ -135,6 +135,7 @@ class _LatticeWeights:
     median_time_stride: int = 15   # every n-th point is enough for the median time of a sample
     turns_per_bin: int = 10   # turns whose points give one phase
     phase_stretch: float = 20.0   # m of road processed at a time
+    stretches_together: int = 8   # of these in a task at most
     max_points_per_turn: int = 40   # that are used for the phase; more do not improve it
     min_axis_height: float = 1.5   # m above the road: seen from lower, the angles of road points hardly change
     line_sectors: int = 36   # of a turn, in each of which lines are counted

@@ -20,8 +20,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ...common.arrays import RADIX_BITS
-from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ...execution.phase import Phase
 from ..store.records import COORDINATE_SCALE, take_rows
 from ..weights import LATTICE
 
@@ -136,8 +136,9 @@ def _sample_windows(survey, road):
         count = int(np.clip((last - first) / LATTICE.rotation_sample_length, 1, LATTICE.rotation_samples))
         places += [(p.number, middle) for middle in first + (np.arange(count) + 0.5) * (last - first) / count]
 
-    samples = {}
-    for windows in ordered_map(lambda place: _windows_at(survey, road, *place), places):
+    samples: dict[tuple[int, int], list[_RotationWindow]] = {}
+    phase = Phase(windows_at, survey, (road,), lambda place: survey.stretch(road, place[1], place[1]))
+    for windows in survey.executor.passing().run(phase, places):
         for key, window in windows.items():
             samples.setdefault(key, []).append(window)
     return samples
@@ -152,8 +153,10 @@ def _runs_about(survey, road, number, middle, pieces=range(LATTICE.rotation_samp
                 yield piece, key, records
 
 
-def _windows_at(survey, road, number, middle):
-    """{(pass number, scanner): _RotationWindow} of the scanners that measured enough in half a second of a pass about a station."""
+def windows_at(survey: Any, place: tuple[int, float], road: int) -> dict[tuple[int, int], _RotationWindow]:
+    """The phase that looks at half a second of a pass, by its number, about a station: {(pass number, scanner): its points} of those that measured
+    enough then."""
+    number, middle = place
     times: dict = {}
     for piece, key, records in _runs_about(survey, road, number, middle):
         times.setdefault(key, {})[piece] = records["time"]
@@ -173,7 +176,8 @@ def _windows_at(survey, road, number, middle):
         time, d, z = (np.concatenate(column) for column in zip(*parts))
         order = time_order(time)
         ordered = dict(time=time[order], d=d[order], z=z[order])
-        windows[key] = _RotationWindow(*_phasors(survey, number, ordered), ordered["d"] * COORDINATE_SCALE)
+        time, phasor = _phasors(survey, number, ordered)
+        windows[key] = _RotationWindow(time, phasor, ordered["d"] * COORDINATE_SCALE)
     return windows
 
 
@@ -245,20 +249,16 @@ def _mirror_phases(survey, road, rotations, samples, progress):
     """The mirror phases of the scanners whose frequency is known, from the points of a whole road."""
     if not rotations:
         return {}
-    bins = {key: _PhasorBins(survey.frame.passes[key[0]], LATTICE.turns_per_bin / abs(frequency)) for key, (frequency, _, _) in rotations.items()}
+    bins = _bins_of(survey, rotations)
     stride = min(_stride(samples[key], frequency) for key, (frequency, _, _) in rotations.items())
     mounts = {key: _mounting(samples[key], frequency) for key, (frequency, _, origin) in rotations.items() if origin == "angle"}
 
     first, last = survey.store.span(road)
     # A length of its own, so that the points that are used do not depend on the length of sections.
     stretches = range(int(first // LATTICE.phase_stretch), int(last // LATTICE.phase_stretch) + 1)
-
-    def sums_of_stretch(number):
-        records = survey.window(road, number * LATTICE.phase_stretch, (number + 1) * LATTICE.phase_stretch).records[::stride]
-        return [(key, _phasor_sums(survey, key[0], first_returns, rotations[key], mounts.get(key), bins[key]))
-                for key, first_returns in scanner_runs(records) if key in rotations and len(first_returns)]
-
-    for gathered in ordered_map(sums_of_stretch, stretches, progress):
+    phase = Phase(phasors_of_stretches, survey, (road, stride, rotations, mounts), lambda numbers: survey.stretch(
+        road, numbers[0] * LATTICE.phase_stretch, (numbers[-1] + 1) * LATTICE.phase_stretch))
+    for gathered in survey.executor.passing().run_together(phase, list(stretches), LATTICE.stretches_together, progress):
         for key, sums in gathered:
             bins[key].add(*sums)
     phases = {}
@@ -268,6 +268,21 @@ def _mirror_phases(survey, road, rotations, samples, progress):
         if mirror is not None:
             phases[key] = replace(mirror, **_line_properties(samples[key], mirror))
     return phases
+
+
+def _bins_of(survey, rotations):
+    return {key: _PhasorBins(survey.frame.passes[key[0]], LATTICE.turns_per_bin / abs(frequency)) for key, (frequency, _, _) in rotations.items()}
+
+
+def phasors_of_stretches(survey: Any, numbers: Sequence[int], road: int, stride: int, rotations: dict[tuple[int, int], tuple[float, float, str]],
+                         mounts: dict[tuple[int, int], np.ndarray]) -> list[list[tuple[tuple[int, int], tuple[Any, ...]]]]:
+    """The phase that sums phasors over time: of each stretch of `phase_stretch`, by its number, those of each scanner, as of `_PhasorBins`."""
+    bins, result = _bins_of(survey, rotations), []
+    for number in numbers:
+        records = survey.window(road, number * LATTICE.phase_stretch, (number + 1) * LATTICE.phase_stretch).records[::stride]
+        result.append([(key, _phasor_sums(survey, key[0], first_returns, rotations[key], mounts.get(key), bins[key]))
+                       for key, first_returns in scanner_runs(records) if key in rotations and len(first_returns)])
+    return result
 
 
 def _phasor_sums(survey, number, records, rotation, mounting, bins):

@@ -1,13 +1,10 @@
 """Two methods of finding road boundaries, and how they check each other."""
 
-import threading
 
 import numpy as np
 import pytest
 from curbed_streets import LENGTH, driven, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.execution.phase import Threads
-from lanewright.core.road import detect_boundaries
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.curb_points import curb_points_at
@@ -128,48 +125,6 @@ def test_a_stretch_where_the_two_lie_eight_centimetres_apart_is_reported(frame):
 def test_a_method_that_is_not_known_is_refused():
     with pytest.raises(RoadExtractionError, match="boundary method"):
         BoundarySettings("both ways")
-
-
-class Elsewhere(Threads):
-    """As if others did the phases, in a folder; the first one waits until the lattice is looked for."""
-
-    def __init__(self, folder, begun):
-        super().__init__()
-        self.folder, self.begun = folder, begun
-
-    def run(self, phase, *others, **named):
-        if phase.function.__name__ == "steps_of_section":
-            assert self.begun.wait(20.0), "the lattice is looked for after the curbs on profiles"
-        return super().run(phase, *others, **named)
-
-
-def test_while_others_look_for_curbs_on_profiles_the_scan_lattice_is_found(tmp_path, monkeypatch):
-    begun, known = threading.Event(), boundaries(street(), "both").curb_points
-    find = detect_boundaries.find_lattice
-    monkeypatch.setattr(detect_boundaries, "find_lattice", lambda *arguments: begun.set() or find(*arguments))
-    surveyed = survey_of(street())
-    surveyed.recipe(tmp_path)
-    surveyed.executor = Elsewhere(tmp_path, begun)
-    found = find_curb_points(surveyed, BoundarySettings("both"))["both"]
-    assert begun.is_set() and found.x.tobytes() == known.x.tobytes() and len(found)
-
-
-def test_points_that_others_do_not_see_yet_are_not_read_while_they_are_moved(tmp_path, monkeypatch):
-    def find(survey, *others):
-        assert survey.folder is not None
-        return find_lattice(survey, *others)
-
-    class Moving(Threads):
-        def run(self, phase, *others, **named):
-            surveyed.recipe(tmp_path)
-            return super().run(phase, *others, **named)
-
-    find_lattice = detect_boundaries.find_lattice
-    monkeypatch.setattr(detect_boundaries, "find_lattice", find)
-    surveyed = survey_of(street())
-    surveyed.executor = Moving()
-    surveyed.executor.folder = tmp_path
-    assert len(find_curb_points(surveyed, BoundarySettings("both"))["both"])
 
 
 def with_step(length, rough, height=0.06, noise=0.002):
