@@ -23,7 +23,6 @@ LINE_SETTINGS = (
 )
 
 
-
 class AssessDrivingLines(Algorithm):
     ID, TITLE, GROUP = "assessdrivinglines", "Assess driving lines", "Assessment"
     SUMMARY = "Sets driving lines against reference lines within buffers: completeness, correctness, miscoding, errors and gaps."

@@ -63,8 +63,7 @@ class Roadside(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...products.inventory.roadside.find import find_roadside
-        from ...products.inventory.roadside.result import roadside_to_features
+        from ...products.inventory.roadside.find import find_roadside, roadside_to_features
         from ...products.report.inventory import roadside_report
 
         settings = call.settings(ROADSIDE_SETTINGS)

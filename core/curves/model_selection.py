@@ -13,7 +13,6 @@ from ..common.parallel import check_cancelled
 from .base import CurveFit, bic_lower_bound
 from .bspline import fit_splines
 from .clothoid import fit_clothoids
-from .robust import PointGroups
 from .simple_curves import fit_circles, fit_ellipse, fit_lines, fit_polynomial
 from .weights import FITS
 
@@ -68,12 +67,9 @@ def _ellipses(lines):
 
 def _ellipse(x, y):
     check_cancelled()
-    rows = PointGroups([len(x)]).subsampled(FITS.coarse_points)
     try:
-        coarse = fit_ellipse(x[rows], y[rows], MAX_MISFIT)
-        if len(rows) == len(x):
-            return coarse
-        return fit_ellipse(x, y) if coarse.residual_p95 <= MAX_MISFIT else None
+        fit = fit_ellipse(x, y, MAX_MISFIT)
+        return fit if fit.residual_p95 <= MAX_MISFIT else None
     except RoadExtractionError:
         return None
 

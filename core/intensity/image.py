@@ -317,16 +317,13 @@ def _tiles(grid: _Grid, pieces: Sequence[_Piece], road_points: RoadPoints, setti
 
 
 def _run(function, road_points, items, together, settings, progress, place):
-    """Yield the results of a phase of items, some of them together in a task of a worker process; `place` gives road, number and length of one."""
-    executor = road_points.executor
-    together = together if executor.folder else 1
+    """Yield the results of a phase of items, some of them together in a task; `place` gives road, number and length of one."""
 
     def name(task):
         road, number, length = place(task[0])
         return road_points.survey.stretch(road, number * length, (number + 1) * length)
 
-    tasks = [items[k:k + together] for k in range(0, len(items), together)]
-    return (result for results in executor.run(Phase(function, road_points, (settings,), name), tasks, progress) for result in results)
+    return road_points.executor.run_together(Phase(function, road_points, (settings,), name), items, together, progress)
 
 
 def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, list[_Piece]]]:
@@ -449,7 +446,6 @@ class _Grid:
 
 
 # Whether an intensity image shows the road points it is used with.
-
 
 
 def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:

@@ -123,7 +123,6 @@ def _projection(crs):
 # The CRS of a survey: projected, true to scale, and the same for all its files.
 
 
-
 def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str = "") -> str:
     """The CRS in which a survey is processed: that of its clouds, else the given one, else that of the trajectory.
 
@@ -222,7 +221,6 @@ def unit_note(height: float, crs: str) -> str:
 
 
 # Whether a survey lies where its CRS holds, and lengths on the map there are lengths on the ground.
-
 
 
 @dataclass(frozen=True)

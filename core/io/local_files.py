@@ -158,7 +158,6 @@ def _for_all_threads(modules):
 # Files that appear whole or not at all: until a file is finished it has a hidden name of its own beside its place.
 
 
-
 def unfinished_path(path: str | os.PathLike[str], suffix: str) -> Path:
     """Where a file is written until it is finished, and then moved to its place by `finish_file`; or where a folder for its parts is made.
 

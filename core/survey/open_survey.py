@@ -142,7 +142,6 @@ def _found_survey(work, name, files, progress):
 # Reading a survey: its points are read once and projected into the road frame, and checked against the trajectory.
 
 
-
 @dataclass(frozen=True)
 class _SharedReading:
     """A survey that is read by workers, or kept: who reads the files and who puts the points in order, and the folders for either."""
@@ -486,7 +485,6 @@ def _no_overlap(files, frame, reader, corridor):
 
 
 # Check that points and trajectory use the same clock: the road on the own track is scanned when the vehicle is near it.
-
 
 
 def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:

@@ -16,7 +16,7 @@ from ...survey.frame.road_frame import RoadFrame
 from ...survey.frame.row_table import RowTable
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
-from ...survey.store.section_store import STRETCH_POINTS, Stretch
+from ...survey.store.section_store import Stretch
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..road_grid import CELL_SIZE
@@ -121,11 +121,10 @@ def _surface_coverage(points, road, first, count):
     """The same for stations first to first + count of the grid."""
     covered = np.zeros((count, BINS), bool)
     total, number = np.zeros((2, count, 2))
-    executor, length = points.executor, points.store.section_length
+    length = points.store.section_length
     phase = Phase(seen_in_stretch, points, (first, count), lambda item: points.survey.stretch(road, item[1] * length, item[2] * length))
     numbers = [entry for entry in points.roads() if entry == road]
-    stretches = points.store.stretches(STRETCH_POINTS if executor.folder else 0, numbers)
-    for begin, *sums in (entry for batch in executor.run(phase, stretches) for entry in batch):
+    for begin, *sums in (entry for batch in points.executor.run(phase, points.store.stretches(numbers)) for entry in batch):
         window = slice(begin, begin + len(sums[0]))
         covered[window] |= sums[0]
         total[window] += sums[1]

@@ -201,7 +201,6 @@ def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: P
 # A drive that was laid on others goes on where it measures alone: it is moved on as where it left them, not back to where it was measured.
 
 
-
 def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: list[PassOffsets]) -> PassCorrections:
     """Corrections of passes with those of the passes that follow or precede them in the same drive and could be compared with no other.
 
@@ -257,7 +256,6 @@ def _led_on(moves, p, before, after):
 
 
 # Where passes still differ after they were laid on each other, and where one was moved that no other confirms, place by place.
-
 
 
 def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np.ndarray, np.ndarray]]) -> list[tuple[float, float, float]]:
@@ -361,7 +359,6 @@ def _further(places):
 #
 # Such roads share no pass, so nothing lays them on each other. What both drives see is the strip between the two tracks. Its flat places give the
 # difference in height to millimetres. Across they tell nothing: of a guard rail each drive sees its own side, and rails hide the paint behind them.
-
 
 
 class Beside(NamedTuple):

@@ -294,7 +294,6 @@ def _rough(time, place, yaw, origin, crs, has_time):
 # Clouds that no vehicle on a road has measured are refused by name.
 
 
-
 def _refuse_airborne(tracks: list[FirstTrack]) -> None:
     """Refuse a cloud whose points are spread so wide at any time that they were measured from high above."""
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))

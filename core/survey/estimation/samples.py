@@ -133,7 +133,6 @@ def _sample(block, slots, origin):
 # The first track: in every short window of time, the place around which points lie densest, on the ridge of density.
 
 
-
 @dataclass
 class FirstTrack:
     """The rough track of one drive."""
@@ -222,7 +221,6 @@ def _headings_by_distance(track):
 
 
 # The track of a cloud without times: the ridge of its density on the ground.
-
 
 
 def ridge_of(place: np.ndarray) -> np.ndarray:

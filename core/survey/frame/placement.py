@@ -43,7 +43,6 @@ def as_written(frame: RoadFrame, x: np.ndarray, y: np.ndarray, z: np.ndarray) ->
     return frame.to_local(*(np.round(values, COORDINATE_DECIMALS) for values in (x, y, z)))
 
 
-
 # Lines of a map in the road frame: the one conversion from map coordinates to station and offset that lines go through.
 
 LINE_VERTEX_SPACING = 0.5  # cost: m between vertices at most: straight on the map is not straight in the road frame

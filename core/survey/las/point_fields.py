@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-import laspy
 import numpy as np
 
 from ...common.errors import RoadExtractionError
@@ -282,13 +281,13 @@ def _has_colours(file):
 NOISE_CLASSES = 7, 18   # source: as above
 
 
-def flagged(block: laspy.ScaleAwarePointRecord) -> bool:
-    """Whether any point of a block has a flag or a scanner channel: LAS 1.4 keeps them in one byte, and most clouds have none."""
+def flagged(block: Any) -> bool:
+    """Whether any of laspy's points has a flag or a scanner channel: LAS 1.4 keeps them in one byte, and most clouds have none."""
     raw = block.array
     return "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max(initial=0))
 
 
-def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
+def valid_points(block: Any) -> np.ndarray | None:
     """(N,) bool: the points of a block that are neither withheld nor noise; None for all. Its layers `flags` and `classification` are decoded."""
     has_withheld = flagged(block) and "withheld" in block.point_format.dimension_names
     withheld = np.asarray(block["withheld"]) != 0 if has_withheld else np.zeros(1, bool)
@@ -301,7 +300,6 @@ def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
 
 
 # Coordinates of a LAS file, stored as integers, converted to the local integers of a record.
-
 
 
 class LasAxis:

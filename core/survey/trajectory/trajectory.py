@@ -164,7 +164,6 @@ def _refuse_degrees(trajectory):
 # A trajectory in another coordinate reference system.
 
 
-
 def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
     """The trajectory in another CRS, WKT or "EPSG:n": its positions, and its heading from the target's grid north.
 

@@ -181,7 +181,6 @@ def _after_roll_and_pitch(sample, k):
 # Whether numbers can be the headings and coordinates of a drive.
 
 
-
 def rough_metres(x: np.ndarray, y: np.ndarray, crs: str) -> tuple[np.ndarray, np.ndarray]:
     """(N,) x and y in metres, of longitude and latitude as far as speeds and courses need it; an unknown CRS is taken to be metric."""
     if crs and horizontal_part(parse_crs(crs)).is_geographic:

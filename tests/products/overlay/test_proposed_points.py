@@ -6,8 +6,7 @@ import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.products.overlay.control_points import control_points
 from lanewright.products.overlay.georeference import georeference
-from lanewright.products.overlay.matching.proposal import ProposalSettings
-from lanewright.products.overlay.matching.propose import AMBIGUOUS, propose_control_points
+from lanewright.products.overlay.matching.propose import AMBIGUOUS, ProposalSettings, propose_control_points
 from lanewright.products.overlay.pair_cutouts import pair_cutouts
 from lanewright.products.overlay.rough_place import rough_place
 from lanewright.products.overlay.source_image import open_image
