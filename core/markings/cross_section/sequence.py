@@ -21,6 +21,7 @@ from .weights import (
     CENTRE_LINE,
     CURB,
     DASHED,
+    DOUBLE,
     EDGE_LINE,
     HATCHING,
     ISLAND,
@@ -121,6 +122,9 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     lanes, first_lanes = np.zeros((2, len(STRIPS), count, size, size), np.int8)
     between = np.where(width > NEUTRAL.widest_lane, w.unused_wide, w.unused_asphalt[0])
     unused = np.where(both_paint, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, w.unused_asphalt[1]))
+    # two lines on both sides are the border of a painted median: each is drawn as between the directions
+    double = c.made_of == DOUBLE
+    unused = np.where(double[:, :, None] & double[:, None, :], 2 * (w.double[CENTRE_LINE] - w.double[EDGE_LINE]), unused)
     inside = _inside(evidence.driven, c)
     idle = scale * (np.where(hatched, 0.0, unused) + rest_cost) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
     cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)

@@ -234,3 +234,10 @@ def test_lanes_go_on_between_the_curbs_where_the_paint_stops():
 def test_paint_that_stops_some_metres_before_the_curbs_do_gives_no_lane_of_its_own():
     street = Street(vehicle=-1.75).paint(0.0, 5.0, 100.0, pattern="dashed")
     assert max(line.bounds[2] for line, _ in street.lanes(edges=curbs(street, 3.5, -3.5))[0]) - EAST < 103.0
+
+
+def test_two_double_lines_with_room_between_them_are_a_painted_median_and_no_lane():
+    street = Street(vehicle=-3.4).paint(5.15, kind="edge").paint(-5.15, kind="edge")
+    for offset in (1.77, 1.53, -1.53, -1.77):
+        street.paint(offset, kind="", pattern="double-solid")
+    assert lanes_of(street) == {-3.46: 1, 3.46: -1}
