@@ -61,11 +61,6 @@ class _GroupWeights:
     road_edge_clearance: float = 0.10   # m: strips so near to the road edge are taken for verge
     reach_along_factor: float = 2.5   # neighbours may be this times the distance apart along the road,
     reach_across_divisor: float = 2.0   # and across it the distance over this, or the reach between tracks of the scan
-    largest_figure: float = 8.0   # m, of an arrow: what is longer runs on along a road
-    line_width: float = 0.35   # m: what is no broader,
-    line_elongation: float = 4.0   # and so many times as long, is a line
-    spot_units: int = 1000   # units of 0.1 mm: points are compared in squares of 10 cm,
-    touching: float = 1.5   # squares: and those that touch, at a corner too, are of one figure
 
 
 GROUPS = _GroupWeights()

@@ -242,8 +242,6 @@ ROWS = (
         ("outliers", "outliers:remove_outliers", nth(0))),
     *_room("clusters", "markings",
         ("tracks of the scan linked", "objects.grouping:_across_tracks", gives(NO_ROWS), "sparse paint"),
-        ("figures on two roads", "objects.grouping:_shared_points", gives([]), "roundabout, give-way blocks",
-         "objects.grouping:_shared_points objects.grouping:_told_by objects.grouping:_with"),
         ("compounds divided", "objects.split_merge:split_compounds", nth(1), "stop line that meets an edge line"),
         ("bars cut from lines", "objects.split_merge:bar_with_lines", lambda cells: (np.zeros(len(cells), np.int64), 1),
          "bends with a junction, worn stop line"),
