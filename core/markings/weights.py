@@ -317,11 +317,8 @@ class _SelectionWeights:
     max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it
     max_bar_end_offset: float = 0.35   # m between the end of a bar and the outline
     max_bar_pitch: float = 3.0   # m from bar to bar along an outline
-    max_border_gap: float = 2.0   # m along the road between pieces of one outline that bend off each other
     min_bars: int = 4   # that make an outline
-    min_bars_of_strand: int = 2   # that tell which strands of an outline are its own
     at_crossing: float = 0.5   # m across beyond a crossing where a line still leads to it
-    least_turn_aside: float = 0.3   # m from the straight way between two strands: farther than links reach across, a strand is another line
     # Solid or dashed.
     max_worn_hole: float = 0.8   # m: a shorter hole is wear within a dash
     min_gap_per_dash: float = 0.4   # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
