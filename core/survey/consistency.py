@@ -1,9 +1,8 @@
 """Check that the result of an earlier stage belongs to the trajectory it is used with.
 
-Stations start where the road of a trajectory begins. With another trajectory, or another part of the same one, every
-station in a file refers to another position. Offsets are counted from its way: where a trajectory beside its scanners was
-moved to them as the points were read, offsets in a file are those of the way as moved. One that was moved in height alone shows
-as a road on which its vehicle cannot have driven.
+Stations start where the road of a trajectory begins. With another trajectory, or another part of the same one, every station in a file refers to
+another position. Offsets are counted from its way: where a trajectory beside its scanners was moved to them as the points were read, offsets in a
+file are those of the way as moved. One that was moved in height alone shows as a road on which its vehicle cannot have driven.
 """
 
 from __future__ import annotations

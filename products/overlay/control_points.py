@@ -1,9 +1,8 @@
 """Ground control points: places known in the image and on the map, from a table.
 
-Columns are recognised by their names or, without names, by the size of the image; where the rows name images, only those of
-the image in hand are used. Pixel and line count from the outer corner of the
-first pixel, whose middle is 0.5, 0.5. The QGIS georeferencer counts lines upward, as negative numbers; this
-is recognised and converted.
+Columns are recognised by their names or, without names, by the size of the image; where the rows name images, only those of the image in hand are
+used. Pixel and line count from the outer corner of the first pixel, whose middle is 0.5, 0.5. The QGIS georeferencer counts lines upward, as negative
+numbers; this is recognised and converted.
 """
 
 from __future__ import annotations
@@ -282,9 +281,8 @@ def read_control_points(path: str | Path, image: SourceImage, crs: str = "") -> 
 
     Parameters
     ----------
-    path : `.points` of the QGIS georeferencer (with or without a line "#CRS: ..."; mapX, mapY, sourceX, sourceY or
-        pixelX, pixelY; commas or, from QGIS 1, tabs), `gcp_list.txt` (the CRS in its first line, then x, y, z, pixel, line and
-        image in each row), or a CSV or TXT table
+    path : `.points` of the QGIS georeferencer (with or without a line "#CRS: ..."; mapX, mapY, sourceX, sourceY or pixelX, pixelY; commas or, from
+        QGIS 1, tabs), `gcp_list.txt` (the CRS in its first line, then x, y, z, pixel, line and image in each row), or a CSV or TXT table
     image : SourceImage that the points belong to; rows that name another image are passed over
     crs : WKT of the map coordinates where the file names none
 

@@ -443,9 +443,8 @@ def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarra
 
     Notes
     -----
-    The terms are those of the polynomials of ArcGIS and GDAL. They are centred and scaled, and solved by QR. With R of the QR,
-    h_i = |R^-T t_i|^2 is the leverage, and r_i / (1 - h_i) the residual of a point that is left out (Belsley, Kuh
-    and Welsch 1980, Regression Diagnostics).
+    The terms are those of the polynomials of ArcGIS and GDAL. They are centred and scaled, and solved by QR. With R of the QR, h_i = |R^-T t_i|^2 is
+    the leverage, and r_i / (1 - h_i) the residual of a point that is left out (Belsley, Kuh and Welsch 1980, Regression Diagnostics).
     """
     places, target = np.column_stack([pixel, line]).astype(float), np.column_stack([easting, northing]).astype(float)
     centre, whiten = _frame(places)

@@ -36,8 +36,7 @@ def drawn_area(found: Georeferencing) -> shapely.Geometry:
 def output_grid(found: Georeferencing) -> tuple[tuple[float, float, float, float], int, int]:
     """Bounds and size of the result.
 
-    Bounds are whole multiples of the pixel size. A shift at the pixel size of the image keeps the bounds of the image, so that
-    no pixel is resampled.
+    Bounds are whole multiples of the pixel size. A shift at the pixel size of the image keeps the bounds of the image, so that no pixel is resampled.
 
     Returns
     -------
@@ -72,8 +71,7 @@ def _keeps_its_pixels(found):
 def draw_image(found: Georeferencing, path: str | Path, progress: Progress | None = None) -> float:
     """Write the image as a tiled GeoTIFF with lossless compression and overviews; the file appears when it is complete.
 
-    Images of bytes get an alpha band. Images of larger integers get 0, and those of real numbers NaN, as no-data value,
-    unless the image has its own.
+    Images of bytes get an alpha band. Images of larger integers get 0, and those of real numbers NaN, as no-data value, unless the image has its own.
 
     Parameters
     ----------

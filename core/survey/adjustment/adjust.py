@@ -1,8 +1,7 @@
 """Strip adjustment: passes over one road are adjusted to each other, where navigation drifted between them.
 
-The correction of each pass is a smooth function of station. It is the least-squares solution for the measured offsets
-between passes, with small changes along the road and small corrections as prior. Two passes meet in their middle,
-because nothing shows which of them is more accurate.
+The correction of each pass is a smooth function of station. It is the least-squares solution for the measured offsets between passes, with small
+changes along the road and small corrections as prior. Two passes meet in their middle, because nothing shows which of them is more accurate.
 """
 
 from __future__ import annotations

@@ -368,8 +368,7 @@ def _corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: 
 def _nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
     """The shift by some metres that the corners allow best, besides none at all.
 
-    as of `_corner_scores`
-    Returns _Rival, None where no corner lies in the photo
+    as of `_corner_scores` Returns _Rival, None where no corner lies in the photo
     """
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
     maps = [cv2.dilate(match, near) for match in _maps(placement, paint, photo, x, y, _AROUND) if match is not None]
