@@ -147,8 +147,7 @@ def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> Cur
     ellipse = Ellipse(float(cx), float(cy), abs(float(a)), abs(float(b)), float(tilt), float(t[0]), float(t[-1]))
     if abs(ellipse.heading(np.array([ellipse.length]))[0] - ellipse.heading(np.zeros(1))[0]) < FITS.min_ellipse_turn:
         raise RoadExtractionError(
-            "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. "
-            "Choose curve = automatic or circle.")
+            "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. Choose curve = automatic or circle.")
     # outside the ellipse is right of a left turn
     return CurveFit(ellipse.moved(*problem.centre), -np.sign(t[-1] - t[0]) * outside, 5)
 

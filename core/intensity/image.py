@@ -464,7 +464,6 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     shown = np.isfinite(image.sample(x, y))
     if shown.mean() < IMAGE.min_shown_share:
         raise RoadExtractionError(
-            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, "
-            f"y {top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, "
-            f"y {y.min():.1f} to {y.max():.1f}, and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that "
-            "was made from these points.")
+            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, y "
+            f"{top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to {y.max():.1f}, "
+            f"and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that was made from these points.")

@@ -64,8 +64,7 @@ def check_metric(crs: Any, what: str) -> None:
     units = _not_metres(axis for axis in flat.axis_info if axis.direction.lower() not in ("up", "down"))
     if units:
         raise RoadExtractionError(
-            f"{what} is in {flat.name}, whose unit is {', '.join(units)}. Lanewright works in metres: "
-            "reproject it to a metric CRS and run again.")
+            f"{what} is in {flat.name}, whose unit is {', '.join(units)}. Lanewright works in metres: reproject it to a metric CRS and run again.")
     vertical = _not_metres(crs.sub_crs_list[-1].axis_info) if crs.is_compound else []
     if vertical:
         raise RoadExtractionError(f"{what} has heights in {', '.join(vertical)} ({crs.sub_crs_list[-1].name}). Lanewright works in metres: convert "
@@ -369,8 +368,7 @@ def _named(area):
 
 
 def _degrees(place):
-    return (f"{abs(place.latitude):.2f}° {'N' if place.latitude >= 0 else 'S'} "
-            f"{abs(place.longitude):.2f}° {'E' if place.longitude >= 0 else 'W'}")
+    return (f"{abs(place.latitude):.2f}° {'N' if place.latitude >= 0 else 'S'} {abs(place.longitude):.2f}° {'E' if place.longitude >= 0 else 'W'}")
 
 
 def _utm_zone(place):

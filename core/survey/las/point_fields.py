@@ -59,8 +59,7 @@ class ScannerCensus:
             values = sorted(self.spans[wanted])
             if len(values) > 4 * LAS.max_scanners:
                 raise RoadExtractionError(
-                    f"{wanted} has more than {4 * LAS.max_scanners} different values, too many to be scanners. "
-                    "Set the scanner field to automatic.")
+                    f"{wanted} has more than {4 * LAS.max_scanners} different values, too many to be scanners. Set the scanner field to automatic.")
             return wanted, values if len(values) <= LAS.max_scanners else _heads(self.spans[wanted])
         channels = self.spans["scanner_channel"]
         if 1 < len(channels) <= LAS.max_scanners:
