@@ -271,8 +271,7 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
     problem = _PolynomialProblem(*checked_points(x, y, degree + 1), degree)
     ahead = problem.ahead
     if not ahead[0] < ahead[-1] or np.abs(ahead).max() > 1.02 * max(-ahead[0], ahead[-1]) + 0.5:
-        raise RoadExtractionError(
-            "A polynomial cannot follow a line that turns back on itself. Choose curve = automatic or b-spline.")
+        raise RoadExtractionError("A polynomial cannot follow a line that turns back on itself. Choose curve = automatic or b-spline.")
     coefficients, *_ = problem.fitted()
     middle_x, middle_y = problem.centre.tolist()
     curve = Polynomial(middle_x, middle_y, problem.direction, problem.size, tuple(coefficients.tolist()), float(ahead[0]), float(ahead[-1]))

@@ -279,9 +279,8 @@ def check_fits(width: float, height: float, settings: ImageSettings) -> None:
     """Refuse an image of so many metres east and north that would have too many tiles for one file (2**24)."""
     side = GEOTIFF_TILE * settings.cell_size
     if np.ceil(width / side) * np.ceil(height / side) > MAX_TILES:
-        raise RoadExtractionError(
-            f"The road points span {width / 1000:.1f} by {height / 1000:.1f} km, "
-            f"too far for an image with {settings.cell_size} m cells. Use a larger cell size, or split the survey.")
+        raise RoadExtractionError(f"The road points span {width / 1000:.1f} by {height / 1000:.1f} km, too far for an image with "
+                                  f"{settings.cell_size} m cells. Use a larger cell size, or split the survey.")
 
 
 def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Progress) -> tuple[_Grid, Iterator[tuple[int, int, np.ndarray]]]:

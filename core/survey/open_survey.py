@@ -415,10 +415,9 @@ def _check_extent(files, frame, crs, trajectory_crs):
     y = np.concatenate([p.y for p in frame.passes]) + frame.origin[1]
     reach = FRAME.corridor
     if not _runs_through(low, high, x, y, reach):
-        raise RoadExtractionError(
-            f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, "
-            f"y {low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, "
-            f"y {y.min():.1f} to {y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
+        raise RoadExtractionError(f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, y "
+                                  f"{low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to "
+                                  f"{y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
 
 
 def _runs_through(low, high, x, y, reach):

@@ -41,8 +41,7 @@ def checked_tolerances(tolerances: Sequence[float], one: float, largest: float) 
     checked = tuple(sorted({*tolerances, one}))
     if not all(0.001 <= t <= largest for t in checked):
         text = ", ".join(f"{t:g}" for t in checked)
-        raise RoadExtractionError(
-            f"The tolerances are {text}; give lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
+        raise RoadExtractionError(f"The tolerances are {text}; give lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
     return checked
 
 
