@@ -47,8 +47,7 @@ class Trajectory:
 
     def rows(self, which: Any) -> Trajectory:
         """The positions of a mask, slice or index array."""
-        return replace(self, **{name: getattr(self, name)[which]
-                                for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
+        return replace(self, **{name: getattr(self, name)[which] for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
 
     def attitude(self) -> np.ndarray | None:
         """(3, N) roll, pitch and heading in radians, the heading unwrapped, unknown roll and pitch as 0; None where a heading is unknown."""
