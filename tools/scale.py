@@ -42,7 +42,7 @@ class Recorder(Executor):
     def run(self, phase, items, progress=None, keep=()):
         recipe = phase.source.recipe(self.folder)
         began = time.process_time()
-        found = dict(name=phase.function.__name__, seconds=[], opening=0.0, results=[], sizes=[],
+        found = dict(name=phase.function.__name__, seconds=[], opening=0.0, results=[],
                      sent=self.size(ShippedPhase(name_of(phase.function), recipe, tuple(phase.arguments))))
         self.phases.append(found)
         self.inside += time.process_time() - began
@@ -54,7 +54,6 @@ class Recorder(Executor):
             done = time.process_time()
             found["opening"] += (opened - began) / len(items)
             found["seconds"].append(done - opened)
-            found["sizes"].append(phase.size(item))
             found["results"].append(self.size(result))
             if hasattr(source, "close"):
                 source.close()

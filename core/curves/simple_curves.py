@@ -96,7 +96,6 @@ class _StraightProblem(_CircleProblem):
 # An ellipse through points.
 
 
-
 @dataclass(frozen=True)
 class Ellipse(TabulatedCurve):
     """An elliptic arc."""
@@ -148,8 +147,7 @@ def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> Cur
     ellipse = Ellipse(float(cx), float(cy), abs(float(a)), abs(float(b)), float(tilt), float(t[0]), float(t[-1]))
     if abs(ellipse.heading(np.array([ellipse.length]))[0] - ellipse.heading(np.zeros(1))[0]) < FITS.min_ellipse_turn:
         raise RoadExtractionError(
-            "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. "
-            "Choose curve = automatic or circle.")
+            "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. Choose curve = automatic or circle.")
     # outside the ellipse is right of a left turn
     return CurveFit(ellipse.moved(*problem.centre), -np.sign(t[-1] - t[0]) * outside, 5)
 
@@ -222,7 +220,6 @@ def _nearest_angle(x, y, unknown):
 # A polynomial of degree k across the chord of the points.
 
 
-
 @dataclass(frozen=True)
 class Polynomial(TabulatedCurve):
     """``across = sum c_k (along / scale)^k`` in a frame at (x, y) whose axis has the direction `tilt`."""
@@ -274,8 +271,7 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
     problem = _PolynomialProblem(*checked_points(x, y, degree + 1), degree)
     ahead = problem.ahead
     if not ahead[0] < ahead[-1] or np.abs(ahead).max() > 1.02 * max(-ahead[0], ahead[-1]) + 0.5:
-        raise RoadExtractionError(
-            "A polynomial cannot follow a line that turns back on itself. Choose curve = automatic or b-spline.")
+        raise RoadExtractionError("A polynomial cannot follow a line that turns back on itself. Choose curve = automatic or b-spline.")
     coefficients, *_ = problem.fitted()
     middle_x, middle_y = problem.centre.tolist()
     curve = Polynomial(middle_x, middle_y, problem.direction, problem.size, tuple(coefficients.tolist()), float(ahead[0]), float(ahead[-1]))

@@ -33,7 +33,6 @@ class _Part:
 
     item: Any
     file: Path
-    size: float = 0.0
     whole: _Part | None = None
     halves: tuple[_Part, ...] = ()
     done: bool = False
@@ -86,7 +85,7 @@ class FolderExecutor(Executor):
         raise NotImplementedError
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
-        """Yield the results of all items in their order; see `Executor`. Successive ones go to one worker together, the largest of these begin.
+        """Yield the results of all items in their order; see `Executor`. Successive ones go to one worker together.
 
         Raises RoadExtractionError of the phase; or if workers ended at half an item, the scheduler is lost, or the folder cannot be used.
         """
@@ -94,7 +93,7 @@ class FolderExecutor(Executor):
         work = Work(self, phase, shipped)
         try:
             write_plain(shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
-            parts = [_Part(item, keep[k] if keep else self.new_file(), phase.size(item)) for k, item in enumerate(items)]
+            parts = [_Part(item, keep[k] if keep else self.new_file()) for k, item in enumerate(items)]
             work.submit(parts, items_together(phase, len(parts), self.workers, self.least_together))
             for part in parts:
                 while not part.done:
@@ -145,10 +144,9 @@ class Work:
         return self.phase.function.__name__
 
     def submit(self, parts: Sequence[_Part], together: int = 1) -> None:
-        """Send parts, so many successive ones in a task, the largest tasks first."""
-        tasks = [parts[k:k + together] for k in range(0, len(parts), together)]
-        for task in sorted(tasks, key=lambda task: -sum(part.size for part in task)):
-            items = self.executor.new_file()
+        """Send parts, so many successive ones in a task."""
+        for k in range(0, len(parts), together):
+            task, items = parts[k:k + together], self.executor.new_file()
             write_plain(items, [part.item for part in task])
             future = self.pool.submit(self.executor.task(), str(self.shipped), str(items), [str(part.file) for part in task])
             self.pending[future] = task, items
@@ -209,7 +207,7 @@ class Work:
         if part.whole is not None or last - first < 2:
             raise self.executor.ended(self.phase.place(part.item), last_words)
         middle = (first + last) // 2
-        part.halves = tuple(_Part(half, self.executor.new_file(), part.size, part) for half in ((first, middle), (middle, last)))
+        part.halves = tuple(_Part(half, self.executor.new_file(), part) for half in ((first, middle), (middle, last)))
         self.submit(part.halves)
 
     def result(self, part: _Part) -> Any:

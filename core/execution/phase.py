@@ -70,7 +70,6 @@ class Phase:
         there, and gives the Recipe
     arguments : plain values that all items share
     place : names the stretch of road that an item is, for messages
-    size : distinguishes items by how long they take; any unit
     together : so many items, one after the other along the road, are best given to one worker, which keeps what they share
     join : the result of an item from those of the two halves of its range of numbers; None where an item cannot be halved
     """
@@ -79,7 +78,6 @@ class Phase:
     source: Any
     arguments: tuple[Any, ...] = ()
     place: Callable[[Any], str] = field(default=str, compare=False)
-    size: Callable[[Any], float] = field(default=lambda item: 0.0, compare=False)
     join: Callable[[list[Any]], Any] | None = field(default=None, compare=False)
     together: int = field(default=1, compare=False)
 
@@ -173,7 +171,7 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
     """Write a value to a file, which appears whole or not at all.
 
     path : of the file
-    value : None, bool, int, float, str, numpy arrays and numbers, lists, tuples and dicts of these, and objects of classes of
+    value : None, bool, int, float, str, numpy arrays and numbers, columns of texts, lists, tuples and dicts of these, and objects of classes of
         the package whose attributes are such values. A class may leave attributes out by `__getstate__`
     unfinished_in : folder on the same disk that has the unfinished file; by default that of the file
 
@@ -296,7 +294,9 @@ def _tree_of_array(value, arrays):
     if isinstance(value, np.generic) and value.dtype.kind in "biuf" and value.dtype.itemsize <= 8:
         return {"number": [value.dtype.str, value.item()]}
     if value.dtype.hasobject:
-        raise TypeError("An array of objects is no plain value.")
+        if value.ndim != 1 or any(type(text) is not str for text in value):
+            raise TypeError("An array of objects is no plain value.")
+        return {"texts": value.tolist()}
     arrays.append(np.asarray(value))
     return {"array" if isinstance(value, np.ndarray) else "scalar": f"a{len(arrays) - 1}"}
 
@@ -315,6 +315,8 @@ def _value(tree, arrays):
     kind, content = next(iter(tree.items()))
     if kind == "number":
         return np.dtype(content[0]).type(content[1])
+    if kind == "texts":
+        return np.array(content, object)
     if kind == "array":
         return arrays[content]
     if kind == "scalar":

@@ -288,11 +288,6 @@ class SectionStore:
             ends.append(int(stations[row]))
         return ends[0] * COORDINATE_SCALE, (ends[1] + 1) * COORDINATE_SCALE
 
-    def points_between(self, road: int, start: float, end: float) -> int:
-        """Points in the sections that reach between two stations (m), before `finish` removes any."""
-        first, last = (int(np.floor(station / self.section_length)) for station in (start, end))
-        return sum(self.size(road, number) for number in range(first, last + 1) if (road, number) in self._sections)
-
     def with_column(self, name: str, folder: Path | None = None) -> SectionStore:
         """A store of the same points in which one column is put anew, section by section; it shares all other columns with this one."""
         constants = {constant: value for constant, value in self.constants.items() if constant != name}

@@ -146,16 +146,6 @@ def test_successive_sections_go_to_a_worker_together_and_every_worker_has_rounds
     assert max(map(len, shared.tasks)) == 1 and sorted(set(shared.items)) == sorted(set(client.items))
 
 
-def test_tasks_with_the_most_work_begin(few_rounds):
-    client = StandIn(deadly=lambda first, last: True)
-    executor = Cluster(client, threads=2)
-    items = [(0, 9), (9, 18), (18, 50), (50, 60), (60, 61)]
-    with pytest.raises(RoadExtractionError):
-        list(executor.run(Phase(lengths_of, survey_of(street()), size=lambda item: item[1] - item[0]), items))
-    assert client.tasks[:3] == [[(18, 50), (50, 60)], [(0, 9), (9, 18)], [(60, 61)]]
-    executor.close()
-
-
 def test_where_workers_end_only_the_section_that_they_end_at_is_computed_again(by_threads, few_rounds, monkeypatch):
     computed, write = [], tasks.write_plain
 

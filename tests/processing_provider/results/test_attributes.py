@@ -57,6 +57,13 @@ def test_a_feature_says_what_it_is(qgis_app, output, row, said):
     assert said in evaluated(layer, layer.mapTipTemplate())
 
 
+def test_columns_of_a_table_are_as_wide_as_their_headings(qgis_app):
+    layer = loaded("ROAD_EDGES", road=0, side="left")
+    widths = {column.name: column.width for column in layer.attributeTableConfig().columns() if column.name}
+    headings = {name: layer.attributeDisplayName(layer.fields().lookupField(name)) for name in widths}
+    assert all(widths[name] >= 8 * len(heading) for name, heading in headings.items()) and widths["agree_cm"] > widths["road"]
+
+
 def test_patterns_are_shown_in_words_where_a_value_holds_one(qgis_app):
     layer = loaded("MARKING_LINES", line=3, kind="centre", pattern="double-solid", length_m=9.0, status="measured")
     assert evaluated(layer, f"[% {layer.displayExpression()} %]") == "Centre line 3, double, solid, 9 m, measured"
