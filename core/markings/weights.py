@@ -318,7 +318,6 @@ class _SelectionWeights:
     max_bar_end_offset: float = 0.35   # m between the end of a bar and the outline
     max_bar_pitch: float = 3.0   # m from bar to bar along an outline
     min_bars: int = 4   # that make an outline
-    at_crossing: float = 0.5   # m across beyond a crossing where a line still leads to it
     # Solid or dashed.
     max_worn_hole: float = 0.8   # m: a shorter hole is wear within a dash
     min_gap_per_dash: float = 0.4   # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more

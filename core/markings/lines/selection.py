@@ -35,24 +35,13 @@ class SelectedLine:
         return self.pieces[0].first, self.pieces[-1].last
 
 
-def crossings(markings: MarkingObjects, road: int) -> np.ndarray:
-    """(K, 4) first and last station, least and greatest offset of zebra crossings and stop lines of a road."""
-    return _extents(markings, road, ("zebra", "stop"))
-
-
 def hatching_bars(markings: MarkingObjects, road: int) -> np.ndarray:
-    """(K, 4) the same of the bars of hatched areas."""
-    bars = _extents(markings, road, ("hatch",))
-    return bars[bars[:, 1] - bars[:, 0] < SELECTION.max_bar_length]
+    """(K, 4) first and last station, least and greatest offset of the bars of hatched areas of a road."""
+    extents = markings.extent[(markings.road == road) & (markings.kind.astype(str) == "hatch")]
+    return extents[extents[:, 1] - extents[:, 0] < SELECTION.max_bar_length]
 
 
-def _extents(markings, road, kinds):
-    shown = (markings.road == road) & np.isin(markings.kind.astype(str), kinds)
-    extents = markings.extent[shown]
-    return extents[np.isfinite(extents[:, 0])]
-
-
-def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarray, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),
+def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),
                  longest_dash: float = NEUTRAL.longest_dash) -> list[SelectedLine]:
     """The lines worth drawing, by station.
 
@@ -61,17 +50,15 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
 
     Parameters
     ----------
-    crossed, hatched : (K, 4) as `crossings` and `hatching_bars` give them
+    hatched : (K, 4) as `hatching_bars` gives them
     longest_dash : m, longer paint is solid line
     """
     if not lines:
         return []
     bars, neighbours, strands = _Bars(hatched), lines_beside(lines), _StrandsBeside(lines)
-    crossings_there = StretchLookup(crossed[:, 0], crossed[:, 1])
     parts = [stretches(line, longest_dash) for line in lines]
     level = np.array([_level(line, trend) for line in lines])
-    painted_to = max(line.last for line in lines)
-    painted_from = min(line.first for line in lines)
+    painted = min(line.first for line in lines), max(line.last for line in lines)
     ragged, double = _beside(lines, neighbours, trend, longest_dash)
     outside = _beyond_the_edge(lines, neighbours, level)
     selected = []
@@ -80,16 +67,9 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
         dashed = any(stretch.dashes for stretch in parts[k])
         if ragged[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or dashed):
             continue
-        drawn = _extended(_line_pieces(parts[k]), parts[k], (painted_from, painted_to),
-                          partial(_crossed_there, crossed, crossings_there, line.middle), partial(strands.near, level, k), line)
+        drawn = _extended(_line_pieces(parts[k]), parts[k], painted, partial(strands.near, level, k), line)
         selected.append(SelectedLine(line, bool(double[k]), drawn))
     return selected
-
-
-def _crossed_there(crossed, crossings_there, d, first, last):
-    """(M, 4) crossings that reach over an offset or near it, between two stations."""
-    crossings = crossed[crossings_there.between(first, last)]
-    return crossings[(crossings[:, 2] <= d + SELECTION.at_crossing) & (crossings[:, 3] >= d - SELECTION.at_crossing)]
 
 
 class _StrandsBeside:
@@ -212,29 +192,22 @@ def _votes(line):
     return votes
 
 
-def _extended(drawn, parts, painted, crossed, painted_beside, line):
-    """A dashed line ends with a gap: its ends go on by one gap, but not past the road's paint, into a crossing, or past the ends of lines beside it.
+def _extended(drawn, parts, painted, painted_beside, line):
+    """A dashed line ends with a gap: its ends go on by one gap, but not past the road's paint, (first, last), or past the ends of lines beside it.
 
-    `crossed` and `painted_beside` tell crossings and paint between two stations.
+    `painted_beside` tells their paint between two stations.
     """
-    drawn = list(drawn)
-    before, after = parts[0].dashes, parts[-1].dashes
-    if before:
-        limit = line.first - before.gap
-        crossings, neighbours = crossed(limit - 1.0, line.first + 1.0), painted_beside(limit - 1.0, line.first + 1.0)
-        begun = neighbours[(neighbours[:, 0] > limit) & (neighbours[:, 0] <= line.first), 0]
-        running = ((neighbours[:, 0] <= limit) & (neighbours[:, 1] > limit + 1.0)).any()
-        start = max(limit, painted[0], *crossings[crossings[:, 1] < line.first + 0.5, 1],
-                    *(begun[:0] if running else begun[np.argsort(begun)[:1]]))
-        drawn.insert(0, _LinePiece(min(start, line.first), line.first, "measured", "dashed"))
-    if after:
-        limit = line.last + after.gap
-        crossings, neighbours = crossed(line.last - 1.0, limit + 1.0), painted_beside(line.last - 1.0, limit + 1.0)
-        ended = neighbours[(neighbours[:, 1] < limit) & (neighbours[:, 1] >= line.last), 1]
-        running = ((neighbours[:, 1] >= limit) & (neighbours[:, 0] < limit - 1.0)).any()
-        end = min(limit, painted[1], *crossings[crossings[:, 0] > line.last - 0.5, 0],
-                  *(ended[:0] if running else ended[np.argsort(-ended)[:1]]))
-        drawn.append(_LinePiece(line.last, max(end, line.last), "measured", "dashed"))
+    for sign, tip, dashes, outermost in ((-1, line.first, parts[0].dashes, painted[0]), (1, line.last, parts[-1].dashes, painted[1])):
+        if not dashes:
+            continue
+        # stations count outwards
+        tip, limit = sign * tip, sign * tip + dashes.gap
+        inner, outer = sign * painted_beside(*sorted((sign * tip - sign, sign * limit + sign)))[:, ::sign].T
+        ended = outer[(outer < limit) & (outer >= tip)]
+        running = ((outer >= limit) & (inner < limit - 1.0)).any()
+        end = max(min(limit, sign * outermost, ended.max() if len(ended) and not running else np.inf), tip)
+        piece = _LinePiece(*sorted((sign * tip, sign * end)), "measured", "dashed")
+        drawn = [piece, *drawn] if sign < 0 else [*drawn, piece]
     return merged_pieces(drawn)
 
 

@@ -39,7 +39,7 @@ def found_in(blocks):
     trend = CommonTrend(strands)
     lines = link_over_long_gaps(link_lines([LinkedLine([one]) for one in strands], trend, edges, 13.0), trend, edges, 13.0, 30.0, same_dash_pattern)
     bars = extents(blocks, *((s, s + 1.0, -3.4, -2.1) for s in np.arange(60.0, 78.0, 2.0)))
-    return select_lines(lines, trend, extents(blocks, (83.0, 86.0, -4.0, 4.0)), 4.0, bars)
+    return select_lines(lines, trend, 4.0, bars)
 
 
 def test_two_streets_end_to_end_give_the_lines_of_each():
