@@ -145,8 +145,6 @@ def uav_control_points(survey: SampleSurvey) -> Features:
 class _StreetColours:
     """Colours of the ground and of the objects on it.
 
-    scene : Scene
-    camera : Camera
     seed : of the random numbers
     """
 

@@ -86,7 +86,6 @@ def make_sample_survey(settings: SampleSettings | None = None, progress: Progres
 class SampleSurvey:
     """The simulated survey.
 
-    settings : SampleSettings
     crs : WKT
     scene : Scene, in local coordinates (map minus settings.origin)
     camera : Camera of the UAV image, in local coordinates; None where there is no single axis

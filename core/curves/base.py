@@ -247,7 +247,6 @@ class Arc(Curve):
 # The result of a fit: a curve with its residuals and information criteria.
 
 
-
 @dataclass(frozen=True)
 class CurveFit:
     """A curve and how well it fits."""

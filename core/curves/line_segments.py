@@ -88,7 +88,6 @@ class SegmentIndex:
         heading : (N,) radians; only with `max_angle`
         max_angle : radians; only segments within this angle of `heading`, in either direction, count; None: all
         reach : metres; only with `max_angle`
-        progress : Progress
 
         Returns NearestPoints
         """

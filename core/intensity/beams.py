@@ -90,7 +90,7 @@ class _ElevationModel:
     """How the elevation of a point seen from the scanner is computed."""
 
     passes: Sequence[Pass]   # of the road frame
-    turns: _ScannerTurns   # _ScannerTurns
+    turns: _ScannerTurns
     by_turn: bool = False   # at the middle of the point's turn, to which its whole turn was moved; else at the point's own time
     signs: tuple[int, int] = (0, 0)   # of roll and pitch
 

@@ -16,7 +16,7 @@ from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
-from ..survey.store.section_store import STRETCH_POINTS, StoreIndex, Stretch
+from ..survey.store.section_store import StoreIndex, Stretch
 from .asphalt_model import (
     ACROSS_TRACK,
     INTENSITY_LEVELS,
@@ -96,8 +96,6 @@ def saturation_of(road_points: RoadPoints) -> Saturation:
 
     counts = sum(ordered_map(count, road_points.all_sections()), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64))
     return Saturation.from_levels(counts.reshape(SCANNER_NUMBERS, INTENSITY_LEVELS))
-
-
 
 
 @dataclass(frozen=True)
@@ -215,16 +213,15 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
 
 def _run(function, road_points, arguments, progress, source=None):
     """Yield the results of a phase, a function of stretches of the road points, that reads from these or from a `source`."""
-    executor, length, source = road_points.executor, road_points.store.section_length, road_points if source is None else source
+    length, source = road_points.store.section_length, road_points if source is None else source
     phase = Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length))
-    return executor.run(phase, road_points.store.stretches(STRETCH_POINTS if executor.folder else 0), progress)
+    return road_points.executor.run(phase, road_points.store.stretches(), progress)
 
 
 def _reason_of_counts(table, lost, points):
     """Why nothing can be corrected with a table of asphalt, of which so many points had no position of the vehicle; "" where it can."""
     if lost > ASPHALT.max_share_without_vehicle * points:
-        return ("Intensity was not corrected: the trajectory does not say where the vehicle was when "
-                f"{lost:,} of {points:,} points were measured.")
+        return (f"Intensity was not corrected: the trajectory does not say where the vehicle was when {lost:,} of {points:,} points were measured.")
     if table is None:
         return "Intensity was not corrected: there are too few road points to estimate the intensity of asphalt at each distance."
     return ""

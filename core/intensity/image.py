@@ -279,9 +279,8 @@ def check_fits(width: float, height: float, settings: ImageSettings) -> None:
     """Refuse an image of so many metres east and north that would have too many tiles for one file (2**24)."""
     side = GEOTIFF_TILE * settings.cell_size
     if np.ceil(width / side) * np.ceil(height / side) > MAX_TILES:
-        raise RoadExtractionError(
-            f"The road points span {width / 1000:.1f} by {height / 1000:.1f} km, "
-            f"too far for an image with {settings.cell_size} m cells. Use a larger cell size, or split the survey.")
+        raise RoadExtractionError(f"The road points span {width / 1000:.1f} by {height / 1000:.1f} km, too far for an image with "
+                                  f"{settings.cell_size} m cells. Use a larger cell size, or split the survey.")
 
 
 def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Progress) -> tuple[_Grid, Iterator[tuple[int, int, np.ndarray]]]:
@@ -317,16 +316,13 @@ def _tiles(grid: _Grid, pieces: Sequence[_Piece], road_points: RoadPoints, setti
 
 
 def _run(function, road_points, items, together, settings, progress, place):
-    """Yield the results of a phase of items, some of them together in a task of a worker process; `place` gives road, number and length of one."""
-    executor = road_points.executor
-    together = together if executor.folder else 1
+    """Yield the results of a phase of items, some of them together in a task; `place` gives road, number and length of one."""
 
     def name(task):
         road, number, length = place(task[0])
         return road_points.survey.stretch(road, number * length, (number + 1) * length)
 
-    tasks = [items[k:k + together] for k in range(0, len(items), together)]
-    return (result for results in executor.run(Phase(function, road_points, (settings,), name), tasks, progress) for result in results)
+    return road_points.executor.run_together(Phase(function, road_points, (settings,), name), items, together, progress)
 
 
 def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, list[_Piece]]]:
@@ -451,7 +447,6 @@ class _Grid:
 # Whether an intensity image shows the road points it is used with.
 
 
-
 def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     """Refuse an image of another road, and the 8-bit picture for viewing.
 
@@ -468,7 +463,6 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     shown = np.isfinite(image.sample(x, y))
     if shown.mean() < IMAGE.min_shown_share:
         raise RoadExtractionError(
-            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, "
-            f"y {top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, "
-            f"y {y.min():.1f} to {y.max():.1f}, and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that "
-            "was made from these points.")
+            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, y "
+            f"{top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to {y.max():.1f}, "
+            f"and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that was made from these points.")

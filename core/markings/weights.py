@@ -372,19 +372,6 @@ class _EvidenceWeights:
     half_border: float = 0.06   # m from the outside of its border line to the middle: half of a narrow line
     shortest_area: float = 5.0   # m
     border_line_reach: float = 0.5   # m between the ends of bars and the middle of the border line that they lead to: gap, and half of a broad line
-    max_tip: float = 20.0   # m from the last bar to where the borders meet
-    max_tip_gap: float = 2.0   # m of border that is not seen
-    tip_course: float = 4.0   # m of border that give its course
-    # Rows of parking bays.
-    least_reach: float = 1.2   # m across the road that is seen of a line: a parked car hides the rest
-    max_skew: float = 1.3   # m along the road for each metre across
-    bay_pitch: tuple[float, float] = 2.0, 8.0   # m along the road from line to line
-    max_bays_hidden: int = 3   # bays without a line between them, which cars hide
-    even_pitch: float = 0.12   # of the pitch, by which a line may lie off an even row
-    min_bay_lines: int = 4   # of a row
-    min_even: float = 0.75   # of the steps of a row that are even
-    pieces_of_line: float = 0.5   # m along the road between pieces of one line at most
-    shared_reach: float = 0.5   # of the shorter of two neighbours that lies beside the other
 
 
 EVIDENCE = _EvidenceWeights()
@@ -402,10 +389,6 @@ class _RoadWeights:
     shaft_breadth: float = 0.36   # m, of a single stroke at most: shafts have 0.10 to 0.20 m, and a cell more on either side; heads begin at 0.5 m
     pointed: float = 0.03   # of the length: the tip gets broad in a longer way than the end of a letter, which is as broad as the letter
     sure_lean: float = 0.15   # of the length by which the shaft is longer than the tip where it is sure which is which; painted arrows: 0.15 to 0.5
-    # How long the dashes of a line are.
-    beside: float = 0.15   # m between the middle of a dash and its line
-    full_dash: int = 75   # percent: of the dashes of a run those that are not worn; wear only ever shortens them
-    min_dashes: int = 4   # in a run: fewer may be remnants of a line that is worn away
 
 
 ROADS = _RoadWeights()
@@ -581,8 +564,6 @@ class _LaneWeights:
     usual_lines: float = 0.3   # of the painted length of a road: its lines of usual breadth
     wide_line: float = 1.6   # times the usual breadth: a wide line has twice of it (RMS, MUTCD 3A.04), measured to some 2 cm
     wide_softness: float = 0.1   # times it, by which that is uncertain
-    short_dash: float = 1.5   # m: dashes between lanes have 2 m and more in all countries of the catalogue, interrupted edges 1 m and less
-    short_softness: float = 0.1   # m by which that is uncertain
     surface_merge: float = 0.8   # m: the surface, or a hatched area, ends at the line or curb that lies this near
     # Lanes in the strip between two boundaries.
     likely_share: tuple[float, float] = 0.8, 1.5   # of the usual width of a lane: lanes in bends

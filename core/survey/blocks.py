@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -19,9 +19,6 @@ from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_uni
 from .store.section_store import PartitionedPoints, SectionStore
 from .trajectory.time_systems import SECONDS_PER_WEEK
 from .weights import FRAME, READING
-
-if TYPE_CHECKING:
-    import laspy
 
 DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
 
@@ -127,11 +124,11 @@ class BlockReader:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
         return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop))
 
-    def unfiltered(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary) -> list[tuple[int, Columns]]:
+    def unfiltered(self, block: Any, summary: BlockSummary) -> list[tuple[int, Columns]]:
         """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
         return [(road, points.copy() if near is None else points.take(near).load_all()) for road, points, near in self._near_roads(block, summary)]
 
-    def read(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
+    def read(self, block: Any, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
              store: SectionStore) -> Iterator[PartitionedPoints]:
         """Yield the points of a block near the road, ready for the store, until the next ones are asked for; `summary` and `chosen` are updated."""
         for road, points, near in self._near_roads(block, summary, ground):

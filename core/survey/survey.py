@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,17 +12,15 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.phase import THREADS, Executor, Recipe, read_plain, write_plain
+from .adjustment.register import PassCorrections
+from .estimation.interleaved import ScannerSplitter
+from .frame.road_frame import RoadFrame
 from .las.point_fields import INTENSITY_SOURCES
 from .las.reader import CloudHeader
 from .store.records import Points, road_of
 from .store.section_store import SectionStore, opened_store
 from .survey_reader import Finishing, UnorderedPoints
 from .weights import FRAME, LAS, READING
-
-if TYPE_CHECKING:
-    from .adjustment.register import PassCorrections
-    from .estimation.interleaved import ScannerSplitter
-    from .frame.road_frame import RoadFrame
 
 SURVEY_FOLDER, SURVEY_FILE = "survey", "survey.plain"   # of a survey that other processes open
 SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road")
@@ -58,7 +56,7 @@ class Survey:
     """An open survey: points by section, the road frame and statistics of the whole survey."""
 
     files: list[CloudHeader]   # headers of the point clouds
-    frame: RoadFrame   # RoadFrame
+    frame: RoadFrame
     store: SectionStore   # SectionStore of the points
     crs: str   # WKT, "" where unknown
     sensor_height: dict[int, float]   # {pass number: metres from the trajectory down to the road}

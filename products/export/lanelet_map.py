@@ -73,7 +73,6 @@ NEVER_DRIVEN = ("crosswalk", "walkway", "stairs")
 class LaneletNetwork:
     """Lanelets with borders in the direction of travel.
 
-    whole : LaneletMap
     places : (N, 3) metres of its nodes
 
     left, right : id -> rows of nodes, in the direction of travel

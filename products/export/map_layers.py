@@ -37,7 +37,7 @@ class MapLayers:
     """Lanes and lines of a map in one CRS."""
 
     lanes: Lanes   # Lanes in map coordinates
-    lines: list[MapLine] = field(default_factory=list)   # list of MapLine
+    lines: list[MapLine] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)   # sentences for the user
 
     def lane_areas(self) -> Features:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -13,9 +13,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.features import Features
 from ...core.driving.layers import Lanes
 from ...core.io.crs import check_metric, parse_crs
-
-if TYPE_CHECKING:
-    from ...core.survey.store.road_points import RoadPoints
+from ...core.survey.store.road_points import RoadPoints
 
 MOST_OVERLAP = 0.5       # share of a lane that may lie on lanes of another road: more is two roads at one place
 SAME_LEVEL = 2.0         # m of height within which two roads are no bridge
@@ -167,7 +165,6 @@ def wrapped(angle: Any) -> Any:
 class NearestValues:
     """A number of the line or area of a layer that is nearest to a place.
 
-    layer : Features, or None
     name : of the field; features without a value are left out
     """
 

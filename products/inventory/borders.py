@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
 
+from ...core.common.features import Features
 from ...core.countries.model import Country
 from ...core.driving.layers import Lanes
 from ...core.survey.frame.placement import FrameLines, line_parts, lines_in_frame
-
-if TYPE_CHECKING:
-    from ...core.common.features import Features
-    from ...core.survey.frame.road_frame import RoadFrame
+from ...core.survey.frame.road_frame import RoadFrame
 
 MAX_BORDER_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this is no border of it
 BORDER_REACH = 0.8       # m beyond half a lane's width within which a painted line is its border
@@ -70,8 +68,6 @@ class RoadBorders:
 
     Parameters
     ----------
-    layers : BorderLayers
-    frame : RoadFrame
     country : whose lanes tell two lines that bound a lane
     """
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -15,6 +15,9 @@ from ...core.common.progress import Progress
 from ...core.countries.catalogue import country
 from ...core.countries.model import SectionLimits
 from ...core.curves.robust import MAD_TO_SIGMA
+from ...core.survey.frame.road_frame import RoadFrame
+from ...core.survey.store.records import Points
+from ...core.survey.survey import Survey
 from .borders import BorderLayers, RoadBorders, Strip
 from .settings import CrossSectionSettings
 from .surface_grid import (
@@ -28,11 +31,6 @@ from .surface_grid import (
     solve_height_errors,
     surface_grid,
 )
-
-if TYPE_CHECKING:
-    from ...core.survey.frame.road_frame import RoadFrame
-    from ...core.survey.store.records import Points
-    from ...core.survey.survey import Survey
 
 STRETCH = 10.0               # m of road about a section from which grade and ruts are measured; shorter where the interval is
 READ_BESIDE = 1.0                 # m beyond the borders that are read too, for the curbs' tops
@@ -54,7 +52,7 @@ LEAST_STRETCHED = 0.3        # m along a strip for each m of station, where a be
 class _StripMeasures:
     """What was measured of a strip; NaN where it could not be. Left and right are seen along the road."""
 
-    strip: Strip   # Strip
+    strip: Strip
     crossfall: float   # crossfall, crossfall_sigma: m/m, positive where the road falls to the right
     crossfall_sigma: float
     grade: float   # m/m, positive where it climbs along the road
@@ -339,14 +337,12 @@ def _say(found: RoadSections, progress: Progress) -> None:
                           "sections); such steps and tilts were taken off before anything was measured.")
     unknown = [road for road, errors in found.errors.items() if not errors.opposite]
     if unknown:
-        found.notes.append(
-            f"Road {', '.join(map(str, unknown))}: no two passes in opposite directions overlap, so an error in roll cannot be told from crossfall: "
-            "0.1° of roll is 0.17 % of crossfall. Widths, ruts, curbs and clearances do not depend on it. Drive the road in both "
-            "directions to know it.")
+        found.notes.append(f"Road {', '.join(map(str, unknown))}: no two passes in opposite directions overlap, so an error in roll cannot be told "
+                           "from crossfall: 0.1° of roll is 0.17 % of crossfall. Widths, ruts, curbs and clearances do not depend on it. Drive the "
+                           "road in both directions to know it.")
     if found.without_ruts:
-        found.notes.append(
-            f"At {found.without_ruts} lane sections the points are too few or too noisy for a rut depth: noise alone would show more than "
-            f"{1000 * MAX_RUT_CORRECTION:.0f} mm under the straight edge.")
+        found.notes.append(f"At {found.without_ruts} lane sections the points are too few or too noisy for a rut depth: noise alone would show more "
+                           f"than {1000 * MAX_RUT_CORRECTION:.0f} mm under the straight edge.")
     if all(part.strip.borders == "track" for section in found.sections for part in section.parts):
         found.notes.append("Without road edges, marking lines, driving lines or lanes, a lane of the country's usual width about the driven "
                            "track was measured: its width is no measurement.")

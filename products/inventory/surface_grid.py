@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import sparse
@@ -13,10 +12,8 @@ from scipy.sparse.linalg import spsolve
 from ...core.common.arrays import order_by
 from ...core.road.common.pseudo_scanlines import lowest_layers
 from ...core.survey.frame.passes import Pass
-
-if TYPE_CHECKING:
-    from ...core.survey.store.records import Points
-    from ...core.survey.survey import Survey
+from ...core.survey.store.records import Points
+from ...core.survey.survey import Survey
 
 SLICE_LENGTH = 1.0        # m along the road over which a transverse profile is averaged
 CROSS_CELL = 0.05       # m across the road

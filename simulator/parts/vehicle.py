@@ -18,7 +18,7 @@ _RUN_OUT = 15.0      # m driven before and after the surveyed stretch
 class Drive:
     """One pass: position and attitude as smooth functions of the time since its start."""
 
-    way: Followed   # Followed
+    way: Followed
     direction: int   # 1 along the axis, -1 against it
     offset: float   # m, mean offset of the vehicle
     speed: float   # m/s, mean

@@ -79,7 +79,6 @@ class Surface:
 class Ground:
     """_Terrain, edges of the carriageway and what lies beyond them.
 
-    terrain : _Terrain
     rings : (K, 2) m, local vertices of each edge, closed, the carriageway on the left
     heights : (K,) m, of the curb at the vertices of each ring
     profiles : strips beyond the edges, each a Side whose first border is 0

@@ -26,7 +26,7 @@ class PlanLane:
 
     number: int   # number, road: of the lane, and of the road it belongs to
     road: int
-    path: Path   # Path
+    path: Path
     direction: int   # 1 along the path, -1 against it
     stations: np.ndarray   # (K,) m along the path
     left: np.ndarray   # left, right: (K,) m, offsets of its borders from the path, left and right of the path
@@ -38,7 +38,7 @@ class Track:
     """What a vehicle follows: a path over the terrain."""
 
     path: Path   # Path, driven from station 0
-    ground: Ground   # Ground
+    ground: Ground
 
     @property
     def length(self) -> float:
@@ -65,14 +65,14 @@ class PlanScene:
     """
 
     name: str   # of the scene
-    ground: Ground   # Ground
+    ground: Ground
     carriageway: shapely.Polygon   # polygon, m, local
     area: shapely.Polygon   # polygon of the surveyed area
     where: list[np.ndarray]   # (K,) for each ring of the ground: main, side_street, corner or island
     edges: list[np.ndarray]   # (K,) for each ring: curb, dropped or pavement
-    paint: PlanPaint   # PlanPaint
-    texture: Texture   # Texture
-    lanes: list[PlanLane]   # list of PlanLane
+    paint: PlanPaint
+    texture: Texture
+    lanes: list[PlanLane]
     ways: list[tuple[Track, float]]   # list of (Track, factor of the speed), one for each pass
     obstacles: list[Any]   # list of Solid, Post, Crown and Rail
     patches: list[np.ndarray] = field(default_factory=list)   # (n, 2) outlines of repaired asphalt

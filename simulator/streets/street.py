@@ -39,14 +39,14 @@ class Scene:
     """
 
     name: str   # of the scene
-    axis: RoadAxis   # RoadAxis
+    axis: RoadAxis
     length: float   # m from station 0
     left: Side   # left, right: Side
     right: Side
-    paint: Paint   # Paint
-    texture: Texture   # Texture
+    paint: Paint
+    texture: Texture
     obstacles: list[Any]   # list of Solid, Post, Crown and Rail
-    lanes: list[Lane]   # list of Lane
+    lanes: list[Lane]
     passes: list[tuple[int, float, float]]   # list of (direction, offset in m, speed factor)
     crown: float = 0.02   # m per m, fall to both sides
     gutter_width: float = 0.0   # m, concrete strip along the curb

@@ -404,7 +404,7 @@ class ApartWork:
         bounds = np.cumsum([0, *(len(spots) for spots, _ in crossings)])
         rows = np.concatenate([np.empty(0, np.intp), *(spots for spots, _ in crossings)])
         stripes = self._run(_zebra_stripes, lambda a, b: tuple(values[rows[bounds[a]:bounds[b]]] for values in (places, way)), bounds, progress,
-                            alone=True, looks=[tuple(comb) for _, comb in crossings])
+                            looks=[tuple(comb) for _, comb in crossings])
         return [[Stripe(*stripe) for stripe in crossing_stripes] for crossing_stripes in stripes]
 
     def parts(self, s: np.ndarray, d: np.ndarray, spacing: np.ndarray, spans: Sequence[tuple[int, int]],
@@ -412,8 +412,7 @@ class ApartWork:
         """Of each compound cluster, which begins and ends at rows of the columns, the part of every point, and how many parts there are."""
         rows = np.concatenate([np.empty(0, np.intp), *(np.arange(first, end) for first, end in spans)])
         bounds = np.cumsum([0, *(end - first for first, end in spans)])
-        return self._run(_parts_of_compounds, lambda a, b: tuple(column[rows[bounds[a]:bounds[b]]] for column in (s, d, spacing)), bounds, progress,
-                         alone=True)
+        return self._run(_parts_of_compounds, lambda a, b: tuple(column[rows[bounds[a]:bounds[b]]] for column in (s, d, spacing)), bounds, progress)
 
     def shapes(self, records: Columns, bounds: np.ndarray, progress: Progress) -> list[Shape]:
         """The Shape of each cluster; bounds : of the clusters in the records."""
@@ -436,9 +435,9 @@ class ApartWork:
         return self.executor.run(phase, groups, progress.part(begin, end))
 
     def _run(self, function: Callable[..., Any], columns: Callable[[int, int], tuple[np.ndarray, ...]], bounds: np.ndarray, progress: Progress,
-             alone: bool = False, looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),
+             looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),
              read: Callable[[Any], list[Any]] = list) -> list[Any]:
-        """Results of all clusters; threads of this process take one after the other, or each `alone`: for the small ones Python is the cost.
+        """Results of all clusters.
 
         `columns` gives those of the clusters from a number to before another, one after the other: PHASE_POINTS are there at a time.
         """
@@ -446,10 +445,7 @@ class ApartWork:
         batches, results = _cuts(bounds, PHASE_POINTS), []
         for begin, end in zip(batches[:-1].tolist(), batches[1:].tolist()):
             batch_bounds = bounds[begin:end + 1]
-            if self.executor.folder is not None:
-                cuts = _cuts(batch_bounds, TASK_POINTS)
-            else:
-                cuts = np.arange(len(batch_bounds)) if alone else np.array([0, len(batch_bounds) - 1])
+            cuts = _cuts(batch_bounds, TASK_POINTS)
             batch_columns = columns(begin, end)
             items = [_item(batch_columns, batch_bounds[a:b + 1] - batch_bounds[0], None if looks is None else list(looks[begin + a:begin + b]))
                      for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist())]

@@ -42,7 +42,6 @@ class Adjusted:
     misfit: np.ndarray   # misfit, noise: (K, S) m, mean misfit of each interval and scanner, NaN without returns, and by which returns were weighted
     noise: np.ndarray
     place_covariance: np.ndarray   # (K, 3, 3) m^2 of each control value's place; includes what the mounting leaves open
-    mounting_sigma: np.ndarray   # (S, 5) radians and metres
 
 
 def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Returns, noise: np.ndarray,
@@ -68,7 +67,7 @@ def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Re
     place_covariance = conditional + np.einsum("kia,ab,kjb->kij", by_mounting, covariance, by_mounting)
     usual = float(np.median(misfit[count > 0]))
     unexplained = float(np.median(np.maximum(misfit - RAYS.most_of_mean * by_rounding, 0.0)[count > 0]))
-    return Adjusted(poses, usual, unexplained, misfit, noise, place_covariance, np.sqrt(np.diag(covariance)).reshape(-1, MOUNTING))
+    return Adjusted(poses, usual, unexplained, misfit, noise, place_covariance)
 
 
 def _equations(poses, guess, crossfall, returns, noise, progress):
@@ -153,10 +152,7 @@ def _add_mounting(equations, poses, guess):
         equations.common[every] -= RAYS.held * poses.lever[:, axis].sum()
 
 
-
-
 # The adjustment, begun where the poses are known well enough and grown along time from there.
-
 
 
 def grown_poses(poses: Poses, known: np.ndarray, returns: Returns, progress: Progress = Progress()) -> Adjusted:
@@ -371,10 +367,7 @@ class _BandedEquations:
                               axis=1).reshape(3 * blocks, columns, columns)[:knots]
 
 
-
-
 # How the road is inclined across under the vehicle, by the returns on its own way.
-
 
 
 def _crossfall_of(poses: Poses, returns: Returns) -> np.ndarray:

@@ -102,7 +102,6 @@ def vehicle_axes(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> tuple[
 # is linear and homogeneous in cos(phi), sin(phi) and two combinations of them with u and v; the smallest eigenvector solves it.
 
 
-
 @dataclass
 class _Fixes:
     """Places of one scanner in windows of one drive; only windows with a good one.
@@ -206,7 +205,6 @@ def resected(a: np.ndarray, b: np.ndarray, angle: np.ndarray, window: np.ndarray
 
 
 # Poses to start the adjustment from, of the fixes of every scanner.
-
 
 
 @dataclass

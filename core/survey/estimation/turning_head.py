@@ -129,7 +129,6 @@ def _headings(time, place):
 # together. Ground, and the slope of the road, come from the points about each turn.
 
 
-
 def head_heights(samples: Samples, tracks: list[FirstTrack], heads: list[HeadTrack]) -> tuple[list[np.ndarray], float | None, float]:
     """Ground beneath the head, (T,) m for each drive, and its height above it with one sigma, m; None where the beams do not tell it."""
     ground, parts, turns = [], [], 0

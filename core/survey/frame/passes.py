@@ -182,7 +182,6 @@ def _return_cuts(px, py, along, heading):
     return cuts
 
 
-
 @dataclass
 class Pass:
     """One run of the vehicle along a road.

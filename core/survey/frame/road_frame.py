@@ -110,7 +110,6 @@ class RoadFrame:
 # Roads and passes of a trajectory: which parts of the drive run over the same road, and along which line.
 
 
-
 def build_frame(trajectory: Trajectory) -> RoadFrame:
     """Roads and passes of a trajectory in a projected CRS in metres, which is refused if it does not move.
 

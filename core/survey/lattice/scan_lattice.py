@@ -362,7 +362,6 @@ def _line_properties(windows, mirror):
 # The phase of a scanner's mirror: turns as a function of time.
 
 
-
 @dataclass(frozen=True)
 class MirrorPhase:
     """The turns of one scanner's mirror during one pass; a scan line is a turn."""

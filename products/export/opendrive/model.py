@@ -254,7 +254,6 @@ GAP, KINK = 1e-4, 1e-4  # m and rad between elements of the reference line from 
 class RoadSurface:
     """The borders of one road's lanes.
 
-    road : MapRoad
     """
 
     def __init__(self, road: MapRoad) -> None:

@@ -26,7 +26,7 @@ class Chain:
 
     road: int   # road, side: number; 1 left, -1 right
     side: int
-    members: Uprights   # Uprights
+    members: Uprights
     d: np.ndarray   # d, ground, top: (N,) m, smoothed
     ground: np.ndarray
     top: np.ndarray

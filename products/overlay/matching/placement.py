@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ....core.lazy import cv2
-from ..polynomial import (
+from ..georeference import (
     COLLINEAR_RATIO,
     MIN_CONTROL_POINTS,
     MIN_INVERSE_CONDITION,
@@ -17,10 +16,7 @@ from ..polynomial import (
     inverse_condition,
     principal_extents,
 )
-from .photo import reduced
-
-if TYPE_CHECKING:
-    from .photo import Photo
+from .photo import Photo, reduced
 
 _NODE = 16  # cells between places whose pixels are computed; between them they are interpolated
 
