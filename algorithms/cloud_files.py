@@ -24,9 +24,8 @@ def cloud_files(given: Iterable[str], label: str) -> list[str]:
 
     Returns
     -------
-    list of paths, each once, those of a folder or wildcard by name. A file that is named is not looked for. Of a
-    folder or wildcard, `a.copc.laz` is left out where `a.laz` or `a.las` is among it: QGIS makes such a copy of a
-    cloud that it shows, and no point shall count twice.
+    list of paths, each once, those of a folder or wildcard by name. A file that is named is not looked for. Of a folder or wildcard, `a.copc.laz` is
+    left out where `a.laz` or `a.las` is among it: QGIS makes such a copy of a cloud that it shows, and no point shall count twice.
 
     Raises
     ------

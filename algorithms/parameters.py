@@ -26,42 +26,30 @@ class ParameterSpec:
     kind : flag, choice, text, columns (roles of those of a table), expression (a condition on rows), crs (such as EPSG:32650);
         clouds (LAS, LAZ or COPC files), cloud, file, folder (which need not be there), layer, trajectory (a layer, or a CSV, TXT or SBET file),
         raster, painted (polygons, lines or a raster)
-    label : ends with the unit, if there is one
-    advanced : a dialog shows it folded away
-    default : what holds where nothing was given; None for nothing
-    choices : words of a choice
-    geometry : of a layer, as in Features, or "any"
-    of : the input whose rows an expression is about
-    file_filter : of a file, as file dialogs take it
     """
 
     kind: str
     name: str
-    label: str
+    label: str   # ends with the unit, if there is one
     help: str = ""
     optional: bool = False
-    advanced: bool = False
-    default: Any = None
-    choices: tuple = ()
-    geometry: str = "any"
-    of: str = ""
-    file_filter: str = ""
+    advanced: bool = False   # a dialog shows it folded away
+    default: Any = None   # what holds where nothing was given; None for nothing
+    choices: tuple = ()   # words of a choice
+    geometry: str = "any"   # of a layer, as in Features, or "any"
+    of: str = ""   # the input whose rows an expression is about
+    file_filter: str = ""   # of a file, as file dialogs take it
 
     is_output = False
 
 
 @dataclass(frozen=True)
 class OutputSpec(ParameterSpec):
-    """A result, of the kind layer, cloud (LAZ or LAS), raster (GeoTIFF), report (HTML) or file.
+    """A result, of the kind layer, cloud (LAZ or LAS), raster (GeoTIFF), report (HTML) or file."""
 
-    by_default : a dialog makes it unless told otherwise
-    schema : fields of a layer, empty where they are not fixed
-    suffixes : the endings that a file may have; the first of its `file_filter` is the default
-    """
-
-    by_default: bool = True
-    schema: tuple = ()
-    suffixes: tuple = ()
+    by_default: bool = True   # a dialog makes it unless told otherwise
+    schema: tuple = ()   # fields of a layer, empty where they are not fixed
+    suffixes: tuple = ()   # the endings that a file may have; the first of its `file_filter` is the default
 
     is_output = True
 

@@ -35,13 +35,10 @@ def run(name, progress=None, **parameters):
     ----------
     name : the algorithm's id, such as "roadmap"; with or without "lanewright:" before it
     progress : Progress that listens, and may raise Cancelled
-    parameters : by the names of the algorithm's parameters. Files and layers are paths, one layer of a GeoPackage is
-        `map.gpkg|layername=lanes`; POINT_CLOUDS is a list. Outputs that are not named are not made; what is not
-        given keeps its default.
+    parameters : by the names of the algorithm's parameters. Files and layers are paths, one layer of a GeoPackage is `map.gpkg|layername=lanes`;
+        POINT_CLOUDS is a list. Outputs that are not named are not made; what is not given keeps its default.
 
-    Returns
-    -------
-    dict, name of each result to its path or number
+    Returns dict, name of each result to its path or number
 
     Raises
     ------
@@ -57,10 +54,7 @@ def run(name, progress=None, **parameters):
 def speak(language="en"):
     """Make help, messages and reports speak a language, such as "de"; ids, values of choices, fields and files stay as they are.
 
-    Raises
-    ------
-    RoadExtractionError
-        If there is no translation.
+    Raises RoadExtractionError if there is no translation.
     """
     if not speak_language(language):
         raise RoadExtractionError(f"There are no texts in the language {language}. There are: {', '.join(languages())}.")

@@ -20,10 +20,7 @@ def checked_values(algorithm, given):
     algorithm : Algorithm
     given : dict, parameter name to a text, a number, a path or a list of paths
 
-    Raises
-    ------
-    RoadExtractionError
-        If a name is not the algorithm's, a value is none that the parameter takes, or a necessary one is missing.
+    Raises RoadExtractionError if a name is not the algorithm's, a value is none that the parameter takes, or a necessary one is missing.
     """
     values = {}
     for name, value in given.items():

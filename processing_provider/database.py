@@ -14,10 +14,7 @@ def add_tables(written, path):
     ----------
     written, path : Path
 
-    Raises
-    ------
-    RoadExtractionError
-        If another program keeps the database locked, or there is no room; then the tables of before stand.
+    Raises RoadExtractionError if another program keeps the database locked, or there is no room; then the tables of before stand.
     """
     from osgeo import gdal
 

@@ -3,13 +3,7 @@
 import os
 from pathlib import Path
 
-from qgis.core import (
-    QgsDataSourceUri,
-    QgsMapLayer,
-    QgsProcessingFeatureSourceDefinition,
-    QgsProcessingUtils,
-    QgsProviderRegistry,
-)
+from qgis.core import QgsDataSourceUri, QgsMapLayer, QgsProcessingFeatureSourceDefinition, QgsProcessingUtils, QgsProviderRegistry
 
 from ..algorithms.destinations import destination_path
 from ..core.io.local_files import check_local

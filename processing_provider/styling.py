@@ -3,22 +3,18 @@
 from pathlib import Path
 
 from qgis.core import (
-    QgsCategorizedSymbolRenderer,
     QgsContrastEnhancement,
     QgsProcessingLayerPostProcessorInterface,
     QgsRasterLayer,
     QgsRasterMinMaxOrigin,
-    QgsRuleBasedRenderer,
     QgsSingleBandGrayRenderer,
     QgsVectorLayer,
 )
-from qgis.PyQt.QtXml import QDomDocument
 
 from .results.attributes import explain_attributes
 from .results.layer_tree import place_layer
-from .results.ready_styles import add_ready_styles
+from .results.ready_styles import add_ready_styles, load_look
 from .results.runs import GROUP
-from .texts import tr
 
 STYLES = Path(__file__).resolve().parents[1] / "resources" / "styles"
 
@@ -35,7 +31,7 @@ LOOKS = {
     "ROADSIDE": ("roadside", 55),
     "ROADSIDE_OBJECTS": ("roadside_objects", 61),
     "ROAD_EDGES": ("road_edges", 50),
-    "BOUNDARIES": ("boundaries", 52),
+    "BOUNDARIES": ("road_edges", 52),
     "TRUTH_BOUNDARIES": ("truth_boundaries", 51),
     "CURB_POINTS": ("curb_points", 60),
     "DRIVING_LINES": ("driving_lines", 70),
@@ -79,7 +75,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
     def postProcessLayer(self, layer, context, feedback):
         apply_style(layer, self.qml, self.schema, self.output)
         if isinstance(layer, QgsVectorLayer):
-            add_ready_styles(layer)
+            add_ready_styles(layer, self.qml)
         if self.run is not None and context.project() is not None:
             place_layer(layer, context.project(), self.output, self.run)
         layer.triggerRepaint()
@@ -88,11 +84,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 def apply_style(layer, qml, schema=(), output=""):
     """Give the layer of a result the look of a QML file, its fields names and formats, an image its stretch."""
     if Path(qml).exists():
-        # loadNamedStyle would look into the layer's database first and bring yesterday's style back
-        document = QDomDocument()
-        document.setContent(Path(qml).read_text(encoding="utf-8"))
-        layer.importNamedStyle(document)
-        translate_legend(layer)
+        load_look(layer, qml)
     if isinstance(layer, QgsVectorLayer):
         explain_attributes(layer, output, schema)
     if isinstance(layer, QgsRasterLayer) and isinstance(layer.renderer(), QgsSingleBandGrayRenderer):
@@ -105,19 +97,6 @@ def apply_style(layer, qml, schema=(), output=""):
             stretch.setMinimumValue(round(stretch.minimumValue()))
             stretch.setMaximumValue(round(stretch.maximumValue()))
             layer.rendererChanged.emit()
-
-
-def translate_legend(layer):
-    """The legend of a vector layer in the user's language: the styles are written in English."""
-    renderer = layer.renderer()
-    if isinstance(renderer, QgsCategorizedSymbolRenderer):
-        for number, category in enumerate(renderer.categories()):
-            renderer.updateCategoryLabel(number, tr(category.label()))
-    elif isinstance(renderer, QgsRuleBasedRenderer):
-        for rule in renderer.rootRule().descendants():
-            rule.setLabel(tr(rule.label()))
-    if isinstance(layer, QgsVectorLayer):
-        layer.rendererChanged.emit()  # a layer tree that shows the layer already reads its legend again
 
 
 def style_on_load(name, dest, title, context, schema=(), run=None):

@@ -51,12 +51,6 @@ class Inspection:
 
     per_area, per_volume : points per m² and per m³: mean, median and largest over occupied
         cells, and of_a_point, the mean over points of the density of their own cell
-    density : ((H, W) float32 points per m², row 0 in the north, NaN where empty;
-        (min x, max y) of its corner)
-    intensity : (65536,) counts of each value
-    scanners : LAS field that distinguishes them or None, and its values
-    drive : _InspectedDrive: roads, passes, sensor height, height profile; None without a usable trajectory
-    near_share, in_time_share : share of points measured near and during the trajectory, None without one
     """
 
     files: list
@@ -66,18 +60,18 @@ class Inspection:
     maximum: np.ndarray
     per_area: dict
     per_volume: dict
-    density: tuple
-    intensity: np.ndarray
+    density: tuple   # ((H, W) float32 points per m², row 0 in the north, NaN where empty; (min x, max y) of its corner)
+    intensity: np.ndarray   # (65536,) counts of each value
     time_span: tuple
     scanner_field: str
-    scanners: list
+    scanners: list   # LAS field that distinguishes them or None, and its values
     returns: dict
     classes: dict
     settings: InspectionSettings
-    near_share: float | None = None
+    near_share: float | None = None   # near_share, in_time_share: share of points measured near and during the trajectory, None without one
     in_time_share: float | None = None
     trajectory: Trajectory | None = None
-    drive: _InspectedDrive | None = None
+    drive: _InspectedDrive | None = None   # _InspectedDrive: roads, passes, sensor height, height profile; None without a usable trajectory
     notes: list = field(default_factory=list)
 
 
@@ -202,9 +196,8 @@ class _Counter:
         west, width, height = column.min(), int(np.ptp(column)) + 1, int(last - first) + 1
         corner = (self.corner[0] + west * cell, self.corner[1] + (last + 1) * cell)
         if width * height > MAX_DENSITY_CELLS:
-            raise RoadExtractionError(
-                f"A density raster of {width:,} x {height:,} cells of {cell} m would be too large. Choose a larger cell, or "
-                "inspect fewer files at once.")
+            raise RoadExtractionError(f"A density raster of {width:,} x {height:,} cells of {cell} m would be too large. Choose a larger cell, or "
+                                      "inspect fewer files at once.")
         image = np.full((height, width), np.nan, np.float32)
         image[last - row, column - west] = self.cells.counts / cell**2
         return image, corner
@@ -281,26 +274,18 @@ def _judge_trajectory(found, wkt, has_time, progress):
         shared = min(last, trajectory.time[-1]) - max(first, trajectory.time[0])
         found.in_time_share = float(np.clip(shared / (last - first), 0.0, 1.0))
     if not found.near_share:
-        found.notes.append(
-            f"No point lies within {NEAR_TRAJECTORY:.0f} m of the trajectory. Check that both belong to one survey and use one CRS.")
+        found.notes.append(f"No point lies within {NEAR_TRAJECTORY:.0f} m of the trajectory. Check that both belong to one survey and use one CRS.")
 
 
 @dataclass(frozen=True)
 class _InspectedDrive:
-    """Findings about a trajectory; metres and seconds.
+    """Findings about a trajectory; metres and seconds."""
 
-    roads : length of each road
-    passes : rows of (number, road, direction, first station, last station, first time, last time)
-    driven : metres driven, without the position noise at standstills
-    sensor_height : metres from the trajectory down to the road, None where too few points lie on the track
-    profile : (M, 3) metres driven, map height of the trajectory, map height of the road (NaN where unseen)
-    """
-
-    roads: list[float]
-    passes: list[tuple]
-    driven: float
-    sensor_height: float | None
-    profile: np.ndarray
+    roads: list[float]   # length of each road
+    passes: list[tuple]   # rows of (number, road, direction, first station, last station, first time, last time)
+    driven: float   # metres driven, without the position noise at standstills
+    sensor_height: float | None   # metres from the trajectory down to the road, None where too few points lie on the track
+    profile: np.ndarray   # (M, 3) metres driven, map height of the trajectory, map height of the road (NaN where unseen)
 
 
 def _inspect_drive(trajectory: Trajectory, rows: np.ndarray, heights: np.ndarray) -> _InspectedDrive:

@@ -34,23 +34,15 @@ MIN_CHAIN_SHARE = 0.6   # of the profiles along a chain: must have the peak
 
 @dataclass(frozen=True)
 class IntensityPeaks:
-    """When a peak of intensity across the road is a painted line.
+    """When a peak of intensity across the road is a painted line."""
 
-    profile_length : m of road that one profile is averaged over
-    prominence : deviations (MAD of the profile) that a peak must rise above both its feet
-    narrowest, widest : m, width of a peak at half its height
-    jump : m across that the peak may move from profile to profile
-    gap : m along the road without a peak that a chain continues over
-    shortest : m, least length of a chain
-    """
-
-    profile_length: float = 0.20
-    prominence: float = 7.0
-    narrowest: float = 0.08
+    profile_length: float = 0.20   # m of road that one profile is averaged over
+    prominence: float = 7.0   # deviations (MAD of the profile) that a peak must rise above both its feet
+    narrowest: float = 0.08   # narrowest, widest: m, width of a peak at half its height
     widest: float = 0.35
-    jump: float = 0.15
-    gap: float = 0.60
-    shortest: float = 1.0
+    jump: float = 0.15   # m across that the peak may move from profile to profile
+    gap: float = 0.60   # m along the road without a peak that a chain continues over
+    shortest: float = 1.0   # m, least length of a chain
 
     def paint_of(self, road_points: RoadPoints, road: int, progress: Progress) -> Iterator[Columns]:
         """Yield the records of one road's points that lie on painted lines, window by window; points corrected or not.
@@ -179,17 +171,12 @@ HISTOGRAM_RANGE = 6.0, 60.0     # spreads below and above the median of asphalt:
 
 @dataclass(frozen=True)
 class PointSegments:
-    """How road points are split, and when a bright one is paint.
+    """How road points are split, and when a bright one is paint."""
 
-    length, width : m, of a segment along and across the road
-    separation : spreads of asphalt between the means of the two classes, below which a segment has no paint
-    radius : m around a bright point in which its bright neighbours are counted
-    """
-
-    length: float = 10.0
+    length: float = 10.0   # length, width: m, of a segment along and across the road
     width: float = 1.0
-    separation: float = 3.0
-    radius: float = 0.12
+    separation: float = 3.0   # spreads of asphalt between the means of the two classes, below which a segment has no paint
+    radius: float = 0.12   # m around a bright point in which its bright neighbours are counted
 
     def paint_of(self, road_points: RoadPoints, road: int, progress: Progress) -> Iterator[Columns]:
         """Yield the records of one road's points that are paint, segment row by segment row; points corrected or not.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -16,13 +16,11 @@ from ..core.common.progress import Progress
 from ..core.common.setting import check_limits, setting
 from ..core.road.scanlines.grid import Scanlines
 from ..core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
+from ..core.survey.frame.road_frame import RoadFrame
 from ..core.survey.lattice.scan_lattice import find_lattice
 from ..core.survey.road_points_las import metres_of_file, new_laz, place_in_file
 from ..core.survey.store.records import COORDINATE_SCALE
-
-if TYPE_CHECKING:
-    from ..core.survey.frame.road_frame import RoadFrame
-    from ..core.survey.survey import Survey
+from ..core.survey.survey import Survey
 
 SPOOL_MEMORY = 32 * 2**20  # bytes of lines in memory before a temporary file is used
 WKB_TYPE = 3002           # ISO WKB: LineString with Z and M
@@ -216,12 +214,9 @@ SCANLINE_DIMENSIONS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pas
 
 @dataclass(frozen=True)
 class ResamplingSettings:
-    """Points along scanlines.
+    """Points along scanlines."""
 
-    spacing : m between points along a scanline
-    """
-
-    spacing: float = setting(0.05, 0.005, 5.0, "The point spacing", "m")
+    spacing: float = setting(0.05, 0.005, 5.0, "The point spacing", "m")   # m between points along a scanline
 
     def __post_init__(self):
         check_limits(self)
@@ -254,7 +249,6 @@ class ResampledPoints:
     path : of the file
     origin : (3,) m, map coordinates of the local origin
     crs : WKT, "" where unknown
-    settings : ResamplingSettings
     farthest : m in x or y from the origin, of the farthest point; beyond 214 km coordinates are rounded to 1 mm
     """
 

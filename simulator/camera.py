@@ -18,19 +18,13 @@ _LENS = (0.0016, -0.0009)   # distortion with the second and fourth power of the
 
 @dataclass(frozen=True)
 class Camera:
-    """A vertical image whose rows lie along the chord of the road.
+    """A vertical image whose rows lie along the chord of the road."""
 
-    middle : (2,) m, local coordinates of the middle of the image
-    heading : radians, direction of the rows, counter-clockwise from east
-    width, height : pixels
-    stations : (start, end) m, of the road in the image
-    """
-
-    middle: np.ndarray
-    heading: float
-    width: int
+    middle: np.ndarray   # (2,) m, local coordinates of the middle of the image
+    heading: float   # radians, direction of the rows, counter-clockwise from east
+    width: int   # width, height: pixels
     height: int
-    stations: tuple[float, float]
+    stations: tuple[float, float]   # (start, end) m, of the road in the image
 
     @property
     def half_diagonal(self) -> float:

@@ -71,10 +71,7 @@ def plates(scene: Scene, camera: Camera) -> list[tuple[float, float, float]]:
 def seen_from_above(survey: SampleSurvey) -> tuple[Scene, Camera]:
     """The street and the camera over it.
 
-    Raises
-    ------
-    RoadExtractionError
-        If the scene is no street along one axis: there is no image of those.
+    Raises RoadExtractionError if the scene is no street along one axis: there is no image of those.
     """
     if survey.camera is None or not isinstance(survey.scene, Scene):
         raise RoadExtractionError(f"There is no UAV image of the scene {survey.settings.scene}. Leave it out, or choose a street.")
@@ -148,8 +145,6 @@ def uav_control_points(survey: SampleSurvey) -> Features:
 class _StreetColours:
     """Colours of the ground and of the objects on it.
 
-    scene : Scene
-    camera : Camera
     seed : of the random numbers
     """
 
@@ -251,10 +246,7 @@ def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress
     ----------
     path : of the TIFF, which appears when it is complete
 
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be written.
+    Raises RoadExtractionError if the file cannot be written.
     """
     from osgeo import gdal
 

@@ -49,10 +49,7 @@ _SCENES |= {"beside-middle": _Kind(beside_middle, *_STREET), "solid-centre-line"
 def length_of(name: str, length: float) -> float:
     """The length of a scene, m: the usual one where `length` is 0.
 
-    Raises
-    ------
-    RoadExtractionError
-        If there is no such scene, or it cannot be that long or short.
+    Raises RoadExtractionError if there is no such scene, or it cannot be that long or short.
     """
     if name not in _SCENES:
         raise RoadExtractionError(f"There is no sample scene {name!r}. Choose one of: {', '.join(SCENES)}.")

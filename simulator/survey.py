@@ -47,34 +47,22 @@ SAMPLE_POINT = np.dtype([("x", "f8"), ("y", "f8"), ("z", "f8"), ("time", "f8"), 
 class SampleSettings:
     """What is surveyed, and how densely.
 
-    scene : one of SCENES
-    length : m of road; 0 becomes the usual length of the scene
-    seed : of all random numbers
-    speed_kmh : km/h, of the vehicle
-    pulse_rate : Hz, pulses per second of each scanner
-    rotation_rate : Hz, scan lines per second of each scanner
     mount_yaw : degrees, rotation of the planes of the scanners from straight across, one either way
-    radius : m, of the bends
-    curb_height : m
-    gutter : m, width of a concrete gutter along the curbs
-    reach : m; points farther from the axis of the road are left out
-    crs : of the map
-    origin : map coordinates of the beginning of the road, whole metres
     """
 
-    scene: str = "street"
-    length: float = setting(0.0, 0.0, 20000.0, "Sample survey: length", "m")
-    seed: int = setting(1, 0, 2**31 - 1, "Sample survey: seed")
-    speed_kmh: float = setting(50.0, 5.0, 120.0, "Sample survey: speed", "km/h")
-    pulse_rate: float = setting(300_000.0, 5000.0, 2000000.0, "Sample survey: pulse rate", "Hz")
-    rotation_rate: float = setting(200.0, 10.0, 400.0, "Sample survey: rotation rate", "Hz")
+    scene: str = "street"   # one of SCENES
+    length: float = setting(0.0, 0.0, 20000.0, "Sample survey: length", "m")   # m of road; 0 becomes the usual length of the scene
+    seed: int = setting(1, 0, 2**31 - 1, "Sample survey: seed")   # of all random numbers
+    speed_kmh: float = setting(50.0, 5.0, 120.0, "Sample survey: speed", "km/h")   # km/h, of the vehicle
+    pulse_rate: float = setting(300_000.0, 5000.0, 2000000.0, "Sample survey: pulse rate", "Hz")   # Hz, pulses per second of each scanner
+    rotation_rate: float = setting(200.0, 10.0, 400.0, "Sample survey: rotation rate", "Hz")   # Hz, scan lines per second of each scanner
     mount_yaw: float = setting(45.0, 0.0, 60.0, "Sample survey: mount yaw", "°")
-    radius: float = setting(120.0, 60.0, 5000.0, "Sample survey: radius", "m")
-    curb_height: float = setting(0.13, 0.04, 0.3, "Sample survey: curb height", "m")
-    gutter: float = setting(0.0, 0.0, 1.0, "Sample survey: gutter", "m")
-    reach: float = setting(18.0, 12.0, 24.0, "Sample survey: reach", "m")
-    crs: str = "EPSG:32650"
-    origin: tuple[float, float, float] = (610400.0, 2710200.0, 20.0)
+    radius: float = setting(120.0, 60.0, 5000.0, "Sample survey: radius", "m")   # m, of the bends
+    curb_height: float = setting(0.13, 0.04, 0.3, "Sample survey: curb height", "m")   # m
+    gutter: float = setting(0.0, 0.0, 1.0, "Sample survey: gutter", "m")   # m, width of a concrete gutter along the curbs
+    reach: float = setting(18.0, 12.0, 24.0, "Sample survey: reach", "m")   # m; points farther from the axis of the road are left out
+    crs: str = "EPSG:32650"   # of the map
+    origin: tuple[float, float, float] = (610400.0, 2710200.0, 20.0)   # map coordinates of the beginning of the road, whole metres
 
     def __post_init__(self):
         check_limits(self)
@@ -84,10 +72,7 @@ class SampleSettings:
 def make_sample_survey(settings: SampleSettings | None = None, progress: Progress | None = None) -> SampleSurvey:
     """Simulate a street and its truth; points are computed on demand.
 
-    Raises
-    ------
-    RoadExtractionError
-        If the CRS is not recognised, is geographic or not in metres.
+    Raises RoadExtractionError if the CRS is not recognised, is geographic or not in metres.
     """
     from ..core.io.crs import as_in_file, check_metric, parse_crs
 
@@ -101,7 +86,6 @@ def make_sample_survey(settings: SampleSettings | None = None, progress: Progres
 class SampleSurvey:
     """The simulated survey.
 
-    settings : SampleSettings
     crs : WKT
     scene : Scene, in local coordinates (map minus settings.origin)
     camera : Camera of the UAV image, in local coordinates; None where there is no single axis
@@ -186,9 +170,7 @@ class SampleSurvey:
         ----------
         noise, progress : as in `blocks`
 
-        Returns
-        -------
-        SAMPLE_POINT array in map coordinates, with labels (see street.LABELS), true range, station and offset
+        Returns SAMPLE_POINT array in map coordinates, with labels (see street.LABELS), true range, station and offset
         """
         return np.concatenate(list(self.blocks(noise, progress)))
 
@@ -242,14 +224,9 @@ class SampleSurvey:
         path : of the file; LAZ where it ends in .laz
         noise : as in `blocks`
 
-        Returns
-        -------
-        number of points
+        Returns number of points
 
-        Raises
-        ------
-        RoadExtractionError
-            If the file cannot be written.
+        Raises RoadExtractionError if the file cannot be written.
         """
         import laspy
 

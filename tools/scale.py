@@ -23,7 +23,7 @@ from plugin_package import load
 
 load()
 
-from lanewright.core.execution.phase import name_of, write_plain  # noqa: E402
+from lanewright.core.execution.phase import Executor, name_of, write_plain  # noqa: E402
 from lanewright.core.execution.tasks import ShippedPhase  # noqa: E402
 from lanewright.core.pipeline import road_map as pipeline  # noqa: E402
 from lanewright.core.pipeline.road_map import Stages  # noqa: E402
@@ -33,7 +33,7 @@ from lanewright.simulator import SampleSettings, make_sample_survey  # noqa: E40
 WORKERS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 
 
-class Recorder:
+class Recorder(Executor):
     """Executor that does one task after the other in this thread, and notes seconds and bytes."""
 
     def __init__(self, folder):
@@ -42,7 +42,7 @@ class Recorder:
     def run(self, phase, items, progress=None, keep=()):
         recipe = phase.source.recipe(self.folder)
         began = time.process_time()
-        found = dict(name=phase.function.__name__, seconds=[], opening=0.0, results=[], sizes=[],
+        found = dict(name=phase.function.__name__, seconds=[], opening=0.0, results=[],
                      sent=self.size(ShippedPhase(name_of(phase.function), recipe, tuple(phase.arguments))))
         self.phases.append(found)
         self.inside += time.process_time() - began
@@ -54,33 +54,17 @@ class Recorder:
             done = time.process_time()
             found["opening"] += (opened - began) / len(items)
             found["seconds"].append(done - opened)
-            found["sizes"].append(phase.size(item))
             found["results"].append(self.size(result))
             if hasattr(source, "close"):
                 source.close()
             self.inside += time.process_time() - began
             yield result
 
-    def passing(self):
-        return self
-
-    def sees(self, paths):
-        return True
-
     def size(self, value):
         """Bytes of a value in a file."""
         path = self.folder / "value.plain"
         write_plain(path, value)
         return path.stat().st_size
-
-    def forget(self):
-        pass
-
-    def release(self):
-        pass
-
-    def close(self):
-        pass
 
 
 def measure(arguments):

@@ -49,7 +49,7 @@ def texts():
     for recipe in RECIPES:
         found.setdefault(recipe.name, "tools/models.py")
         found.setdefault(recipe.description, "tools/models.py")
-    for path in sorted((ROOT / "resources" / "styles").glob("*.qml")):
+    for path in sorted((ROOT / "resources" / "styles").rglob("*.qml")):
         for text in legend(path):
             found.setdefault(text, path.relative_to(ROOT).as_posix())
     return found

@@ -10,7 +10,6 @@ MAP_FILTER = "HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)"
 ROWS_IN_LOG, PLACES_IN_LOG = 50, 3   # of findings that the log tells, and of the places of each
 
 
-
 class CheckMap(Algorithm):
     ID, TITLE, GROUP = "checkhdmap", "Check HD map", "Export"
     SUMMARY = "Looks for faults of an OpenDRIVE or Lanelet2 map that other validators pass over, and puts them on the map."

@@ -15,7 +15,6 @@ CAD_SETTINGS = (
 )
 
 
-
 class ExportCad(Algorithm):
     ID, TITLE, GROUP = "exportcad", "Export CAD", "Export"
     SUMMARY = "Writes the road map for the design office: 3D polylines as DXF, or alignments of lines, curves and spirals with profile as LandXML."
@@ -61,7 +60,7 @@ class ExportCad(Algorithm):
 def _dxf(call, source, progress):
     from collections import Counter
 
-    from ...products.export.cad.dxf import dxf_lines, write_dxf
+    from ...products.cad import dxf_lines, write_dxf
 
     lines = dxf_lines(source)
     write_dxf(lines, call.new_file("OUTPUT"), source.lanes.crs)
@@ -74,7 +73,7 @@ def _landxml(call, source, progress):
     from datetime import datetime
     from pathlib import Path
 
-    from ...products.export.cad.landxml import alignments_of, landxml_text
+    from ...products.cad import alignments_of, landxml_text
 
     tolerance = call.value("TOLERANCE")
     alignments = alignments_of(source, tolerance)

@@ -13,7 +13,6 @@ LANELET_SETTINGS = (
 )
 
 
-
 class ExportLanelet2(Algorithm):
     ID, TITLE, GROUP = "exportlanelet2", "Export Lanelet2", "Export"
     SUMMARY = "Writes lanes as a Lanelet2 map for planners such as Autoware: lanelets that share their borders, with heights and centre lines."

@@ -30,7 +30,6 @@ GEOREFERENCE_SETTINGS = (
 )
 
 
-
 class GeoreferenceImage(Algorithm):
     ID, TITLE, GROUP = "georeferenceimage", "Georeference image", "Orthoimages"
     SUMMARY = "Places a UAV image on the map by ground control points, and reports its accuracy."

@@ -24,7 +24,6 @@ PROPOSE_SETTINGS = (
 )
 
 
-
 class ProposeControlPoints(Algorithm):
     ID, TITLE, GROUP = "proposecontrolpoints", "Propose control points", "Orthoimages"
     SUMMARY = "Finds the same paint in a UAV image and in the intensity image, as control points for Georeference image."

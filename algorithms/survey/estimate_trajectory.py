@@ -9,7 +9,6 @@ from ..trajectory_source import trajectory_features
 SCANNER_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "SCANNER_FIELD")
 
 
-
 class EstimateTrajectory(Algorithm):
     ID, TITLE, GROUP = "estimatetrajectory", "Estimate trajectory", "Survey"
     SUMMARY = "Where the scanner was, from the point clouds alone, for surveys that come without a trajectory."

@@ -12,7 +12,6 @@ INSPECTION_SETTINGS = (
 )
 
 
-
 class InspectSurvey(Algorithm):
     ID, TITLE, GROUP = "inspectsurvey", "Inspect survey", "Survey"
     SUMMARY = "Reports what point clouds and trajectory contain, and whether they fit together, before any processing."

@@ -14,20 +14,13 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Field:
-    """A column of a layer.
+    """A column of a layer."""
 
-    name : at most 10 characters
-    type : int, float or str
-    alias : the name spelled out, with its unit
-    needed : False where a layer that is read may lack it, such as one that an earlier version wrote; its values are None then
-    on_map : True for a map coordinate, which is written in the units of the layer's CRS
-    """
-
-    name: str
-    type: type
-    alias: str = ""
-    needed: bool = True
-    on_map: bool = False
+    name: str   # at most 10 characters
+    type: type   # int, float or str
+    alias: str = ""   # the name spelled out, with its unit
+    needed: bool = True   # False where a layer that is read may lack it, such as one that an earlier version wrote; its values are None then
+    on_map: bool = False   # True for a map coordinate, which is written in the units of the layer's CRS
 
     def value(self, value: Any) -> Any:
         """A value as a row holds it: a Python number or text of the field's type, None (NULL) for a number that is NaN or infinite."""
@@ -36,22 +29,14 @@ class Field:
 
 @dataclass
 class Features:
-    """A vector layer in memory.
+    """A vector layer in memory."""
 
-    geometry_type : "PointZ", "LineStringZ", "PolygonZ" or "None" (a table)
-    schema : list of Field
-    geometries : list of shapely geometries with Z in map coordinates (None in a table)
-    rows : list of dict, field name to value; a missing name is NULL
-    crs : WKT, "" where unknown
-    description : what made the layer, which a GeoPackage keeps
-    """
-
-    geometry_type: str
+    geometry_type: str   # "PointZ", "LineStringZ", "PolygonZ" or "None" (a table)
     schema: list[Field]
-    geometries: list[Any] = field(default_factory=list)
-    rows: list[dict[str, Any]] = field(default_factory=list)
-    crs: str = ""
-    description: str = ""
+    geometries: list[Any] = field(default_factory=list)   # shapely geometries with Z in map coordinates (None in a table)
+    rows: list[dict[str, Any]] = field(default_factory=list)   # field name to value; a missing name is NULL
+    crs: str = ""   # WKT, "" where unknown
+    description: str = ""   # what made the layer, which a GeoPackage keeps
 
     def add(self, geometry: Any, **row: Any) -> None:
         """Append a feature with its field values, numpy's or Python's, see `Field.value`."""

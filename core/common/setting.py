@@ -12,19 +12,13 @@ _KEY = "limits"
 
 @dataclass(frozen=True)
 class Limits:
-    """The values that a setting may have.
+    """The values that a setting may have."""
 
-    minimum, maximum : both allowed, in `unit`
-    name : the setting, as at the beginning of a sentence
-    unit : "" without one
-    zero : what 0 stands for, where 0 is allowed below the minimum; "" where it is not
-    """
-
-    minimum: float
+    minimum: float   # minimum, maximum: both allowed, in `unit`
     maximum: float
-    name: str
-    unit: str = ""
-    zero: str = ""
+    name: str   # the setting, as at the beginning of a sentence
+    unit: str = ""   # "" without one
+    zero: str = ""   # what 0 stands for, where 0 is allowed below the minimum; "" where it is not
 
     @property
     def lowest(self) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -17,11 +17,9 @@ from ..markings.lines.painted_lines import PaintedLines, painted_lines_of, piece
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from ..survey.frame.placement import located
+from ..survey.frame.road_frame import RoadFrame
 from .corrections import ACCEPTED, DRAWN, Correction, Corrections
 from .weights import CORRECTING
-
-if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
 
 
 class LineKind(ABC):
@@ -71,9 +69,7 @@ def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections:
     Accepted stretches get the status `accepted`. What is drawn or moved replaces what lies along its new place, has the status `drawn`
     and the heights of the map around it.
 
-    Returns
-    -------
-    pieces, the rows of the corrections that something was found for, and whether anything changed
+    Returns pieces, the rows of the corrections that something was found for, and whether anything changed
     """
     matched: set[int] = set()
     changed = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -15,9 +15,7 @@ from ..common.features import Features
 from ..io.crs import horizontal_part, parse_crs, same_crs
 from ..markings.cross_section.weights import TakenReading
 from ..survey.frame.placement import LINE_VERTEX_SPACING
-
-if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
+from ..survey.frame.road_frame import RoadFrame
 
 ACTIONS = ("accept", "delete", "move", "draw", "take")
 TARGETS = ("edge", "marking", "lane")
@@ -104,17 +102,11 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
     ----------
     features : Features of points, lines or rows without geometry, in map coordinates. `action` and `target` are needed; a row without
         geometry lies at its `road`, `station_m` and `offset_m`; `note`, `kind` and `pattern` are used where they are
-    frame : RoadFrame
     crs : WKT of the survey; corrections in another CRS are brought there, those that say none are taken to be in it
 
-    Returns
-    -------
-    Corrections
+    Returns Corrections
 
-    Raises
-    ------
-    RoadExtractionError
-        If an action or target is unknown, a row has no place, or what is moved or drawn has no line.
+    Raises RoadExtractionError if an action or target is unknown, a row has no place, or what is moved or drawn has no line.
     """
     result = Corrections()
     for number, (geometry, row) in enumerate(zip(_in_crs(features, crs), features.rows), start=1):

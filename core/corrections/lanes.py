@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,12 +11,10 @@ from ..curves.model_selection import fit_curve
 from ..driving.lane_areas import NO_BORDER, follow, make_lanes
 from ..driving.layers import CurveElements, DrivingLines, Lanes
 from ..survey.frame.placement import located
+from ..survey.frame.road_frame import RoadFrame
 from .apply import LineKind, apply_corrections, spans_along
 from .corrections import DRAWN, Correction, Corrections
 from .weights import CORRECTING
-
-if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
 
 LANE_REACH = 1.0   # derived: m, half of the narrowest lane
 NO_LINES = "none|none"

@@ -8,16 +8,11 @@ from typing import ClassVar
 
 @dataclass(frozen=True)
 class DesignSpeed:
-    """One row of a design code.
+    """One row of a design code."""
 
-    speed : design speed, km/h
-    radius : least radius of a circular curve at that speed, metres
-    length : least length of a curve, metres; 0 where the code sets none
-    """
-
-    speed: int
-    radius: float
-    length: float = 0.0
+    speed: int   # design speed, km/h
+    radius: float   # least radius of a circular curve at that speed, metres
+    length: float = 0.0   # least length of a curve, metres; 0 where the code sets none
 
 
 @dataclass(frozen=True)
@@ -31,51 +26,31 @@ class Dashes:
 
 @dataclass(frozen=True)
 class SectionLimits:
-    """What a cross-section must keep to; None where the country's rules at hand set nothing.
+    """What a cross-section must keep to; None where the country's rules at hand set nothing."""
 
-    max_rut : mm, of the rut depth
-    min_crossfall, max_crossfall : %, of a lane
-    max_grade : %
-    min_width : m, of a driving lane
-    min_clearance : m above the road
-    sources : one sentence for each rule
-    """
-
-    max_rut: float | None = None
-    min_crossfall: float | None = None
+    max_rut: float | None = None   # mm, of the rut depth
+    min_crossfall: float | None = None   # min_crossfall, max_crossfall: %, of a lane
     max_crossfall: float | None = None
-    max_grade: float | None = None
-    min_width: float | None = None
-    min_clearance: float | None = None
-    sources: tuple[str, ...] = ()
+    max_grade: float | None = None   # %
+    min_width: float | None = None   # m, of a driving lane
+    min_clearance: float | None = None   # m above the road
+    sources: tuple[str, ...] = ()   # one sentence for each rule
 
     NAMES: ClassVar[tuple[str, ...]] = ("max_rut", "min_crossfall", "max_crossfall", "max_grade", "min_width", "min_clearance")
 
 
 @dataclass(frozen=True)
 class Country:
-    """Dimensions of lanes and markings in one country; lengths in metres.
+    """Dimensions of lanes and markings in one country; lengths in metres."""
 
-    name : as COUNTRY names it
-    narrowest_lane, widest_lane : between the lines of a lane; wider strips hold several lanes
-    usual_lane : assumed where no lane of a road shows its width
-    longest_dash : longer paint is a solid line
-    line_widths : of longitudinal lines, ascending
-    dash_patterns : of lane and centre lines
-    design_code : name of the code that curves are checked against
-    design_speeds : its rows, slowest first
-    sources : one sentence for each group of values above
-    section_limits : what cross-sections must keep to
-    """
-
-    name: str
-    narrowest_lane: float
+    name: str   # as COUNTRY names it
+    narrowest_lane: float   # narrowest_lane, widest_lane: between the lines of a lane; wider strips hold several lanes
     widest_lane: float
-    usual_lane: float
-    longest_dash: float
-    line_widths: tuple[float, ...]
-    dash_patterns: tuple[Dashes, ...]
-    design_code: str
-    design_speeds: tuple[DesignSpeed, ...]
-    sources: tuple[str, ...]
-    section_limits: SectionLimits = SectionLimits()
+    usual_lane: float   # assumed where no lane of a road shows its width
+    longest_dash: float   # longer paint is a solid line
+    line_widths: tuple[float, ...]   # of longitudinal lines, ascending
+    dash_patterns: tuple[Dashes, ...]   # of lane and centre lines
+    design_code: str   # name of the code that curves are checked against
+    design_speeds: tuple[DesignSpeed, ...]   # its rows, slowest first
+    sources: tuple[str, ...]   # one sentence for each group of values above
+    section_limits: SectionLimits = SectionLimits()   # what cross-sections must keep to

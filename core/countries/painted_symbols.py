@@ -17,21 +17,14 @@ Stroke = tuple[tuple[float, float], ...]   # places that it runs through, to the
 
 @dataclass(frozen=True)
 class PaintedSymbol:
-    """A figure, 1 high.
+    """A figure, 1 high."""
 
-    kind : class of a marking that shows it
-    strokes : lines through places, right and up
-    stroke_width : of all of them
-    height, width : (least, greatest) m on the road, along the way it is read and across it
-    stretch : (least, greatest) height over width on the road, times the same of the drawing
-    """
-
-    kind: str
-    strokes: tuple[Stroke, ...]
-    stroke_width: float
-    height: tuple[float, float]
+    kind: str   # class of a marking that shows it
+    strokes: tuple[Stroke, ...]   # lines through places, right and up
+    stroke_width: float   # of all of them
+    height: tuple[float, float]   # height, width: (least, greatest) m on the road, along the way it is read and across it
     width: tuple[float, float]
-    stretch: tuple[float, float]
+    stretch: tuple[float, float]   # (least, greatest) height over width on the road, times the same of the drawing
 
 
 def _arc(x: float, y: float, radius: float, first: float, last: float, squeeze: float = 1.0) -> Stroke:

@@ -181,18 +181,13 @@ class Arc(Curve):
     """A circular arc, or a straight line where `bend` is 0.
 
     This form has no parameter that becomes infinite as the curve straightens.
-
-    x, y : start, metres
-    direction : heading at the start, radians
-    bend : curvature, 1/m, positive to the left
-    length : metres
     """
 
-    x: float
+    x: float   # x, y: start, metres
     y: float
-    direction: float
-    bend: float
-    length: float
+    direction: float   # heading at the start, radians
+    bend: float   # curvature, 1/m, positive to the left
+    length: float   # metres
 
     @property
     def kind(self) -> str:  # type: ignore[override]
@@ -252,19 +247,13 @@ class Arc(Curve):
 # The result of a fit: a curve with its residuals and information criteria.
 
 
-
 @dataclass(frozen=True)
 class CurveFit:
-    """A curve and how well it fits.
+    """A curve and how well it fits."""
 
-    curve : Curve, as a rule; the fits of splines put their unfinished curve here
-    residuals : (N,) signed orthogonal distances of the points, metres, positive left of the curve
-    parameters : number of free parameters of the curve (for BIC and AIC); a smoothing spline has an effective number
-    """
-
-    curve: Any
-    residuals: np.ndarray
-    parameters: float
+    curve: Any   # Curve, as a rule; the fits of splines put their unfinished curve here
+    residuals: np.ndarray   # (N,) signed orthogonal distances of the points, metres, positive left of the curve
+    parameters: float   # number of free parameters of the curve (for BIC and AIC); a smoothing spline has an effective number
 
     @property
     def rmse(self) -> float:

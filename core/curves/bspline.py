@@ -15,7 +15,7 @@ from scipy.sparse import csc_matrix, csr_matrix
 
 from ..common.parallel import check_cancelled
 from .base import CurveFit, TabulatedCurve, bic_lower_bound, checked_points
-from .robust import MAD_TO_SIGMA, batches, median, row_medians
+from .robust import MAD_TO_SIGMA, median, row_medians
 from .weights import FITS
 
 SPLINE_DEGREE = 3   # derived: cubic, as the penalty is on the third derivative
@@ -64,8 +64,7 @@ class _SplineBasis:
         scale = self.sizes / np.maximum(lengths, 1e-6) * np.array([b for _, b in blocks]) ** 6 / steps**5
         self._penalty = np.concatenate([_roughness(count) * factor for count, factor in zip(self.counts.tolist(), scale.tolist())])
 
-    def robustly_solved(self, values: np.ndarray, residuals_of: Callable[[np.ndarray, np.ndarray], np.ndarray],
-                        rounds: int) -> list[Any]:
+    def robustly_solved(self, values: np.ndarray, residuals_of: Callable[[np.ndarray, np.ndarray], np.ndarray], rounds: int) -> list[Any]:
         """(control points (K, C), residuals (N,)) of each block, by least squares whose weights follow the residuals until they change no more.
 
         values : (N, C) metres of the points of all blocks; residuals_of : gives (N,) m from values and slopes of the splines at these points
@@ -98,7 +97,10 @@ class _SplineBasis:
         return control
 
     def _weights(self, residuals):
-        """`robust_weights` of (N,) residuals, with a scale for each block."""
+        """Weights of soft L1, ``1 / sqrt(1 + (r / c)^2)``, of (N,) residuals in metres.
+
+        The scale c of each block is 1.4826 times the median of ``|r|``, at least `soft_l1_scale`.
+        """
         weights, size = np.empty(len(residuals)), np.abs(residuals)
         k = 0
         while k < len(self.sizes):
@@ -131,14 +133,10 @@ def _roughness(count):
 
 @dataclass(frozen=True)
 class Spline(TabulatedCurve):
-    """A cubic B-spline t -> (x, y).
+    """A cubic B-spline t -> (x, y)."""
 
-    knots : (K + 4,) metres
-    control_x, control_y : (K,) control points, metres
-    """
-
-    knots: tuple
-    control_x: tuple
+    knots: tuple   # (K + 4,) metres
+    control_x: tuple   # control_x, control_y: (K,) control points, metres
     control_y: tuple
     _splines: dict = field(default_factory=dict, repr=False, compare=False)
 
@@ -293,12 +291,23 @@ def smooth_profiles(profiles: Sequence[tuple[np.ndarray, np.ndarray]], bandwidth
             functions[k] = _constant(median(values))
         else:
             smoothable.append(k)
-    for first, end in batches([len(profiles[k][0]) for k in smoothable], FITS.spline_points_per_batch):
+    for first, end in _batches([len(profiles[k][0]) for k in smoothable], FITS.spline_points_per_batch):
         check_cancelled()
         batch = smoothable[first:end]
         for k, smooth in zip(batch, _smooth([profiles[k] for k in batch], bandwidth)):
             functions[k] = smooth
     return functions
+
+
+def _batches(counts: Sequence[int], max_points: int) -> list[tuple[int, int]]:
+    """[(first, end)] of successive lines with at most `max_points` points together; a single line may have more."""
+    ranges, first, size = [], 0, 0
+    for k, count in enumerate(counts):
+        if k > first and size + count > max_points:
+            ranges.append((first, k))
+            first, size = k, 0
+        size += count
+    return [*ranges, (first, len(counts))] if len(counts) else []
 
 
 def _constant(level):

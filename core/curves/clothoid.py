@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .base import Curve, CurveFit, checked_points
-from .robust import PointGroups, fit_batch
-from .simple_curves import chords
+from .robust import CurveProblem, median
 from .weights import FITS
 
 
@@ -31,33 +30,27 @@ def gauss_rule(turn: float | np.ndarray) -> int | np.ndarray:
 
 @dataclass(frozen=True)
 class Clothoid(Curve):
-    """``theta(u) = direction + bend u + change u^2 / 2``, from (x, y).
+    """``theta(u) = direction + bend u + change u^2 / 2``, from (x, y)."""
 
-    x, y : start, metres
-    direction : heading at the start, radians
-    bend : curvature at the start, 1/m, positive to the left
-    change : change of curvature, 1/m^2
-    length : metres
-    """
-
-    x: float
+    x: float   # x, y: start, metres
     y: float
-    direction: float
-    bend: float
-    change: float
-    length: float
+    direction: float   # heading at the start, radians
+    bend: float   # curvature at the start, 1/m, positive to the left
+    change: float   # change of curvature, 1/m^2
+    length: float   # metres
 
     kind = "clothoid"
 
     def at(self, u: np.ndarray) -> np.ndarray:
         u = np.asarray(u, float)
-        nodes, weights = self._rule(u)
+        nodes, weights = self.rule(u)
         turn = self.heading(u[:, None] * nodes)
         points = np.stack([np.cos(turn) @ weights, np.sin(turn) @ weights], axis=1)
         points *= u[:, None]
         return np.add(points, (self.x, self.y), out=points)
 
-    def _rule(self, u):
+    def rule(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The one of GAUSS_RULES for arc lengths up to u."""
         far = float(np.abs(u).max()) if len(u) else 0.0
         turn = abs(self.bend) * far + abs(self.change) * far**2 / 2
         return GAUSS_RULES[gauss_rule(turn)]
@@ -77,8 +70,7 @@ class Clothoid(Curve):
     def cut(self, first: float, last: float) -> Clothoid:
         """The part from arc length `first` to `last`."""
         (x, y), = self.at(np.array([first]))
-        return Clothoid(float(x), float(y), float(self.heading(first)), float(self.curvature(first)),
-                        self.change, float(last - first))
+        return Clothoid(float(x), float(y), float(self.heading(first)), float(self.curvature(first)), self.change, float(last - first))
 
 
 def fit_clothoids(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
@@ -87,140 +79,76 @@ def fit_clothoids(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: fl
     The start is a parabola through the headings of chords between bins of points (theta is a parabola of u on a clothoid); the unknowns are those
     at the middle, where they are correlated least.
 
-    lines, max_misfit : as of `fit_batch`, N >= 5
+    lines, max_misfit : as of `fit_lines`, N >= 5
     """
-    return fit_batch([checked_points(x, y, 5) for x, y in lines], _ClothoidProblem, max_misfit)
+    return [_ClothoidProblem(*checked_points(x, y, 5)).fit(max_misfit) for x, y in lines]
 
 
-class _ClothoidProblem:
-    """Clothoids through the points of several lines, by x, y, heading, curvature and its change: a problem for `fit_batch`.
-
-    The state is the arc lengths of the projections.
-    """
-
-    def __init__(self, groups, x, y, about=None):
-        self.groups = groups
-        self.about = chords(groups, x, y)[:2] if about is None else about
-        self.dx, self.dy = x - self.about[0][groups.owner], y - self.about[1][groups.owner]
+class _ClothoidProblem(CurveProblem):
+    """A clothoid, by its offset, heading, curvature and the change of it where it passes the centroid; places along it are arc lengths."""
 
     def start(self):
-        """(L, 5) unknowns to begin with; sets the scale and the state."""
-        unknown, u = _start(self.groups, self.dx, self.dy)
-        half = np.maximum(self.groups.maxima(np.abs(u)), 1e-3)
-        self.scale = np.stack([np.ones(len(half)), np.ones(len(half)), 1.0 / half, 2.0 / half**2, 6.0 / half**3], axis=1)
-        self.state = (u, *np.zeros((5, len(u))))
-        return unknown
+        curve, u = _start(self.x, self.y)
+        here = float(curve.project(np.zeros(1), np.zeros(1))[0][0])
+        curve, u = curve.cut(here, here), u - here
+        offset, half = curve.y * np.cos(self.direction) - curve.x * np.sin(self.direction), max(float(np.abs(u).max()), 1e-3)
+        return np.array([offset, curve.direction, curve.bend, curve.change]), np.array([1.0, 1.0 / half, 2.0 / half**2, 6.0 / half**3]), u
 
-    def with_points(self, groups, x, y, lines, state):
-        """The same unknowns for other points of some of the lines."""
-        part = _ClothoidProblem(groups, x, y, tuple(values[lines] for values in self.about))
-        part.scale, part.state = self.scale[lines], state
-        return part
+    def _curve(self, unknown):
+        offset, heading, bend, change = unknown.tolist()
+        return Clothoid(-offset * np.sin(self.direction), offset * np.cos(self.direction), heading, bend, change, 0.0)
 
-    def subset(self, lines, rows):
-        """Some of the lines, whose points are `rows`."""
-        part = object.__new__(_ClothoidProblem)
-        part.groups, part.about = PointGroups(self.groups.counts[lines]), tuple(values[lines] for values in self.about)
-        part.dx, part.dy, part.scale = self.dx[rows], self.dy[rows], self.scale[lines]
-        part.state = tuple(values[rows] for values in self.state)
-        return part
-
-    def evaluate(self, unknown, state):
-        groups, u = self.groups, state[0]
-        x, y, direction, bend, change = (column[groups.owner] for column in unknown.T)
-        cosines, sines = _moments(groups, unknown, direction, bend, change, u)
-        x, y = x + u * cosines[0], y + u * sines[0]
+    def evaluate(self, unknown, along):
+        curve = self._curve(unknown)
+        x, y, bend, change = curve.x, curve.y, curve.bend, curve.change
+        cosines, sines = _moments(curve, along)
+        x, y, u = x + along * cosines[0], y + along * sines[0], along
         lengths = np.stack([u, u**2, u**3 / 2])
-        cosines, sines = cosines * lengths, sines * lengths
-        moving = np.ones(len(groups.counts), bool)
         for _ in range(FITS.max_newton_steps):
-            along, across, *_ = self._separation(x, y, direction + (bend + 0.5 * change * u) * u)
-            step = along / np.minimum(np.maximum(1 - (bend + change * u) * across, 0.3), 3.0)
-            settled = groups.maxima(np.abs(step)) < FITS.newton_tolerance
-            step *= moving[groups.owner]
-            nodes = u + np.multiply.outer(STEP_RULE[0], step)
-            turn = direction + (bend + 0.5 * change * nodes) * nodes
+            ahead, across, *_ = self._separation(x, y, curve.heading(u))
+            step = ahead / np.minimum(np.maximum(1 - (bend + change * u) * across, 0.3), 3.0)
+            turn = curve.heading(u + np.multiply.outer(STEP_RULE[0], step))
             x, y, u = x + step * (STEP_RULE[1] @ np.cos(turn)), y + step * (STEP_RULE[1] @ np.sin(turn)), u + step
-            moving &= ~settled
-            if not moving.any():
+            if np.abs(step).max() < FITS.newton_tolerance:
                 break
-        _, across, c, s = self._separation(x, y, direction + (bend + 0.5 * change * u) * u)
+        _, across, c, s = self._separation(x, y, curve.heading(u))
         # the projection is where the gap is shortest, so that to first order only the curve's own shift counts
-        return across, (u, s, -c, *(-s * sines - c * cosines))
+        turn = curve.heading(u) - self.direction
+        return across, np.stack([-np.cos(turn), *(-s * sines * lengths - c * cosines * lengths)]), u
 
     def _separation(self, x, y, turn):
-        dx, dy = self.dx - x, self.dy - y
+        dx, dy = self.x - x, self.y - y
         c, s = np.cos(turn), np.sin(turn)
         return dx * c + dy * s, dy * c - dx * s, c, s
 
-    def jacobian(self, unknown, state):
-        return np.stack(state[1:])
-
-    def fit(self, line, unknown, x, y, residuals, state):
-        curve = Clothoid(*unknown.tolist(), 0.0)
-        moved = curve.cut(float(state[0][0]), float(state[0][-1])).moved(float(self.about[0][line]), float(self.about[1][line]))
-        return CurveFit(moved, residuals.copy(), 5)
+    def fit(self, max_misfit):
+        """The CurveFit, from the first point's projection to the last's."""
+        unknown, distances, u = self.fitted(max_misfit)
+        curve = self._curve(unknown).cut(float(u[0]), float(u[-1]))
+        return CurveFit(curve.moved(*self.centre.tolist()), distances, 5)
 
 
-def _moments(groups, unknown, direction, bend, change, u):
+def _moments(curve, u):
     """(3, N) each: means over [0, u] of cos and sin of the heading, times the share of the way to the power of 0, 1 and 2."""
-    far = groups.maxima(np.abs(u))
-    rule = gauss_rule(np.abs(unknown[:, 3]) * far + np.abs(unknown[:, 4]) * far**2 / 2)[groups.owner]
-    least, most = int(rule.min()), int(rule.max())
-    cosines, sines = np.empty((2, 3, len(u)))
-    for k in range(least, most + 1):
-        rows = slice(None) if least == most else np.flatnonzero(rule == k)
-        nodes, weights = GAUSS_RULES[k]
-        arcs = np.multiply.outer(nodes, u[rows])
-        turn = direction[rows] + (bend[rows] + 0.5 * change[rows] * arcs) * arcs
-        powers = weights * nodes ** np.arange(3)[:, None]
-        cosines[:, rows], sines[:, rows] = powers @ np.cos(turn), powers @ np.sin(turn)
-    return cosines, sines
+    nodes, weights = curve.rule(u)
+    turn = curve.heading(np.multiply.outer(nodes, u))
+    powers = weights * nodes ** np.arange(3)[:, None]
+    return powers @ np.cos(turn), powers @ np.sin(turn)
 
 
-def _start(groups, x, y):
-    """Unknowns (L, 5) at the middles of the points of every line, and (N,) arc lengths of the points."""
-    lines, owner = np.arange(len(groups.counts)), groups.owner
-    count = np.clip(groups.counts // 3, 3, FITS.max_start_bins)
-    # bins of successive points, the first of them one point larger
-    size, larger = (values[owner] for values in (groups.counts // count, groups.counts % count))
-    within = np.arange(len(owner)) - groups.starts[owner]
-    bins = np.where(within < larger * (size + 1), within // (size + 1), (within - larger) // size)
-    binned = PointGroups(np.bincount(owner * FITS.max_start_bins + bins, minlength=len(lines) * FITS.max_start_bins).reshape(len(lines), -1)[
-        np.arange(FITS.max_start_bins) < count[:, None]])
-    first, last = np.cumsum(count) - count, np.cumsum(count) - 1
-    bx, by = binned.medians(x), binned.medians(y)
-    # chords between bins; the last of a line leads nowhere and takes the point of the one before
-    cx, cy = np.append(np.diff(bx), 0.0), np.append(np.diff(by), 0.0)
-    length, heading = np.hypot(cx, cy), np.arctan2(cy, cx)
-    length[last], heading[last] = 0.0, heading[last - 1]
-    arcs = np.cumsum(length) - length
-    arcs -= np.repeat(arcs[first], count)
-    turn = np.diff(heading, prepend=heading[0])
-    turn[first] = 0.0
-    heading = np.cumsum(turn - 2 * np.pi * np.round(turn / (2 * np.pi)))
-    heading += np.repeat(np.arctan2(cy, cx)[first] - heading[first], count)
-    c, s = np.cos(heading)[binned.owner], np.sin(heading)[binned.owner]
-    along = arcs[binned.owner] + (x - bx[binned.owner]) * c + (y - by[binned.owner]) * s
-    centre = (along[groups.starts] + along[groups.starts + groups.counts - 1]) / 2
-    u = along - centre[owner]
-    direction, bend, change = _parabolas(count, arcs + length / 2 - np.repeat(centre, count), heading)
-    unknown = np.stack([np.zeros(len(lines)), np.zeros(len(lines)), direction, bend, 2 * change], axis=1)
-    cosines, sines = _moments(groups, unknown, *(column[owner] for column in unknown.T[2:]), u)
-    unknown[:, 0], unknown[:, 1] = groups.medians(x - u * cosines[0]), groups.medians(y - u * sines[0])
-    return unknown, u
-
-
-def _parabolas(count, at, heading):
-    """(L,) coefficients of order 0, 1 and 2 of the parabola (the straight line of two) through all but the last of each line's values."""
-    chord_groups = PointGroups(count - 1)
-    rows = np.delete(np.arange(len(at)), np.cumsum(count) - 1)
-    at, heading = at[rows], heading[rows]
-    scale = np.maximum(chord_groups.maxima(np.abs(at)), 1e-6)
-    powers = (at / scale[chord_groups.owner]) ** np.arange(5)[:, None]
-    sums, right = chord_groups.sums(powers).T, chord_groups.sums(powers[:3] * heading).T
-    normal = sums[:, np.add.outer(np.arange(3), np.arange(3))]
-    two = chord_groups.counts < 3
-    normal[two, 2, :], normal[two, :, 2], normal[two, 2, 2], right[two, 2] = 0.0, 0.0, 1.0, 0.0
-    normal += 1e-12 * np.eye(3)
-    return (np.linalg.solve(normal, right[:, :, None])[:, :, 0] / scale[:, None] ** np.arange(3)).T
+def _start(x, y):
+    """A clothoid that begins at the middle of points, and (N,) their arc lengths."""
+    count = int(np.clip(len(x) // 3, 3, FITS.max_start_bins))
+    bins = np.array_split(np.arange(len(x)), count)   # of successive points
+    bx, by = (np.array([median(values[rows]) for rows in bins]) for values in (x, y))
+    length, heading = np.hypot(np.diff(bx), np.diff(by)), np.unwrap(np.arctan2(np.diff(by), np.diff(bx)))
+    arcs, bin_of = np.append(0.0, np.cumsum(length)), np.repeat(np.arange(count), [len(rows) for rows in bins])
+    # the last bin begins no chord and takes the heading of the one before
+    turn = np.append(heading, heading[-1])[bin_of]
+    along = arcs[bin_of] + (x - bx[bin_of]) * np.cos(turn) + (y - by[bin_of]) * np.sin(turn)
+    centre = (along[0] + along[-1]) / 2
+    at, u = arcs[:-1] + length / 2 - centre, along - centre
+    direction, bend, change = np.append(np.polynomial.polynomial.polyfit(at, heading, min(len(at) - 1, 2)), 0.0)[:3]
+    curve = Clothoid(0.0, 0.0, float(direction), float(bend), 2 * float(change), 0.0)
+    cosines, sines = _moments(curve, u)
+    return curve.moved(median(x - u * cosines[0]), median(y - u * sines[0])), u

@@ -36,22 +36,14 @@ def single_lines(geometries: Sequence[Any]) -> tuple[list[shapely.LineString], n
 
 @dataclass(frozen=True)
 class NearestPoints(Rows):
-    """The nearest points on some lines of N points; distance inf and the rest NaN or -1 if there is none.
+    """The nearest points on some lines of N points; distance inf and the rest NaN or -1 if there is none."""
 
-    distance : (N,) metres
-    side : (N,) +1 if the point lies left of the line as drawn, -1 right of it
-    xy : (N, 2) the nearest point, metres
-    z : (N,) its height, metres
-    line : (N,) index of its line
-    station : (N,) metres along that line
-    """
-
-    distance: np.ndarray
-    side: np.ndarray
-    xy: np.ndarray
-    z: np.ndarray
-    line: np.ndarray
-    station: np.ndarray
+    distance: np.ndarray   # (N,) metres
+    side: np.ndarray   # (N,) +1 if the point lies left of the line as drawn, -1 right of it
+    xy: np.ndarray   # (N, 2) the nearest point, metres
+    z: np.ndarray   # (N,) its height, metres
+    line: np.ndarray   # (N,) index of its line
+    station: np.ndarray   # (N,) metres along that line
 
 
 class SegmentIndex:
@@ -96,11 +88,8 @@ class SegmentIndex:
         heading : (N,) radians; only with `max_angle`
         max_angle : radians; only segments within this angle of `heading`, in either direction, count; None: all
         reach : metres; only with `max_angle`
-        progress : Progress
 
-        Returns
-        -------
-        NearestPoints
+        Returns NearestPoints
         """
         if not len(self.a) or not len(xy):
             return _no_nearest_points(len(xy))

@@ -13,7 +13,6 @@ from ..common.parallel import check_cancelled
 from .base import CurveFit, bic_lower_bound
 from .bspline import fit_splines
 from .clothoid import fit_clothoids
-from .robust import PointGroups
 from .simple_curves import fit_circles, fit_ellipse, fit_lines, fit_polynomial
 from .weights import FITS
 
@@ -34,10 +33,7 @@ def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: in
     curve : one of CURVES
     degree : of the polynomial
 
-    Raises
-    ------
-    RoadExtractionError
-        If the kind is unknown or these points do not allow it.
+    Raises RoadExtractionError if the kind is unknown or these points do not allow it.
     """
     if curve not in CURVES:
         raise RoadExtractionError(f"There is no curve called {curve!r}. Choose one of {', '.join(CURVES)}.")
@@ -45,8 +41,7 @@ def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: in
         return fit_curves([(x, y)])[0]
     least = {"line": 2, "circle": 3, "ellipse": 6, "clothoid": 5, "polynomial": degree + 1, "b-spline": 4}[curve]
     if len(x) < least:
-        raise RoadExtractionError(
-            f"A {curve} needs at least {least} places along the line, there are {len(x)}. Choose curve = automatic.")
+        raise RoadExtractionError(f"A {curve} needs at least {least} places along the line, there are {len(x)}. Choose curve = automatic.")
     if curve == "polynomial":
         return fit_polynomial(x, y, degree)
     if curve == "ellipse":
@@ -71,12 +66,9 @@ def _ellipses(lines):
 
 def _ellipse(x, y):
     check_cancelled()
-    rows = PointGroups([len(x)]).subsampled(FITS.coarse_points)
     try:
-        coarse = fit_ellipse(x[rows], y[rows], MAX_MISFIT)
-        if len(rows) == len(x):
-            return coarse
-        return fit_ellipse(x, y) if coarse.residual_p95 <= MAX_MISFIT else None
+        fit = fit_ellipse(x, y, MAX_MISFIT)
+        return fit if fit.residual_p95 <= MAX_MISFIT else None
     except RoadExtractionError:
         return None
 

@@ -9,13 +9,16 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from .base import Arc, CurveFit, TabulatedCurve, checked_points
-from .robust import PointGroups, fit_batch, minimise, robust_weights
+from .robust import CurveProblem
 from .weights import FITS
 
 
 def fit_lines(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
-    """Fit a straight Arc to each line by orthogonal, robust least squares; arguments as of `fit_batch`, N >= 2."""
-    return fit_batch([checked_points(x, y, 2) for x, y in lines], _LineProblem, max_misfit)
+    """Fit a straight Arc to each line, (x, y) of (N,) metres, N >= 2, ordered along it, by orthogonal, robust least squares.
+
+    max_misfit : as of `CurveProblem.fitted`
+    """
+    return [_StraightProblem(*checked_points(x, y, 2)).fit(max_misfit) for x, y in lines]
 
 
 def fit_circles(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
@@ -24,142 +27,85 @@ def fit_circles(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: floa
     The unknowns are heading, offset and curvature at the points' middle, so that a nearly straight line is as easy as a tight bend. Kasa's simpler
     fit is not used: it is biased towards small radii on short arcs.
 
-    lines, max_misfit : as of `fit_batch`, N >= 3
+    lines, max_misfit : as of `fit_lines`, N >= 3
 
     References
     ----------
     Taubin (1991), IEEE PAMI 13, 1115-1138; Chernov (2010), Circular and linear regression, ch. 5-7.
     """
-    return fit_batch([checked_points(x, y, 3) for x, y in lines], _CircleProblem, max_misfit)
+    return [_CircleProblem(*checked_points(x, y, 3)).fit(max_misfit) for x, y in lines]
 
 
-def _taubin(groups, x, y):
-    """(L,) curvatures of Taubin's circles through the points of several lines."""
-    owner, count = groups.owner, groups.counts
-    dx, dy = x - (groups.sums(x) / count)[owner], y - (groups.sums(y) / count)[owner]
-    size = np.sqrt(groups.sums(dx**2 + dy**2) / count)
-    scale = np.where(size > 0, size, 1.0)
-    dx, dy = dx / scale[owner], dy / scale[owner]
-    q = dx**2 + dy**2
+def _taubin(x, y, direction):
+    """Curvature of Taubin's circle through points; positive to the left of a direction."""
+    x, y = x - x.mean(), y - y.mean()
+    size = float(np.sqrt(np.mean(x**2 + y**2)))
+    if not size:
+        return 0.0
     # Taubin's constraint, reduced to the least eigenvector of a 3 x 3 matrix (Chernov's TaubinSVD)
-    design = np.stack([(q - 1.0) / 2.0, dx, dy])
-    above, below = np.triu_indices(3)
-    normal = np.empty((len(count), 3, 3))
-    normal[:, above, below] = normal[:, below, above] = (groups.sums(design[above] * design[below]) / count).T
-    a, b, c = np.linalg.eigh(normal)[1][:, :, 0].T
-    root = b * b + c * c + a * a
-    bend = np.abs(a) / np.sqrt(np.maximum(root, 1e-300)) / scale
-    direction = chords(groups, x, y)[2]
+    design = np.stack([((x**2 + y**2) / size**2 - 1) / 2, x / size, y / size])
+    a, b, c = np.linalg.eigh(design @ design.T)[1][:, 0]
+    bend = abs(a) / max(np.sqrt(a * a + b * b + c * c), 1e-150) / size
     # the centre lies at (-b, -c) / a
-    side = np.sign(np.where(a == 0, 0.0, -np.sign(a) * (c * np.cos(direction) - b * np.sin(direction))))
-    return np.where((root > 0) & (bend >= 1e-9) & (size > 0), bend * side, 0.0)
+    return bend * np.sign(a) * np.sign(b * np.sin(direction) - c * np.cos(direction)) if bend >= 1e-9 else 0.0
 
 
-def chords(groups: PointGroups, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Centroids x and y (L,) of the ordered points of L lines, and the direction (L,) from that of their first half to that of the second, radians.
-
-    Unlike the principal axis it keeps the order of the points, and it does not turn where an arc is nearly half a circle.
-    """
-    half = np.maximum(groups.counts // 2, 1)
-    within = np.arange(len(groups.owner)) - groups.starts[groups.owner]
-    tail = within >= (groups.counts - half)[groups.owner]
-    head = within < half[groups.owner]
-    step = [(groups.sums(np.where(tail, v, 0.0)) - groups.sums(np.where(head, v, 0.0))) / half for v in (x, y)]
-    return groups.sums(x) / groups.counts, groups.sums(y) / groups.counts, np.arctan2(step[1], step[0])
-
-
-class _CircleProblem:
-    """Circles through the points of several lines, in the form of offset, heading and curvature: a problem for `fit_batch`."""
+class _CircleProblem(CurveProblem):
+    """A circle, by its offset, its turn from the direction of the points, and its curvature."""
 
     free_bend = True
-    state = ()
-
-    def __init__(self, groups, x, y, about=None):
-        self.groups = groups
-        self.about = chords(groups, x, y) if about is None else about
-        owner, (middle_x, middle_y, self.direction) = groups.owner, self.about
-        self.dx, self.dy = x - middle_x[owner], y - middle_y[owner]
-        size = np.maximum(np.sqrt(groups.sums(self.dx**2 + self.dy**2) / groups.counts), 1e-3)
-        self.scale = size[:, None] ** -np.arange(2.0 + self.free_bend)
 
     def start(self):
-        """(L, P) unknowns to begin with."""
-        groups, size = self.groups, 1.0 / self.scale[:, 1]
-        bend = _taubin(groups, self.dx, self.dy) if self.free_bend else np.zeros(len(size))
-        c, s = np.cos(self.direction)[groups.owner], np.sin(self.direction)[groups.owner]
-        sagitta = groups.sums(self.dy * c - self.dx * s) / groups.counts
-        return np.stack([sagitta - bend * size**2 / 2, np.zeros(len(bend)), bend][:2 + self.free_bend], axis=1)
+        size = max(float(np.sqrt(np.mean(self.x**2 + self.y**2))), 1e-3)
+        bend = _taubin(self.x, self.y, self.direction) if self.free_bend else 0.0
+        sagitta = np.mean(self.y) * np.cos(self.direction) - np.mean(self.x) * np.sin(self.direction)
+        unknown = np.array([sagitta - bend * size**2 / 2, 0.0, bend])
+        return unknown[:2 + self.free_bend], size ** -np.arange(2.0 + self.free_bend), np.zeros(len(self.x))
 
-    def with_points(self, groups, x, y, lines, state):
-        """The same unknowns for other points of some of the lines."""
-        return type(self)(groups, x, y, tuple(values[lines] for values in self.about))
-
-    def subset(self, lines, rows):
-        """Some of the lines, whose points are `rows`."""
-        part = object.__new__(type(self))
-        part.groups, part.about = PointGroups(self.groups.counts[lines]), tuple(values[lines] for values in self.about)
-        part.direction, part.dx, part.dy, part.scale = part.about[2], self.dx[rows], self.dy[rows], self.scale[lines]
-        return part
-
-    def evaluate(self, unknown, state):
-        owner = self.groups.owner
-        turned = self.direction + unknown[:, 1]
-        c, s = np.cos(turned)[owner], np.sin(turned)[owner]
-        along, across = self.dx * c + self.dy * s, self.dy * c - self.dx * s - unknown[:, 0][owner]
+    def evaluate(self, unknown, along):
+        turned = self.direction + unknown[1]
+        c, s = np.cos(turned), np.sin(turned)
+        ahead, across = self.x * c + self.y * s, self.y * c - self.x * s - unknown[0]
         if not self.free_bend:
-            return across, (along,)
-        k, square = unknown[:, 2][owner], along**2 + across**2
+            return across, np.stack([np.full(len(ahead), -1.0), -ahead]), along
+        k, square = unknown[2], ahead**2 + across**2
         lift = 2 * across - k * square
         root = np.sqrt(np.maximum(1 - k * lift, 1e-12))
         e = lift / (1 + root)
-        # how the distance changes with `across`, `along` and k
-        by_across, by_along = (1 - k * across) / root, -k * along / root
-        return e, (by_across, by_along * (across + unknown[:, 0][owner]) - by_across * along, (e**2 - square) / (2 * root))
+        # how the distance changes with `across`, `ahead` and k
+        by_across, by_ahead = (1 - k * across) / root, -k * ahead / root
+        return e, np.stack([-by_across, by_ahead * (across + unknown[0]) - by_across * ahead, (e**2 - square) / (2 * root)]), along
 
-    def jacobian(self, unknown, state):
-        by_across, by_heading, by_bend = state
-        return np.stack([-by_across, by_heading, by_bend])
-
-    def fit(self, line, unknown, x, y, residuals, state):
-        middle_x, middle_y, direction = (values[line] for values in self.about)
-        turned = direction + unknown[1]
-        arc = Arc(float(middle_x - unknown[0] * np.sin(turned)), float(middle_y + unknown[0] * np.cos(turned)), float(turned),
+    def fit(self, max_misfit):
+        """The CurveFit, from the first point's projection to the last's."""
+        unknown, distances, _ = self.fitted(max_misfit)
+        turned = self.direction + unknown[1]
+        arc = Arc(float(-unknown[0] * np.sin(turned)), float(unknown[0] * np.cos(turned)), float(turned),
                   float(unknown[2]) if self.free_bend else 0.0, 0.0)
-        u, _ = arc.project(x[[0, -1]], y[[0, -1]])
-        first, last = float(u[0]), float(u[1])
-        (x0, y0), = arc.at(u[:1])
-        return CurveFit(Arc(float(x0), float(y0), float(arc.heading(first)), arc.bend, last - first), residuals.copy(), len(unknown))
+        first, last = arc.project(self.x[[0, -1]], self.y[[0, -1]])[0].tolist()
+        (x, y), = (arc.at(np.array([first])) + self.centre).tolist()
+        return CurveFit(Arc(x, y, float(arc.heading(first)), arc.bend, last - first), distances, len(unknown))
 
 
-class _LineProblem(_CircleProblem):
-    """Straight lines through the points of several lines."""
+class _StraightProblem(_CircleProblem):
+    """A straight line, by its offset and its turn."""
 
     free_bend = False
-
-    def jacobian(self, unknown, state):
-        return np.stack([np.full(len(state[0]), -1.0), -state[0]])
 
 
 # An ellipse through points.
 
 
-
 @dataclass(frozen=True)
 class Ellipse(TabulatedCurve):
-    """An elliptic arc.
+    """An elliptic arc."""
 
-    x, y : centre, metres
-    a, b : semi-axes, metres
-    tilt : direction of axis a, radians
-    first, last : eccentric angles at start and end, radians; `first` is above `last` where the curve turns right
-    """
-
-    x: float
+    x: float   # x, y: centre, metres
     y: float
-    a: float
+    a: float   # a, b: semi-axes, metres
     b: float
-    tilt: float
-    first: float
+    tilt: float   # direction of axis a, radians
+    first: float   # first, last: eccentric angles at start and end, radians; `first` is above `last` where the curve turns right
     last: float
 
     kind = "ellipse"
@@ -189,56 +135,42 @@ def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> Cur
     x, y : (N,) metres, N >= 6, ordered along the line
     max_misfit : metres; a fit with a larger root mean square residual is given up once steps gain little
 
-    Raises
-    ------
-    RoadExtractionError
-        If the points turn by less than 60 degrees or do not lie on an ellipse.
+    Raises RoadExtractionError if the points turn by less than 60 degrees or do not lie on an ellipse.
 
     References
     ----------
     Halir and Flusser (1998), Numerically stable direct least squares fitting of ellipses.
     """
-    x, y = checked_points(x, y, 6)
-    middle = np.array([x.mean(), y.mean()])
-    dx, dy = x - middle[0], y - middle[1]
-    size = float(np.sqrt(np.mean(dx**2 + dy**2)))
-    start = _direct(dx / size, dy / size)
-    if start is None:
-        raise RoadExtractionError("The points do not lie on an ellipse. Choose curve = automatic, circle or b-spline.")
-    start = start * [size, size, size, size, 1.0]
-
-    def nearest(unknown):
-        t = _nearest_angle(dx, dy, unknown)
-        cx, cy, a, b, tilt = unknown
-        c, s = np.cos(tilt), np.sin(tilt)
-        along, across = a * np.cos(t), b * np.sin(t)
-        normal = np.c_[b * np.cos(t), a * np.sin(t)]
-        normal /= np.hypot(normal[:, 0], normal[:, 1])[:, None]
-        gap_along, gap_across = (dx - cx) * c + (dy - cy) * s - along, (dy - cy) * c - (dx - cx) * s - across
-        return t, normal, gap_along * normal[:, 0] + gap_across * normal[:, 1]
-
-    def residuals(unknown):
-        return nearest(unknown)[2]
-
-    def jacobian(unknown):
-        t, normal, _ = nearest(unknown)
-        _, _, a, b, tilt = unknown
-        c, s = np.cos(tilt), np.sin(tilt)
-        return -np.stack([normal[:, 0] * c - normal[:, 1] * s, normal[:, 0] * s + normal[:, 1] * c,
-                          normal[:, 0] * np.cos(t), normal[:, 1] * np.sin(t),
-                          normal[:, 1] * a * np.cos(t) - normal[:, 0] * b * np.sin(t)], 1)
-
-    unknown = minimise(residuals, jacobian, start, [size, size, size, size, 1.0], max_misfit)
-    t, _, e = nearest(unknown)
-    cx, cy, a, b, tilt = unknown
+    problem = _EllipseProblem(*checked_points(x, y, 6))
+    (cx, cy, a, b, tilt), outside, t = problem.fitted(max_misfit)
     t = np.unwrap(t)
     ellipse = Ellipse(float(cx), float(cy), abs(float(a)), abs(float(b)), float(tilt), float(t[0]), float(t[-1]))
     if abs(ellipse.heading(np.array([ellipse.length]))[0] - ellipse.heading(np.zeros(1))[0]) < FITS.min_ellipse_turn:
         raise RoadExtractionError(
-            "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. "
-            "Choose curve = automatic or circle.")
+            "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. Choose curve = automatic or circle.")
     # outside the ellipse is right of a left turn
-    return CurveFit(ellipse.moved(*middle), -np.sign(t[-1] - t[0]) * e, 5)
+    return CurveFit(ellipse.moved(*problem.centre), -np.sign(t[-1] - t[0]) * outside, 5)
+
+
+class _EllipseProblem(CurveProblem):
+    """An ellipse, by its centre, its semi-axes and the direction of the first; places along it are eccentric angles."""
+
+    def start(self):
+        size = float(np.sqrt(np.mean(self.x**2 + self.y**2)))
+        unknown = _direct(self.x / size, self.y / size)
+        if unknown is None:
+            raise RoadExtractionError("The points do not lie on an ellipse. Choose curve = automatic, circle or b-spline.")
+        scale = np.array([size, size, size, size, 1.0])
+        return unknown * scale, scale, np.zeros(len(self.x))
+
+    def evaluate(self, unknown, along):
+        cx, cy, a, b, tilt = unknown
+        t, c, s = _nearest_angle(self.x, self.y, unknown), np.cos(tilt), np.sin(tilt)
+        ahead, across = a * np.cos(t), b * np.sin(t)
+        normal = np.stack([b * np.cos(t), a * np.sin(t)])
+        right, up = normal / np.hypot(*normal)
+        distances = ((self.x - cx) * c + (self.y - cy) * s - ahead) * right + ((self.y - cy) * c - (self.x - cx) * s - across) * up
+        return distances, -np.stack([right * c - up * s, right * s + up * c, right * np.cos(t), up * np.sin(t), up * ahead - right * across]), t
 
 
 def _direct(x, y):
@@ -288,24 +220,16 @@ def _nearest_angle(x, y, unknown):
 # A polynomial of degree k across the chord of the points.
 
 
-
 @dataclass(frozen=True)
 class Polynomial(TabulatedCurve):
-    """``across = sum c_k (along / scale)^k`` in a frame at (x, y) whose axis has the direction `tilt`.
+    """``across = sum c_k (along / scale)^k`` in a frame at (x, y) whose axis has the direction `tilt`."""
 
-    x, y : origin of the frame, metres
-    tilt : direction of its axis, radians
-    scale : metres
-    coefficients : metres, constant first
-    first, last : range of `along`, metres
-    """
-
-    x: float
+    x: float   # x, y: origin of the frame, metres
     y: float
-    tilt: float
-    scale: float
-    coefficients: tuple
-    first: float
+    tilt: float   # direction of its axis, radians
+    scale: float   # metres
+    coefficients: tuple   # metres, constant first
+    first: float   # first, last: range of `along`, metres
     last: float
 
     kind = "polynomial"
@@ -342,25 +266,33 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
     x, y : (N,) metres, N >= degree + 1, ordered along the line
     degree : int, 0 to 9
 
-    Raises
-    ------
-    RoadExtractionError
-        If the points turn back along their chord, which no polynomial can follow.
+    Raises RoadExtractionError if the points turn back along their chord, which no polynomial can follow.
     """
-    x, y = checked_points(x, y, degree + 1)
-    middle_x, middle_y, tilt = (float(values[0]) for values in chords(PointGroups([len(x)]), x, y))
-    c, s = np.cos(tilt), np.sin(tilt)
-    along = (x - middle_x) * c + (y - middle_y) * s
-    across = (y - middle_y) * c - (x - middle_x) * s
-    if not along[0] < along[-1] or np.abs(along).max() > 1.02 * max(-along[0], along[-1]) + 0.5:
-        raise RoadExtractionError(
-            "A polynomial cannot follow a line that turns back on itself. Choose curve = automatic or b-spline.")
-    scale = max(float(np.abs(along).max()), 1e-3)
-    design = np.vander(along / scale, degree + 1, increasing=True)
-    weight = np.ones(len(x))
-    for _ in range(FITS.polynomial_reweightings):
-        root = np.sqrt(weight)
-        coefficients = np.linalg.lstsq(design * root[:, None], across * root, rcond=None)[0]
-        weight = robust_weights(across - design @ coefficients)
-    curve = Polynomial(middle_x, middle_y, tilt, scale, tuple(coefficients.tolist()), float(along[0]), float(along[-1]))
+    problem = _PolynomialProblem(*checked_points(x, y, degree + 1), degree)
+    ahead = problem.ahead
+    if not ahead[0] < ahead[-1] or np.abs(ahead).max() > 1.02 * max(-ahead[0], ahead[-1]) + 0.5:
+        raise RoadExtractionError("A polynomial cannot follow a line that turns back on itself. Choose curve = automatic or b-spline.")
+    coefficients, *_ = problem.fitted()
+    middle_x, middle_y = problem.centre.tolist()
+    curve = Polynomial(middle_x, middle_y, problem.direction, problem.size, tuple(coefficients.tolist()), float(ahead[0]), float(ahead[-1]))
     return CurveFit(curve, curve.project(x, y)[1], degree + 1)
+
+
+class _PolynomialProblem(CurveProblem):
+    """A polynomial, by its coefficients across the chord of the points."""
+
+    def __init__(self, x, y, degree):
+        super().__init__(x, y)
+        self.degree = degree
+        self.size = max(float(np.abs(self.ahead).max()), 1e-3)
+
+    @property
+    def ahead(self):
+        return self.x * np.cos(self.direction) + self.y * np.sin(self.direction)
+
+    def start(self):
+        return np.zeros(self.degree + 1), np.ones(self.degree + 1), np.zeros(len(self.x))
+
+    def evaluate(self, unknown, along):
+        design = np.vander(self.ahead / self.size, self.degree + 1, increasing=True)
+        return self.y * np.cos(self.direction) - self.x * np.sin(self.direction) - design @ unknown, -design.T, along

@@ -29,14 +29,10 @@ class _FitWeights:
     max_residual_p95: float = 0.05   # m; a simpler curve is selected only if 95 % of the points are nearer
     bic_margin: float = 6.0   # a simpler curve is selected if its BIC is within this of the best
     soft_l1_scale: float = 0.03   # m; the weight of larger residuals falls off (soft L1)
-    fit_points_per_batch: int = 8192   # fits the processor's cache
     coarse_points: int = 128   # points of a line to which it is fitted first
-    fit_tolerance: float = 1e-7   # share of a sensible step below which a fit has converged,
-    coarse_fit_tolerance: float = 1e-3   # and of a fit to the coarse points of a longer line
-    stalled_gain: float = 1e-3   # relative gain of a step below which a curve with a large misfit is given up
+    fit_tolerance: float = 1e-8   # of the unknowns, or of the squares of the distances: a smaller gain of a step ends a fit,
+    coarse_fit_tolerance: float = 1e-4   # and one that only begins another
     max_misfit_share: float = 0.05   # share of the points beyond `max_misfit` above which a fit is not refined
-    max_steps: int = 100   # accepted steps of Levenberg-Marquardt
-    max_damping: float = 1e8   # at which a fit that finds no better step ends
     robust_rounds: int = 5   # of reweighting the smoothed values, after which outliers have no weight any more
     outlier_factor: float = 3.0   # of the median deviation, at which a value has half its weight
     element_node_spacing: float = 4.0   # m between the nodes at which elements may join
@@ -48,7 +44,6 @@ class _FitWeights:
     element_cost_factor: float = 2.0
     cost_margin: float = 1.0   # of cost, beyond all rounding
     min_ellipse_turn: float = np.radians(60.0)   # on a shorter arc an ellipse cannot be distinguished from a circle
-    polynomial_reweightings: int = 15   # of a polynomial, a fit of which takes no time
     heading_base: float = 0.5   # m to either side over which the direction of a line is measured: vertices a decimetre apart are noisy
 
 

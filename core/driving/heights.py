@@ -36,12 +36,10 @@ def _road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: lis
             lanes = [(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]) for k, a, b in inside]
             windows.append((sections, s[first:last + 1], lanes))
             places.append([(k, a - tracks[k].first) for k, a, _ in inside])
-    executor = road_points.executor
     points = sum(road_points.store.size(road, number) for number in road_points.sections(road))
-    together = max(HEIGHT_POINTS * len(windows) // max(points, 1), 1) if executor.folder else 1
+    together = max(HEIGHT_POINTS * len(windows) // max(points, 1), 1)
     phase = Phase(heights_of_windows, road_points, (road,), lambda item: road_points.survey.stretch(road, item[0][1][0], item[-1][1][-1]))
-    items = [windows[k:k + together] for k in range(0, len(windows), together)]
-    for lanes_of_window, heights in zip(places, (heights_of_window for batch in executor.run(phase, items, progress) for heights_of_window in batch)):
+    for lanes_of_window, heights in zip(places, road_points.executor.run_together(phase, windows, together, progress)):
         for (k, first), z in zip(lanes_of_window, heights):
             result[k][first:first + len(z)] = z
     return result

@@ -82,4 +82,4 @@ def _executor_for(points, settings, progress):
         progress.info("No Python interpreter was found that worker processes can be started with, so threads of this program do their work.")
         return Threads()
     progress.info(f"The work is shared among {workers} worker process(es), {interpreter}.")
-    return WorkerProcesses(interpreter, workers)
+    return WorkerProcesses(interpreter, workers, settings.work.path if settings.work else None)

@@ -4,28 +4,24 @@ from __future__ import annotations
 
 import importlib.metadata
 import ipaddress
+import math
 import os
 import platform
-import queue
 import re
-import shutil
 import socket
 import tempfile
 import threading
 import time
-import weakref
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from itertools import count
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
 from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL
 from ..common.progress import Progress
-from .phase import Executor, Phase, name_of, read_plain, write_plain
-from .tasks import BEAT, NEEDED, ShippedPhase, items_done, items_together, look_around, raise_answer, sees_files, versions
+from .folder_executor import FolderExecutor, Work
+from .tasks import BEAT, NEEDED, items_done_here, look_around, sees_files, versions
 from .weights import EXECUTION
 from .work_folder import WorkFolder, code_digest
 
@@ -56,65 +52,56 @@ def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: 
     return cluster
 
 
-@dataclass
-class _Part:
-    """An item of a phase, or half of one, at work."""
-
-    item: Any
-    file: Path
-    size: float = 0.0
-    whole: _Part | None = None
-    halves: tuple[_Part, ...] = ()
-    done: bool = False
-
-
-class Cluster(Executor):
+class Cluster(FolderExecutor):
     """Executor that uses the workers of a Dask cluster, whose memory is theirs.
 
     client : distributed.Client, closed at the end
     work : folder that all workers see; None takes one for temporary files
     threads : of all workers together, as far as they are there already
-
-    Attributes
-    ----------
-    folder : own folder of the run, removed at the end
     """
 
+    worker = "A worker of the cluster"
+
     def __init__(self, client: Any, work: Path | None = None, threads: int = 1):
-        self.client, self.named, self.threads = client, work is not None, threads
-        self.folder: Path = Path(tempfile.mkdtemp(prefix="lanewright-")) if work is None else work / f"run-{uuid4().hex[:8]}"
-        self.folder.mkdir(exist_ok=True)
-        self._left = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
+        super().__init__(work, threads, EXECUTION.items_per_task)
+        self.client, self.named = client, work is not None
         (self.folder / BEAT).write_text(str(EXECUTION.caller_lost), encoding="utf-8")
-        self._numbers, self._closed = count(), threading.Event()
+        self._closed = threading.Event()
+        self._lost_since = math.inf   # when the connection to the scheduler was lost
         threading.Thread(target=_beat, args=(self.folder / BEAT, self._closed), daemon=True).start()
 
-    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
-        """Yield the results of all items in their order; see `Executor`. Successive ones go to one worker together, the largest of these begin.
+    def new_pool(self) -> Any:
+        return self.client.get_executor(pure=False, retries=0)
 
-        Raises RoadExtractionError of the phase; or if workers ended at half an item, the scheduler is lost, or a folder cannot be used.
-        """
-        shipped = self.folder / f"phase{next(self._numbers)}.plain"
-        work = _Work(self, phase, shipped)
-        try:
-            write_plain(shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
-            parts = [_Part(item, keep[k] if keep else self.new_file(), phase.size(item)) for k, item in enumerate(items)]
-            work.submit(parts, items_together(phase, len(parts), self.threads, EXECUTION.items_per_task))
-            for part in parts:
-                while not part.done:
-                    progress.report(work.done / len(parts))
-                    work.take()
-                result = work.result(part)
-                if not keep:
-                    part.file.unlink(missing_ok=True)
-                yield result
-            progress.report(1.0)
-        except OSError as error:
-            raise self.disk_error(error) from error
-        finally:
-            # tasks at work look whether it is there
-            shipped.unlink(missing_ok=True)
-            work.end()
+    def task(self) -> Callable[..., Any]:
+        return partial(items_done_here, code_digest())
+
+    def end_pool(self, pool: Any, phase: Path) -> None:
+        if self.client.status == "running":
+            pool.shutdown(wait=False)
+
+    def check(self, work: Work) -> None:
+        """Refuse to wait for a scheduler that is lost, and for workers that all pause, and go on doing so."""
+        now = time.monotonic()
+        self._lost_since = math.inf if self.client.status == "running" else min(self._lost_since, now)
+        if self.client.status == "closed" or now - self._lost_since > EXECUTION.scheduler_lost:
+            raise self.lost(work)
+        if now - work.heard > EXECUTION.paused_time:
+            if not _all_paused(self.client):
+                work.heard = now
+            elif now - work.heard > 2 * EXECUTION.paused_time:
+                raise RoadExtractionError(f"All workers of the cluster pause during {work.name}, since their memory is nearly full. "
+                                          "Start them with a higher --memory-limit.")
+
+    def lost(self, work: Work) -> RoadExtractionError:
+        if self.named:
+            return RoadExtractionError(f"The connection to the Dask scheduler was lost while {work.name} was at work. Run again with the same "
+                                       "WORK_FOLDER: what is finished is kept there.")
+        return RoadExtractionError(f"The connection to the Dask scheduler was lost while {work.name} was at work. Run again, or without SCHEDULER.")
+
+    def ended(self, place: str, last_words: str) -> RoadExtractionError:
+        return RoadExtractionError(f"Workers of the cluster ended or ran out of memory while they worked on {place}; usually their memory is too "
+                                   "small. Start fewer of them on each machine, or with a higher --memory-limit.")
 
     def disk_error(self, error: OSError) -> RoadExtractionError:
         return _disk_error(self.folder, error)
@@ -123,146 +110,10 @@ class Cluster(Executor):
         sizes = {str(path): path.stat().st_size for path in paths}
         return all(visible is True for visible in self.client.run(sees_files, sizes, on_error="return").values())
 
-    def new_file(self) -> Path:
-        return self.folder / f"file{next(self._numbers)}.plain"
-
     def close(self) -> None:
         self._closed.set()
         self.client.close()
-        self._left.detach()
-        until = time.monotonic() + EXECUTION.close_time
-        while self.folder.exists() and time.monotonic() < until:
-            shutil.rmtree(self.folder, ignore_errors=True)
-
-
-class _Work:
-    """The tasks of a phase, each of some parts: sent, awaited, sent again part by part, then in halves."""
-
-    def __init__(self, cluster, phase, shipped):
-        self.cluster, self.client, self.phase, self.shipped = cluster, cluster.client, phase, shipped
-        self.code, self.pending, self.lost_since, self.done = code_digest(), {}, None, 0
-        self.heard, self.paused = time.monotonic(), False
-        self.ready: queue.SimpleQueue = queue.SimpleQueue()
-
-    def submit(self, parts, count=1):
-        """Send parts, so many successive ones in a task, the largest tasks first."""
-        tasks = [parts[k:k + count] for k in range(0, len(parts), count)]
-        sizes = [sum(part.size for part in batch) for batch in tasks]
-        rank = {size: k for k, size in enumerate(sorted(set(sizes)))}
-        for batch, size in zip(tasks, sizes):
-            items = [self.cluster.new_file() for _ in batch]
-            for item, part in zip(items, batch):
-                write_plain(item, part.item)
-            future = self.client.submit(items_done, str(self.shipped), [str(item) for item in items], [str(part.file) for part in batch],
-                                        self.code, pure=False, retries=0, priority=rank[size],
-                                        key=f"{self.phase.function.__name__}-{uuid4().hex}")
-            self.pending[future.key] = batch, future, items
-            future.add_done_callback(self.ready.put)
-
-    def take(self):
-        """Wait a moment for a task to end, and see what became of it."""
-        try:
-            future = self.ready.get(timeout=POLL_INTERVAL)
-        except queue.Empty:
-            self._check_scheduler()
-            return
-        self.heard, self.paused = time.monotonic(), False
-        if future.key not in self.pending:
-            return
-        parts, future, items = self.pending.pop(future.key)
-        for item in items:
-            item.unlink(missing_ok=True)
-        if future.status == "finished":
-            self._answered(parts, future.result())
-        elif future.status == "error":
-            self._failed(parts, future.exception())
-        else:
-            raise self._lost()
-
-    def _answered(self, parts, answer):
-        if "memory" in answer:
-            self._divide(parts)
-            return
-        if "code" in answer:
-            raise RoadExtractionError("A worker that came later has another Lanewright than this computer. Install this one there.")
-        raise_answer(answer, self.phase, parts[int(answer.get("at", 0))].item, "A worker of the cluster")
-        for part in parts:
-            self._finish(part)
-            if part.whole is not None and all(half.done for half in part.whole.halves):
-                self._join(part.whole)
-
-    def _finish(self, part):
-        part.done = True
-        self.done += part.whole is None
-
-    def _failed(self, parts, error):
-        if type(error).__name__ != "KilledWorker":
-            raise error
-        self._divide(parts)
-
-    def _divide(self, parts):
-        """Send the parts of a task at which workers end one by one, or the halves of a single one; what is finished is not computed again."""
-        if len(parts) > 1:
-            self.submit(parts)
-        else:
-            self._halve(parts[0])
-
-    def _halve(self, part):
-        """Send the halves of a part at which workers end; refuse where it is half already, or cannot be halved."""
-        first, last = part.item if self.phase.join else (0, 0)
-        if part.whole is not None or last - first < 2:
-            raise RoadExtractionError(f"Workers of the cluster ended or ran out of memory while they worked on {self.phase.place(part.item)}; "
-                                      "usually their memory is too small. Start fewer of them on each machine, or with a higher --memory-limit.")
-        middle = (first + last) // 2
-        part.halves = tuple(_Part(half, self.cluster.new_file(), part.size, part) for half in ((first, middle), (middle, last)))
-        self.submit(part.halves)
-
-    def _join(self, part):
-        write_plain(part.file, self.phase.join([self.result(half) for half in part.halves]), self.cluster.folder)
-        for half in part.halves:
-            half.file.unlink(missing_ok=True)
-        self._finish(part)
-
-    def result(self, part):
-        until = time.monotonic() + EXECUTION.result_time
-        while not part.file.exists() and time.monotonic() < until:
-            time.sleep(POLL_INTERVAL)
-        return read_plain(part.file)
-
-    def _check_scheduler(self):
-        if self.client.status == "running":
-            self.lost_since = None
-            self._check_workers()
-            return
-        self.lost_since = self.lost_since or time.monotonic()
-        if self.client.status == "closed" or time.monotonic() - self.lost_since > EXECUTION.scheduler_lost:
-            raise self._lost()
-
-    def _check_workers(self):
-        """Refuse to wait for workers that all pause, and go on doing so."""
-        if time.monotonic() - self.heard < EXECUTION.paused_time:
-            return
-        paused = _all_paused(self.client)
-        if paused and self.paused:
-            raise RoadExtractionError(f"All workers of the cluster pause during {self.phase.function.__name__}, since their memory is nearly full. "
-                                      "Start them with a higher --memory-limit.")
-        self.paused, self.heard = paused, time.monotonic()
-
-    def _lost(self):
-        during = self.phase.function.__name__
-        if self.cluster.named:
-            return RoadExtractionError(f"The connection to the Dask scheduler was lost while {during} was at work. Run again with the same "
-                                       "WORK_FOLDER: what is finished is kept there.")
-        return RoadExtractionError(f"The connection to the Dask scheduler was lost while {during} was at work. Run again, or without SCHEDULER.")
-
-    def end(self):
-        futures = [future for _, future, _ in self.pending.values()]
-        if futures and self.client.status == "running":
-            self.client.cancel(futures, force=True)
-        for _, _, items in self.pending.values():
-            for item in items:
-                item.unlink(missing_ok=True)
-        self.pending.clear()
+        super().close()
 
 
 def _beat(file, closed):

@@ -19,6 +19,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from .weights import EXECUTION
 
 PACKAGE = __name__.rpartition(".core.")[0]   # whose functions are sent: the package of `core` and `products`
 
@@ -69,7 +70,6 @@ class Phase:
         there, and gives the Recipe
     arguments : plain values that all items share
     place : names the stretch of road that an item is, for messages
-    size : distinguishes items by how long they take; any unit
     together : so many items, one after the other along the road, are best given to one worker, which keeps what they share
     join : the result of an item from those of the two halves of its range of numbers; None where an item cannot be halved
     """
@@ -78,7 +78,6 @@ class Phase:
     source: Any
     arguments: tuple[Any, ...] = ()
     place: Callable[[Any], str] = field(default=str, compare=False)
-    size: Callable[[Any], float] = field(default=lambda item: 0.0, compare=False)
     join: Callable[[list[Any]], Any] | None = field(default=None, compare=False)
     together: int = field(default=1, compare=False)
 
@@ -111,6 +110,12 @@ class Executor:
             Whatever the function raises.
         """
         raise NotImplementedError
+
+    def run_together(self, phase: Phase, items: Sequence[Any], together: int, progress: Progress = Progress()) -> Iterator[Any]:
+        """Yield the results of items of a phase whose function is given lists of them, `together` at most, and returns lists of results."""
+        size = max(min(together, len(items) // EXECUTION.least_tasks), 1)
+        for results in self.run(phase, [items[k:k + size] for k in range(0, len(items), size)], progress):
+            yield from results
 
     def passing(self) -> Executor:
         """Who runs phases whose results are not worth keeping for a later run."""
@@ -166,7 +171,7 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
     """Write a value to a file, which appears whole or not at all.
 
     path : of the file
-    value : None, bool, int, float, str, numpy arrays and numbers, lists, tuples and dicts of these, and objects of classes of
+    value : None, bool, int, float, str, numpy arrays and numbers, columns of texts, lists, tuples and dicts of these, and objects of classes of
         the package whose attributes are such values. A class may leave attributes out by `__getstate__`
     unfinished_in : folder on the same disk that has the unfinished file; by default that of the file
 
@@ -289,7 +294,9 @@ def _tree_of_array(value, arrays):
     if isinstance(value, np.generic) and value.dtype.kind in "biuf" and value.dtype.itemsize <= 8:
         return {"number": [value.dtype.str, value.item()]}
     if value.dtype.hasobject:
-        raise TypeError("An array of objects is no plain value.")
+        if value.ndim != 1 or any(type(text) is not str for text in value):
+            raise TypeError("An array of objects is no plain value.")
+        return {"texts": value.tolist()}
     arrays.append(np.asarray(value))
     return {"array" if isinstance(value, np.ndarray) else "scalar": f"a{len(arrays) - 1}"}
 
@@ -308,6 +315,8 @@ def _value(tree, arrays):
     kind, content = next(iter(tree.items()))
     if kind == "number":
         return np.dtype(content[0]).type(content[1])
+    if kind == "texts":
+        return np.array(content, object)
     if kind == "array":
         return arrays[content]
     if kind == "scalar":

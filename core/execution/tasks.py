@@ -23,17 +23,9 @@ from uuid import uuid4
 from ..common.errors import Cancelled, RoadExtractionError
 from ..common.parallel import cancellation_scope, free_memory, is_lack_of_memory, reuse_freed_memory, trim_heap
 from ..common.progress import Progress
-from .phase import Phase, Recipe, named, read_plain, write_plain
+from .phase import Recipe, named, read_plain, write_plain
 from .weights import EXECUTION
 from .work_folder import code_digest
-
-
-def items_together(phase: Phase, count: int, workers: int, usual: int = 1) -> int:
-    """How many of the `count` items of a phase, one after the other along the road, one of some `workers` is given at once.
-
-    As many as the phase asks for, at least the `usual` number, but no more than leave every worker some rounds of work.
-    """
-    return max(min(max(phase.together, usual), count // (EXECUTION.work_rounds * max(workers, 1))), 1)
 
 
 @dataclass(frozen=True)
@@ -50,79 +42,79 @@ class ShippedPhase:
     arguments: tuple[Any, ...]
 
 
-class Tasks:
-    """Computes items of phases that lie in files; several threads may share it."""
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._open: OrderedDict[Path, tuple[Any, Any, tuple[Any, ...]]] = OrderedDict()
-        self._sources: dict[Any, Any] = {}   # sources that several phases share, by the keys of their recipes
-
-    def answer(self, phase: Path, item: Path, result: Path) -> dict[str, str]:
-        """Compute one item.
-
-        phase : file of a ShippedPhase
-        item : file of the item
-        result : file that the result is written to; unfinished, it lies beside the phase
-
-        Returns empty, or what went wrong: one of the keys "refused", "cancelled", "memory", "disk" and "bug", and words.
-        """
-        try:
-            function, source, arguments = self._phase(phase)
-            write_plain(result, function(source, read_plain(item), *arguments), phase.parent)
-        except RoadExtractionError as error:
-            return {"refused": str(error)}
-        except Cancelled:
-            return {"cancelled": "the caller has ended the phase"}
-        except Exception as error:
-            if is_lack_of_memory(error):
-                return {"memory": "out of memory"}
-            return {"disk": str(error)} if isinstance(error, OSError) else {"bug": traceback.format_exc()}
-        return {}
-
-    def forget(self) -> None:
-        """Close what is kept open between items, and return its memory to the operating system; no item is being computed."""
-        with self._lock:
-            self._open.clear()
-            self._sources.clear()
-        free_memory()
-
-    def _phase(self, path):
-        with self._lock:
-            if path not in self._open:
-                shipped: ShippedPhase = read_plain(path)
-                self._open[path] = named(shipped.function), shipped.source.open(self._sources), shipped.arguments
-                while len(self._open) > EXECUTION.open_phases:
-                    self._open.popitem(last=False)
-            return self._open[path]
+_lock = threading.Lock()
+_open: OrderedDict[str, tuple[Any, Any, tuple[Any, ...]]] = OrderedDict()
+_sources: dict[Any, Any] = {}   # sources that several phases share, by the keys of their recipes
 
 
-def raise_answer(answer: dict[str, str], phase: Phase, item: Any, worker: str) -> None:
-    """Raise what went wrong with an item, by the answer of `Tasks.answer`; `worker` is what messages call the worker.
+def items_done(phase: str, items: str, results: Sequence[str]) -> dict[str, Any]:
+    """Compute some items of a phase, one after the other, but for those whose results are there.
 
-    Raises RoadExtractionError of the phase, or if the worker ran out of memory; OSError if a file could not be read or written; RuntimeError of a
-    bug, with its traceback.
+    phase : file of a ShippedPhase; the phase is wanted as long as it is there
+    items : file of the list of the items
+    results : files that their results are written to; unfinished, they lie beside the phase
+
+    Returns empty, or what went wrong: one of the keys "refused", "cancelled", "memory", "disk" and "bug", and words; and the number of the item that
+    it is about as "at": those before it are computed, those after it not.
     """
-    if "refused" in answer:
-        raise RoadExtractionError(answer["refused"])
-    if "memory" in answer:
-        raise RoadExtractionError(f"{worker} ran out of memory at {phase.place(item)}. Try fewer workers.")
-    if "disk" in answer:
-        raise OSError(answer["disk"])
-    if answer:
-        raise RuntimeError(f"{worker} failed at {phase.place(item)}:\n{answer.get('bug', answer)}")
+    at = 0
+    try:
+        with cancellation_scope(_WhileWanted(Path(phase))):
+            for item, result in zip(read_plain(Path(items)), map(Path, results)):
+                if not result.exists():
+                    function, source, arguments = _phase(phase)
+                    write_plain(result, function(source, item, *arguments), Path(phase).parent)
+                at += 1
+    except RoadExtractionError as error:
+        return {"at": at, "refused": str(error)}
+    except Cancelled:
+        return {"at": at, "cancelled": "the caller has ended the phase"}
+    except Exception as error:
+        if is_lack_of_memory(error):
+            return {"at": at, "memory": "out of memory"}
+        return {"at": at, "disk": str(error)} if isinstance(error, OSError) else {"at": at, "bug": traceback.format_exc()}
+    return {}
+
+
+def _phase(path):
+    with _lock:
+        if path not in _open:
+            shipped: ShippedPhase = read_plain(Path(path))
+            _open[path] = named(shipped.function), shipped.source.open(_sources), shipped.arguments
+            while len(_open) > EXECUTION.open_phases:
+                _open.popitem(last=False)
+        return _open[path]
+
+
+def forget() -> None:
+    """Close what is kept open between items, and return its memory to the operating system; no item is being computed."""
+    with _lock:
+        _open.clear()
+        _sources.clear()
+    free_memory()
+
+
+class _WhileWanted(Progress):
+    """Cancels what is done for a phase that the caller has ended."""
+
+    def __init__(self, phase):
+        self.phase, self.looked = phase, time.monotonic()
+
+    def check_cancelled(self):
+        if time.monotonic() - self.looked > EXECUTION.look_time:
+            self.looked = time.monotonic()
+            if not self.phase.exists():
+                raise Cancelled
 
 
 # What runs on the workers of a Dask cluster: the look around before the work, and items of phases.
 #
-# The caller keeps a folder that all of them see. A phase is wanted as long as its file is there; the caller itself is alive as long as it touches
-# the file BEAT, and where it does no longer, the workers remove the folder.
+# The caller keeps a folder that all of them see. It is alive as long as it touches the file BEAT, and where it does no longer, the workers remove
+# the folder.
 
 BEAT = "beat"          # file that the caller touches; it holds the seconds after which a caller is taken for dead that did not
 
-_tasks = Tasks()
 _watched: set[str] = set()
-_lock = threading.Lock()
 
 
 def look_around(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
@@ -156,44 +148,16 @@ def sees_files(sizes: dict[str, int]) -> bool:
         os.path.exists(path) and os.path.getsize(path) == size for path, size in sizes.items())
 
 
-def items_done(phase: str, items: Sequence[str], results: Sequence[str], code: str) -> dict[str, str]:
-    """Compute some items of a phase, one after the other, but for those whose results are there; files as of `Tasks.answer`.
-
-    Returns
-    -------
-    as `Tasks.answer`, with the number of the item that it is about as "at"; those before it are computed, those after it not. Also {"code": ...}
-    where the worker's Lanewright has another digest than `code`, that of the caller
-    """
-    left = [k for k, result in enumerate(results) if not Path(result).exists()]
-    if not left:
-        return {}
+def items_done_here(code: str, phase: str, items: str, results: Sequence[str]) -> dict[str, Any]:
+    """`items_done`; refused where this worker's Lanewright has another digest than `code`, that of the caller."""
     if code_digest() != code:
-        return {"code": code_digest()}
+        return {"refused": "A worker that came later has another Lanewright than this computer. Install this one there."}
     _watch(str(Path(phase).parent))
     reuse_freed_memory()
-    answer: dict[str, str] = {}
-    with cancellation_scope(_WhileWanted(Path(phase))):
-        for k in left:
-            answer = _tasks.answer(Path(phase), Path(items[k]), Path(results[k]))
-            if answer:
-                answer["at"] = str(k)
-                break
+    answer = items_done(phase, items, results)
     # a worker whose memory seems full pauses
     trim_heap()
     return answer
-
-
-class _WhileWanted(Progress):
-    """Cancels what is done for a phase that the caller has ended."""
-
-    def __init__(self, phase):
-        self.phase, self.looked = phase, time.monotonic()
-
-    def check_cancelled(self):
-        if time.monotonic() - self.looked > EXECUTION.look_time:
-            self.looked = time.monotonic()
-            if not self.phase.exists():
-                raise Cancelled
 
 
 def _watch(folder):

@@ -25,6 +25,7 @@ class _ExecutionWeights:
     last_words: int = 2000   # characters of what a dead worker wrote that are passed on
     open_phases: int = 2   # phases kept open in a worker: the current one and the one before
     work_rounds: int = 8   # of work that a worker has in a phase at least, where its items come together, so that all end at about the same time
+    least_tasks: int = 16   # that a phase is divided into where there is enough work, so that all workers end at about the same time
     look_time: float = 0.5   # s between two looks whether a phase is still wanted
     watch_time: float = 2.0   # s between two looks at BEAT
     trial_time: float = 30.0   # s that a trial may take on a busy computer

@@ -5,9 +5,8 @@ Run as a file by an interpreter that knows nothing of Lanewright:
     python -I worker.py --try NAME …   prints the versions that it can import, if it can import these packages, too
     python -I worker.py FOLDER         works until its input ends
 
-The first line of the input lists the folders to import from. A task names a phase, a file with one item and the file for its
-result; the answer is one line: {} or what went wrong. Between tasks it may be told to forget what it keeps open. FOLDER is removed
-where the caller is gone without saying so.
+The first line of the input lists the folders to import from. A task is the arguments of `items_done`, whose answer is one line. Between tasks
+it may be told to forget what it keeps open. FOLDER is removed where the caller is gone without saying so.
 """
 
 from __future__ import annotations
@@ -47,22 +46,21 @@ def main() -> None:
         answers.write(json.dumps(versions()))
         answers.close()
         return
-    from lanewright.core.execution.tasks import Tasks
+    from lanewright.core.execution.tasks import forget, items_done
 
-    tasks, folder = Tasks(), Path(sys.argv[1])
     for line in sys.stdin:
         task = json.loads(line)
-        if task.get("end"):
+        if task == "end":
             return
-        if task.get("forget"):
-            tasks.forget()
+        if task == "forget":
+            forget()
             continue
         try:
-            answers.write(json.dumps(tasks.answer(*(folder / task[name] for name in ("phase", "item", "result")))) + "\n")
+            answers.write(json.dumps(items_done(*task)) + "\n")
             answers.flush()
         except BrokenPipeError:
             break
-    shutil.rmtree(folder, ignore_errors=True)
+    shutil.rmtree(sys.argv[1], ignore_errors=True)
 
 
 if __name__ == "__main__":

@@ -221,8 +221,7 @@ class IntensityHistograms:
 def asphalt_of_histograms(histograms: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Median and lower spread of asphalt in each of (..., INTENSITY_LEVELS) histograms of levels, NaN where there are fewer than 200 points.
 
-    Levels brighter than three lower spreads above the median are taken for paint
-    and left out, and the median is taken again: paint never raises it.
+    Levels brighter than three lower spreads above the median are taken for paint and left out, and the median is taken again: paint never raises it.
     """
     total = histograms.sum(axis=-1)
     dense = total >= ASPHALT.min_asphalt_points
@@ -253,20 +252,13 @@ def _histogram_quantile(counts, q):
 
 @dataclass
 class AsphaltTable:
-    """Asphalt's intensity by scanner and distance.
+    """Asphalt's intensity by scanner and distance."""
 
-    asphalt : (scanners, DISTANCE_BINS) smoothed; NaN for a scanner whose asphalt is unknown
-    known : (scanners, DISTANCE_BINS) bool, where asphalt was measured and not interpolated
-    distance_kind : (scanners,) ACROSS_TRACK or FROM_VEHICLE, the distance that explains the scanner's intensity better
-    reference : intensity that the asphalt of the whole road is brought to
-    logarithmic : a correction is added, not multiplied
-    """
-
-    asphalt: np.ndarray
-    known: np.ndarray
-    distance_kind: np.ndarray
-    reference: float
-    logarithmic: bool
+    asphalt: np.ndarray   # (scanners, DISTANCE_BINS) smoothed; NaN for a scanner whose asphalt is unknown
+    known: np.ndarray   # (scanners, DISTANCE_BINS) bool, where asphalt was measured and not interpolated
+    distance_kind: np.ndarray   # (scanners,) ACROSS_TRACK or FROM_VEHICLE, the distance that explains the scanner's intensity better
+    reference: float   # intensity that the asphalt of the whole road is brought to
+    logarithmic: bool   # a correction is added, not multiplied
 
     @classmethod
     def from_counts(cls, histograms: np.ndarray) -> AsphaltTable | None:

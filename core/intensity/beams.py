@@ -30,12 +30,9 @@ ANGLE_SIGNS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # sign conventions o
 
 @dataclass
 class _ScannerTurns:
-    """Turns of a spinning scanner, numbered in point_source_id; a cloud without such numbers has none.
+    """Turns of a spinning scanner, numbered in point_source_id; a cloud without such numbers has none."""
 
-    middle : (65536,) s, the time in the middle of each turn; NaN where the number is no turn
-    """
-
-    middle: np.ndarray
+    middle: np.ndarray   # (65536,) s, the time in the middle of each turn; NaN where the number is no turn
 
     @classmethod
     def of(cls, road_points: RoadPoints) -> _ScannerTurns:
@@ -90,18 +87,12 @@ def _may_be_turns(samples):
 
 @dataclass
 class _ElevationModel:
-    """How the elevation of a point seen from the scanner is computed.
+    """How the elevation of a point seen from the scanner is computed."""
 
-    passes : of the road frame
-    turns : _ScannerTurns
-    by_turn : at the middle of the point's turn, to which its whole turn was moved; else at the point's own time
-    signs : of roll and pitch
-    """
-
-    passes: Sequence[Pass]
+    passes: Sequence[Pass]   # of the road frame
     turns: _ScannerTurns
-    by_turn: bool = False
-    signs: tuple[int, int] = (0, 0)
+    by_turn: bool = False   # at the middle of the point's turn, to which its whole turn was moved; else at the point's own time
+    signs: tuple[int, int] = (0, 0)   # of roll and pitch
 
     def elevation_bin(self, points: Points) -> np.ndarray:
         """(N,) int, the bin of elevation; -1 where no pass drove at the point's time."""
@@ -124,15 +115,11 @@ class _ElevationModel:
 
 @dataclass(frozen=True)
 class _BeamGeometry:
-    """Where points lie relative to the vehicle.
+    """Where points lie relative to the vehicle."""
 
-    reach, rise : (N,) m, horizontally and up
-    by_roll, by_pitch : (N,) m that roll and pitch raise them by, 0 where the attitude is unknown
-    """
-
-    reach: np.ndarray
+    reach: np.ndarray   # reach, rise: (N,) m, horizontally and up
     rise: np.ndarray
-    by_roll: np.ndarray | float
+    by_roll: np.ndarray | float   # by_roll, by_pitch: (N,) m that roll and pitch raise them by, 0 where the attitude is unknown
     by_pitch: np.ndarray | float
 
     @classmethod
@@ -156,18 +143,12 @@ class _BeamGeometry:
 
 @dataclass
 class Beams:
-    """Beams of the scanners that have several.
+    """Beams of the scanners that have several."""
 
-    models : _ElevationModel by scanner
-    beam : by scanner (ELEVATION_BINS,) number of the beam at each elevation
-    corrections : by scanner (beams,) summands or factors of a beam's intensities
-    added : by scanner, whether the correction is added
-    """
-
-    models: dict[int, _ElevationModel]
-    beam: dict[int, np.ndarray]
-    corrections: dict[int, np.ndarray]
-    added: dict[int, bool]
+    models: dict[int, _ElevationModel]   # _ElevationModel by scanner
+    beam: dict[int, np.ndarray]   # by scanner (ELEVATION_BINS,) number of the beam at each elevation
+    corrections: dict[int, np.ndarray]   # by scanner (beams,) summands or factors of a beam's intensities
+    added: dict[int, bool]   # by scanner, whether the correction is added
 
     @classmethod
     def of(cls, road_points: RoadPoints, frame: RoadFrame, scanners: int, progress: Progress = Progress()) -> Beams | None:

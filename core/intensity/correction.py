@@ -16,7 +16,7 @@ from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
-from ..survey.store.section_store import STRETCH_POINTS, StoreIndex, Stretch
+from ..survey.store.section_store import StoreIndex, Stretch
 from .asphalt_model import (
     ACROSS_TRACK,
     INTENSITY_LEVELS,
@@ -44,11 +44,10 @@ SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
 class Saturation:
     """The ends of the range of a road's intensities.
 
-    lowest, highest : intensities, raw counts
     at_lowest, at_highest : shares of points within 1.1 % of their scanner's lowest and highest, 0 where they do not accumulate there
     """
 
-    lowest: float = float("nan")
+    lowest: float = float("nan")   # lowest, highest: intensities, raw counts
     at_lowest: float = 0.0
     highest: float = float("nan")
     at_highest: float = 0.0
@@ -99,16 +98,11 @@ def saturation_of(road_points: RoadPoints) -> Saturation:
     return Saturation.from_levels(counts.reshape(SCANNER_NUMBERS, INTENSITY_LEVELS))
 
 
-
-
 @dataclass(frozen=True)
 class IntensitySettings:
-    """How intensity is corrected.
+    """How intensity is corrected."""
 
-    scale : "automatic" decides between linear and logarithmic by the spread of asphalt; "linear" multiplies, "logarithmic" adds
-    """
-
-    scale: str = "automatic"
+    scale: str = "automatic"   # "automatic" decides between linear and logarithmic by the spread of asphalt; "linear" multiplies, "logarithmic" adds
 
     def __post_init__(self) -> None:
         if self.scale not in ("automatic", "linear", "logarithmic"):
@@ -119,28 +113,21 @@ class IntensitySettings:
 class IntensityReport:
     """Result of a correction in numbers.
 
-    scale : "linear", "logarithmic", or "" where nothing was corrected
-    reference : the intensity that asphalt was brought to
     scanners : a dict per scanner: scanner, points, nearest and farthest (m from the track), asphalt_before, asphalt_after (medians over the
         distances), fall_before, fall_after (highest over lowest asphalt), spread_before, spread_after (coefficient of variation of asphalt over the
         distances, %)
-    between_before, between_after : highest over lowest scanner's asphalt
-    spread_before, spread_after : coefficient of variation of asphalt over distances and scanners, %
-    beams : how many beams of spinning scanners were equalised, 0 where there are none
-    saturation : whether intensities were cut off at an end
-    reason : why nothing was corrected, "" where it was
     """
 
-    scale: str = ""
-    reference: float = float("nan")
+    scale: str = ""   # "linear", "logarithmic", or "" where nothing was corrected
+    reference: float = float("nan")   # the intensity that asphalt was brought to
     scanners: list[dict[str, Any]] = field(default_factory=list)
-    between_before: float = float("nan")
+    between_before: float = float("nan")   # between_before, between_after: highest over lowest scanner's asphalt
     between_after: float = float("nan")
-    spread_before: float = float("nan")
+    spread_before: float = float("nan")   # spread_before, spread_after: coefficient of variation of asphalt over distances and scanners, %
     spread_after: float = float("nan")
-    beams: int = 0
-    saturation: Saturation = Saturation()
-    reason: str = ""
+    beams: int = 0   # how many beams of spinning scanners were equalised, 0 where there are none
+    saturation: Saturation = Saturation()   # whether intensities were cut off at an end
+    reason: str = ""   # why nothing was corrected, "" where it was
 
     @property
     def saturation_warning(self) -> str:
@@ -226,16 +213,15 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
 
 def _run(function, road_points, arguments, progress, source=None):
     """Yield the results of a phase, a function of stretches of the road points, that reads from these or from a `source`."""
-    executor, length, source = road_points.executor, road_points.store.section_length, road_points if source is None else source
+    length, source = road_points.store.section_length, road_points if source is None else source
     phase = Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length))
-    return executor.run(phase, road_points.store.stretches(STRETCH_POINTS if executor.folder else 0), progress)
+    return road_points.executor.run(phase, road_points.store.stretches(), progress)
 
 
 def _reason_of_counts(table, lost, points):
     """Why nothing can be corrected with a table of asphalt, of which so many points had no position of the vehicle; "" where it can."""
     if lost > ASPHALT.max_share_without_vehicle * points:
-        return ("Intensity was not corrected: the trajectory does not say where the vehicle was when "
-                f"{lost:,} of {points:,} points were measured.")
+        return (f"Intensity was not corrected: the trajectory does not say where the vehicle was when {lost:,} of {points:,} points were measured.")
     if table is None:
         return "Intensity was not corrected: there are too few road points to estimate the intensity of asphalt at each distance."
     return ""

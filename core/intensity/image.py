@@ -37,18 +37,12 @@ _thread = threading.local()   # the kernels of each thread
 
 @dataclass(frozen=True)
 class ImageSettings:
-    """How the image is interpolated.
+    """How the image is interpolated."""
 
-    cell_size : m; paint of 0.15 m survives at 0.04
-    power : of the distance
-    beta : share of the weight that follows brightness; 0 is plain inverse distance
-    radius_cells : search radius, in cells
-    """
-
-    cell_size: float = setting(0.04, 0.005, 10.0, "The cell size", "m")
-    power: float = setting(2.0, 0.1, 10.0, "The power of the distance")
-    beta: float = setting(0.5, 0.0, 1.0, "The weight of brightness")
-    radius_cells: float = setting(2.0, 0.71, 10.0, "The search radius", "cells")
+    cell_size: float = setting(0.04, 0.005, 10.0, "The cell size", "m")   # m; paint of 0.15 m survives at 0.04
+    power: float = setting(2.0, 0.1, 10.0, "The power of the distance")   # of the distance
+    beta: float = setting(0.5, 0.0, 1.0, "The weight of brightness")   # share of the weight that follows brightness; 0 is plain inverse distance
+    radius_cells: float = setting(2.0, 0.71, 10.0, "The search radius", "cells")   # search radius, in cells
 
     def __post_init__(self) -> None:
         check_limits(self)
@@ -56,15 +50,11 @@ class ImageSettings:
 
 @dataclass
 class _WeightedSums:
-    """Sums of weights and of weighted values on a rectangle of cells.
+    """Sums of weights and of weighted values on a rectangle of cells."""
 
-    column, row : of the lattice (eastward, northward) of the north-western cell
-    total, weights : (rows, columns) float32, weighted values and weights; both 0 where no point is within the radius
-    """
-
-    column: int
+    column: int   # column, row: of the lattice (eastward, northward) of the north-western cell
     row: int
-    total: np.ndarray
+    total: np.ndarray   # total, weights: (rows, columns) float32, weighted values and weights; both 0 where no point is within the radius
     weights: np.ndarray
 
     def add_to(self, other: _WeightedSums) -> None:
@@ -222,19 +212,13 @@ Tile = tuple[int, int]   # column and row of tiles
 
 @dataclass(frozen=True)
 class _Piece:
-    """A piece of road that is interpolated at once.
+    """A piece of road that is interpolated at once."""
 
-    road, number : of the road, and of the piece along it
-    extent : Extent of the cells that its points reach
-    step : one of so many points weighs on farther cells
-    limits : 1 % and 99 % of the intensities about it
-    """
-
-    road: int
+    road: int   # road, number: of the road, and of the piece along it
     number: int
-    extent: Extent
-    step: int
-    limits: tuple[float, float]
+    extent: Extent   # Extent of the cells that its points reach
+    step: int   # one of so many points weighs on farther cells
+    limits: tuple[float, float]   # 1 % and 99 % of the intensities about it
 
 
 def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = ImageSettings(), progress: Progress = Progress(),
@@ -271,10 +255,7 @@ def write_intensity_image(road_points: RoadPoints, path: str | PathLike, setting
     ----------
     path : of the GeoTIFF; it appears when it is complete
 
-    Raises
-    ------
-    RoadExtractionError
-        If there are no points, the image has too many tiles, or the file cannot be written.
+    Raises RoadExtractionError if there are no points, the image has too many tiles, or the file cannot be written.
 
     Notes
     -----
@@ -298,9 +279,8 @@ def check_fits(width: float, height: float, settings: ImageSettings) -> None:
     """Refuse an image of so many metres east and north that would have too many tiles for one file (2**24)."""
     side = GEOTIFF_TILE * settings.cell_size
     if np.ceil(width / side) * np.ceil(height / side) > MAX_TILES:
-        raise RoadExtractionError(
-            f"The road points span {width / 1000:.1f} by {height / 1000:.1f} km, "
-            f"too far for an image with {settings.cell_size} m cells. Use a larger cell size, or split the survey.")
+        raise RoadExtractionError(f"The road points span {width / 1000:.1f} by {height / 1000:.1f} km, too far for an image with "
+                                  f"{settings.cell_size} m cells. Use a larger cell size, or split the survey.")
 
 
 def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Progress) -> tuple[_Grid, Iterator[tuple[int, int, np.ndarray]]]:
@@ -336,16 +316,13 @@ def _tiles(grid: _Grid, pieces: Sequence[_Piece], road_points: RoadPoints, setti
 
 
 def _run(function, road_points, items, together, settings, progress, place):
-    """Yield the results of a phase of items, some of them together in a task of a worker process; `place` gives road, number and length of one."""
-    executor = road_points.executor
-    together = together if executor.folder else 1
+    """Yield the results of a phase of items, some of them together in a task; `place` gives road, number and length of one."""
 
     def name(task):
         road, number, length = place(task[0])
         return road_points.survey.stretch(road, number * length, (number + 1) * length)
 
-    tasks = [items[k:k + together] for k in range(0, len(items), together)]
-    return (result for results in executor.run(Phase(function, road_points, (settings,), name), tasks, progress) for result in results)
+    return road_points.executor.run_together(Phase(function, road_points, (settings,), name), items, together, progress)
 
 
 def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, list[_Piece]]]:
@@ -470,7 +447,6 @@ class _Grid:
 # Whether an intensity image shows the road points it is used with.
 
 
-
 def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     """Refuse an image of another road, and the 8-bit picture for viewing.
 
@@ -487,7 +463,6 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     shown = np.isfinite(image.sample(x, y))
     if shown.mean() < IMAGE.min_shown_share:
         raise RoadExtractionError(
-            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, "
-            f"y {top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, "
-            f"y {y.min():.1f} to {y.max():.1f}, and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that "
-            "was made from these points.")
+            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, y "
+            f"{top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to {y.max():.1f}, "
+            f"and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that was made from these points.")

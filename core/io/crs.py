@@ -58,14 +58,12 @@ def check_metric(crs: Any, what: str) -> None:
         raise RoadExtractionError(f"{what} is in {flat.name}, a CRS of {coordinates}. Road geometry needs x and y on a map: reproject it to a "
                                   "projected CRS, such as the UTM zone of the survey, and run again.")
     if flat.is_geographic:
-        raise RoadExtractionError(
-            f"{what} is in the geographic CRS {flat.name} (degrees). Road geometry needs metres: reproject it to a "
-            "projected CRS, such as the UTM zone of the survey, and run again.")
+        raise RoadExtractionError(f"{what} is in the geographic CRS {flat.name} (degrees). Road geometry needs metres: reproject it to a projected "
+                                  "CRS, such as the UTM zone of the survey, and run again.")
     units = _not_metres(axis for axis in flat.axis_info if axis.direction.lower() not in ("up", "down"))
     if units:
         raise RoadExtractionError(
-            f"{what} is in {flat.name}, whose unit is {', '.join(units)}. Lanewright works in metres: "
-            "reproject it to a metric CRS and run again.")
+            f"{what} is in {flat.name}, whose unit is {', '.join(units)}. Lanewright works in metres: reproject it to a metric CRS and run again.")
     vertical = _not_metres(crs.sub_crs_list[-1].axis_info) if crs.is_compound else []
     if vertical:
         raise RoadExtractionError(f"{what} has heights in {', '.join(vertical)} ({crs.sub_crs_list[-1].name}). Lanewright works in metres: convert "
@@ -123,7 +121,6 @@ def _projection(crs):
 # The CRS of a survey: projected, true to scale, and the same for all its files.
 
 
-
 def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str = "") -> str:
     """The CRS in which a survey is processed: that of its clouds, else the given one, else that of the trajectory.
 
@@ -132,15 +129,10 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
     files : CloudHeader of each point cloud
     given, trajectory_crs : WKT or "EPSG:n", the first for clouds without a CRS; "" where unknown
 
-    Returns
-    -------
-    WKT, metric; "" where no CRS is known
+    Returns WKT, metric; "" where no CRS is known
 
-    Raises
-    ------
-    RoadExtractionError
-        If clouds contradict themselves or each other, the CRS is geographic or none but the coordinates look so, the CRS is of another kind
-        that has no metres, lengths in it are not those on the ground, or x and y are exchanged.
+    Raises RoadExtractionError if clouds contradict themselves or each other, the CRS is geographic or none but the coordinates look so, the CRS is of
+    another kind that has no metres, lengths in it are not those on the ground, or x and y are exchanged.
     """
     stated = _crs_of_clouds(files, given)
     wkt = stated or given or trajectory_crs
@@ -177,13 +169,11 @@ def _refuse_degrees(files, trajectory_crs):
     """Refuse clouds without a CRS where that of the trajectory does not help: it is geographic and they are not, or there is none and they are."""
     crs = horizontal_part(parse_crs(trajectory_crs))
     if crs is not None and crs.is_geographic and not _in_degrees(files):
-        raise RoadExtractionError(
-            f"The point cloud carries no CRS, and the trajectory is in {crs.name} (degrees), so "
-            "the position of one relative to the other is unknown. Give the CRS of the point cloud by the parameter CRS.")
+        raise RoadExtractionError(f"The point cloud carries no CRS, and the trajectory is in {crs.name} (degrees), so the position of one relative "
+                                  "to the other is unknown. Give the CRS of the point cloud by the parameter CRS.")
     if crs is None and _in_degrees(files):
-        raise RoadExtractionError(
-            "The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees: it is less than 1 m wide if they "
-            "are metres. Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
+        raise RoadExtractionError("The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees: it is less than "
+                                  "1 m wide if they are metres. Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
 
 
 def _bounds(files):
@@ -229,17 +219,13 @@ def unit_note(height: float, crs: str) -> str:
 # Whether a survey lies where its CRS holds, and lengths on the map there are lengths on the ground.
 
 
-
 @dataclass(frozen=True)
 class _MapPlace:
-    """A place of the map on the ground: degrees from Greenwich, of the CRS's own datum.
-
-    scale : length on the map per length on the ground, in the direction where it is farthest from 1; NaN where the projection is not defined
-    """
+    """A place of the map on the ground: degrees from Greenwich, of the CRS's own datum."""
 
     longitude: float
     latitude: float
-    scale: float
+    scale: float   # length on the map per length on the ground, in the direction where it is farthest from 1; NaN where the projection is not defined
 
     @property
     def true_to_scale(self) -> bool:
@@ -281,14 +267,9 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
     place : (x, y) of the survey, metres
     what : the subject of the message, such as "The point cloud"
 
-    Returns
-    -------
-    A sentence on a survey that lies far outside the area of its CRS; "" where there is nothing to note
+    Returns a sentence on a survey that lies far outside the area of its CRS; "" where there is nothing to note
 
-    Raises
-    ------
-    RoadExtractionError
-        If lengths differ by more than 5 per mille, or the survey lies in the area only with x and y exchanged.
+    Raises RoadExtractionError if lengths differ by more than 5 per mille, or the survey lies in the area only with x and y exchanged.
     """
     crs = horizontal_part(parse_crs(wkt))
     if not crs.is_projected:
@@ -324,9 +305,8 @@ def _not_true_to_scale(what, crs, place, there, area):
     else:
         lengths = f"Lengths in it are {there.scale:.3f} times those on the ground at {_degrees(there)}"
         zone = f", such as UTM zone {_utm_zone(there)},"
-    return RoadExtractionError(
-        f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that is made for this "
-        f"place{zone} or correct the CRS.")
+    return RoadExtractionError(f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that "
+                               f"is made for this place{zone} or correct the CRS.")
 
 
 def check_extent(wkt: str, bounds: Sequence[Sequence[float]], what: str) -> str:
@@ -384,8 +364,7 @@ def _named(area):
 
 
 def _degrees(place):
-    return (f"{abs(place.latitude):.2f}° {'N' if place.latitude >= 0 else 'S'} "
-            f"{abs(place.longitude):.2f}° {'E' if place.longitude >= 0 else 'W'}")
+    return (f"{abs(place.latitude):.2f}° {'N' if place.latitude >= 0 else 'S'} {abs(place.longitude):.2f}° {'E' if place.longitude >= 0 else 'W'}")
 
 
 def _utm_zone(place):

@@ -63,17 +63,14 @@ STYLES = (_NumberStyle("."), _NumberStyle(","), _NumberStyle(".", "'"), _NumberS
 class NumberTable:
     """A table of numbers.
 
-    values : (N, K) float64, NaN where a field is not a number
     preamble, first_row : the lines above the numbers, header included, top down, and the fields of the first row as they are written
-    dropped : rows left out because they had another number of fields
-    body : the rows, their fields separated by blanks, with _ for a blank within a field
     """
 
-    values: np.ndarray
+    values: np.ndarray   # (N, K) float64, NaN where a field is not a number
     preamble: list[str]
     first_row: list[str]
-    dropped: int = 0
-    body: bytes = field(default=b"", repr=False)
+    dropped: int = 0   # rows left out because they had another number of fields
+    body: bytes = field(default=b"", repr=False)   # the rows, their fields separated by blanks, with _ for a blank within a field
 
     @cached_property
     def _fields(self):
@@ -88,10 +85,8 @@ class NumberTable:
 def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
     """The table of numbers in a text file with any delimiter, with or without a header, in UTF-8, UTF-16 or another encoding like ASCII.
 
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be read, holds no table of at least three columns of numbers, or uses the comma for columns and decimals alike.
+    Raises RoadExtractionError if the file cannot be read, holds no table of at least three columns of numbers, or uses the comma for columns and
+    decimals alike.
     """
     data = _without_quotes(_text_bytes(path))
     lines = _sample_lines(data)
@@ -102,9 +97,8 @@ def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
         recognised = _recognise_format(mixed)
         if recognised is None:
             first_line = next((line.strip()[:80] for line in lines if line.strip()), "")
-            raise RoadExtractionError(
-                f"{path} holds no table of numbers: it begins {first_line!r}. A trajectory needs rows with at least x, y and z, "
-                "and time where there is one, with a decimal point.")
+            raise RoadExtractionError(f"{path} holds no table of numbers: it begins {first_line!r}. A trajectory needs rows with at least x, y and "
+                                      "z, and time where there is one, with a decimal point.")
         lines = mixed
     delimiter, columns, style = recognised
     first = next(k for k, line in enumerate(lines) if _is_row(_fields(line, delimiter), columns, style))
@@ -216,9 +210,8 @@ def _refuse_ambiguous_commas(first_row, above, path):
     padded = any(re.match(r"0\d+$", field) for field in first_row)
     header = next((line.split(",") for line in reversed(above) if line.strip()), [])
     if whole and len(first_row) >= 6 and (padded or 2 * len(header) == len(first_row)):
-        raise RoadExtractionError(
-            f"{path} uses the comma between columns and as the decimal sign, so its columns cannot be separated. "
-            "Export it with a decimal point, or with semicolons between the columns.")
+        raise RoadExtractionError(f"{path} uses the comma between columns and as the decimal sign, so its columns cannot be separated. Export it "
+                                  "with a decimal point, or with semicolons between the columns.")
 
 
 def _parse(body, delimiter, columns, style=STYLES[0]):

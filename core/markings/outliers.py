@@ -25,7 +25,7 @@ OUTLIER_SCOPES = ("all", "windows")
 NEIGHBOUR_HALO = 2.0      # cost: m of station beyond a window where neighbours are still looked for
 MAX_LIMIT_SAMPLE = 1500   # cost: points of a band from which its limit is taken; where there are twice as many, of an evenly spaced sample
 COLUMNS = "s", "d", "x", "y", "z"   # that outliers are told by
-TASK_WINDOWS = 5       # cost: windows of 20 m that a worker process is given together
+TASK_WINDOWS = 5       # cost: windows of 20 m that are looked at together
 WINDOWS_AT_ONCE = 100      # cost: windows whose columns are held at a time
 TREE_LEAF_POINTS = 20      # cost: points in a leaf of the tree
 MAX_FLOAT32_UNITS = 1 << 24       # derived: units (1.6 km): up to here float32 holds every integer
@@ -82,14 +82,13 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
         _put(kept, points, _kept_of_all(points, settings))
     else:
         windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
-        together = TASK_WINDOWS if executor.folder is not None else 1
         phase = Phase(kept_of_windows, NoSource(), (settings,), lambda item: f"markings {item[0][0] * OUTLIERS.window:.0f} m along a road")
         keep = [np.empty(0, bool)]
         for first in range(0, len(windows), WINDOWS_AT_ONCE):
             batch = windows[first:first + WINDOWS_AT_ONCE]
-            items = [[_columns_of(points, *window) for window in batch[k:k + together]] for k in range(0, len(batch), together)]
+            items = [_columns_of(points, *window) for window in batch]
             part = progress.part(first / len(windows), min(first + WINDOWS_AT_ONCE, len(windows)) / len(windows))
-            keep += [mask for masks in executor.run(phase, items, part) for mask in masks]
+            keep += executor.run_together(phase, items, TASK_WINDOWS, part)
         _put(kept, points, np.concatenate(keep))
     progress.info(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept

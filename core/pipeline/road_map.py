@@ -52,7 +52,7 @@ from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..road.surface.ground_grid import MeasuredGround
 from ..road.surface.road_surface import SurfaceOutlines
-from ..survey.density import CubeDensity, cube_densities
+from ..survey.density import CubeDensity
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.las.reader import read_headers
 from ..survey.open_survey import SurveySettings, open_survey
@@ -194,14 +194,15 @@ def _map_of(survey, ground, image_path, settings, stages, corrections):
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, curbs, survey.frame, settings.edges,
                             survey=survey, ground=ground, depends=settings.edges)
     edges = correct_edges(boundaries.edges, survey.frame, map_corrections)
-    road_points, surface, density = stages.run("surface", "Extracting the road surface …", _surface_of, survey, edges, settings.surface, ground,
-                                               depends=(map_corrections.asked("edge"), settings.surface), free=lambda made: made[0].store.remove())
+    road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface, survey, edges, settings.surface,
+                                      ground=ground, counted=True, depends=(map_corrections.asked("edge"), settings.surface),
+                                      free=lambda made: made[0].store.remove())
     del ground
     facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
     result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
-                     density=density, country=settings.driving.country, corrections=map_corrections)
+                     density=road_points.density, country=settings.driving.country, corrections=map_corrections)
     result.free = stages.kept.give_back if stages.kept is not None else lambda: result.road_points.close()
     result.counts.update(curb_points=len(boundaries.curb_points), road_points=len(road_points))
     if survey.has_intensity:
@@ -213,12 +214,6 @@ def _map_of(survey, ground, image_path, settings, stages, corrections):
     if len(map_corrections):
         _tell_corrections(map_corrections, stages.progress)
     return result
-
-
-def _surface_of(survey, edges, settings, ground, progress):
-    """Road points, the outlines of the surface, and how dense all points and those of the road lie."""
-    road_points, surface = extract_road_surface(survey, edges, settings, progress, ground)
-    return road_points, surface, cube_densities(road_points, progress.part(1.0, 1.0))
 
 
 def _tell_corrections(corrections, progress):

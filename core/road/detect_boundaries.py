@@ -14,6 +14,7 @@ from ..common.arrays import mask_runs, stretch_of
 from ..common.errors import RoadExtractionError
 from ..common.parallel import InBackground
 from ..common.progress import Progress
+from ..execution.phase import THREADS, NoSource, Phase
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import find_lattice
 from .common.curb_limits import CurbSettings
@@ -25,7 +26,7 @@ from .common.sides import SIDE_SIGNS, expected_height, hidden_beside
 from .common.tracking import PieceInLine, StepsByStation, pieces_between
 from .curb_returns.detect import with_curb_returns
 from .curb_returns.main_curbs import main_curbs_of
-from .edges.fit import EdgeSettings, fit_road_edges
+from .edges.fit import EdgeSettings, edges_through, fit_road_edges, tell_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from .profiles.detect import detect_curbs
 from .scanlines.candidates import ScanlineBoundarySettings
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from ..survey.open_survey import Survey
 
 BOUNDARY_METHODS = ("profiles", "scanlines", "both")
+METHODS = ("scanlines", "profiles")   # in the order of trust: three planes are a stricter model of a curb than a profile
 
 
 @dataclass(frozen=True)
@@ -130,7 +132,11 @@ def _find_curb_points(decimation, lattice, settings, progress, ground):
                                                    occlusion_of_scanlines if both_methods else occlusion, chains[1], ground)
         drawn = "both" if both_methods else "scanlines"
         if both_methods:
-            chosen = _better_points(points, survey.frame, CurbEvidence(chains[1], occlusion_of_scanlines), CurbEvidence(chains[0], occlusion))
+            # at every place the curb points of that method which measures better
+            methods = [points[method] for method in METHODS]
+            edges = _edges_through(methods, survey.frame, survey.executor.passing(), led_across=False)
+            seen = CurbEvidence(chains[1], occlusion_of_scanlines), CurbEvidence(chains[0], occlusion)
+            chosen = select_curb_points(*methods, *edges, survey.frame, *seen)
             occlusion_of_scanlines.clear()   # planes lie close: along a long road their grids are large
             points["both"] = with_pieces_of_both(chosen, chains, occlusion, survey)
         points[drawn] = with_curb_returns(points[drawn], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0), occlusion,
@@ -142,14 +148,6 @@ def _level_for(decimation, settings):
     """The ground that SurveyScanlines leaves out, which can have no corner."""
     along = settings.distance_along + SCANLINE.gap_fill_reach + BOUNDARY.level_strip_margin
     return LevelGround(decimation, settings.distance_across + BOUNDARY.level_strip_margin, along)
-
-
-def _better_points(found, frame, *seen):
-    """At every place the curb points of that method which measures better."""
-    # scanlines first: three planes are a stricter model of a curb than a profile
-    methods = ("scanlines", "profiles")
-    edges = (fit_road_edges(found[method], frame, led_across=False) for method in methods)
-    return select_curb_points(*(found[method] for method in methods), *edges, frame, *seen)
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
@@ -165,22 +163,28 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
     ground : MeasuredGround of it that an earlier stage kept, or None
     """
-    boundaries = _drawn(found, frame, settings, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
+    executor = THREADS if survey is None else survey.executor.passing()
+    boundaries = _drawn(found, frame, settings, executor, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
     if survey is not None:
         boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress.part(BOUNDARY.curb_edges_progress, 1.0),
                                                ground=ground)
     return boundaries
 
 
-def _drawn(found, frame, settings, progress):
+def _edges_through(points, frame, executor, settings=EdgeSettings(), led_across=True):
+    """[RoadEdges] through the curb points of each method."""
+    return list(executor.run(Phase(edges_through, NoSource(), (frame, settings, led_across), lambda item: "the edges of all roads"), points))
+
+
+def _drawn(found, frame, settings, executor, progress):
     """The edges at curbs alone."""
     if "both" not in found:
         points, = found.values()
         return RoadBoundaries(points, fit_road_edges(points, frame, settings, progress))
-    single = {method: fit_road_edges(found[method], frame, settings) for method in ("scanlines", "profiles")}
-    edges = fit_road_edges(found["both"], frame, settings, progress)
-    edges, differences = measure_agreement(edges, single["scanlines"], single["profiles"], frame)
-    lengths = {method: float(lines.length[lines.status == "measured"].sum()) for method, lines in single.items()}
+    scanlines, profiles, edges = _edges_through([found[method] for method in (*METHODS, "both")], frame, executor, settings)
+    tell_edges(edges, progress)
+    edges, differences = measure_agreement(edges, scanlines, profiles, frame)
+    lengths = {method: float(lines.length[lines.status == "measured"].sum()) for method, lines in zip(METHODS, (scanlines, profiles))}
     differing = differences.length.sum()
     if any(lengths.values()):
         progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "

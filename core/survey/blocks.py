@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -20,24 +20,17 @@ from .store.section_store import PartitionedPoints, SectionStore
 from .trajectory.time_systems import SECONDS_PER_WEEK
 from .weights import FRAME, READING
 
-if TYPE_CHECKING:
-    import laspy
-
 DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
 
 
 @dataclass
 class BlockSummary:
-    """What points contribute to the knowledge of the whole cloud.
+    """What points contribute to the knowledge of the whole cloud."""
 
-    census : of the fields that may distinguish scanners; darkest, brightest : lowest and highest intensity
-    without_time, excluded : numbers of points at a time of no pass, and of those that are withheld or classified as noise
-    """
-
-    census: ScannerCensus = field(default_factory=ScannerCensus)
-    darkest: int = MAX_INTENSITY
+    census: ScannerCensus = field(default_factory=ScannerCensus)   # of the fields that may distinguish scanners
+    darkest: int = MAX_INTENSITY   # darkest, brightest: lowest and highest intensity
     brightest: int = 0
-    without_time: int = 0
+    without_time: int = 0   # without_time, excluded: numbers of points at a time of no pass, and of those that are withheld or classified as noise
     excluded: int = 0
 
     def join(self, other: BlockSummary) -> None:
@@ -83,18 +76,13 @@ class HeightFilter:
 
 @dataclass(frozen=True)
 class PointChoice:
-    """Which points of the files are taken, and how.
+    """Which points of the files are taken, and how."""
 
-    corridor, above_road : metres either side, and metres above the road up to which points are kept
-    has_time : whether points are assigned to passes by their time; else by the nearest point on a road
-    week_ends : whether the GPS week ends during the scan; intensity : what the intensity of points is read from
-    """
-
-    corridor: float
-    has_time: bool
-    week_ends: bool = False
+    corridor: float   # corridor, above_road: metres either side, and metres above the road up to which points are kept
+    has_time: bool   # whether points are assigned to passes by their time; else by the nearest point on a road
+    week_ends: bool = False   # whether the GPS week ends during the scan
     above_road: float = READING.kept_above_road
-    intensity: IntensitySource = IntensitySource()
+    intensity: IntensitySource = IntensitySource()   # what the intensity of points is read from
 
     @property
     def layers(self) -> tuple[str, ...]:
@@ -136,11 +124,11 @@ class BlockReader:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
         return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop))
 
-    def unfiltered(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary) -> list[tuple[int, Columns]]:
+    def unfiltered(self, block: Any, summary: BlockSummary) -> list[tuple[int, Columns]]:
         """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
         return [(road, points.copy() if near is None else points.take(near).load_all()) for road, points, near in self._near_roads(block, summary)]
 
-    def read(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
+    def read(self, block: Any, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
              store: SectionStore) -> Iterator[PartitionedPoints]:
         """Yield the points of a block near the road, ready for the store, until the next ones are asked for; `summary` and `chosen` are updated."""
         for road, points, near in self._near_roads(block, summary, ground):

@@ -2,77 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.parallel import ordered_map
-from ..common.progress import Progress
-from ..execution.phase import Phase
 from .store.records import Points
-from .store.road_points import RoadPoints
-from .store.section_store import STRETCH_POINTS, Stretch
-from .survey import Survey
 
 CUBE_SIDE = 10_000       # derived: units of 0.1 mm: 1 m
 POINTS_PER_CHUNK = 1 << 15   # cost: points counted at a time: fits the processor cache
 
+CountedCubes = tuple[np.ndarray, np.ndarray] | None   # keys of the occupied cubes, and how many points they hold; None without points
+
 
 @dataclass(frozen=True)
 class CubeDensity:
-    """Point density in cubes of 1 m.
+    """Point density in cubes of 1 m."""
 
-    points : number of points
-    mean : points per m³, mean over occupied cubes
-    of_a_point : points per m³, mean over points of the density of their own cube
-    """
-
-    points: int
-    mean: float
-    of_a_point: float
+    points: int   # number of points
+    mean: float   # points per m³, mean over occupied cubes
+    of_a_point: float   # points per m³, mean over points of the density of their own cube
 
 
-def cube_density(sections: Iterable, points_of: Callable[..., Points] = lambda section: section,
-                 progress: Progress = Progress()) -> CubeDensity:
-    """Density of points in cubes aligned with the local coordinates, so that a cube shared by two sections counts once.
-
-    Parameters
-    ----------
-    sections : one entry per section of road
-    points_of : function of an entry that returns its Points
-    """
-    return _density_of_parts(ordered_map(lambda section: _counted(points_of(section)), sections, progress))
-
-
-def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> tuple[CubeDensity, CubeDensity]:
-    """`cube_density` of all points of a survey and of those on its road, counted together by the executor of the road points.
-
-    Parameters
-    ----------
-    road_points : RoadPoints of a survey, `RoadPoints.of_survey`
-    """
-    survey: Survey = road_points.survey
-    length: float = survey.store.section_length
-    phase = Phase(cubes_of_stretch, road_points, (), lambda item: survey.stretch(item[0], item[1] * length, item[2] * length))
-    stretches = survey.store.stretches(STRETCH_POINTS if road_points.executor.folder else 0)
-    parts = list(road_points.executor.run(phase, stretches, progress))
-    of_survey, of_road = (_density_of_parts(counted[k] for of_stretch in parts for counted in of_stretch) for k in (0, 1))
-    return of_survey, of_road
-
-
-def cubes_of_stretch(road_points: RoadPoints, stretch: Stretch) -> list[list[tuple[np.ndarray, np.ndarray] | None]]:
-    """The phase that counts points in cubes, section by section.
-
-    Returns
-    -------
-    for each section of the survey [(keys of the occupied cubes, their counts)] of all points and of those on the road; None without points
-    """
-    return [[_counted(points.section(*key)) for points in (road_points.survey, road_points)] for key in road_points.survey.store.in_stretch(stretch)]
-
-
-def _density_of_parts(parts):
-    """CubeDensity of the counts of sections."""
+def cube_density(parts: Iterable[CountedCubes]) -> CubeDensity:
+    """Density of points that were counted section by section; a cube shared by two sections counts once."""
     counted = [part for part in parts if part is not None]
     if not counted:
         return CubeDensity(0, float("nan"), float("nan"))
@@ -83,8 +36,8 @@ def _density_of_parts(parts):
     return CubeDensity(total, float(number.mean()), float((number**2).sum() / number.sum()))
 
 
-def _counted(points):
-    """Keys of the occupied cubes, and how many points they hold; None without points."""
+def counted_cubes(points: Points) -> CountedCubes:
+    """Points in cubes aligned with the local coordinates."""
     if not len(points):
         return None
     low, size = [], []

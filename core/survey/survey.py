@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,17 +12,15 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.phase import THREADS, Executor, Recipe, read_plain, write_plain
+from .adjustment.register import PassCorrections
+from .estimation.interleaved import ScannerSplitter
+from .frame.road_frame import RoadFrame
 from .las.point_fields import INTENSITY_SOURCES
 from .las.reader import CloudHeader
 from .store.records import Points, road_of
 from .store.section_store import SectionStore, opened_store
 from .survey_reader import Finishing, UnorderedPoints
 from .weights import FRAME, LAS, READING
-
-if TYPE_CHECKING:
-    from .adjustment.register import PassCorrections
-    from .estimation.interleaved import ScannerSplitter
-    from .frame.road_frame import RoadFrame
 
 SURVEY_FOLDER, SURVEY_FILE = "survey", "survey.plain"   # of a survey that other processes open
 SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road")
@@ -32,28 +30,20 @@ SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_in
 class SurveySettings:
     """Settings of reading a survey.
 
-    corridor : m either side of the reference line of a road
-    scanner_field : "automatic", "scanner_channel" or "point_source_id"
-    time : time system of the trajectory: automatic, gps, adjusted, week or day
-    crs : WKT for clouds that carry none
-    intensity_from : "intensity", or "rgb" for the luminance of the colours
-    fit_passes : whether passes over one road are adjusted to each other
     trajectory_sigma : m, one sigma across of the trajectory, and so of all points, as its processing or check points tell; 0 where unknown
     above_road : m above the road up to which points are kept; the map needs what hides a curb, an inventory what hangs over the road
-    section_length : m of station in a section of the store; None for as many as hold some hundred thousand points
-    block : points decoded at a time
     """
 
-    corridor: float = setting(FRAME.corridor, 5.0, 100.0, "The corridor", "m")
-    scanner_field: str = "automatic"
-    time: str = "automatic"
-    crs: str = ""
-    intensity_from: str = INTENSITY_SOURCES[0]
-    fit_passes: bool = True
+    corridor: float = setting(FRAME.corridor, 5.0, 100.0, "The corridor", "m")   # m either side of the reference line of a road
+    scanner_field: str = "automatic"   # "automatic", "scanner_channel" or "point_source_id"
+    time: str = "automatic"   # time system of the trajectory: automatic, gps, adjusted, week or day
+    crs: str = ""   # WKT for clouds that carry none
+    intensity_from: str = INTENSITY_SOURCES[0]   # "intensity", or "rgb" for the luminance of the colours
+    fit_passes: bool = True   # whether passes over one road are adjusted to each other
     trajectory_sigma: float = setting(0.0, 0.0, 10.0, "The accuracy of the trajectory", "m")
     above_road: float = setting(READING.kept_above_road, 1.0, 100.0, "The height above the road", "m")
-    section_length: float | None = None
-    block: int = LAS.points_per_block
+    section_length: float | None = None   # m of station in a section of the store; None for as many as hold some hundred thousand points
+    block: int = LAS.points_per_block   # points decoded at a time
 
     def __post_init__(self) -> None:
         check_limits(self)
@@ -63,40 +53,23 @@ class SurveySettings:
 
 @dataclass
 class Survey:
-    """An open survey: points by section, the road frame and statistics of the whole survey.
+    """An open survey: points by section, the road frame and statistics of the whole survey."""
 
-    files : headers of the point clouds
-    frame : RoadFrame
-    store : SectionStore of the points
-    crs : WKT, "" where unknown
-    sensor_height : {pass number: metres from the trajectory down to the road}
-    scanner_field : LAS field that identifies the scanners, None if there is one
-    scanners : values of that field, see `ScannerCensus.choose`
-    has_intensity : whether intensities differ
-    has_time : whether points are assigned to passes by their time
-    counts : numbers of points read, kept and outside
-    moves : PassCorrections by which points and tracks were moved, None where they are as measured
-    above_road : metres above the road up to which points are returned
-    executor : Executor of the phases that read from this survey
-    folder : where the points lie for other processes, None where they are this one's alone
-    splitter : distinguishes scanners that no field distinguishes; None where there is no need
-    """
-
-    files: list[CloudHeader]
+    files: list[CloudHeader]   # headers of the point clouds
     frame: RoadFrame
-    store: SectionStore
-    crs: str
-    sensor_height: dict[int, float]
-    scanner_field: str | None
-    scanners: list[Any]
-    has_intensity: bool
-    has_time: bool
-    counts: dict[str, int] = field(default_factory=dict)
-    moves: PassCorrections | None = None
-    above_road: float = READING.kept_above_road
-    executor: Executor = THREADS
-    folder: Path | None = None
-    splitter: ScannerSplitter | None = None
+    store: SectionStore   # SectionStore of the points
+    crs: str   # WKT, "" where unknown
+    sensor_height: dict[int, float]   # {pass number: metres from the trajectory down to the road}
+    scanner_field: str | None   # LAS field that identifies the scanners, None if there is one
+    scanners: list[Any]   # values of that field, see `ScannerCensus.choose`
+    has_intensity: bool   # whether intensities differ
+    has_time: bool   # whether points are assigned to passes by their time
+    counts: dict[str, int] = field(default_factory=dict)   # numbers of points read, kept and outside
+    moves: PassCorrections | None = None   # PassCorrections by which points and tracks were moved, None where they are as measured
+    above_road: float = READING.kept_above_road   # metres above the road up to which points are returned
+    executor: Executor = THREADS   # Executor of the phases that read from this survey
+    folder: Path | None = None   # where the points lie for other processes, None where they are this one's alone
+    splitter: ScannerSplitter | None = None   # distinguishes scanners that no field distinguishes; None where there is no need
 
     def __post_init__(self) -> None:
         self.store.finish = self._finished

@@ -27,7 +27,7 @@ from .las.samples import TimeSlots
 from .store.array_file import close_files
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, road_of
-from .store.section_store import STRETCH_POINTS, SectionStore, StoreIndex, Stretch, opened_store
+from .store.section_store import SectionStore, StoreIndex, Stretch, opened_store
 from .weights import READING
 
 
@@ -70,7 +70,7 @@ class SurveyReader:
                     progress.report(done / total)
         self._settle()
         source = _PartsOfFiles(files, self.frame, self.store, self.choice, self.slots, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
-        phase = Phase(_read_part, source, (), source.place, source.size, _join_parts)
+        phase = Phase(_read_part, source, (), source.place, _join_parts)
         points = block if self.store.folder is None else READING.part_points   # threads read block by block
         for part in executor.run(phase, source.items(points), progress.part(done / total, 1.0)):
             self._take_part(part)
@@ -123,18 +123,14 @@ class SurveyReader:
 # The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.
 
 
-
 @dataclass(frozen=True)
 class _PartOfFiles:
-    """What a range of points shows: where those lie that were kept, and what all contribute to the knowledge of the cloud.
-
-    drops : {pass number: counts of its HeightHistogram}; times, places : (N,) s and (N, 3) units of 0.1 mm of the sampled points
-    """
+    """What a range of points shows: where those lie that were kept, and what all contribute to the knowledge of the cloud."""
 
     index: StoreIndex
     summary: BlockSummary
-    drops: dict[int, np.ndarray]
-    times: np.ndarray
+    drops: dict[int, np.ndarray]   # {pass number: counts of its HeightHistogram}
+    times: np.ndarray   # times, places: (N,) s and (N, 3) units of 0.1 mm of the sampled points
     places: np.ndarray
 
 
@@ -174,10 +170,6 @@ class _PartsOfFiles:
         last, begin, count = self.ranges[item[1] - 1].tolist()
         last_file = "" if last == number else f" of {Path(self.files[last].path).name}"
         return f"{Path(self.files[number].path).name}, points {first + 1:,} to {begin + count:,}{last_file}"
-
-    def size(self, item: tuple[int, int]) -> float:
-        """Points of blocks."""
-        return float(self.ranges[item[0]:item[1], 2].sum())
 
 
 def _parts_of_files(columns: list[list[str]], section_length: float, folder: str, **others: Any) -> _PartsOfFiles:
@@ -227,12 +219,8 @@ class UnorderedPoints:
     def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:
         """Put all points in order; the store has them from the folder, from then on. place : names the stretch of a road between two stations (m)"""
         length = self.store.section_length
-
-        def points(item):
-            return self.store.points_between(item[0], item[1] * length, item[2] * length)
-
-        phase = Phase(_order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length), points)
-        parts = list(executor.run(phase, self.store.stretches(STRETCH_POINTS, self.store.numbers()), progress))
+        phase = Phase(_order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length))
+        parts = list(executor.run(phase, self.store.stretches(self.store.numbers()), progress))
         self.store.take_over(StoreIndex.join(parts), self.folder)
 
 
@@ -256,23 +244,19 @@ def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
 # What is done with the points of a section before they are put in order: scanners are numbered, and those far above or below the road go.
 
 
-
 @dataclass(frozen=True)
 class Finishing:
     """Finishes the points of sections: numbers their scanners from 0, and tells those near the height of the road.
 
-    sensor_height : {pass number: metres from the trajectory down to the road}
     scanner_field, scanners : LAS field that identifies the scanners, None if there is one, and its values, see `ScannerCensus.choose`
-    splitter : distinguishes scanners that no field distinguishes; None where there is no need
-    above_road : metres above the road up to which points are kept
     """
 
     frame: RoadFrame
-    sensor_height: dict[int, float]
+    sensor_height: dict[int, float]   # {pass number: metres from the trajectory down to the road}
     scanner_field: str | None
     scanners: list[Any]
-    splitter: ScannerSplitter | None
-    above_road: float
+    splitter: ScannerSplitter | None   # distinguishes scanners that no field distinguishes; None where there is no need
+    above_road: float   # metres above the road up to which points are kept
 
     def __call__(self, road: int, records: Columns) -> np.ndarray | None:
         """Number the scanners of (N,) records of a section, N > 0, and tell which lie near the height of the road: (N,) bool, None for all."""

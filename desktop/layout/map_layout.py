@@ -10,28 +10,39 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
     QgsCsException,
+    QgsExpressionContextUtils,
     QgsFeature,
     QgsGeometry,
+    QgsLayerTreeLayer,
+    QgsLayerTreeModelLegendNode,
     QgsLayoutItemLabel,
+    QgsLayoutItemLegend,
     QgsLayoutItemMap,
     QgsLayoutItemPicture,
     QgsLayoutItemScaleBar,
     QgsLayoutObject,
     QgsLayoutPoint,
     QgsLayoutSize,
+    QgsLayoutUtils,
+    QgsLegendRenderer,
+    QgsLegendSettings,
+    QgsLegendStyle,
     QgsMapLayer,
+    QgsMapLayerLegendUtils,
+    QgsPointXY,
     QgsPrintLayout,
     QgsProject,
     QgsProperty,
     QgsRectangle,
+    QgsRenderContext,
+    QgsSymbolLegendNode,
+    QgsTextFormat,
     QgsVectorLayer,
 )
-from qgis.PyQt.QtCore import QRectF, Qt
-from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtCore import QRectF, QSizeF, Qt
+from qgis.PyQt.QtGui import QColor, QFont
 
 from ...processing_provider.texts import tr
-from .layout_legend import add_legend, as_it_stands, legend_height, text_format
-from .page_series import MapPage, pages_along
 
 PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0)}  # mm, landscape
 BORDER, HEADING = 8.0, 10.0   # mm: rim of the page, and the line of the title
@@ -72,9 +83,7 @@ def road_map_layout(project: QgsProject, layers: list[QgsMapLayer], title: str, 
         and an atlas of pages of 1 : 500 where that would be smaller than 1 : 1000
     credit : whose data lie below, as their licence wants it said on the map
 
-    Returns
-    -------
-    QgsPrintLayout, not yet added to the project's layouts.
+    Returns QgsPrintLayout, not yet added to the project's layouts.
     """
     crs = map_crs(layers, project)
     centre, angle, length, width = lie_of_the_road(layers, crs, project)
@@ -110,8 +119,7 @@ def map_crs(layers: list[QgsMapLayer], project: QgsProject) -> QgsCoordinateRefe
     return next((crs for crs in all_crs if not crs.isGeographic()), all_crs[0] if all_crs else project.crs())
 
 
-def lie_of_the_road(layers: list[QgsMapLayer], crs: QgsCoordinateReferenceSystem | None = None,
-                    project: QgsProject | None = None) -> tuple:
+def lie_of_the_road(layers: list[QgsMapLayer], crs: QgsCoordinateReferenceSystem | None = None, project: QgsProject | None = None) -> tuple:
     """Centre, angle to the page (degrees), length and width of the rectangle around the road, in the map's CRS.
 
     Of the road's surface where it is among the layers, or of whatever is drawn.
@@ -300,3 +308,199 @@ def _add_atlas(project, layout, chart, pages, crs, title):
     atlas.updateFeatures()
     atlas.beginRender()
     atlas.first()
+
+
+# The legend of a print layout: the classes that a road map has, in as many columns as fit below the map.
+
+TITLES, ENTRY = 12.0, 6.5        # mm: titles and margins of the legend, and each entry below a title
+SIZES = ((8.0, 7.0, 4.0), (7.0, 6.0, 3.0), (6.0, 5.0, 2.0))  # letters of titles and entries, points, and symbols, mm: the first that fits
+COLUMNS = 3                      # at least, where there are so many layers
+FONT = "DejaVu Sans"
+DPI = 300.0                      # of the measurement; any would do
+STYLES = (QgsLegendStyle.Style.Title, QgsLegendStyle.Style.Group, QgsLegendStyle.Style.Subgroup, QgsLegendStyle.Style.Symbol,
+          QgsLegendStyle.Style.SymbolLabel)
+
+
+def text_format(size: float) -> QgsTextFormat:
+    """The letters of a layout, in points."""
+    style = QgsTextFormat()
+    style.setFont(QFont(FONT))
+    style.setSize(size)
+    return style
+
+
+def as_it_stands(text: str) -> str:
+    """A text of others, such as the name of a survey or a CRS, for a layout, which would evaluate expressions between [% and %] in it."""
+    return text.replace("[%", "[% '[%' %]")
+
+
+def drawn(layers: list[QgsMapLayer]) -> list[QgsMapLayer]:
+    """The layers of which a legend says something: lines, points and areas."""
+    return [layer for layer in layers if layer.type() == Qgis.LayerType.Vector and layer.isSpatial()]
+
+
+def classes_of(layer: QgsMapLayer) -> set[str]:
+    """The keys of those classes of a layer's style that some feature has."""
+    context = QgsRenderContext()
+    context.expressionContext().appendScopes(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+    renderer = layer.renderer().clone()
+    renderer.startRender(context, layer.fields())
+    keys: set[str] = set()
+    for feature in layer.getFeatures():
+        context.expressionContext().setFeature(feature)  # classes may be distinguished by an expression
+        keys |= set(renderer.legendKeysForFeature(feature, context))
+    renderer.stopRender(context)
+    return keys
+
+
+def legend_height(layers: list[QgsMapLayer]) -> float:
+    """mm that the longest layer takes in the legend, with the classes there are."""
+    return TITLES + ENTRY * max([1, *(len(classes_of(layer)) for layer in drawn(layers))])
+
+
+def add_legend(layout: QgsPrintLayout, layers: list[QgsMapLayer], room: QRectF) -> QgsLayoutItemLegend:
+    """A legend in the upper left corner of `room` (mm).
+
+    It lists the classes that there are. QGIS's own filter by the map is not used for that: it looks through the layers in the background and
+    has timers, which may outlive the layers, and how large the legend becomes is not known before.
+    """
+    legend = QgsLayoutItemLegend(layout)
+    layout.addLayoutItem(legend)
+    legend.attemptMove(QgsLayoutPoint(room.x(), room.y(), Qgis.LayoutUnit.Millimeters))
+    legend.setAutoUpdateModel(False)
+    root = legend.model().rootGroup()
+    root.clear()
+    vectors = drawn(layers)
+    for layer in vectors:
+        node = root.addLayer(layer)
+        _leave_out_empty_classes(legend, node, layer)
+        _print_as_it_stands(legend, node, layer)
+    legend.setSplitLayer(False)
+    legend.setEqualColumnWidth(False)
+    legend.setColumnSpace(3)
+    for sizes in SIZES:
+        _set_sizes(legend, *sizes)
+        for columns in range(min(COLUMNS, max(1, len(vectors))), max(1, len(vectors)) + 1):
+            legend.setColumnCount(columns)
+            size = _size(layout, legend)
+            if size.height() <= room.height() and size.width() <= room.width():
+                legend.attemptResize(QgsLayoutSize(size, Qgis.LayoutUnit.Millimeters))
+                return legend
+    return legend
+
+
+def _size(layout, legend):
+    """mm that a legend will take; it knows by itself only once it is drawn."""
+    settings = QgsLegendSettings()
+    for style in STYLES:
+        settings.setStyle(style, legend.style(style))
+    settings.setColumnCount(legend.columnCount())
+    settings.setColumnSpace(legend.columnSpace())
+    settings.setBoxSpace(legend.boxSpace())
+    settings.setSymbolSize(QSizeF(legend.symbolWidth(), legend.symbolHeight()))
+    return QgsLegendRenderer(legend.model(), settings).minimumSize(QgsLayoutUtils.createRenderContextForLayout(layout, None, DPI))
+
+
+def _leave_out_empty_classes(legend, node: QgsLayerTreeLayer, layer):
+    classes = classes_of(layer)
+    key = QgsLayerTreeModelLegendNode.LegendNodeRoles.RuleKeyRole
+    order = [row for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)) if str(entry.data(key)) in classes]
+    if order:
+        QgsMapLayerLegendUtils.setLegendNodeOrder(node, order)
+        legend.model().refreshLayerLegend(node)
+
+
+def _print_as_it_stands(legend, node, layer):
+    """Let no expression in the names of a layer and of its classes be evaluated."""
+    if "[%" in layer.name():
+        node.setCustomProperty("legend/title-label", as_it_stands(layer.name()))
+    for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)):
+        label = entry.symbolLabel() if isinstance(entry, QgsSymbolLegendNode) else ""
+        if "[%" in label:
+            QgsMapLayerLegendUtils.setLegendNodeUserLabel(node, row, as_it_stands(label))
+            legend.model().refreshLayerLegend(node)
+
+
+def _set_sizes(legend, title, entry, symbol):
+    legend.setSymbolHeight(symbol)
+    for style in STYLES:
+        legend_style = legend.style(style)
+        legend_style.setTextFormat(text_format(entry if style == QgsLegendStyle.Style.SymbolLabel else title))
+        legend.setStyle(style, legend_style)
+
+
+# Pages along a road that is too long for one: rectangles of one size, each turned so that the road runs along it.
+
+OVERLAP = 0.08      # of a page that the next one shows again
+MOST_PAGES = 500    # an atlas of more would take hours to draw
+SHORTEST_REST = 0.1  # of a page: shorter uncovered rests of lines get no page of their own
+
+
+@dataclass(frozen=True)
+class MapPage:
+    """One page: its outline in map coordinates and the angle of the road on it, degrees clockwise from east."""
+
+    outline: QgsGeometry
+    centre: QgsPointXY
+    angle: float
+
+
+def pages_along(lines: list[QgsGeometry], width: float, height: float) -> list[MapPage]:
+    """Pages that show all of the lines.
+
+    lines : line geometries, in metres
+    width, height : of the ground that a page shows, metres, width along the road
+    Returns list of MapPage in the order in which the lines are walked along, the longest line first
+    """
+    lines = [line for line in lines if line is not None and not line.isEmpty()]
+    if not lines:
+        return []
+    left = QgsGeometry.unaryUnion(lines).mergeLines()
+    pages: list[MapPage] = []
+    while len(pages) < MOST_PAGES:
+        parts = [part for part in left.asGeometryCollection() if part.length() > (SHORTEST_REST * width if pages else 0.0)]
+        if not parts:
+            break
+        new_pages = _walk(max(parts, key=lambda part: part.length()), width, height)
+        pages += new_pages[:MOST_PAGES - len(pages)]
+        left = left.difference(QgsGeometry.unaryUnion([page.outline for page in new_pages]))
+    return pages
+
+
+def _walk(line: QgsGeometry, width: float, height: float) -> list[MapPage]:
+    """Pages along one line; each reaches as far as the line stays on it."""
+    pages, begin, length = [], 0.0, line.length()
+    while begin < length - 1e-6:
+        reach = width * (1 - OVERLAP)
+        while True:
+            end = min(begin + reach, length)
+            page = _page(_between(line, begin, end), width, height)
+            if page is not None or reach < 0.2 * width:
+                break
+            reach *= 0.8
+        if page is None:  # a loop tighter than a page is high: its middle is shown
+            page = _page(_between(line, begin, end), width, height, fits=False)
+        pages.append(page)
+        begin = end
+    return pages
+
+
+def _between(line: QgsGeometry, begin: float, end: float) -> list[QgsPointXY]:
+    """Places every twentieth of the way from `begin` to `end` along a line."""
+    return [line.interpolate(begin + (end - begin) * k / 20).asPoint() for k in range(21)]
+
+
+def _page(places: list[QgsPointXY], width: float, height: float, fits: bool = True) -> MapPage | None:
+    """The page turned by the chord of these places; None where they do not fit on it."""
+    chord = places[0].azimuth(places[-1]) if places[0].distance(places[-1]) > 0 else 90.0
+    angle = chord - 90.0
+    turned = QgsGeometry.fromPolylineXY(places)
+    turned.rotate(-angle, places[0])
+    box = turned.boundingBox()
+    if fits and (box.width() > width * (1 - OVERLAP / 2) or box.height() > height * 0.7):
+        return None
+    outline = QgsGeometry.fromRect(QgsRectangle.fromCenterAndSize(box.center(), width, height))
+    outline.rotate(angle, places[0])
+    # turned upside down a map is hard to read
+    upright = (angle + 90.0) % 180.0 - 90.0
+    return MapPage(outline, outline.centroid().asPoint(), upright)

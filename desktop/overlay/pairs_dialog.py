@@ -4,13 +4,27 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from qgis.core import QgsMapLayerProxyModel, QgsPointXY, QgsProcessingOutputLayerDefinition, QgsProject, QgsRectangle
-from qgis.gui import QgsMapLayerComboBox
+import numpy as np
+from qgis.core import (
+    NULL,
+    QgsCoordinateReferenceSystem,
+    QgsFeature,
+    QgsGeometry,
+    QgsMapLayerProxyModel,
+    QgsPointXY,
+    QgsProcessingOutputLayerDefinition,
+    QgsProject,
+    QgsRasterLayer,
+    QgsRectangle,
+    QgsVectorLayer,
+)
+from qgis.gui import QgsMapCanvas, QgsMapLayerComboBox, QgsMapToolEmitPoint, QgsVertexMarker
 from qgis.PyQt.QtCore import QSize, Qt
-from qgis.PyQt.QtGui import QBrush, QColor, QIcon
+from qgis.PyQt.QtGui import QBrush, QColor, QIcon, QImage, QPainter, QPen, QPixmap
 from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
     QDialog,
+    QDialogButtonBox,
     QDoubleSpinBox,
     QFileDialog,
     QFormLayout,
@@ -25,12 +39,16 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...core.common.errors import RoadExtractionError
+from ...core.io.geotiff import IntensityImage
 from ...processing_provider.results.road_maps import runs_of
 from ...processing_provider.texts import tr
+from ...products.overlay.control_points import REQUIRED_COLUMNS
+from ...products.overlay.matching.placement import highest_order, left_out_residuals
+from ...products.overlay.matching.propose import AMBIGUOUS, AWAY, REPEATS, WEAK
+from ...products.overlay.pair_cutouts import pair_cutouts
+from ...products.overlay.source_image import SourceImage, open_image
 from ..background import BackgroundRun
-from ..widgets import button, row, show_extent, wrapped
-from .image_pairs import GAP, GREEN, RED, SIDE, ImagePairs, pair_text
-from .two_points_dialog import TwoPointsDialog
+from ..widgets import answers, button, row, show_extent, wrapped
 
 IMAGES = "*.tif *.tiff *.jpg *.jpeg *.png *.TIF *.TIFF *.JPG *.JPEG *.PNG"
 NEAR = 6.0      # m of ground about a pair that the map zooms to
@@ -287,3 +305,239 @@ def _free_name(path):
     image = Path(path)
     names = (image.with_name(f"{image.stem}_map{number}.tif") for number in ("", *range(2, 1000)))
     return str(next(name for name in names if not name.exists()))
+
+
+# Two points pointed at in an image and in the intensity image: where the image lies, roughly.
+
+COLOURS = ("#ff00c8", "#00c8ff")  # of the first and the second point
+NEEDED = len(COLOURS)
+
+
+class TwoPointsDialog(QDialog):
+    """The image beside the intensity image; `layer` has the points once there are two in each."""
+
+    def __init__(self, path: str, intensity: QgsRasterLayer, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setWindowTitle(tr("Two points in both images"))
+        self.image: SourceImage = open_image(path)
+        self.intensity = intensity
+        self.photo = QgsRasterLayer(path, "image")
+        self.told = wrapped()
+        self.places: dict[QgsMapCanvas, list[QgsPointXY]] = {}
+        self.marks: list[tuple[QgsMapCanvas, QgsVertexMarker]] = []
+        self.tools = []  # a canvas keeps no reference
+        self.views = [self._canvas(layer) for layer in (self.photo, intensity)]
+        self.buttons = answers(self, button(tr("Begin again"), self.begin))
+        column = QVBoxLayout(self)
+        column.addWidget(self.told)
+        column.addLayout(row(*self.views), 1)
+        column.addWidget(self.buttons)
+        self.resize(1100, 620)
+        self.begin()
+
+    def _canvas(self, layer):
+        view = QgsMapCanvas(self)
+        view.setCanvasColor(QColor("#1c1c1e"))
+        view.setDestinationCrs(layer.crs() if layer is self.intensity else QgsCoordinateReferenceSystem())
+        view.setLayers([layer])
+        view.setExtent(layer.extent())
+        tool = QgsMapToolEmitPoint(view)
+        tool.canvasClicked.connect(lambda point, button, view=view: self.point_at(view, point))
+        view.setMapTool(tool)
+        self.tools.append(tool)
+        return view
+
+    def done(self, result: int) -> None:
+        """Close; the views stop drawing layers that may be gone before they are."""
+        for view, tool in zip(self.views, self.tools):
+            view.stopRendering()
+            view.unsetMapTool(tool)
+            view.setLayers([])
+        super().done(result)
+
+    def begin(self) -> None:
+        """Forget the points."""
+        for view, mark in self.marks:
+            view.scene().removeItem(mark)
+        self.marks = []
+        self.places = {view: [] for view in self.views}
+        self._tell()
+
+    def point_at(self, view: QgsMapCanvas, point: QgsPointXY) -> None:
+        """Take a point that was clicked in one of the views."""
+        places = self.places[view]
+        if len(places) == NEEDED:
+            return
+        mark = QgsVertexMarker(view)
+        mark.setCenter(point)
+        mark.setColor(QColor(COLOURS[len(places)]))
+        mark.setIconType(QgsVertexMarker.IconType.ICON_CROSS)
+        mark.setIconSize(16)
+        mark.setPenWidth(3)
+        self.marks.append((view, mark))
+        places.append(point)
+        self._tell()
+
+    def _tell(self):
+        in_image, in_intensity = (len(self.places[view]) for view in self.views)
+        ready = in_image == in_intensity == NEEDED
+        self.buttons.button(QDialogButtonBox.StandardButton.Ok).setEnabled(ready)
+        self.told.setText(tr("Good: the places may be off by some metres.") if ready else tr(
+            "Click two places far apart in the image on the left, and the same two in the same order in the intensity image on the right. The wheel "
+            "comes nearer. In the image: {seen}, in the intensity image: {known}.").format(seen=in_image, known=in_intensity))
+
+    @property
+    def layer(self) -> QgsVectorLayer | None:
+        """A point layer with the fields pixel and line; None where points are missing."""
+        if any(len(places) < NEEDED for places in self.places.values()):
+            return None
+        points = QgsVectorLayer("Point?field=pixel:double&field=line:double", "rough points", "memory")
+        points.setCrs(self.intensity.crs())
+        features = []
+        for image_point, map_point in zip(*(self.places[view] for view in self.views)):
+            feature = QgsFeature(points.fields())
+            feature.setGeometry(QgsGeometry.fromPointXY(map_point))
+            feature.setAttributes(list(self._pixel(image_point)))
+            features.append(feature)
+        points.dataProvider().addFeatures(features)
+        points.updateExtents()
+        return points
+
+    def _pixel(self, place):
+        """Pixel and line of a place as QGIS shows the image."""
+        if self.image.geotransform is not None:
+            return tuple(float(value) for value in self.image.pixel_of(place.x(), place.y()))
+        extent = self.photo.extent()
+        return ((place.x() - extent.xMinimum()) / extent.width() * self.image.width,
+                (extent.yMaximum() - place.y()) / extent.height() * self.image.height)
+
+
+# One image of the window of control points: its layer of pairs, what the accepted ones say, and their pictures.
+
+SIDE = 116       # px, of a cut-out
+GAP = 4          # px, between the two of a pair
+CROSS = 7        # px, half the cross in the middle
+ORDER = 2        # of the polynomial, where the pairs are enough for it
+GREEN, RED = "#33a02c", "#e6323c"
+
+
+class ImagePairs:
+    """An image and its pairs.
+
+    path : of the image
+    failed : why no pairs were found, "" where none were looked for or some were found
+    rough : layer of two points that say roughly where it lies, None where none were given
+    placed : what became of placing it on the map, "" before
+    """
+
+    def __init__(self, path: str):
+        self.path = path
+        self.failed = self.placed = ""
+        self.rough: QgsVectorLayer | None = None
+        self._layer = ""
+
+    @property
+    def name(self) -> str:
+        return Path(self.path).name
+
+    @property
+    def layer(self) -> QgsVectorLayer | None:
+        """The layer of pairs; None where there is none, or it was taken out of the project."""
+        return QgsProject.instance().mapLayer(self._layer)
+
+    def found(self, layer: QgsVectorLayer) -> None:
+        """Take the layer that "Propose control points" made."""
+        self._layer, self.failed, self.placed = layer.id(), "", ""
+        layer.setName(tr("Control points of {image}").format(image=Path(self.path).stem))
+
+    def lies_about(self, rough: QgsVectorLayer) -> None:
+        """Take two rough points; pairs found before are forgotten."""
+        self.rough, self._layer, self.failed = rough, "", ""
+
+    def failed_because(self, reason: str) -> None:
+        self._layer, self.failed = "", reason
+
+    def rows(self) -> list:
+        """The features of the layer, in order of their names."""
+        layer = self.layer
+        return [] if layer is None else sorted(layer.getFeatures(), key=lambda row: int(row["point"]))
+
+    def accept(self, ids: list[int], accepted: bool) -> None:
+        """Accept or refuse the pairs of some features."""
+        layer = self.layer
+        if layer is None:
+            return
+        column = layer.fields().lookupField("accepted")
+        layer.dataProvider().changeAttributeValues({number: {column: int(accepted)} for number in ids})
+        self._write_residuals(layer)
+        layer.triggerRepaint()
+
+    def _write_residuals(self, layer):
+        """How far off the accepted pairs place each one, anew."""
+        rows = self.rows()
+        places = {name: np.array([float(value) for value in values]) for name, values in zip(REQUIRED_COLUMNS, zip(*(
+            (row["pixel"], row["line"], row.geometry().constGet().x(), row.geometry().constGet().y()) for row in rows)))}
+        used = np.array([bool(row["accepted"]) for row in rows])
+        x, y = places["easting"] - places["easting"].mean(), places["northing"] - places["northing"].mean()
+        order = highest_order(x[used], y[used], ORDER) if used.any() else 0
+        residual = left_out_residuals(x, y, places["pixel"], places["line"], used, order) if order else np.full(len(rows), np.nan)
+        column = layer.fields().lookupField("residual")
+        layer.dataProvider().changeAttributeValues(
+            {row.id(): {column: float(value) if value == value else NULL} for row, value in zip(rows, residual)})
+
+    @property
+    def order(self) -> int:
+        """Of the polynomial that the accepted pairs determine; 0: none."""
+        places = np.array([(row.geometry().constGet().x(), row.geometry().constGet().y()) for row in self.rows() if row["accepted"]])
+        return highest_order(*places.T, ORDER) if len(places) else 0
+
+    def summary(self) -> str:
+        """What is known of the image, for the list of images."""
+        if self.failed:
+            return self.failed
+        rows = self.rows()
+        if not rows:
+            return tr("not looked for yet") if self.rough is None else tr("two points given, not looked for yet")
+        residuals = [row["residual"] for row in rows if row["accepted"] and row["residual"] not in (None, NULL)]
+        summary = tr("{accepted} of {count} pairs accepted").format(accepted=sum(bool(row["accepted"]) for row in rows), count=len(rows))
+        if residuals:
+            summary += tr(", RMSE {rmse:.1f} cm, each left out in turn").format(rmse=100.0 * float(np.sqrt(np.mean(np.square(residuals)))))
+        return f"{summary}\n{self.placed}" if self.placed else summary
+
+    def pictures(self, intensity_path: str) -> list[QPixmap]:
+        """Both cut-outs of each pair side by side, in the order of the rows."""
+        rows = self.rows()
+        if len(rows) < 2:
+            return []
+        columns = np.array([(row["pixel"], row["line"], row.geometry().constGet().x(), row.geometry().constGet().y()) for row in rows]).T
+        return [_side_by_side(*pair) for pair in pair_cutouts(open_image(self.path), IntensityImage.open(intensity_path), *columns, side=SIDE)]
+
+
+def pair_text(row) -> str:
+    """Number, likeness and residual of a pair."""
+    residual = row["residual"]
+    distance = tr("{residual:.1f} cm off").format(residual=100.0 * residual) if residual not in (None, NULL) else "–"
+    why = "" if row["accepted"] or row["why"] in (None, NULL, "") else f"\n{_words(row['why'])}"
+    return tr("{number}: likeness {score:.2f}, {away}").format(number=row["point"], score=row["score"], away=distance) + why
+
+
+def _words(why):
+    """Why a pair is not accepted by default, in the user's language."""
+    return {WEAK: tr("looks different"), REPEATS: tr("repeats nearby"), AWAY: tr("does not fit the others"),
+            AMBIGUOUS: tr("all of it fits elsewhere too")}.get(why, why)
+
+
+def _side_by_side(*cuts):
+    canvas = QPixmap(2 * SIDE + GAP, SIDE)
+    canvas.fill(Qt.GlobalColor.white)
+    painter = QPainter(canvas)
+    for number, cut in enumerate(cuts):
+        left = number * (SIDE + GAP)
+        data = np.ascontiguousarray(cut)
+        painter.drawImage(left, 0, QImage(data.data, SIDE, SIDE, 3 * SIDE, QImage.Format.Format_RGB888).copy())
+        painter.setPen(QPen(Qt.GlobalColor.yellow, 1))
+        middle = left + SIDE // 2
+        painter.drawLine(middle - CROSS, SIDE // 2, middle + CROSS, SIDE // 2)
+        painter.drawLine(middle, SIDE // 2 - CROSS, middle, SIDE // 2 + CROSS)
+    painter.end()
+    return canvas

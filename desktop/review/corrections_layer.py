@@ -65,10 +65,7 @@ def _placed(line, crs, layer):
 def new_corrections_layer(project: QgsProject, path: str, crs: QgsCoordinateReferenceSystem, survey: str = "") -> QgsVectorLayer:
     """A layer of corrections above all others, in a GeoPackage; one that is there already is taken up again.
 
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be written, or is another layer.
+    Raises RoadExtractionError if the file cannot be written, or is another layer.
     """
     if not Path(path).exists():
         options = QgsVectorFileWriter.SaveVectorOptions()
@@ -113,9 +110,7 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
     former : an earlier decision about the same piece, None where there is none; one of the same target at this place is found without it
     values : of the fields; those that are None stay empty
 
-    Returns
-    -------
-    Number of the feature
+    Returns the number of the feature
     """
     placed = _placed(line, crs, layer)
     former = former or correction_at(layer, line, crs, str(values["target"]))

@@ -33,15 +33,11 @@ DRAWN = {"ROAD_EDGES": "#e31a1c", "BOUNDARIES": "#e31a1c", "MARKING_LINES": "#21
 
 @dataclass(frozen=True)
 class Section:
-    """A vertical plane across the road.
+    """A vertical plane across the road."""
 
-    x, y : map coordinates of its middle
-    azimuth : direction of the road, degrees clockwise from grid north
-    """
-
-    x: float
+    x: float   # x, y: map coordinates of its middle
     y: float
-    azimuth: float
+    azimuth: float   # direction of the road, degrees clockwise from grid north
 
     @property
     def left(self) -> tuple[float, float]:

@@ -19,6 +19,7 @@ DECIMALS_OF = {"rmse_m": 3, "sigma_m": 3, "sigma_z_m": 3, "pass_sig_m": 3,  # no
                "resid_m": 3, "loo_m": 3, "residual_m": 3, "radius_m": 1, "radius_ft": 1, "confidence": 2, "time": 3,
                "roll": 2, "pitch": 2, "heading": 1, "elongation": 1, "pixel": 1, "line_px": 1}
 MOST_DECIMALS = 2  # of any other number
+MARGIN, LETTER = 40, 8  # pixels of a column of the attribute table: beside its heading, and for each letter of it
 
 # Field -> {value: words}; what is not among them is shown as it is
 WORDS = {
@@ -102,6 +103,11 @@ def explain_attributes(layer: QgsVectorLayer, output: str, schema: Sequence[Any]
         setup = widget_of(column)
         if setup is not None:
             layer.setEditorWidgetSetup(index, setup)
+    table = layer.attributeTableConfig()
+    table.update(layer.fields())
+    for place, column in enumerate(table.columns()):
+        table.setColumnWidth(place, MARGIN + LETTER * len(layer.attributeDisplayName(layer.fields().lookupField(column.name))))
+    layer.setAttributeTableConfig(table)
     title = title_of(output, {field.name() for field in layer.fields()})
     if title:
         layer.setDisplayExpression(title)

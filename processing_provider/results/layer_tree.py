@@ -36,6 +36,9 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
     output : the result whose look it has, such as ROAD_EDGES
     run : Run that made it
     """
+    node = project.layerTreeRoot().findLayer(layer.id())
+    if node is not None:
+        node.setExpanded(False)  # legends of thirty entries would hide the layers
     layer.setCustomProperty(OUTPUT, output)
     describe_origin(layer, run.provenance, output)
     road_map = road_map_of(layer, project)

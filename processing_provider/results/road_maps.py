@@ -24,20 +24,13 @@ MOVED = "lanewright/clouds"  # custom property of a layer: where the point cloud
 
 @dataclass(frozen=True)
 class RoadMap:
-    """The layers of one run, or those that stages made of one survey.
+    """The layers of one run, or those that stages made of one survey."""
 
-    layers : from above; of each result the newest alone
-    outputs : of the layers, such as ROAD_EDGES
-    provenance : of the run; of stages, that of the first one which names point clouds
-    group : of the layer tree that holds them, None where they lie in none
-    older : layers in whose place a stage that was run again has put newer ones
-    """
-
-    layers: tuple[QgsMapLayer, ...]
-    outputs: tuple[str, ...]
-    provenance: Provenance
-    group: QgsLayerTreeGroup | None
-    older: tuple[QgsMapLayer, ...] = ()
+    layers: tuple[QgsMapLayer, ...]   # from above; of each result the newest alone
+    outputs: tuple[str, ...]   # of the layers, such as ROAD_EDGES
+    provenance: Provenance   # of the run; of stages, that of the first one which names point clouds
+    group: QgsLayerTreeGroup | None   # of the layer tree that holds them, None where they lie in none
+    older: tuple[QgsMapLayer, ...] = ()   # layers in whose place a stage that was run again has put newer ones
 
     @property
     def survey(self) -> str:

@@ -16,16 +16,11 @@ SURVEY_OF_RUN = "lanewright_survey"  # what the stages of a model tell each othe
 
 @dataclass(frozen=True)
 class Run:
-    """One run of an algorithm.
+    """One run of an algorithm."""
 
-    provenance : what its layers say of it
-    survey : name of the survey, "" where none is known
-    group : name of the layer group, "" for none
-    """
-
-    provenance: Provenance
-    survey: str
-    group: str
+    provenance: Provenance   # what its layers say of it
+    survey: str   # name of the survey, "" where none is known
+    group: str   # name of the layer group, "" for none
 
 
 def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsProcessingContext, group: str | None = None) -> Run:
@@ -35,7 +30,7 @@ def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsP
     ----------
     provenance : of the run
     clouds : paths of its point clouds; none for a stage that starts from another's result
-    whole : whether it makes a map in one call. Each such run has a group of its own, named by survey and time;
+    whole : whether it makes a map in one call. Each such run has a group of its own, named by time and survey;
         the stages of a survey share one, since together they make one map
     context : of the run; the stages of a model have one in common
     group : that its inputs stand in, "" where they stand in none; a stage puts its result beside them. None where they are no layers of ours
@@ -44,4 +39,4 @@ def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsP
     survey = survey_name(clouds) or str(store.property(SURVEY_OF_RUN) or "")
     store.setProperty(SURVEY_OF_RUN, survey)
     name = survey or GROUP
-    return Run(provenance, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else name if group is None else group)
+    return Run(provenance, survey, f"{datetime.now():%m-%d %H:%M:%S} {name}" if whole else name if group is None else group)

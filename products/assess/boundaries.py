@@ -1,9 +1,8 @@
 """Road boundaries against a reference, in intervals of 2 m and by side.
 
-The protocol of the scanline paper, completed by the tolerance that it does not state: an interval is correct
-if result lines cover at least half of it and four fifths of them lie within the tolerance of the
-reference. Otherwise the line is false and the reference is missed; an occluded curb that was not found is missed
-like any other.
+The protocol of the scanline paper, completed by the tolerance that it does not state: an interval is correct if result lines cover at least half of
+it and four fifths of them lie within the tolerance of the reference. Otherwise the line is false and the reference is missed; an occluded curb that
+was not found is missed like any other.
 """
 
 from __future__ import annotations
@@ -20,15 +19,7 @@ from ...core.common.progress import Progress
 from ...core.common.setting import check_limits, setting
 from ...core.curves.line_segments import SegmentIndex, single_lines
 from .driving_lines import checked_tolerances
-from .matching import (
-    LinePoints,
-    ReferenceStationing,
-    Stations,
-    TrajectoryStationing,
-    constant_runs,
-    cut_runs,
-    sample_lines,
-)
+from .matching import LinePoints, ReferenceStationing, Stations, TrajectoryStationing, constant_runs, cut_runs, sample_lines
 from .metrics import NAN, Errors, Rates
 
 SIDE_NAMES = {1: "left", -1: "right", 0: ""}
@@ -70,57 +61,36 @@ class _SideAccuracy:
 
 @dataclass(frozen=True)
 class _BoundaryIntervals:
-    """A table with one row per interval.
+    """A table with one row per interval."""
 
-    unit : (N,) index of the road or reference line
-    side : (N,) 1 left, -1 right, 0 unknown
-    station : (N,) start of the interval, metres
-    reference, covered : (N,) metres of reference and of result in it
-    excluded : (N,) text, why it is not judged; "" if it is
-    judged : (N,) bool, whether it is judged and has a reference
-    hit, false : (N, T) bool, by tolerance
-    lateral : (N,) signed mean of the deviations across, metres
-    largest : (N,) largest absolute deviation across, metres
-    height : (N,) mean deviation in height, metres
-    """
-
-    unit: np.ndarray
-    side: np.ndarray
-    station: np.ndarray
-    reference: np.ndarray
+    unit: np.ndarray   # (N,) index of the road or reference line
+    side: np.ndarray   # (N,) 1 left, -1 right, 0 unknown
+    station: np.ndarray   # (N,) start of the interval, metres
+    reference: np.ndarray   # reference, covered: (N,) metres of reference and of result in it
     covered: np.ndarray
-    excluded: np.ndarray
-    judged: np.ndarray
-    hit: np.ndarray
+    excluded: np.ndarray   # (N,) text, why it is not judged; "" if it is
+    judged: np.ndarray   # (N,) bool, whether it is judged and has a reference
+    hit: np.ndarray   # hit, false: (N, T) bool, by tolerance
     false: np.ndarray
-    lateral: np.ndarray
-    largest: np.ndarray
-    height: np.ndarray
+    lateral: np.ndarray   # (N,) signed mean of the deviations across, metres
+    largest: np.ndarray   # (N,) largest absolute deviation across, metres
+    height: np.ndarray   # (N,) mean deviation in height, metres
 
 
 @dataclass(frozen=True)
 class BoundaryAccuracy:
-    """The accuracy of boundary lines.
+    """The accuracy of boundary lines."""
 
-    by_side : side ("left", "right", "" unknown) to tolerance to _SideAccuracy
-    total : tolerance to _SideAccuracy
-    intervals : the table of all intervals
-    beyond : metres of result farther from the trajectory than the corridor, not judged
-    along : TrajectoryStationing or ReferenceStationing
-    result_group, reference_group, excluded_group : lines with their points and intervals
-    lateral : (N,) signed deviations of the result's points, metres
-    """
-
-    by_side: dict[str, dict[float, _SideAccuracy]]
-    total: dict[float, _SideAccuracy]
-    intervals: _BoundaryIntervals
-    beyond: float
+    by_side: dict[str, dict[float, _SideAccuracy]]   # side ("left", "right", "" unknown) to tolerance to _SideAccuracy
+    total: dict[float, _SideAccuracy]   # tolerance to _SideAccuracy
+    intervals: _BoundaryIntervals   # the table of all intervals
+    beyond: float   # metres of result farther from the trajectory than the corridor, not judged
     settings: BoundaryAccuracySettings
-    along: TrajectoryStationing | ReferenceStationing
-    result_group: _LineGroup = field(repr=False)
+    along: TrajectoryStationing | ReferenceStationing   # TrajectoryStationing or ReferenceStationing
+    result_group: _LineGroup = field(repr=False)   # result_group, reference_group, excluded_group: lines with their points and intervals
     reference_group: _LineGroup = field(repr=False)
     excluded_group: _LineGroup = field(repr=False)
-    lateral: np.ndarray = field(repr=False)
+    lateral: np.ndarray = field(repr=False)   # (N,) signed deviations of the result's points, metres
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,6 @@
 """Lines against reference lines: completeness, correctness and deviations.
 
-Measures after Heipke et al. (1997) and Wiedemann (2003), evaluated at points 0.1 m apart;
-a tolerance is the half-width of the buffer.
+Measures after Heipke et al. (1997) and Wiedemann (2003), evaluated at points 0.1 m apart; a tolerance is the half-width of the buffer.
 """
 
 from __future__ import annotations
@@ -42,8 +41,7 @@ def checked_tolerances(tolerances: Sequence[float], one: float, largest: float) 
     checked = tuple(sorted({*tolerances, one}))
     if not all(0.001 <= t <= largest for t in checked):
         text = ", ".join(f"{t:g}" for t in checked)
-        raise RoadExtractionError(
-            f"The tolerances are {text}; give lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
+        raise RoadExtractionError(f"The tolerances are {text}; give lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
     return checked
 
 
@@ -51,25 +49,20 @@ def checked_tolerances(tolerances: Sequence[float], one: float, largest: float) 
 class LineAccuracy:
     """The accuracy of lines. Shares are 0 to 1, by tolerance (half-width of the buffer, metres); NaN if there was nothing to compare.
 
-    completeness : share of the reference's length within the tolerance of the result
-    correctness : share of the result's length within the tolerance of the reference
     miscoding : 1 - correctness, as the driving-line thesis reports it (here the buffer is about the
         reference; about the result, as printed there, it would not be a share of wrong lines)
-    quality : matched result / (result + unmatched reference)
     gaps_per_km, mean_gap : stretches of at least 0.5 m of reference without a result, and their mean length in metres
-    lateral, height : Errors in metres over result points within 0.75 m of the reference; lateral is positive
-        left of the reference as drawn
-    reference_length, result_length : metres
+    lateral, height : Errors in metres over result points within 0.75 m of the reference; lateral is positive left of the reference as drawn
     """
 
-    completeness: dict[float, float]
-    correctness: dict[float, float]
-    quality: dict[float, float]
+    completeness: dict[float, float]   # share of the reference's length within the tolerance of the result
+    correctness: dict[float, float]   # share of the result's length within the tolerance of the reference
+    quality: dict[float, float]   # matched result / (result + unmatched reference)
     gaps_per_km: dict[float, float]
     mean_gap: dict[float, float]
     lateral: Errors
     height: Errors
-    reference_length: float
+    reference_length: float   # reference_length, result_length: metres
     result_length: float
 
     @property
@@ -89,26 +82,20 @@ class LineAccuracy:
 class LineMatch:
     """Two sets of lines with the distance of every point from the other set.
 
-    result, reference : lists of LineString
-    result_owner, reference_owner : index of the input geometry of each line
-    result_points, reference_points : points along the lines
-    to_reference, to_result : (N,) and (M,) metres, inf where nothing matches
-    lateral, height : (N,) deviations of the result's points, metres, NaN beyond 0.75 m; lateral is signed,
-        positive left of the reference as drawn
-    nearest_reference : (N,) index of the nearest reference line of each result point, or -1
+    lateral, height : (N,) deviations of the result's points, metres, NaN beyond 0.75 m; lateral is signed, positive left of the reference as drawn
     """
 
-    result: Sequence[Any]
+    result: Sequence[Any]   # result, reference: lists of LineString
     reference: Sequence[Any]
-    result_owner: np.ndarray
+    result_owner: np.ndarray   # result_owner, reference_owner: index of the input geometry of each line
     reference_owner: np.ndarray
-    result_points: LinePoints
+    result_points: LinePoints   # result_points, reference_points: points along the lines
     reference_points: LinePoints
-    to_reference: np.ndarray = field(repr=False)
+    to_reference: np.ndarray = field(repr=False)   # to_reference, to_result: (N,) and (M,) metres, inf where nothing matches
     to_result: np.ndarray = field(repr=False)
     lateral: np.ndarray = field(repr=False)
     height: np.ndarray = field(repr=False)
-    nearest_reference: np.ndarray = field(repr=False)
+    nearest_reference: np.ndarray = field(repr=False)   # (N,) index of the nearest reference line of each result point, or -1
 
     def accuracy(self, tolerances: Sequence[float], of_result: np.ndarray | None = None,
                  of_reference: np.ndarray | None = None) -> LineAccuracy:

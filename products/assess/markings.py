@@ -42,24 +42,15 @@ class MarkingAccuracySettings:
 
 @dataclass(frozen=True)
 class _ClassAccuracy:
-    """Counts of cells of one class.
+    """Counts of cells of one class."""
 
-    reference : cells of the reference,
-    found : of which the result has paint of any class,
-    found_beside : or has some within the tolerance
-    result : cells of the result,
-    right : of which the reference has paint of any class,
-    right_beside : or has some within the tolerance
-    same : cells of this class in both
-    """
-
-    reference: int
-    found: int
-    found_beside: int
-    result: int
-    right: int
-    right_beside: int
-    same: int
+    reference: int   # cells of the reference,
+    found: int   # of which the result has paint of any class,
+    found_beside: int   # or has some within the tolerance
+    result: int   # cells of the result,
+    right: int   # of which the reference has paint of any class,
+    right_beside: int   # or has some within the tolerance
+    same: int   # cells of this class in both
 
     @property
     def rates(self) -> Rates:
@@ -71,16 +62,13 @@ class _ClassAccuracy:
 class MarkingAccuracy:
     """The accuracy of markings.
 
-    rates : tolerance (cells) to Rates in cells
-    objects : Rates in objects, with the tolerance of the settings
-    by_class : class to _ClassAccuracy, of all classes in the reference or the result
     reference_cells, reference_found, result_cells, result_right : (N,) judged cells of every object
     blocks : (N, 5) x, y (metres) and numbers of cells hit, missed and false of every block with any, with the tolerance
     """
 
-    rates: dict[int, Rates]
-    objects: Rates
-    by_class: dict[str, _ClassAccuracy]
+    rates: dict[int, Rates]   # tolerance (cells) to Rates in cells
+    objects: Rates   # Rates in objects, with the tolerance of the settings
+    by_class: dict[str, _ClassAccuracy]   # class to _ClassAccuracy, of all classes in the reference or the result
     reference_cells: np.ndarray = field(repr=False)
     reference_found: np.ndarray = field(repr=False)
     result_cells: np.ndarray = field(repr=False)

@@ -20,22 +20,14 @@ MAX_ROAD_DISTANCE = 30.0   # m from the trajectory or the longest reference line
 
 @dataclass(frozen=True)
 class LinePoints(Rows):
-    """Midpoints of the pieces into which lines are divided.
+    """Midpoints of the pieces into which lines are divided."""
 
-    xy : (N, 2) metres
-    z : (N,) metres, NaN if the line has no heights
-    line : (N,) index of the line
-    station : (N,) metres along the line
-    length : (N,) of the piece, metres
-    heading : (N,) radians, in the direction the line is drawn
-    """
-
-    xy: np.ndarray
-    z: np.ndarray
-    line: np.ndarray
-    station: np.ndarray
-    length: np.ndarray
-    heading: np.ndarray
+    xy: np.ndarray   # (N, 2) metres
+    z: np.ndarray   # (N,) metres, NaN if the line has no heights
+    line: np.ndarray   # (N,) index of the line
+    station: np.ndarray   # (N,) metres along the line
+    length: np.ndarray   # (N,) of the piece, metres
+    heading: np.ndarray   # (N,) radians, in the direction the line is drawn
 
     def inside(self, area: shapely.Geometry | None) -> LinePoints:
         """The points within a polygon; all if it is None."""
@@ -95,18 +87,12 @@ def _cut(points, along, start, end):
 
 @dataclass(frozen=True)
 class Stations:
-    """Positions along the road.
+    """Positions along the road."""
 
-    unit : (N,) index of the road or line along which a point is measured, -1 if there is none
-    station : (N,) metres along it
-    side : (N,) 1 left, -1 right, 0 unknown
-    offset : (N,) metres from the trajectory, positive to the left; NaN without one
-    """
-
-    unit: np.ndarray
-    station: np.ndarray
-    side: np.ndarray
-    offset: np.ndarray
+    unit: np.ndarray   # (N,) index of the road or line along which a point is measured, -1 if there is none
+    station: np.ndarray   # (N,) metres along it
+    side: np.ndarray   # (N,) 1 left, -1 right, 0 unknown
+    offset: np.ndarray   # (N,) metres from the trajectory, positive to the left; NaN without one
 
 
 class TrajectoryStationing:
@@ -167,8 +153,7 @@ class ReferenceStationing:
 def _sides_of(lines: Sequence[shapely.LineString]) -> np.ndarray:
     """(N,) side of every line: 1 left, -1 right or 0 unknown, along the longest line as it is drawn.
 
-    The middle of the road is taken halfway between the outermost lines; lines less
-    than 2 m apart, or a single one, have no sides.
+    The middle of the road is taken halfway between the outermost lines; lines less than 2 m apart, or a single one, have no sides.
     """
     if len(lines) < 2:
         return np.zeros(len(lines), int)

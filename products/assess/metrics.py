@@ -23,18 +23,15 @@ def f1_of(precision: float, recall: float) -> float:
 class Rates:
     """Counts (cells, intervals, objects or metres) and their shares, 0 to 1.
 
-    right : part of the result that agrees with the reference
-    false : part of the result that does not
-    missed : part of the reference that is not in the result
     found : part of the reference that is in the result; None: equal to `right`. It differs where a
         tolerance matches one point of the result with several of the reference
 
     A share of nothing is NaN; without any result recall and F1 are still 0.
     """
 
-    right: float
-    false: float
-    missed: float
+    right: float   # part of the result that agrees with the reference
+    false: float   # part of the result that does not
+    missed: float   # part of the reference that is not in the result
     found: float | None = None
 
     @property
@@ -69,18 +66,12 @@ class Rates:
 
 @dataclass(frozen=True)
 class Errors:
-    """Statistics of deviations, metres.
+    """Statistics of deviations, metres."""
 
-    count : number of points
-    mean : signed
-    rmse : root mean square
-    p95, maximum : 95th percentile and maximum of the absolute deviations
-    """
-
-    count: int
-    mean: float
-    rmse: float
-    p95: float
+    count: int   # number of points
+    mean: float   # signed
+    rmse: float   # root mean square
+    p95: float   # p95, maximum: 95th percentile and maximum of the absolute deviations
     maximum: float
 
     @classmethod

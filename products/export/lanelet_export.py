@@ -57,15 +57,12 @@ class _MadeLanelet:
 
 @dataclass
 class LaneletDraft:
-    """A map before it gets ids and degrees.
+    """A map before it gets ids and degrees."""
 
-    nodes : (N, 3) metres in the CRS of the survey; ways; lanelets; skipped : type of lane -> pieces that are no lanelets
-    """
-
-    nodes: np.ndarray
+    nodes: np.ndarray   # (N, 3) metres in the CRS of the survey
     ways: list[_MadeWay] = field(default_factory=list)
     lanelets: list[_MadeLanelet] = field(default_factory=list)
-    skipped: dict[str, int] = field(default_factory=dict)
+    skipped: dict[str, int] = field(default_factory=dict)   # type of lane -> pieces that are no lanelets
 
 
 def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSettings()) -> LaneletDraft:
@@ -194,17 +191,13 @@ SQUARE = 100_000.0     # m: local coordinates of Autoware are those within a squ
 
 @dataclass(frozen=True)
 class Degrees:
-    """How the map's places became latitude and longitude.
+    """How the map's places became latitude and longitude."""
 
-    lonlat : (N, 2) degrees of WGS 84; way : name of the transformation; accuracy : metres as its authors say, -1 where they do not;
-    vertical : what the heights are; local : whether the map lies nowhere on the earth
-    """
-
-    lonlat: np.ndarray
-    way: str
-    accuracy: float
-    vertical: str
-    local: bool = False
+    lonlat: np.ndarray   # (N, 2) degrees of WGS 84
+    way: str   # name of the transformation
+    accuracy: float   # metres as its authors say, -1 where they do not;
+    vertical: str   # what the heights are
+    local: bool = False   # whether the map lies nowhere on the earth
 
 
 def to_degrees(places: np.ndarray, crs: str) -> Degrees:

@@ -44,23 +44,18 @@ class Lanelet:
 class LaneletMap:
     """A whole file.
 
-    node_ids : (N,) int in order of the file; degrees : (N, 2) longitude, latitude; heights : (N,) metres, NaN where a node has none
-    local : (N, 2) metres of the tags local_x and local_y, NaN where a node has none
     ways, lanelets, others : by id; others are the remaining relations, such as regulatory elements
-    twice : ids that were there more than once
-    tags : of the file, such as those of MetaInfo
-    tags_twice : (kind of element, id, key) of tags that an element has more than once
     """
 
-    node_ids: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
-    degrees: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
-    heights: np.ndarray = field(default_factory=lambda: np.empty(0))
-    local: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
+    node_ids: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))   # (N,) int in order of the file
+    degrees: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))   # (N, 2) longitude, latitude
+    heights: np.ndarray = field(default_factory=lambda: np.empty(0))   # (N,) metres, NaN where a node has none
+    local: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))   # (N, 2) metres of the tags local_x and local_y, NaN where a node has none
     ways: dict[int, Way] = field(default_factory=dict)
     lanelets: dict[int, Lanelet] = field(default_factory=dict)
     others: dict[int, Lanelet] = field(default_factory=dict)
-    twice: list[tuple[str, int, int]] = field(default_factory=list)
-    tags_twice: list[tuple[str, int, str]] = field(default_factory=list)
+    twice: list[tuple[str, int, int]] = field(default_factory=list)   # ids that were there more than once
+    tags_twice: list[tuple[str, int, str]] = field(default_factory=list)   # (kind of element, id, key) of tags that an element has more than once
 
     def __post_init__(self) -> None:
         self.row_of = {int(id): k for k, id in enumerate(self.node_ids)}
@@ -78,7 +73,6 @@ NEVER_DRIVEN = ("crosswalk", "walkway", "stairs")
 class LaneletNetwork:
     """Lanelets with borders in the direction of travel.
 
-    whole : LaneletMap
     places : (N, 3) metres of its nodes
 
     left, right : id -> rows of nodes, in the direction of travel
@@ -274,10 +268,7 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
         but sea, has local coordinates: local_x and local_y, or metres from latitude and longitude 0
     crs : WKT, "" where coordinates are local
 
-    Raises
-    ------
-    RoadExtractionError
-        If the CRS is not in metres, or nodes have neither latitude nor local coordinates.
+    Raises RoadExtractionError if the CRS is not in metres, or nodes have neither latitude nor local coordinates.
     """
     from pyproj import Transformer
 

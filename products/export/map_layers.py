@@ -19,36 +19,26 @@ STATUS_OF_MAPS = "measured"
 
 @dataclass
 class MapLine:
-    """A border or a line between borders in the file: a painted line, an edge, or neither.
+    """A border or a line between borders in the file: a painted line, an edge, or neither."""
 
-    road : number; what : marking or edge; kind : edge, lane, centre, curb, dropped or pavement; pattern : as in MARKING_LINES
-    points : (N, 3) map coordinates; width : metres, NaN where unknown; side : left, right or ""
-    edge : what an edge is, curb or pavement; height : metres of a curb, NaN where unknown
-    """
-
-    road: int
-    what: str
-    kind: str
-    pattern: str
-    points: np.ndarray
-    width: float = np.nan
-    side: str = ""
-    edge: str = "curb"
-    height: float = np.nan
+    road: int   # number
+    what: str   # marking or edge
+    kind: str   # edge, lane, centre, curb, dropped or pavement
+    pattern: str   # as in MARKING_LINES
+    points: np.ndarray   # (N, 3) map coordinates
+    width: float = np.nan   # metres, NaN where unknown
+    side: str = ""   # left, right or ""
+    edge: str = "curb"   # what an edge is, curb or pavement
+    height: float = np.nan   # metres of a curb, NaN where unknown
 
 
 @dataclass
 class MapLayers:
-    """Lanes and lines of a map in one CRS.
+    """Lanes and lines of a map in one CRS."""
 
-    lanes : Lanes in map coordinates
-    lines : list of MapLine
-    notes : sentences for the user
-    """
-
-    lanes: Lanes
+    lanes: Lanes   # Lanes in map coordinates
     lines: list[MapLine] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)   # sentences for the user
 
     def lane_areas(self) -> Features:
         """The layer LANES."""

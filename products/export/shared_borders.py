@@ -27,12 +27,11 @@ FACING_TRIED = 4          # vertices around one that may face it
 
 @dataclass(frozen=True)
 class SharedBorders:
-    """lanes : Lanes with common borders; gaps : (P, 2) median metres between the stripes at each left and right border, 0 for one line;
-    moved : largest metres that a border was moved."""
+    """lanes : Lanes with common borders; gaps : (P, 2) median metres between the stripes at each left and right border, 0 for one line;"""
 
     lanes: Lanes
     gaps: np.ndarray
-    moved: float
+    moved: float   # largest metres that a border was moved
 
 
 def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
@@ -102,9 +101,7 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     ----------
     lanes : Lanes in metres; lanes of one road with vertices in the same cross-sections, as the layer LANES has them
 
-    Returns
-    -------
-    SharedBorders; the number and order of vertices stay as they are
+    Returns SharedBorders; the number and order of vertices stay as they are
     """
     rows = np.concatenate([lanes.left, lanes.right])
     nodes, first = numbered(rows)

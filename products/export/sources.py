@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -13,9 +13,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.features import Features
 from ...core.driving.layers import Lanes
 from ...core.io.crs import check_metric, parse_crs
-
-if TYPE_CHECKING:
-    from ...core.survey.store.road_points import RoadPoints
+from ...core.survey.store.road_points import RoadPoints
 
 MOST_OVERLAP = 0.5       # share of a lane that may lie on lanes of another road: more is two roads at one place
 SAME_LEVEL = 2.0         # m of height within which two roads are no bridge
@@ -29,20 +27,16 @@ FARTHEST_LAYER = 50.0    # m from the lanes: a layer that lies farther away is o
 class RoadMapSource:
     """Lanes with the other layers of their road map.
 
-    lanes : Lanes in map coordinates
-    driving_lines, marking_lines, road_edges, markings : Features or None
-    notes : sentences for the user, filled by `checked`
-    gaps : (P, 2) metres between the two stripes at the left and right border of each lane, None or 0 where there is one
     middles : (V, 3) of the lanes between their own stripes, vertex by vertex; None where they are the middles of the lanes
     """
 
-    lanes: Lanes
-    driving_lines: Features | None = None
+    lanes: Lanes   # Lanes in map coordinates
+    driving_lines: Features | None = None   # driving_lines, marking_lines, road_edges, markings: Features or None
     marking_lines: Features | None = None
     road_edges: Features | None = None
     markings: Features | None = None
-    notes: list[str] = field(default_factory=list)
-    gaps: np.ndarray | None = None
+    notes: list[str] = field(default_factory=list)   # sentences for the user, filled by `checked`
+    gaps: np.ndarray | None = None   # (P, 2) metres between the two stripes at the left and right border of each lane, None or 0 where there is one
     middles: np.ndarray | None = None
 
     def led_to_middles(self) -> np.ndarray:
@@ -75,11 +69,8 @@ def is_stated(lanes: Lanes) -> bool:
 def checked(source: RoadMapSource) -> RoadMapSource:
     """The same source without successors that are not there, proven fit for a map.
 
-    Raises
-    ------
-    RoadExtractionError
-        If there are no lanes, the CRS is not in metres, a lane has no width or borders that cross, heights are missing, two roads lie at
-        one place, or a layer is of another survey.
+    Raises RoadExtractionError if there are no lanes, the CRS is not in metres, a lane has no width or borders that cross, heights are missing, two
+    roads lie at one place, or a layer is of another survey.
     """
     lanes = source.lanes
     if not len(lanes):
@@ -174,7 +165,6 @@ def wrapped(angle: Any) -> Any:
 class NearestValues:
     """A number of the line or area of a layer that is nearest to a place.
 
-    layer : Features, or None
     name : of the field; features without a value are left out
     """
 
@@ -211,9 +201,7 @@ def sigma_of_lanes(lanes: Lanes, driving_lines: Features | None) -> np.ndarray:
     ----------
     driving_lines : Features DRIVING_LINES with `sigma_m`, or None
 
-    Returns
-    -------
-    (P,) m, NaN where no driving line of the same road and lane says it
+    Returns (P,) m, NaN where no driving line of the same road and lane says it
     """
     square, length = np.zeros(len(lanes)), np.zeros(len(lanes))
     for row in driving_lines.rows if driving_lines is not None else ():
@@ -248,10 +236,7 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
         border without any
     share : 0 to 1, of the vertices that have points
 
-    Raises
-    ------
-    RoadExtractionError
-        If no vertex has points.
+    Raises RoadExtractionError if no vertex has points.
     """
     from scipy.spatial import cKDTree
 

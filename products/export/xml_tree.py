@@ -72,10 +72,7 @@ class XmlElement:
     def number(self, name: str, missing: float | None = None) -> float:
         """A finite number of an attribute.
 
-        Raises
-        ------
-        RoadExtractionError
-            If it is missing and has no default, or is no number of a map.
+        Raises RoadExtractionError if it is missing and has no default, or is no number of a map.
         """
         text = self.attributes.get(name)
         if text is None:
@@ -130,15 +127,10 @@ def read_xml(path: str, root_tag: str, kind: str, progress: Progress = Progress(
     root_tag : name that its first element must have
     kind : what the file should be, for messages
 
-    Returns
-    -------
-    XmlElement, the root
+    Returns XmlElement, the root
 
-    Raises
-    ------
-    RoadExtractionError
-        If it is no XML, not of this kind, in an encoding that is not known or that it is not written in, declares a document type or
-        entities (no map needs them), or is larger, deeper or emptier than a map is.
+    Raises RoadExtractionError if it is no XML, not of this kind, in an encoding that is not known or that it is not written in, declares a document
+    type or entities (no map needs them), or is larger, deeper or emptier than a map is.
     """
     return _Reading(Path(path), root_tag, kind).run(progress)
 

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
 
+from ...core.common.features import Features
 from ...core.countries.model import Country
 from ...core.driving.layers import Lanes
 from ...core.survey.frame.placement import FrameLines, line_parts, lines_in_frame
-
-if TYPE_CHECKING:
-    from ...core.common.features import Features
-    from ...core.survey.frame.road_frame import RoadFrame
+from ...core.survey.frame.road_frame import RoadFrame
 
 MAX_BORDER_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this is no border of it
 BORDER_REACH = 0.8       # m beyond half a lane's width within which a painted line is its border
@@ -35,20 +33,15 @@ class BorderLayers:
 class Strip:
     """A lane or the carriageway at one section.
 
-    right, left : m, offsets of its borders
-    lane : number of the lane, 0 for the carriageway
-    type : as in LANES; "carriageway" for the carriageway
-    direction : of travel, 1 along the road, -1 against it, 0 where unknown
-    borders : what they were taken from: lanes, lines, edges or track
     curbs : whether its right and left border may be a curb: road edges that are not said to be the edge of a pavement without one
     """
 
-    right: float
+    right: float   # right, left: m, offsets of its borders
     left: float
-    lane: int
-    type: str
-    direction: int
-    borders: str
+    lane: int   # number of the lane, 0 for the carriageway
+    type: str   # as in LANES; "carriageway" for the carriageway
+    direction: int   # of travel, 1 along the road, -1 against it, 0 where unknown
+    borders: str   # what they were taken from: lanes, lines, edges or track
     curbs: tuple[bool, bool] = (False, False)
 
     @property
@@ -75,8 +68,6 @@ class RoadBorders:
 
     Parameters
     ----------
-    layers : BorderLayers
-    frame : RoadFrame
     country : whose lanes tell two lines that bound a lane
     """
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -15,6 +15,9 @@ from ...core.common.progress import Progress
 from ...core.countries.catalogue import country
 from ...core.countries.model import SectionLimits
 from ...core.curves.robust import MAD_TO_SIGMA
+from ...core.survey.frame.road_frame import RoadFrame
+from ...core.survey.store.records import Points
+from ...core.survey.survey import Survey
 from .borders import BorderLayers, RoadBorders, Strip
 from .settings import CrossSectionSettings
 from .surface_grid import (
@@ -28,11 +31,6 @@ from .surface_grid import (
     solve_height_errors,
     surface_grid,
 )
-
-if TYPE_CHECKING:
-    from ...core.survey.frame.road_frame import RoadFrame
-    from ...core.survey.store.records import Points
-    from ...core.survey.survey import Survey
 
 STRETCH = 10.0               # m of road about a section from which grade and ruts are measured; shorter where the interval is
 READ_BESIDE = 1.0                 # m beyond the borders that are read too, for the curbs' tops
@@ -52,61 +50,40 @@ LEAST_STRETCHED = 0.3        # m along a strip for each m of station, where a be
 
 @dataclass(frozen=True)
 class _StripMeasures:
-    """What was measured of a strip; NaN where it could not be. Left and right are seen along the road.
-
-    strip : Strip
-    crossfall, crossfall_sigma : m/m, positive where the road falls to the right
-    grade : m/m, positive where it climbs along the road
-    ruts : (right, left) m
-    curbs : (right, left) m, of the carriageway alone
-    clearance : m
-    seen : share of its width that was seen
-    """
+    """What was measured of a strip; NaN where it could not be. Left and right are seen along the road."""
 
     strip: Strip
-    crossfall: float
+    crossfall: float   # crossfall, crossfall_sigma: m/m, positive where the road falls to the right
     crossfall_sigma: float
-    grade: float
-    ruts: tuple[float, float]
-    curbs: tuple[float, float]
-    clearance: float
-    seen: float
+    grade: float   # m/m, positive where it climbs along the road
+    ruts: tuple[float, float]   # (right, left) m
+    curbs: tuple[float, float]   # (right, left) m, of the carriageway alone
+    clearance: float   # m
+    seen: float   # share of its width that was seen
 
 
 @dataclass(frozen=True)
 class _RoadSection:
-    """One section.
+    """One section."""
 
-    road, station : where
-    heading : tangent of the angle between the carriageway and the road's reference line, by which widths across are shortened
-    d, z : (J,) offset and local height of the surface, m; NaN where it was not seen
-    parts : the carriageway, then its lanes from right to left
-    """
-
-    road: int
+    road: int   # road, station: where
     station: float
-    heading: float
-    d: np.ndarray
+    heading: float   # tangent of the angle between the carriageway and the road's reference line, by which widths across are shortened
+    d: np.ndarray   # d, z: (J,) offset and local height of the surface, m; NaN where it was not seen
     z: np.ndarray
-    parts: list[_StripMeasures]
+    parts: list[_StripMeasures]   # the carriageway, then its lanes from right to left
 
 
 @dataclass
 class RoadSections:
-    """All sections of a survey.
+    """All sections of a survey."""
 
-    sections : in order of road and station
-    errors : {road: HeightErrors} between passes and scanners
-    without_ruts : number of lanes whose points are too noisy for rut depths
-    frame, crs, settings : what they were made with
-    """
-
-    sections: list[_RoadSection]
-    errors: dict[int, HeightErrors]
-    frame: RoadFrame
+    sections: list[_RoadSection]   # in order of road and station
+    errors: dict[int, HeightErrors]   # {road: HeightErrors} between passes and scanners
+    frame: RoadFrame   # frame, crs, settings: what they were made with
     crs: str
     settings: CrossSectionSettings
-    without_ruts: int = 0
+    without_ruts: int = 0   # number of lanes whose points are too noisy for rut depths
     notes: list[str] = field(default_factory=list)
 
 
@@ -119,10 +96,7 @@ def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers()
     survey : Survey, opened with enough height above the road for the clearance
     layers : BorderLayers, of which any may be missing. Without edges and lines a lane of the country's usual width about the track is measured
 
-    Raises
-    ------
-    RoadExtractionError
-        If no section lies on the survey.
+    Raises RoadExtractionError if no section lies on the survey.
     """
     borders = RoadBorders(layers, survey.frame, country(settings.country))
     stretch = min(settings.interval, STRETCH)
@@ -363,14 +337,12 @@ def _say(found: RoadSections, progress: Progress) -> None:
                           "sections); such steps and tilts were taken off before anything was measured.")
     unknown = [road for road, errors in found.errors.items() if not errors.opposite]
     if unknown:
-        found.notes.append(
-            f"Road {', '.join(map(str, unknown))}: no two passes in opposite directions overlap, so an error in roll cannot be told from crossfall: "
-            "0.1° of roll is 0.17 % of crossfall. Widths, ruts, curbs and clearances do not depend on it. Drive the road in both "
-            "directions to know it.")
+        found.notes.append(f"Road {', '.join(map(str, unknown))}: no two passes in opposite directions overlap, so an error in roll cannot be told "
+                           "from crossfall: 0.1° of roll is 0.17 % of crossfall. Widths, ruts, curbs and clearances do not depend on it. Drive the "
+                           "road in both directions to know it.")
     if found.without_ruts:
-        found.notes.append(
-            f"At {found.without_ruts} lane sections the points are too few or too noisy for a rut depth: noise alone would show more than "
-            f"{1000 * MAX_RUT_CORRECTION:.0f} mm under the straight edge.")
+        found.notes.append(f"At {found.without_ruts} lane sections the points are too few or too noisy for a rut depth: noise alone would show more "
+                           f"than {1000 * MAX_RUT_CORRECTION:.0f} mm under the straight edge.")
     if all(part.strip.borders == "track" for section in found.sections for part in section.parts):
         found.notes.append("Without road edges, marking lines, driving lines or lanes, a lane of the country's usual width about the driven "
                            "track was measured: its width is no measurement.")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import sparse
@@ -13,10 +12,8 @@ from scipy.sparse.linalg import spsolve
 from ...core.common.arrays import order_by
 from ...core.road.common.pseudo_scanlines import lowest_layers
 from ...core.survey.frame.passes import Pass
-
-if TYPE_CHECKING:
-    from ...core.survey.store.records import Points
-    from ...core.survey.survey import Survey
+from ...core.survey.store.records import Points
+from ...core.survey.survey import Survey
 
 SLICE_LENGTH = 1.0        # m along the road over which a transverse profile is averaged
 CROSS_CELL = 0.05       # m across the road
@@ -28,26 +25,17 @@ SPREAD_SAMPLE = 400       # cells whose scatter tells the noise of a pass and sc
 
 @dataclass(frozen=True)
 class SurfaceGrid:
-    """Heights of a stretch of road in I slices along it and J cells across it, of G groups (pass and scanner).
+    """Heights of a stretch of road in I slices along it and J cells across it, of G groups (pass and scanner)."""
 
-    road : number
-    start, origin : m, station of the first slice and offset of the first cell
-    base, slope : m and m/m, the straight line that heights count from: base + slope * (station - start)
-    groups : G pairs (pass number, scanner)
-    height : (G, I, J) m above the line, median of the lowest layer at the middle of the slice; NaN where there is none
-    count : (G, I, J) points of the lowest layer
-    sigma : (G,) m, scatter of a single point about the surface
-    """
-
-    road: int
-    start: float
+    road: int   # number
+    start: float   # start, origin: m, station of the first slice and offset of the first cell
     origin: float
-    base: float
+    base: float   # base, slope: m and m/m, the straight line that heights count from: base + slope * (station - start)
     slope: float
-    groups: list[tuple[int, int]]
-    height: np.ndarray
-    count: np.ndarray
-    sigma: np.ndarray
+    groups: list[tuple[int, int]]   # G pairs (pass number, scanner)
+    height: np.ndarray   # (G, I, J) m above the line, median of the lowest layer at the middle of the slice; NaN where there is none
+    count: np.ndarray   # (G, I, J) points of the lowest layer
+    sigma: np.ndarray   # (G,) m, scatter of a single point about the surface
 
     @property
     def d(self) -> np.ndarray:
@@ -155,44 +143,31 @@ OPPOSITE_WINDOWS = 3           # windows in which opposite passes overlap, befor
 
 @dataclass(frozen=True)
 class Overlap:
-    """What two groups differ by in one window: one less the other.
+    """What two groups differ by in one window: one less the other."""
 
-    window : number
-    one, other : groups (pass number, scanner)
-    at : m, offset at which the step counts
-    step : m
-    tilt : m/m across, NaN where the overlap is too narrow
-    width : m across that both saw
-    station : m, the middle of the window
-    """
-
-    window: int
-    one: tuple[int, int]
+    window: int   # number
+    one: tuple[int, int]   # one, other: groups (pass number, scanner)
     other: tuple[int, int]
-    at: float
-    step: float
-    tilt: float
-    width: float
-    station: float
+    at: float   # m, offset at which the step counts
+    step: float   # m
+    tilt: float   # m/m across, NaN where the overlap is too narrow
+    width: float   # m across that both saw
+    station: float   # m, the middle of the window
 
 
 @dataclass
 class HeightErrors:
     """Errors of every group in every window.
 
-    windows : (W,) m, ascending, middles of the windows
-    groups : {(pass number, scanner): row}
     step, tilt : (G, W) m and m/m: error = step + tilt * (d - offset of the vehicle)
-    opposite : whether passes in opposite directions revealed the common tilt
-    largest_step : m, the median over the windows of the largest step between two groups
     """
 
-    windows: np.ndarray = field(default_factory=lambda: np.empty(0))
-    groups: dict[tuple[int, int], int] = field(default_factory=dict)
+    windows: np.ndarray = field(default_factory=lambda: np.empty(0))   # (W,) m, ascending, middles of the windows
+    groups: dict[tuple[int, int], int] = field(default_factory=dict)   # {(pass number, scanner): row}
     step: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
     tilt: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
-    opposite: bool = False
-    largest_step: float = 0.0
+    opposite: bool = False   # whether passes in opposite directions revealed the common tilt
+    largest_step: float = 0.0   # m, the median over the windows of the largest step between two groups
 
     def of(self, group: tuple[int, int], s: np.ndarray, across: np.ndarray) -> np.ndarray:
         """Error of a group, (N,) m, at (N,) stations and `across` m left of its vehicle; 0 where nothing is known of it."""
@@ -323,9 +298,7 @@ def rut_depths(d: np.ndarray, profiles: np.ndarray, lane: tuple[float, float], c
     lane, carriageway : (right, left) m, between whose borders the edge is laid
     sigma : (I,) m, of the height of one cell
 
-    Returns
-    -------
-    (2, I) m, >= 0, of the right and the left wheel path, seen along the road; NaN where the profile has gaps
+    Returns (2, I) m, >= 0, of the right and the left wheel path, seen along the road; NaN where the profile has gaps
 
     References
     ----------

@@ -12,16 +12,6 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.features import RESIDUALS, Features
 from ...core.common.setting import check_limits, setting
 from .control_points import CONTROL, REQUIRED_COLUMNS, ControlPoints
-from .polynomial import (
-    COLLINEAR_RATIO,
-    MIN_CONTROL_POINTS,
-    MIN_INVERSE_CONDITION,
-    ControlPointFit,
-    fit_image_polynomial,
-    fit_shift,
-    inverse_condition,
-    principal_extents,
-)
 from .source_image import SourceImage
 
 EXTRAPOLATIONS = ("automatic", "draw", "leave-out")  # of the image outside the hull of the control points
@@ -39,19 +29,16 @@ _MAX_SCALE_ERROR = 0.01  # of the scale of the map projection, above which it is
 class GeoreferenceSettings:
     """How the image is georeferenced and drawn.
 
-    order : of the polynomial, 1 to 3; 0 is a shift
     pixel_size : m, of the result (and of the image, for a shift of an image without position); 0 = as the image
     extrapolation : what is drawn of the image outside the hull of the control points: "draw", "leave-out" or
         "automatic", which leaves it out at order 3
-    resampling : "bilinear", "nearest" or "cubic"
-    check_disabled : whether disabled points are used as check points
     """
 
-    order: int = setting(2, 0, 3, "The order of the polynomial")
+    order: int = setting(2, 0, 3, "The order of the polynomial")   # of the polynomial, 1 to 3; 0 is a shift
     pixel_size: float = setting(0.0, 0.0, 999.0, "The pixel size", "m")
     extrapolation: str = "automatic"
-    resampling: str = "bilinear"
-    check_disabled: bool = False
+    resampling: str = "bilinear"   # "bilinear", "nearest" or "cubic"
+    check_disabled: bool = False   # whether disabled points are used as check points
 
     def __post_init__(self):
         """Check the limits of all settings, and the texts of the choices."""
@@ -65,30 +52,19 @@ class GeoreferenceSettings:
 
 @dataclass(frozen=True)
 class Georeferencing:
-    """The result of `georeference` for N points.
+    """The result of `georeference` for N points."""
 
-    image, points, settings : as given; disabled points used as check points have the role "check"
-    fit : ControlPointFit of the control points
-    pixel_size : m, of the image to be drawn
-    hull : shapely polygon around the control points in pixel and line; None for a shift
-    outside : 0 to 1, share of the area of the image outside the hull
-    cut : whether only the hull is drawn
-    errors : (N, 2) m, map coordinates of every point minus those of the polynomial
-    left_out : (N, 2) m, the same where the point is left out of the fit; NaN where the other points are not enough
-    notes : warnings for the user, one sentence each
-    """
-
-    image: SourceImage
+    image: SourceImage   # image, points, settings: as given; disabled points used as check points have the role "check"
     points: ControlPoints
     settings: GeoreferenceSettings
-    fit: ControlPointFit
-    pixel_size: float
-    hull: shapely.Geometry | None
-    outside: float
-    cut: bool
-    errors: np.ndarray
-    left_out: np.ndarray
-    notes: list[str] = field(default_factory=list)
+    fit: _ControlPointFit   # _ControlPointFit of the control points
+    pixel_size: float   # m, of the image to be drawn
+    hull: shapely.Geometry | None   # shapely polygon around the control points in pixel and line; None for a shift
+    outside: float   # 0 to 1, share of the area of the image outside the hull
+    cut: bool   # whether only the hull is drawn
+    errors: np.ndarray   # (N, 2) m, map coordinates of every point minus those of the polynomial
+    left_out: np.ndarray   # (N, 2) m, the same where the point is left out of the fit; NaN where the other points are not enough
+    notes: list[str] = field(default_factory=list)   # warnings for the user, one sentence each
 
     def rmse(self, role: str = CONTROL) -> float:
         """Root mean square of the lengths of the residuals of a role, m: sqrt(sum(dx^2 + dy^2) / n); NaN without points."""
@@ -112,12 +88,8 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
     ----------
     points : ControlPoints in a projected CRS in metres, or in local metres
 
-    Raises
-    ------
-    RoadExtractionError
-        If there are fewer than 1, 3, 6, 10 control points for order 0, 1, 2, 3; if they lie on a line or do not determine
-        the polynomial; if the polynomial mirrors or folds the image; if the CRS is not in metres; or if the image of
-        a shift has no position.
+    Raises RoadExtractionError if there are fewer than 1, 3, 6, 10 control points for order 0, 1, 2, 3; if they lie on a line or do not determine the
+    polynomial; if the polynomial mirrors or folds the image; if the CRS is not in metres; or if the image of a shift has no position.
     """
     from ...core.io.crs import check_metric, parse_crs
 
@@ -194,9 +166,8 @@ def _rough_position(image, points, settings):
                 "needs both in one CRS: reproject the image or the points, or choose order 1.")
         return image.geotransform
     if settings.pixel_size <= 0:
-        raise RoadExtractionError(
-            "The image has no position of its own, so there is nothing to shift (order 0). Give its pixel size, if north "
-            "is up in the image, or choose order 1 with three or more control points.")
+        raise RoadExtractionError("The image has no position of its own, so there is nothing to shift (order 0). Give its pixel size, if north is up "
+                                  "in the image, or choose order 1 with three or more control points.")
     return (0.0, settings.pixel_size, 0.0, 0.0, 0.0, -settings.pixel_size)
 
 
@@ -205,13 +176,11 @@ def _well_spread(pixel, line, easting, northing, order):
     for places, unit, digits in ((np.column_stack([pixel, line]), "pixels", 0), (np.column_stack([easting, northing]), "m", 2)):
         along, across = principal_extents(places)
         if across <= COLLINEAR_RATIO * along:
-            raise RoadExtractionError(
-                f"The {len(pixel)} control points lie in a line: they spread {along:.{digits}f} {unit} along it and "
-                f"{across:.{digits}f} {unit} across. Measure points on both sides of it, spread over the image.")
+            raise RoadExtractionError(f"The {len(pixel)} control points lie in a line: they spread {along:.{digits}f} {unit} along it and "
+                                      f"{across:.{digits}f} {unit} across. Measure points on both sides of it, spread over the image.")
     if order > 1 and inverse_condition(pixel, line, order) < MIN_INVERSE_CONDITION:
-        raise RoadExtractionError(
-            f"The {len(pixel)} control points lie so (in few rows, on one curve, or several in one place) that a polynomial of order "
-            f"{order} is not determined between them. Add points away from the others, or choose order {order - 1}.")
+        raise RoadExtractionError(f"The {len(pixel)} control points lie so (in few rows, on one curve, or several in one place) that a polynomial of "
+                                  f"order {order} is not determined between them. Add points away from the others, or choose order {order - 1}.")
 
 
 def _unfolded(fit, area, hull, points, used, order):
@@ -222,17 +191,14 @@ def _unfolded(fit, area, hull, points, used, order):
     if (turn < 0).all():
         return
     if (turn > 0).all():
-        raise RoadExtractionError(
-            "The control points turn the image into its mirror image. Are pixel and line, or easting and northing, swapped?")
+        raise RoadExtractionError("The control points turn the image into its mirror image. Are pixel and line, or easting and northing, swapped?")
     within = hull is not None and shapely.contains_xy(hull, pixel[inside], line[inside])[turn >= 0].any()
     if within:
         worst = int(np.argmax(_burden(fit)))
-        raise RoadExtractionError(
-            f"Between the control points the polynomial of order {order} folds the image over itself. A point is wrong (check "
-            f"{points.names[used[worst]]} first), or the order is too high: choose a lower one.")
-    raise RoadExtractionError(
-        f"Outside the control points the polynomial of order {order} folds the image over itself. Choose a lower order, "
-        "measure points nearer to the image's corners, or leave out what lies outside the points (extrapolation).")
+        raise RoadExtractionError(f"Between the control points the polynomial of order {order} folds the image over itself. A point is wrong (check "
+                                  f"{points.names[used[worst]]} first), or the order is too high: choose a lower one.")
+    raise RoadExtractionError(f"Outside the control points the polynomial of order {order} folds the image over itself. Choose a lower order, "
+                              "measure points nearer to the image's corners, or leave out what lies outside the points (extrapolation).")
 
 
 def node_grid(bounds: tuple[float, float, float, float], count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -246,7 +212,7 @@ def node_grid(bounds: tuple[float, float, float, float], count: int) -> tuple[np
     return across.ravel(), down.ravel()
 
 
-def own_pixel_size(fit: ControlPointFit, area: shapely.Geometry) -> float:
+def own_pixel_size(fit: _ControlPointFit, area: shapely.Geometry) -> float:
     """Pixel size of the image on the map.
 
     area : shapely polygon in pixel and line
@@ -341,3 +307,163 @@ def _misfits(found):
     floor = (_MIN_POINT_ERROR * found.pixel_size) ** 2
     extreme = burden / 2 > _MISFIT_RESIDUAL**2 * np.maximum(rest, floor)
     return used[extreme][np.argsort(-burden[extreme])][:_MAX_MISFITS]
+
+
+# Polynomials from pixels to the map, fitted to ground control points by least squares.
+
+COLLINEAR_RATIO = 0.01         # extent across over extent along, below which points lie on a line
+MIN_INVERSE_CONDITION = 1e-3   # smallest over largest singular value, below which the points do not determine the coefficients
+MIN_CONTROL_POINTS = (1, 3, 6, 10)  # by order: a shift needs one point, order t needs (t + 1)(t + 2) / 2
+
+
+def term_powers(order: int) -> np.ndarray:
+    """Powers of the terms u^a v^b with a + b <= order.
+
+    order : of the polynomial
+    Returns (K, 2) int, K = (order + 1)(order + 2) / 2
+    """
+    return np.array([(total - b, b) for total in range(order + 1) for b in range(total + 1)])
+
+
+@dataclass(frozen=True)
+class ImagePolynomial:
+    """A polynomial from pixel and line to the map.
+
+    Coordinates are centred, rotated to their principal axes and scaled to unit spread, so that all terms are of
+    similar size: u = (p - centre) @ whiten.
+    """
+
+    order: int   # of the polynomial; a shift is stored as a polynomial of order 1
+    centre: np.ndarray   # (2,) pixel and line
+    whiten: np.ndarray   # (2, 2)
+    origin: np.ndarray   # (2,) m, map coordinates subtracted before the fit
+    coefficients: np.ndarray   # (K, 2) m of the terms in `term_powers(order)`, for easting and northing
+
+    def terms(self, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
+        """(N, K) values of the terms at N places in the image."""
+        return _terms(self._scaled(pixel, line), self.order)
+
+    def to_map(self, pixel: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Easting and northing, (N,) m each, of (N,) places in the image."""
+        places = self.terms(pixel, line) @ self.coefficients + self.origin
+        return places[:, 0], places[:, 1]
+
+    def jacobian(self, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
+        """(N, 2, 2) m east and north (rows) per pixel and line (columns), at N places in the image."""
+        u, powers = self._scaled(pixel, line), term_powers(self.order)
+        slopes = []
+        for axis in (0, 1):
+            lower = powers.copy()
+            lower[:, axis] = np.maximum(lower[:, axis] - 1, 0)
+            slopes.append(powers[:, axis] * u[:, :1] ** lower[:, 0] * u[:, 1:] ** lower[:, 1])
+        inner = np.stack([slope @ self.coefficients for slope in slopes], axis=2)
+        return np.einsum("nij,kj->nik", inner, self.whiten)
+
+    def _scaled(self, pixel, line):
+        return (np.column_stack([pixel, line]).astype(float) - self.centre) @ self.whiten
+
+
+def _terms(u, order):
+    powers = term_powers(order)
+    return u[:, :1] ** powers[:, 0] * u[:, 1:] ** powers[:, 1]
+
+
+@dataclass(frozen=True)
+class _ControlPointFit:
+    """A polynomial fitted to N control points, with the quality of the fit."""
+
+    polynomial: ImagePolynomial
+    residuals: np.ndarray   # (N, 2) m, map coordinates of the points minus those of the polynomial
+    leverage: np.ndarray   # (N,) 0 to 1, influence of each point on its own residual
+    triangle: np.ndarray   # (K, K) matrix R of the QR decomposition of the terms
+    order: int   # 0 for a shift
+
+    @property
+    def free(self) -> int:
+        """Redundant points: those beyond the smallest number."""
+        return len(self.residuals) - MIN_CONTROL_POINTS[self.order]
+
+    @property
+    def left_out(self) -> np.ndarray:
+        """(N, 2) m, leave-one-out residuals r / (1 - h); NaN where the other points do not determine the polynomial."""
+        rest = 1.0 - self.leverage
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where((rest > 1e-6)[:, None], self.residuals / rest[:, None], np.nan)
+
+    def leverage_at(self, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
+        """(M,) leverage of any places in the image; the polynomial extrapolates where it exceeds 1."""
+        terms = self.polynomial.terms(pixel, line) if self.order else np.ones((len(pixel), 1))
+        return np.sum(np.linalg.solve(self.triangle.T, terms.T) ** 2, axis=0)
+
+
+def principal_extents(places: np.ndarray) -> tuple[float, float]:
+    """Extents of places along their principal axes.
+
+    places : (N, 2)
+    Returns along, across: in the unit of the places
+    """
+    _, _, turned = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
+    along, across = np.ptp((places - places.mean(axis=0)) @ turned.T, axis=0)
+    return float(along), float(across)
+
+
+def inverse_condition(pixel: np.ndarray, line: np.ndarray, order: int) -> float:
+    """Smallest over largest singular value of the terms at control points.
+
+    pixel, line : (N,)
+    order : of the polynomial
+    Returns 0 to 1; 0 where the points do not determine the coefficients
+    """
+    centre, whiten = _frame(np.column_stack([pixel, line]))
+    singular = np.linalg.svd(_terms((np.column_stack([pixel, line]) - centre) @ whiten, order), compute_uv=False)
+    return float(singular[-1] / singular[0])
+
+
+def _frame(places):
+    """Centre and whitening matrix of places (N, 2) that do not lie on a line."""
+    centre = places.mean(axis=0)
+    _, singular, turned = np.linalg.svd(places - centre, full_matrices=False)
+    return centre, turned.T / (singular / np.sqrt(len(places)))
+
+
+def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray, order: int) -> _ControlPointFit:
+    """Fit a polynomial of order 1 to 3: X = sum a_ij u^i v^j, and Y likewise.
+
+    Parameters
+    ----------
+    pixel, line : (N,) in the image; N at least MIN_CONTROL_POINTS[order], not on a line
+    easting, northing : (N,) m
+    order : 1, 2 or 3
+
+    Notes
+    -----
+    The terms are those of the polynomials of ArcGIS and GDAL. They are centred and scaled, and solved by QR. With R of the QR, h_i = |R^-T t_i|^2 is
+    the leverage, and r_i / (1 - h_i) the residual of a point that is left out (Belsley, Kuh and Welsch 1980, Regression Diagnostics).
+    """
+    places, target = np.column_stack([pixel, line]).astype(float), np.column_stack([easting, northing]).astype(float)
+    centre, whiten = _frame(places)
+    terms = _terms((places - centre) @ whiten, order)
+    origin = target.mean(axis=0)
+    basis, triangle = np.linalg.qr(terms)
+    coefficients = np.linalg.solve(triangle, basis.T @ (target - origin))
+    residuals = target - origin - terms @ coefficients
+    return _ControlPointFit(ImagePolynomial(order, centre, whiten, origin, coefficients), residuals, np.sum(basis**2, axis=1), triangle, order)
+
+
+def fit_shift(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray,
+              geotransform: tuple[float, ...]) -> _ControlPointFit:
+    """Fit of order 0: the image keeps the scale and rotation of its approximate position and is only shifted.
+
+    pixel, line : (N,) in the image
+    easting, northing : (N,) m
+    geotransform : approximate position of the image, six numbers as in GDAL
+    """
+    x0, xp, xl, y0, yp, yl = geotransform
+    places, target = np.column_stack([pixel, line]).astype(float), np.column_stack([easting, northing]).astype(float)
+    slope = np.array([[xp, xl], [yp, yl]])
+    centre, count = places.mean(axis=0), len(places)
+    origin = target.mean(axis=0)
+    coefficients = np.vstack([np.zeros(2), slope.T])
+    residuals = target - origin - (places - centre) @ slope.T
+    return _ControlPointFit(ImagePolynomial(1, centre, np.eye(2), origin, coefficients), residuals,
+               np.full(count, 1.0 / count), np.array([[np.sqrt(count)]]), 0)

@@ -27,9 +27,7 @@ def pair_cutouts(image: SourceImage, intensity: IntensityImage, pixel: np.ndarra
     half : m, half the side of a cut-out
     side : pixels of a cut-out
 
-    Returns
-    -------
-    iterator of two (side, side, 3) uint8, red, green, blue; black where there is nothing
+    Returns iterator of two (side, side, 3) uint8, red, green, blue; black where there is nothing
     """
     from osgeo import gdal
 

@@ -23,25 +23,16 @@ _NORTH_STEP = 0.001     # degrees of latitude over which the direction of north 
 
 @dataclass(frozen=True)
 class RoughPlace:
-    """A rough similarity from an image to the map, and how far it may be off.
+    """A rough similarity from an image to the map, and how far it may be off."""
 
-    x, y : m, map coordinates of the image's middle; NaN where nothing is known of them
-    reach : m, how far off these may be; infinite where nothing is known
-    turn : radians, counter-clockwise, from the rows of the image to east
-    turn_range : radians, how far off that may be; pi where nothing is known
-    size : m of a pixel
-    size_range : how far off that may be, as a share
-    source : what it was taken from, for the report
-    """
-
-    x: float
+    x: float   # x, y: m, map coordinates of the image's middle; NaN where nothing is known of them
     y: float
-    reach: float
-    turn: float
-    turn_range: float
-    size: float
-    size_range: float
-    source: str
+    reach: float   # m, how far off these may be; infinite where nothing is known
+    turn: float   # radians, counter-clockwise, from the rows of the image to east
+    turn_range: float   # radians, how far off that may be; pi where nothing is known
+    size: float   # m of a pixel
+    size_range: float   # how far off that may be, as a share
+    source: str   # what it was taken from, for the report
 
 
 def rough_place(image: SourceImage, crs: str, reach: float, pixel_size: float = 0.0, points: ControlPoints | None = None) -> RoughPlace:
@@ -54,10 +45,7 @@ def rough_place(image: SourceImage, crs: str, reach: float, pixel_size: float = 
     pixel_size : m; 0 where unknown
     points : two or more ControlPoints in that CRS, or None
 
-    Raises
-    ------
-    RoadExtractionError
-        If nothing says how large the pixels are on the ground, or the points are too few.
+    Raises RoadExtractionError if nothing says how large the pixels are on the ground, or the points are too few.
     """
     middle = np.array([image.width / 2, image.height / 2])
     if points is not None:
@@ -70,9 +58,8 @@ def rough_place(image: SourceImage, crs: str, reach: float, pixel_size: float = 
     if not size:
         reason = "its tags say where the camera hung, but not how high or with what focal length" if tags else \
             "it has neither a position nor position tags"
-        raise RoadExtractionError(
-            f"Nothing tells how large the pixels of {image.path} are on the ground: {reason}. Give the pixel size, or two points, or a "
-            "world file beside the image.")
+        raise RoadExtractionError(f"Nothing tells how large the pixels of {image.path} are on the ground: {reason}. Give the pixel size, or two "
+                                  "points, or a world file beside the image.")
     size_range = _GIVEN_SIZE if pixel_size else _TAGGED_SIZE
     if tags is None or not crs:
         return RoughPlace(np.nan, np.nan, np.inf, 0.0, np.pi, size, size_range, f"a pixel size of {size:.3g} m alone")
@@ -161,19 +148,13 @@ _LATITUDE, _LONGITUDE = ("GpsLatitude", "GPSLatitude"), ("GpsLongitude", "GpsLon
 
 @dataclass(frozen=True)
 class PositionTags:
-    """Where a camera hung and how it looked; None where the image does not say.
+    """Where a camera hung and how it looked; None where the image does not say."""
 
-    latitude, longitude : degrees, WGS 84
-    heading : degrees clockwise from north, of the top of the image
-    height : m above the ground, or above where the drone took off
-    focal_length : mm, converted to 35 mm film
-    """
-
-    latitude: float
+    latitude: float   # latitude, longitude: degrees, WGS 84
     longitude: float
-    heading: float | None = None
-    height: float | None = None
-    focal_length: float | None = None
+    heading: float | None = None   # degrees clockwise from north, of the top of the image
+    height: float | None = None   # m above the ground, or above where the drone took off
+    focal_length: float | None = None   # mm, converted to 35 mm film
 
     def pixel_size(self, image: SourceImage) -> float | None:
         """m of a pixel on the ground below a camera that looks straight down; None where height or focal length are missing."""

@@ -14,29 +14,18 @@ from ...core.io.local_files import gdal_exceptions, open_raster
 
 @dataclass(frozen=True)
 class SourceImage:
-    """What is known about an image without reading its pixels.
+    """What is known about an image without reading its pixels."""
 
-    path : of the file
-    width, height : pixels
-    geotransform : six numbers as in GDAL, or None where the image has no position on the map
-    crs : WKT, "" where the image has none
-    bands : count, including an alpha band
-    has_alpha : whether the last band is an alpha band
-    palette : whether the values are indices of a colour table
-    kind : "byte", "integer" or "real", type of the values
-    nodata : value of pixels without data, or None
-    """
-
-    path: str
-    width: int
+    path: str   # of the file
+    width: int   # width, height: pixels
     height: int
-    geotransform: tuple[float, ...] | None = None
-    crs: str = ""
-    bands: int = 1
-    has_alpha: bool = False
-    palette: bool = False
-    kind: str = "byte"
-    nodata: float | None = None
+    geotransform: tuple[float, ...] | None = None   # six numbers as in GDAL, or None where the image has no position on the map
+    crs: str = ""   # WKT, "" where the image has none
+    bands: int = 1   # count, including an alpha band
+    has_alpha: bool = False   # whether the last band is an alpha band
+    palette: bool = False   # whether the values are indices of a colour table
+    kind: str = "byte"   # "byte", "integer" or "real", type of the values
+    nodata: float | None = None   # value of pixels without data, or None
 
     def pixel_of(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pixel and line of map coordinates, by the position of the image itself.
@@ -49,10 +38,7 @@ class SourceImage:
         -------
         pixel, line : (N,)
 
-        Raises
-        ------
-        ValueError
-            If the image has no position.
+        Raises ValueError if the image has no position.
         """
         if self.geotransform is None:
             raise ValueError("the image has no position")
@@ -68,8 +54,7 @@ class SourceImage:
         margin : pixels around the image that count as inside
         Returns (N,) bool
         """
-        return ((pixel >= -margin) & (pixel <= self.width + margin)
-                & (line >= -margin) & (line <= self.height + margin))
+        return ((pixel >= -margin) & (pixel <= self.width + margin) & (line >= -margin) & (line <= self.height + margin))
 
 
 @gdal_exceptions()
@@ -80,10 +65,7 @@ def open_image(path: str | Path) -> SourceImage:
     ----------
     path : of a file that GDAL reads
 
-    Raises
-    ------
-    RoadExtractionError
-        If there is no such file, or it is no raster with bands.
+    Raises RoadExtractionError if there is no such file, or it is no raster with bands.
     """
     from osgeo import gdal
 

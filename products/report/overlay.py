@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ...core.common.texts import word
@@ -11,13 +9,11 @@ from ...core.io.crs import NO_PLACE, horizontal_part, parse_crs, place_of_raster
 from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.lazy import cv2
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
+from ..overlay.georeference import Georeferencing
+from ..overlay.matching.propose import Proposal
 from ..overlay.pair_cutouts import pair_cutouts
 from ..overlay.warp import drawn_area, output_grid
 from .page import html_page
-
-if TYPE_CHECKING:
-    from ..overlay.georeference import Georeferencing
-    from ..overlay.matching.propose import Proposal
 
 RESIDUAL_PICTURE_SIDE = 1300  # px, longer side of the picture
 MAX_ARROW_LENGTH = 0.06       # of the longest arrow, as a share of that side

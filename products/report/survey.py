@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from datetime import datetime, timedelta
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...core.common.texts import tr
 from ...core.io.crs import horizontal_part, parse_crs
 from ...core.lazy import cv2
-from ...core.survey.estimation.estimate import WAYS
+from ...core.survey.estimation.estimate import WAYS, EstimatedTrajectory
+from ..inspection import Inspection
 from .figures import Chart
 from .page import html_page
-
-if TYPE_CHECKING:
-    from ...core.survey.estimation.estimate import EstimatedTrajectory
-    from ..inspection import Inspection
 
 DENSITY_PICTURE_SIDE = 1400  # px
 NO_DATA_COLOUR = (28, 28, 30)  # blue, green, red

@@ -9,7 +9,7 @@
   </pipe-data-defined-properties>
   <pipe>
     <provider>
-      <resampling zoomedInResamplingMethod="nearestNeighbour" maxOversampling="2" zoomedOutResamplingMethod="nearestNeighbour" enabled="false"/>
+      <resampling zoomedInResamplingMethod="nearestNeighbour" maxOversampling="6" zoomedOutResamplingMethod="average" enabled="true"/>
     </provider>
     <rasterrenderer type="singlebandgray" gradient="BlackToWhite" opacity="1" nodataColor="" grayBand="1" alphaBand="-1">
       <minMaxOrigin>
@@ -42,7 +42,7 @@
     <brightnesscontrast brightness="0" contrast="0" gamma="1.5"/>
     <huesaturation colorizeOn="0" invertColors="0" colorizeRed="255" colorizeBlue="128" saturation="0" grayscaleMode="0" colorizeGreen="128" colorizeStrength="100"/>
     <rasterresampler maxOversampling="2"/>
-    <resamplingStage>resamplingFilter</resamplingStage>
+    <resamplingStage>provider</resamplingStage>
   </pipe>
   <blendMode>0</blendMode>
 </qgis>

@@ -28,19 +28,13 @@ _LEAVES = 0.10  # m that a pulse travels between the leaves of a hedge, on avera
 
 @dataclass(frozen=True)
 class RunningThing:
-    """Something that runs along the road, as the truth tells it.
+    """Something that runs along the road, as the truth tells it."""
 
-    kind : guard_rail, or one of USUAL
-    foot : (N, 3) m, local, on the ground along its face towards the road
-    height, low : m above the ground, of its top and of its lower edge
-    stations : (start, end) m, where the scene has stations
-    """
-
-    kind: str
-    foot: np.ndarray
-    height: float
+    kind: str   # guard_rail, or one of USUAL
+    foot: np.ndarray   # (N, 3) m, local, on the ground along its face towards the road
+    height: float   # height, low: m above the ground, of its top and of its lower edge
     low: float = 0.0
-    stations: tuple[float, float] | None = None
+    stations: tuple[float, float] | None = None   # (start, end) m, where the scene has stations
 
     def about(self) -> dict[str, Any]:
         """The fields of the truth that are known of it."""

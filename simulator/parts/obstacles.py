@@ -16,45 +16,29 @@ from .materials import LABEL
 
 @dataclass(frozen=True)
 class _Body:
-    """A convex body: the points p with normals @ p <= limits, in the frame of the object (x ahead, y left, z up).
+    """A convex body: the points p with normals @ p <= limits, in the frame of the object (x ahead, y left, z up)."""
 
-    normals : (F, 3) outward unit normals of the faces
-    limits : (F,) m
-    brightness : 0 to 1, reflectance
-    transparency : 0 to 1, share of the pulses without a return (glass)
-    """
-
-    normals: np.ndarray
-    limits: np.ndarray
-    brightness: float
-    transparency: float = 0.0
+    normals: np.ndarray   # (F, 3) outward unit normals of the faces
+    limits: np.ndarray   # (F,) m
+    brightness: float   # 0 to 1, reflectance
+    transparency: float = 0.0   # 0 to 1, share of the pulses without a return (glass)
 
 
 @dataclass(frozen=True)
 class Solid:
-    """A car, or a straight piece of a wall, barrier, fence, hedge or building, which climbs with the ground.
+    """A car, or a straight piece of a wall, barrier, fence, hedge or building, which climbs with the ground."""
 
-    x, y, z : m, local place of the ground below its middle
-    heading : radians counter-clockwise from east
-    bodies : its parts, upright on level ground
-    reach : m, radius of the circle around it
-    top : m, local z of its upper edge
-    slope : m per m, of its climb ahead
-    returned : 0 to 1, share of the pulses that it returns; the others go through
-    depth : m that a pulse travels in it on average
-    """
-
-    x: float
+    x: float   # x, y, z: m, local place of the ground below its middle
     y: float
     z: float
-    heading: float
-    bodies: tuple[_Body, ...]
-    reach: float
-    top: float
+    heading: float   # radians counter-clockwise from east
+    bodies: tuple[_Body, ...]   # its parts, upright on level ground
+    reach: float   # m, radius of the circle around it
+    top: float   # m, local z of its upper edge
     label: int
-    slope: float = 0.0
-    returned: float = 1.0
-    depth: float = 0.0
+    slope: float = 0.0   # m per m, of its climb ahead
+    returned: float = 1.0   # 0 to 1, share of the pulses that it returns; the others go through
+    depth: float = 0.0   # m that a pulse travels in it on average
 
     def hits(self, origin: np.ndarray, direction: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Distance, cosine of incidence and brightness of each ray; `rng` decides which pulses go through glass, wires or between leaves."""
@@ -132,22 +116,15 @@ def _car_bodies(length: float, width: float, height: float, brightness: float) -
 
 @dataclass(frozen=True)
 class Post:
-    """A vertical cylinder: a pole or a trunk.
+    """A vertical cylinder: a pole or a trunk."""
 
-    x, y, z : m, local place of its foot
-    top : m, local z of its upper end
-    radius : m
-    label : of its points
-    brightness : 0 to 1, reflectance
-    """
-
-    x: float
+    x: float   # x, y, z: m, local place of its foot
     y: float
     z: float
-    top: float
-    radius: float
-    label: int
-    brightness: float
+    top: float   # m, local z of its upper end
+    radius: float   # m
+    label: int   # of its points
+    brightness: float   # 0 to 1, reflectance
 
     @property
     def reach(self) -> float:
@@ -172,24 +149,16 @@ class Post:
 
 @dataclass(frozen=True)
 class Crown:
-    """The leaves of a tree: an ellipsoid in which a pulse travels a random distance before it meets a leaf.
+    """The leaves of a tree: an ellipsoid in which a pulse travels a random distance before it meets a leaf."""
 
-    x, y, z : m, local place of its middle
-    reach : m, horizontal radius
-    half_height : m, vertical radius
-    free_way : m, mean distance that a pulse travels between leaves
-    label : of its points
-    brightness : 0 to 1, reflectance
-    """
-
-    x: float
+    x: float   # x, y, z: m, local place of its middle
     y: float
     z: float
-    reach: float
-    half_height: float
-    free_way: float = 0.8
-    label: int = LABEL["tree"]
-    brightness: float = 0.34
+    reach: float   # m, horizontal radius
+    half_height: float   # m, vertical radius
+    free_way: float = 0.8   # m, mean distance that a pulse travels between leaves
+    label: int = LABEL["tree"]   # of its points
+    brightness: float = 0.34   # 0 to 1, reflectance
 
     @property
     def top(self) -> float:
@@ -212,27 +181,18 @@ class Crown:
 
 @dataclass(frozen=True)
 class Rail:
-    """One length of a guard rail: an upright strip between two places.
+    """One length of a guard rail: an upright strip between two places."""
 
-    x, y, z : m, local place of the ground below its middle
-    heading : radians counter-clockwise from east
-    length : m
-    slope : m per m, of its climb ahead
-    low, high : m above the ground
-    label : of its points
-    brightness : 0 to 1, reflectance
-    """
-
-    x: float
+    x: float   # x, y, z: m, local place of the ground below its middle
     y: float
     z: float
-    heading: float
-    length: float
-    slope: float
-    low: float = 0.45
+    heading: float   # radians counter-clockwise from east
+    length: float   # m
+    slope: float   # m per m, of its climb ahead
+    low: float = 0.45   # low, high: m above the ground
     high: float = 0.75
-    label: int = LABEL["rail"]
-    brightness: float = 0.40
+    label: int = LABEL["rail"]   # of its points
+    brightness: float = 0.40   # 0 to 1, reflectance
 
     @property
     def reach(self) -> float:

@@ -16,22 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PaintedLine:
-    """A line along the road, or one whose offset changes, such as the border of a hatched island.
+    """A line along the road, or one whose offset changes, such as the border of a hatched island."""
 
-    kind : class of the marking
-    line : number of the line
-    places : (K, 2) m, station and offset, stations increasing; straight between them
-    width : m
-    dash : (painted, gap) in m of a line with one offset, None for a solid line
-    wear : 0 to 1, share of the paint that is worn off
-    """
-
-    kind: str
-    line: int
-    places: tuple[tuple[float, float], ...]
-    width: float
-    dash: tuple[float, float] | None = None
-    wear: float = 0.1
+    kind: str   # class of the marking
+    line: int   # number of the line
+    places: tuple[tuple[float, float], ...]   # (K, 2) m, station and offset, stations increasing; straight between them
+    width: float   # m
+    dash: tuple[float, float] | None = None   # (painted, gap) in m of a line with one offset, None for a solid line
+    wear: float = 0.1   # 0 to 1, share of the paint that is worn off
 
     @property
     def start(self) -> float:
@@ -62,20 +54,13 @@ class PaintedLine:
 
 @dataclass(frozen=True)
 class PaintedFigure:
-    """Polygons of one marking: a zebra crossing, an arrow or a hatched area.
+    """Polygons of one marking: a zebra crossing, an arrow or a hatched area."""
 
-    kind : class of the marking
-    line : None
-    polygons : (n, 2) m of station and offset each, not overlapping
-    wear : 0 to 1, share of the paint that is worn off
-    start, end : m, stations
-    """
-
-    kind: str
-    line: int | None
-    polygons: tuple[np.ndarray, ...]
-    wear: float = 0.1
-    start: float = field(init=False)
+    kind: str   # class of the marking
+    line: int | None   # None
+    polygons: tuple[np.ndarray, ...]   # (n, 2) m of station and offset each, not overlapping
+    wear: float = 0.1   # 0 to 1, share of the paint that is worn off
+    start: float = field(init=False)   # start, end: m, stations
     end: float = field(init=False)
 
     def __post_init__(self):

@@ -64,24 +64,15 @@ def cast(scene: SurveyedScene, origin: np.ndarray, direction: np.ndarray, statio
 
 @dataclass(frozen=True)
 class Scanner:
-    """A rotating line scanner.
+    """A rotating line scanner."""
 
-    number : point_source_id
-    rotation_rate : Hz
-    pulse_rate : Hz
-    yaw : degrees, rotation of its axis from straight ahead, counter-clockwise
-    tilt : degrees; negative values tilt the lower half of the scan plane backward
-    lever_arm : m ahead, left and up from the reference point of the trajectory
-    gain : sensitivity relative to the other scanner
-    """
-
-    number: int
-    rotation_rate: float
-    pulse_rate: float
-    yaw: float
-    tilt: float
-    lever_arm: tuple[float, float, float]
-    gain: float
+    number: int   # point_source_id
+    rotation_rate: float   # Hz
+    pulse_rate: float   # Hz
+    yaw: float   # degrees, rotation of its axis from straight ahead, counter-clockwise
+    tilt: float   # degrees; negative values tilt the lower half of the scan plane backward
+    lever_arm: tuple[float, float, float]   # m ahead, left and up from the reference point of the trajectory
+    gain: float   # sensitivity relative to the other scanner
 
     def line(self) -> tuple[np.ndarray, np.ndarray]:
         """Share of the turn, (N,), and direction in the frame of the vehicle, (3, N), of the pulses of one line."""

@@ -15,23 +15,15 @@ if TYPE_CHECKING:
 
 @dataclass
 class Hits:
-    """The first intersection of each of N pulses.
+    """The first intersection of each of N pulses."""
 
-    distance : (N,) m, inf where a pulse meets nothing
-    station, offset : (N,) m, as the scene locates places
-    cosine : (N,) of the incidence angle
-    strip : (N,) integer, 0 for the carriageway, others for the strips beside it, OBSTACLE for obstacles
-    label : (N,) uint8 of obstacles, 0 for the ground
-    brightness : (N,) 0 to 1, of obstacles
-    """
-
-    distance: np.ndarray
-    station: np.ndarray
+    distance: np.ndarray   # (N,) m, inf where a pulse meets nothing
+    station: np.ndarray   # station, offset: (N,) m, as the scene locates places
     offset: np.ndarray
-    cosine: np.ndarray
-    strip: np.ndarray
-    label: np.ndarray
-    brightness: np.ndarray
+    cosine: np.ndarray   # (N,) of the incidence angle
+    strip: np.ndarray   # (N,) integer, 0 for the carriageway, others for the strips beside it, OBSTACLE for obstacles
+    label: np.ndarray   # (N,) uint8 of obstacles, 0 for the ground
+    brightness: np.ndarray   # (N,) 0 to 1, of obstacles
 
 
 class Followed(Protocol):

@@ -13,24 +13,15 @@ _RAMP = 1.0      # m along the road from full to lowered curb
 
 @dataclass(frozen=True)
 class Side:
-    """Strips of ground beside the carriageway, on one side of the road; each is straight across between two borders.
+    """Strips of ground beside the carriageway, on one side of the road; each is straight across between two borders."""
 
-    sign : 1 left, -1 right
-    borders : (K + 1,) m from the axis, increasing; the first is the edge of the carriageway
-    rises : (K + 1,) m, heights of the borders above the edge of the carriageway, without the curb
-    on_curb : (K + 1,) 0 or 1, share of the height of the curb at each border
-    strips : K names of the ground
-    curb_height : m, 0 where there is no curb
-    lowered : (start, end) stations of lowered curbs, m
-    """
-
-    sign: int
-    borders: np.ndarray
-    rises: np.ndarray
-    on_curb: np.ndarray
-    strips: tuple[str, ...]
-    curb_height: float = 0.0
-    lowered: tuple[tuple[float, float], ...] = ()
+    sign: int   # 1 left, -1 right
+    borders: np.ndarray   # (K + 1,) m from the axis, increasing; the first is the edge of the carriageway
+    rises: np.ndarray   # (K + 1,) m, heights of the borders above the edge of the carriageway, without the curb
+    on_curb: np.ndarray   # (K + 1,) 0 or 1, share of the height of the curb at each border
+    strips: tuple[str, ...]   # K names of the ground
+    curb_height: float = 0.0   # m, 0 where there is no curb
+    lowered: tuple[tuple[float, float], ...] = ()   # (start, end) stations of lowered curbs, m
 
     @property
     def edge(self) -> float:

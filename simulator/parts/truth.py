@@ -36,20 +36,15 @@ class Truth(NamedTuple):
 class TruePlaces(NamedTuple):
     """Where the true things of a scene lie on the map, (N, 3) m, each with the fields that are known of it.
 
-    boundaries : (line, fields)
-    markings : (ring, fields)
-    driving_lines : (line along the stations, sharpest bend 1/m, fields)
-    surface : (outer ring, inner rings)
     lanes : (left border, right border, fields), left and right of the line that stations run along
-    roadside : (line on the ground along the face of a thing, fields)
     """
 
-    boundaries: Iterable[tuple[np.ndarray, dict[str, Any]]]
-    markings: Iterable[tuple[np.ndarray, dict[str, Any]]]
-    driving_lines: Iterable[tuple[np.ndarray, float, dict[str, Any]]]
-    surface: Iterable[tuple[np.ndarray, list[np.ndarray]]]
+    boundaries: Iterable[tuple[np.ndarray, dict[str, Any]]]   # (line, fields)
+    markings: Iterable[tuple[np.ndarray, dict[str, Any]]]   # (ring, fields)
+    driving_lines: Iterable[tuple[np.ndarray, float, dict[str, Any]]]   # (line along the stations, sharpest bend 1/m, fields)
+    surface: Iterable[tuple[np.ndarray, list[np.ndarray]]]   # (outer ring, inner rings)
     lanes: Iterable[tuple[np.ndarray, np.ndarray, dict[str, Any]]]
-    roadside: Iterable[tuple[np.ndarray, dict[str, Any]]]
+    roadside: Iterable[tuple[np.ndarray, dict[str, Any]]]   # (line on the ground along the face of a thing, fields)
 
     def layers(self, crs: str) -> Truth:
         """The true layers; driving lines and lanes are drawn in their direction of travel, `radius_m` is that of the sharpest bend."""

@@ -16,22 +16,14 @@ _RUN_OUT = 15.0      # m driven before and after the surveyed stretch
 
 @dataclass(frozen=True)
 class Drive:
-    """One pass: position and attitude as smooth functions of the time since its start.
-
-    way : Followed
-    direction : 1 along the axis, -1 against it
-    offset : m, mean offset of the vehicle
-    speed : m/s, mean
-    start_time : s, GPS time of its first moment
-    phase : radians, phase of the sway of this pass
-    """
+    """One pass: position and attitude as smooth functions of the time since its start."""
 
     way: Followed
-    direction: int
-    offset: float
-    speed: float
-    start_time: float
-    phase: float
+    direction: int   # 1 along the axis, -1 against it
+    offset: float   # m, mean offset of the vehicle
+    speed: float   # m/s, mean
+    start_time: float   # s, GPS time of its first moment
+    phase: float   # radians, phase of the sway of this pass
 
     @property
     def duration(self) -> float:

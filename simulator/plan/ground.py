@@ -67,25 +67,18 @@ def curb_heights(places: np.ndarray, height: float, lowered: Sequence[shapely.Po
 
 @dataclass
 class Surface:
-    """The ground at (N,) places.
+    """The ground at (N,) places."""
 
-    z : m
-    slope_x, slope_y : m per m
-    away : m beyond the edge of the carriageway, negative on it
-    strip : int16, 0 on the carriageway, else the number of the strip among those of all profiles, from 1
-    """
-
-    z: np.ndarray
-    slope_x: np.ndarray
+    z: np.ndarray   # m
+    slope_x: np.ndarray   # slope_x, slope_y: m per m
     slope_y: np.ndarray
-    away: np.ndarray
-    strip: np.ndarray
+    away: np.ndarray   # m beyond the edge of the carriageway, negative on it
+    strip: np.ndarray   # int16, 0 on the carriageway, else the number of the strip among those of all profiles, from 1
 
 
 class Ground:
     """_Terrain, edges of the carriageway and what lies beyond them.
 
-    terrain : _Terrain
     rings : (K, 2) m, local vertices of each edge, closed, the carriageway on the left
     heights : (K,) m, of the curb at the vertices of each ring
     profiles : strips beyond the edges, each a Side whose first border is 0

@@ -22,24 +22,15 @@ _CELL = 0.25    # m, cells that tell where paint may be
 
 @dataclass(frozen=True)
 class Mark:
-    """One marking.
+    """One marking."""
 
-    kind : class of the marking
-    line : number of the line, None for other markings
-    pattern : solid or dashed, None for other markings
-    width : m, of a line
-    outlines : (n, 2) m, of its painted parts
-    pieces : the same area in smaller polygons
-    wear : 0 to 1, share of the paint that is worn off
-    """
-
-    kind: str
-    line: int | None
-    pattern: str | None
-    width: float | None
-    outlines: tuple[np.ndarray, ...]
-    pieces: tuple[np.ndarray, ...]
-    wear: float
+    kind: str   # class of the marking
+    line: int | None   # number of the line, None for other markings
+    pattern: str | None   # solid or dashed, None for other markings
+    width: float | None   # m, of a line
+    outlines: tuple[np.ndarray, ...]   # (n, 2) m, of its painted parts
+    pieces: tuple[np.ndarray, ...]   # the same area in smaller polygons
+    wear: float   # 0 to 1, share of the paint that is worn off
 
 
 def line_mark(kind: str, line: int, path: Path, spans: Sequence[tuple[float, float]], offsets: Sequence[np.ndarray], width: float,

@@ -22,33 +22,22 @@ _OBLIQUE = 1.45   # m over the ground to the scanner, per m from the track: plan
 
 @dataclass(frozen=True)
 class PlanLane:
-    """A lane along a path, between two borders.
+    """A lane along a path, between two borders."""
 
-    number, road : of the lane, and of the road it belongs to
-    path : Path
-    direction : 1 along the path, -1 against it
-    stations : (K,) m along the path
-    left, right : (K,) m, offsets of its borders from the path, left and right of the path
-    """
-
-    number: int
+    number: int   # number, road: of the lane, and of the road it belongs to
     road: int
     path: Path
-    direction: int
-    stations: np.ndarray
-    left: np.ndarray
+    direction: int   # 1 along the path, -1 against it
+    stations: np.ndarray   # (K,) m along the path
+    left: np.ndarray   # left, right: (K,) m, offsets of its borders from the path, left and right of the path
     right: np.ndarray
 
 
 @dataclass(frozen=True)
 class Track:
-    """What a vehicle follows: a path over the terrain.
+    """What a vehicle follows: a path over the terrain."""
 
-    path : Path, driven from station 0
-    ground : Ground
-    """
-
-    path: Path
+    path: Path   # Path, driven from station 0
     ground: Ground
 
     @property
@@ -72,39 +61,24 @@ class Track:
 class PlanScene:
     """A plan. Its points have x and y (m, local) in the place of station and offset.
 
-    name : of the scene
-    ground : Ground
-    carriageway : polygon, m, local
-    area : polygon of the surveyed area
-    where : (K,) for each ring of the ground: main, side_street, corner or island
-    edges : (K,) for each ring: curb, dropped or pavement
-    paint : PlanPaint
-    texture : Texture
-    lanes : list of PlanLane
-    ways : list of (Track, factor of the speed), one for each pass
-    obstacles : list of Solid, Post, Crown and Rail
-    patches : (n, 2) outlines of repaired asphalt
-    patch_factors : of its brightness
-    manholes : (M, 3) m, x, y and radius
-    gutter_width : m, concrete strip along the curb
     rails : ((K, 2) m, places along a guard rail; heights of its top and of its lower edge above the ground, m) of each
     """
 
-    name: str
+    name: str   # of the scene
     ground: Ground
-    carriageway: shapely.Polygon
-    area: shapely.Polygon
-    where: list[np.ndarray]
-    edges: list[np.ndarray]
+    carriageway: shapely.Polygon   # polygon, m, local
+    area: shapely.Polygon   # polygon of the surveyed area
+    where: list[np.ndarray]   # (K,) for each ring of the ground: main, side_street, corner or island
+    edges: list[np.ndarray]   # (K,) for each ring: curb, dropped or pavement
     paint: PlanPaint
     texture: Texture
     lanes: list[PlanLane]
-    ways: list[tuple[Track, float]]
-    obstacles: list[Any]
-    patches: list[np.ndarray] = field(default_factory=list)
-    patch_factors: list[float] = field(default_factory=list)
-    manholes: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
-    gutter_width: float = 0.0
+    ways: list[tuple[Track, float]]   # list of (Track, factor of the speed), one for each pass
+    obstacles: list[Any]   # list of Solid, Post, Crown and Rail
+    patches: list[np.ndarray] = field(default_factory=list)   # (n, 2) outlines of repaired asphalt
+    patch_factors: list[float] = field(default_factory=list)   # of its brightness
+    manholes: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))   # (M, 3) m, x, y and radius
+    gutter_width: float = 0.0   # m, concrete strip along the curb
     rails: list[tuple[np.ndarray, float, float]] = field(default_factory=list)
 
     def __post_init__(self):

@@ -22,19 +22,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Lane:
-    """A lane and the offset of its middle, linear between stations.
+    """A lane and the offset of its middle, linear between stations."""
 
-    number : of the lane
-    direction : 1 along the axis, -1 against it
-    stations, offsets : (K,) m
-    widths : (K,) m, between the middles of its border lines
-    """
-
-    number: int
-    direction: int
-    stations: np.ndarray
+    number: int   # of the lane
+    direction: int   # 1 along the axis, -1 against it
+    stations: np.ndarray   # stations, offsets: (K,) m
     offsets: np.ndarray
-    widths: np.ndarray
+    widths: np.ndarray   # (K,) m, between the middles of its border lines
 
 
 @dataclass
@@ -42,38 +36,23 @@ class Scene:
     """A road along an axis, with all objects beside and on it.
 
     On the carriageway the height is grade_line(s) + fall(d). Beyond its edges the strips of each Side continue it.
-
-    name : of the scene
-    axis : RoadAxis
-    length : m from station 0
-    left, right : Side
-    paint : Paint
-    texture : Texture
-    obstacles : list of Solid, Post, Crown and Rail
-    lanes : list of Lane
-    passes : list of (direction, offset in m, speed factor)
-    crown : m per m, fall to both sides
-    gutter_width : m, concrete strip along the curb
-    manholes : (M, 3) m, station, offset and radius
-    repairs : (R, 5) start, end, right, left (m) and factor of the brightness
-    running : list of RunningThing, what runs along the road beside it
     """
 
-    name: str
+    name: str   # of the scene
     axis: RoadAxis
-    length: float
-    left: Side
+    length: float   # m from station 0
+    left: Side   # left, right: Side
     right: Side
     paint: Paint
     texture: Texture
-    obstacles: list[Any]
+    obstacles: list[Any]   # list of Solid, Post, Crown and Rail
     lanes: list[Lane]
-    passes: list[tuple[int, float, float]]
-    crown: float = 0.02
-    gutter_width: float = 0.0
-    manholes: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
-    repairs: np.ndarray = field(default_factory=lambda: np.zeros((0, 5)))
-    running: list[RunningThing] = field(default_factory=list)
+    passes: list[tuple[int, float, float]]   # list of (direction, offset in m, speed factor)
+    crown: float = 0.02   # m per m, fall to both sides
+    gutter_width: float = 0.0   # m, concrete strip along the curb
+    manholes: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))   # (M, 3) m, station, offset and radius
+    repairs: np.ndarray = field(default_factory=lambda: np.zeros((0, 5)))   # (R, 5) start, end, right, left (m) and factor of the brightness
+    running: list[RunningThing] = field(default_factory=list)   # list of RunningThing, what runs along the road beside it
 
     def grade_line(self, s: np.ndarray | float) -> np.ndarray:
         """Height of the axis at stations, m: a steady climb with gentle waves."""

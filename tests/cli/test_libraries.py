@@ -56,8 +56,10 @@ def test_shapely_calls_its_own_geos_inside_qgis_process(tmp_path):
         "QT_QPA_PLATFORM": "offscreen", "LANEWRIGHT_LIBS": str(libraries), "FACE": str(ROOT / "__init__.py"),
         "ANSWER": str(tmp_path / "answer.txt"),
     }
-    for arguments in (["plugins", "enable", "probe"], ["list"]):
-        run = subprocess.run(["qgis_process", *arguments], env=environment, capture_output=True, text=True, stdin=subprocess.DEVNULL)
-        assert run.returncode == 0, run.stderr
+    enabled = tmp_path / "profile" / "profiles" / "default" / "QGIS" / "QGIS3.ini"
+    enabled.parent.mkdir(parents=True)
+    enabled.write_text("[PythonPlugins]\nprobe=true\n")
+    run = subprocess.run(["qgis_process", "list"], env=environment, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    assert run.returncode == 0, run.stderr
     right, version = (tmp_path / "answer.txt").read_text().split()
     assert right == "True" and version

@@ -98,7 +98,7 @@ def cluster(tmp_path_factory):
 @pytest.fixture(params=[1, 2])
 def sections_together(request, monkeypatch):
     """So many sections in a task; of themselves short streets have one in each."""
-    monkeypatch.setattr("lanewright.core.execution.cluster.items_together", lambda *_: request.param)
+    monkeypatch.setattr("lanewright.core.execution.folder_executor.items_together", lambda *_: request.param)
 
 
 @pytest.fixture

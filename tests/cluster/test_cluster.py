@@ -25,7 +25,7 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.execution import cluster as executing
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import EQUAL, client_of, cluster_of
-from lanewright.core.execution.phase import Phase, Threads
+from lanewright.core.execution.phase import Executor, Phase, Threads
 from lanewright.core.execution.tasks import versions
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
@@ -58,6 +58,8 @@ class AtPhase:
             if k == 0 and phase.function.__name__ == self.name:
                 self.act()
             yield result
+
+    run_together = Executor.run_together
 
     def passing(self):
         """The same of the phases whose results are not kept."""

@@ -5,8 +5,7 @@ import pytest
 import shapely
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.products.inventory.borders import BorderLayers
-from lanewright.products.inventory.roadside.find import find_roadside
-from lanewright.products.inventory.roadside.result import roadside_to_features
+from lanewright.products.inventory.roadside.find import find_roadside, roadside_to_features
 from lanewright.simulator.parts.materials import LABEL
 from lanewright.simulator.survey import SampleSettings, make_sample_survey
 from road_layers import drawn_boundaries

@@ -10,29 +10,25 @@ from lanewright.core.driving import heights
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.work_folder import KeptResults
-from lanewright.core.intensity import correction
 from lanewright.core.intensity import image as imaging
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import make_intensity_image
 from lanewright.core.markings import outliers
-from lanewright.core.markings.cross_section import evidence
 from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.objects import cluster as phases
 from lanewright.core.markings.objects import grouping as linking
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.outliers import remove_outliers
 from lanewright.core.markings.paint import extract as extraction
-from lanewright.core.markings.paint import extract as scatter
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
-from lanewright.core.road.surface import extract, ground_grid
+from lanewright.core.road.surface import ground_grid
 from lanewright.core.road.surface.extract import extract_road_surface
-from lanewright.core.survey import density as point_density
 from lanewright.core.survey import open_survey as opening
-from lanewright.core.survey.density import cube_densities
+from lanewright.core.survey.store import section_store
 
-PHASES = ["ground_of_windows", "surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "windows_of_image",
-          "sums_of_pieces", "scatter_of_windows", "levels_of_windows", "paint_of_windows", "kept_of_windows", "links_of_windows",
+PHASES = ["ground_of_windows", "surface_points", "levels_of_stretch", "corrected_of_stretch", "windows_of_image",
+          "sums_of_pieces", "scatter_of_windows", "paint_of_window", "kept_of_windows", "links_of_windows",
           "combs_of_windows", "shapes_of_clusters", "outlines_of_markings", "seen_in_stretch", "heights_of_windows"]
 
 
@@ -40,13 +36,11 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
     """All numbers of road points, outline, image, paint, markings and lines; `progress` is that of the last three. The executor is closed."""
     made, path = sample
     with pytest.MonkeyPatch.context() as patch:
-        for module in (extract, correction, point_density, evidence):
-            patch.setattr(module, "STRETCH_POINTS", 40_000)
+        patch.setattr(section_store, "STRETCH_POINTS", 40_000)
         patch.setattr(ground_grid, "SURFACE", replace(ground_grid.SURFACE, measured_windows=2))
         patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, looked_windows=1))
         patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, pieces_per_task=3))
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
-        patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
         patch.setattr(outliers, "TASK_WINDOWS", 1)
         patch.setattr(heights, "HEIGHT_POINTS", 1)
@@ -58,8 +52,8 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         survey = opening.open_survey([path], made.trajectory, execution=ExecutionSettings(work_folder=str(work.path) if work else ""))
         try:
             edges = draw_boundaries(find_curb_points(survey, BoundarySettings("profiles")), survey.frame).edges
-            road_points, surface = extract_road_surface(survey, edges)
-            density = cube_densities(road_points)
+            road_points, surface = extract_road_surface(survey, edges, counted=True)
+            density = road_points.density
             selected = [np.array(road_points.section(*key).records).tobytes() for key in road_points.all_sections()]
             road_points, report = correct_intensity(road_points, survey.frame)
             image = make_intensity_image(road_points)

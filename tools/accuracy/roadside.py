@@ -3,8 +3,7 @@
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.core.survey.trajectory.reader import read_trajectory
 from lanewright.products.inventory.borders import BorderLayers
-from lanewright.products.inventory.roadside.find import find_roadside
-from lanewright.products.inventory.roadside.result import roadside_to_features
+from lanewright.products.inventory.roadside.find import find_roadside, roadside_to_features
 
 from .streets import distance, sampled
 

@@ -25,7 +25,7 @@ def main():
 
 def write(folder, name, one):
     """The files of one road map, and the JSON with what must be found in them."""
-    from lanewright.products.export.cad.dxf import dxf_lines, write_dxf
+    from lanewright.products.cad import dxf_lines, write_dxf
     from lanewright.products.export.inferred_ways import with_inferred_ways
     from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
     from lanewright.products.export.map_layers import reference_of_crs

@@ -7,26 +7,28 @@ readings gives a width and how well it fits the room, the usual width of lanes a
 from __future__ import annotations
 
 import numpy as np
+from scipy.special import ndtr
 
 from ...countries.neutral import NEUTRAL
 from .candidates import Candidates
 from .evidence import Evidence
 from .weights import CURB, DOUBLE, ISLAND, PAVEMENT, SAME_LANE, SURFACE_END, EstimateWeights
 
-WIDTH, SECOND_WIDTH, NATS = range(3)   # columns of `lanes_beside`
+WIDTH, SECOND_WIDTH, NATS, BEYOND = range(4)   # columns of `lanes_beside`
 
 
 def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w: EstimateWeights) -> np.ndarray:
-    """(I, M, 2, 3) of a lane on the left and on the right of each boundary: its width, m, the next probable one, and by how many nats it is less so.
+    """(I, M, 2, 4) of a lane on the left and on the right of each boundary, see below.
 
-    Without a second width the nats are inf.
+    These are its width, m, the next probable one, by how many nats that is less so, inf without one, and, where it lies apart from the boundary, the
+    room beyond it, m, else NaN.
 
     Parameters
     ----------
     usual : m, width of lanes of the road; shown : whether the lines of the road show it
     """
-    result = np.empty((*c.left.shape, 2, 3))
-    result[..., :] = usual, np.nan, np.inf
+    result = np.empty((*c.left.shape, 2, 4))
+    result[..., :] = usual, np.nan, np.inf, np.nan
     i, m = np.nonzero(c.valid & c.bounding)
     if not len(i):
         return result
@@ -51,7 +53,7 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
     driven = places.means(np.where(passes > 0, near, np.nan), w.laid_out)
     sigma = w.track_sigma / np.sqrt(np.maximum(places.means(passes.astype(float), w.laid_out), 1e-9))
     share = np.array([part for _, _, part in w.left_over_beside])
-    nats, width = _readings(room, driven, sigma, usual_there, like, share, w)
+    nats, width, spread = _readings(room, driven, sigma, usual_there, like, share, w)
     known = np.isfinite(room) & np.isfinite(driven) & np.isfinite(nats).any(axis=0)
     if known.any():
         # lanes nobody drove in are like those beside curbs that were driven on the same road
@@ -61,8 +63,9 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
         driven_width = np.average(width[nats.argmin(axis=0), np.arange(len(i))][known], weights=length)
         usual_there = np.where(np.isfinite(between), between, driven_width)
         alike = _readings(room, driven, sigma, usual_there, np.full(len(i), w.like_lines), share, w)
-        nats, width = (np.where(np.isnan(driven), *values) for values in zip(alike, (nats, width)))
-    result[i, m, side] = _chosen(places, room, lined, across, nats, width, w)
+        nats, width, spread = (np.where(np.isnan(driven), *values) for values in zip(alike, (nats, width, spread)))
+    chosen = _chosen(places, room, lined, across, nats, width, spread, w)
+    result[i, m, side] = np.column_stack([chosen, _driven_apart(offset, room, chosen[:, WIDTH], w)])
     return result
 
 
@@ -94,8 +97,16 @@ def _driven_beside(offset, room, w):
     return np.where(inside, offset, 0.0).sum(axis=0) / np.maximum(number, 1), number
 
 
+def _driven_apart(offset, room, width, w):
+    """(N,) m beyond a lane that is driven apart from the line beside it, as where this moves aside for a lane that opens; NaN where it is not."""
+    with np.errstate(invalid="ignore"):
+        nearest = np.where((offset > 0) & (offset < room), offset, np.inf).min(axis=0, initial=np.inf)
+        apart = np.minimum(nearest - width / 2, room - width)
+        return np.where(np.isfinite(nearest) & (apart > w.driven_sigma), room - width - apart, np.nan)
+
+
 def _readings(room, driven, track_sigma, usual, like, share, w):
-    """(R, N) nats and widths, m, of the readings of strips: of what is left over beside the lane, of lanes as wide as between lines and of others.
+    """(R, N) nats, widths and their sigma, m, of the readings of strips: of what is left over, of lanes as wide as between lines and of others.
 
     `like` : (N,) share of those as wide as between lines; `share` : of what is left over; the rest of it may be anything, the last two readings
     """
@@ -120,15 +131,28 @@ def _readings(room, driven, track_sigma, usual, like, share, w):
     nats = nats + np.where(np.isfinite(driven), 0.5 * (shown**2 / variance + np.log(2 * np.pi * variance)), 0.0)
     width = width + np.where(np.isfinite(driven), shown * spread / variance, 0.0)
     possible = (width >= NEUTRAL.narrowest_lane) & (width <= np.fmin(room, w.widest_beside) + SAME_LANE)
-    return np.where(possible, nats, np.inf), width
+    return np.where(possible, nats, np.inf), width, np.sqrt(np.where(np.isfinite(driven), spread * (variance - spread) / variance, spread))
 
 
-def _chosen(places, room, lined, across, nats, width, w):
-    """(N, 3) width, second width and nats of the most probable reading; a road is laid out alike as far as its line goes on."""
+def _chosen(places, room, lined, across, nats, width, spread, w):
+    """(N, 3) width, second width and nats; a road is laid out alike as far as its line goes on.
+
+    The width is that of the most probable reading, or one towards the next, with which the lane is most often within SAME_LANE, and within a third of
+    that, which counts less.
+    """
     alike = np.stack([places.means(np.where(np.isfinite(part), part, np.nan), w.repeats) for part in nats])
     nats = np.where(np.isfinite(nats), alike, np.inf)
     order, columns = np.argmin(nats, axis=0), np.arange(len(room))
     first = width[order, columns]
+    apart = np.where(np.abs(width - first) > SAME_LANE, nats, np.inf)
+    other = np.where(np.isfinite(apart).any(axis=0), width[apart.argmin(axis=0), columns], first)
+    with np.errstate(invalid="ignore"):
+        share = np.nan_to_num(np.exp(nats.min(axis=0) - nats))
+    between = first + np.array(w.between_widths)[:, None] * (other - first)
+    off = np.abs(between[:, None] - width)
+    right = sum(value * (share * (ndtr((reach - off) / spread) - ndtr((-reach - off) / spread))).sum(axis=1)
+                for reach, value in ((2 * SAME_LANE, 1.0), (2 * SAME_LANE / 3, w.nearer)))
+    first = between[right.argmax(axis=0), columns]
     apart = np.where(np.abs(width - first) > 2 * SAME_LANE, nats, np.inf)
     second = np.argmin(apart, axis=0)
     found = np.isfinite(apart[second, columns])

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
-from .beside import NATS, SECOND_WIDTH, WIDTH
+from .beside import NATS, SECOND_WIDTH
 from .candidates import Candidates
 from .evidence import Evidence
 from .sequence import (
@@ -201,7 +201,7 @@ class LaneSpan:
     right: int
     place: int   # from the right, of `count` lanes between them
     count: int
-    beside: float   # m, how wide a lane is that lies alone beside the one of them that is painted
+    beside: np.ndarray   # (4,) as of `lanes_beside`, of a lane that lies alone beside the one of them that is painted
     direction: int
     probability: float   # 0 to 1, of a lane of either direction there, with the posterior of RoadEstimate
     confidence: float   # 0 to 1, of a lane of either direction there, with the sureness of RoadEstimate
@@ -230,7 +230,7 @@ def _lane_spans(estimate, part):
         _second_readings(estimate, lanes, lane_rows, way, part), _second_places(estimate, lanes, strips, lane_rows, way))]
     k = 0
     of_best = [values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first)]
-    beside = beside_of(c, strips.interval[best], strips.left[best], strips.right[best])[:, WIDTH]
+    beside = beside_of(c, strips.interval[best], strips.left[best], strips.right[best])
     for row, (i, m, end, number, first) in enumerate(zip(*of_best)):
         # what the borders of its lanes separate, from left to right
         uses = [CENTRE_LINE if inner == first else LANE_LINE for inner in range(number + 1)]
@@ -239,7 +239,7 @@ def _lane_spans(estimate, part):
             direction = estimate.first_direction if lane < first else -estimate.first_direction
             probability, confidence, directed, turned = shares[k].tolist()
             spans.append(LaneSpan(
-                i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - lane, number, float(beside[row]), -direction if turned else direction,
+                i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - lane, number, beside[row], -direction if turned else direction,
                 probability, confidence, 1 - directed if turned else directed, uses[lane], uses[lane + 1], seconds[k]))
             k += 1
     return spans
@@ -271,7 +271,7 @@ def _lanes_of(estimate, strips):
 def _lanes(c, lane_width, first_direction, strips):
     row = strips.interval
     d_left, width_each = lane_places(c.right[row, strips.left], c.left[row, strips.right], c.made_of[row, strips.left], c.made_of[row, strips.right],
-                                     strips.number, lane_width, beside_of(c, row, strips.left, strips.right)[:, WIDTH])
+                                     strips.number, lane_width, beside_of(c, row, strips.left, strips.right))
     of = np.repeat(np.arange(len(row)), strips.number)
     place = np.arange(len(of)) - (np.cumsum(strips.number) - strips.number)[of]
     way = np.where(place < strips.first[of], first_direction, -first_direction)

@@ -14,7 +14,7 @@ import numpy as np
 from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
 from ..weights import LANES
-from .beside import WIDTH
+from .beside import BEYOND, WIDTH
 from .candidates import FAR, Candidates
 from .evidence import BIN, Evidence
 from .weights import (
@@ -51,22 +51,24 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     ----------
     left, right : m, offsets of the two boundaries of each strip; made_left, made_right : SOLID ... ISLAND, what they are made of
     number : lanes in the strip; usual : m, the usual width of a lane
-    beside : m, how wide one lane is beside the one of the two that is painted
+    beside : (..., 4) as of `lanes_beside`, of one lane beside the one of the two that is painted
     """
     open_left, open_right = UNPAINTED[made_left], UNPAINTED[made_right]
     loose = open_left ^ open_right
     each_width = (left - right) / number
-    alone = np.where(np.equal(number, 1), beside, usual)
+    alone = np.where(np.equal(number, 1), beside[..., WIDTH], usual)
     hidden = loose & beside_surface_end(made_left, made_right)
     # the room of an interval is not quite the same at all its places
-    full = np.abs(each_width - alone) < 2 * SAME_LANE
+    full = np.abs(each_width - alone) < SAME_LANE
     likely = beside_island(made_left, made_right) & (each_width > LANES.likely_share[0] * usual) & (each_width < LANES.likely_share[1] * usual)
     each_width = np.select([hidden, loose & likely, loose & ~full], [alone, np.maximum(each_width, usual), np.minimum(each_width, alone)], each_width)
-    return np.where(loose & open_left, right + number * each_width, left), each_width
+    begin = np.where(loose & open_left, right + number * each_width, left)
+    apart = loose & np.equal(number, 1) & (beside[..., BEYOND] >= 0)
+    return np.where(apart, np.where(open_left, left - beside[..., BEYOND], right + beside[..., BEYOND] + each_width), begin), each_width
 
 
 def beside_of(c: Candidates, interval: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """(N, 3) of `lanes_beside` for strips between two boundaries of their intervals, on the inner side of the one that is painted."""
+    """(N, 4) of `lanes_beside` for strips between two boundaries of their intervals, on the inner side of the one that is painted."""
     return np.where(UNPAINTED[c.made_of[interval, left]][:, None], c.beside[interval, right, 0], c.beside[interval, left, 1])
 
 
@@ -118,10 +120,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     cost = np.full((len(STRIPS), count, size, size), np.inf)
     lanes, first_lanes = np.zeros((2, len(STRIPS), count, size, size), np.int8)
     between = np.where(width > NEUTRAL.widest_lane, w.unused_wide, w.unused_asphalt[0])
-    # beyond short dashes the bay that they open, however it is bounded
-    opened = np.nan_to_num(c.short) > 0.5
-    lined = both_paint & ~(opened[:, :, None] | opened[:, None, :])
-    unused = np.where(lined, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, w.unused_asphalt[1]))
+    unused = np.where(both_paint, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, w.unused_asphalt[1]))
     inside = _inside(evidence.driven, c)
     idle = scale * (np.where(hatched, 0.0, unused) + rest_cost) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
     cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)
@@ -137,11 +136,13 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     possible = ordered & ~outside & (any_paint | bare) & (width < LANES.max_lanes * NEUTRAL.widest_lane)
     base = scale * (through + hatched * w.hatched_lane + uncovered * w.off_asphalt)
     driven_there = inside.any(0)
-    beside = np.where(UNPAINTED[made_left], c.beside[:, None, :, 0, WIDTH], c.beside[:, :, None, 1, WIDTH])
+    beside = np.where(UNPAINTED[made_left][..., None], c.beside[:, None, :, 0], c.beside[:, :, None, 1])
     for number in range(1, LANES.max_lanes + 1):
         begin, width_each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, beside)
         fits = _width_cost(np.where(loose, np.minimum(width_each, lane_width), width_each), lane_width, w) \
             + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
+        if number == 1:
+            fits += w.driven_astride * (loose & (beside[..., BEYOND] >= 0))
         # what lies beyond the end of the surface
         beyond = np.clip(1 - width / np.maximum(number * width_each, 0.1), 0, 1) * hidden
         total = base + scale * (fits + beyond * w.off_asphalt)
@@ -375,9 +376,8 @@ def _boundary_costs(c, stops, w):
     scale = c.observations(w)[:, None]
     table = w.boundary[c.made_of]
     stopped = _stops_across(stops, (c.left + c.right) / 2)
-    for share, costs in ((c.short, np.array(w.short_dashed)), (c.wide, w.wide_line[c.made_of.clip(SOLID, DASHED)])):
-        share = np.nan_to_num(share)[..., None]
-        table = np.where(share > 0, (1 - share) * table + share * costs, table)
+    wide = np.nan_to_num(c.wide)[..., None]
+    table = np.where(wide > 0, (1 - wide) * table + wide * w.wide_line[c.made_of.clip(SOLID, DASHED)], table)
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
     for left in STRIPS:
         for right in STRIPS:
@@ -446,7 +446,7 @@ def _occupancy(candidates: Candidates, sections: Sections, lane_width: float) ->
     strips = lane_strips(sections)
     i, k, m, end, number = strips.interval, strips.section, strips.left, strips.right, strips.number
     d_left, width_each = lane_places(candidates.right[i, m], candidates.left[i, end], candidates.made_of[i, m], candidates.made_of[i, end], number,
-                                     lane_width, beside_of(candidates, i, m, end)[:, WIDTH])
+                                     lane_width, beside_of(candidates, i, m, end))
     d_right = d_left - number * width_each
     split = d_left - width_each * strips.first
     for direction, (high, low) in enumerate(((d_left, split), (split, d_right))):

@@ -25,7 +25,7 @@ from ..road_grid import CELL_UNITS, occupied, track_reach
 from ..weights import CLASSES, ROWS, SHAPES
 from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, filled, relative_contrast, too_pale
 from .figures import Candidate, figures_of_group, painted_figures
-from .grouping import RoadPaint, connected_points, told_by_one_road
+from .grouping import connected_points
 from .marking_objects import MarkingObjects, make_marking_objects
 from .repeating import Comb, Crossing, Stripe, blocks_of_strip, comb_of_window, give_way_blocks, stripes_of_crossing, zebra_stripes
 from .shape import Shape, drawn_outline, lifted, measure, smallest_rectangle
@@ -72,31 +72,23 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     works = [ApartWork(executor, line.number) for line in lines]
     stripes_by_road = [_stripes_of_crossings(records, line, work, part.part(0.0, 0.5))
                        for (records, _), line, work, part in zip(connected, lines, works, second)]
-    unstriped = [(records.take(other_rows), labels[other_rows]) for (records, labels), (_, other_rows) in zip(connected, stripes_by_road)]
     # what is not used any more is let go, since the paint of a whole road is in memory
+    paint = [(records.take(other_rows), labels[other_rows]) for (records, labels), (_, other_rows) in zip(connected, stripes_by_road)]
     del connected
-    paint = told_by_one_road(unstriped, lines, settings.distance)
-    del unstriped
-    pieces_by_road = [_pieces(of_road, work, settings, part.part(0.5, 1.0)) for of_road, work, part in zip(paint, works, second)]
+    pieces_by_road = [_pieces(*of_road, work, settings, part.part(0.5, 1.0)) for of_road, work, part in zip(paint, works, second)]
     del paint
     blocks = _blocks_of_all(pieces_by_road)
     rows, polygons, refused = [], [], 0
     cluster = [np.zeros(count, np.int32) for count in counts]
     number = 0
-    for k, ((stripes, _), pieces, line, block, part) in enumerate(zip(stripes_by_road, pieces_by_road, lines, blocks, last)):
+    for k, ((stripes, other_rows), pieces, line, block, part) in enumerate(zip(stripes_by_road, pieces_by_road, lines, blocks, last)):
         painted, without = _markings(pieces, block, settings, marking_points.has_corrected, part.part(0.0, 0.5))
         refused += without
         markings = sorted([*stripes, *painted], key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-        for marking, drawn in zip(markings, _outlines(markings, pieces.paint.records, line, pieces.work, part.part(0.5, 1.0))):
+        for marking, drawn in zip(markings, _outlines(markings, pieces.paint, line, pieces.work, part.part(0.5, 1.0))):
             number += 1
             check_cancelled()
-            if marking.outline is not None:
-                cluster[k][marking.rows] = number
-            else:
-                owner, row = pieces.paint.home[marking.rows].T
-                for road_index in np.unique(owner).tolist():
-                    other_rows = stripes_by_road[road_index][1]
-                    cluster[road_index][other_rows[row[owner == road_index]]] = number
+            cluster[k][other_rows[marking.rows] if marking.outline is None else marking.rows] = number
             polygons += drawn
             rows += [_row(marking, number, line, frame)] * len(drawn)
     for road, numbers in zip(roads, cluster):
@@ -109,20 +101,19 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
 class _Pieces(NamedTuple):
     """Clusters of one road, before it is known what they are."""
 
-    paint: RoadPaint
-    records: Columns   # their points, one cluster after the other, and the rows of these in the paint of the road but for stripes of crossings
+    paint: Columns   # of the road but for stripes of crossings
+    records: Columns   # their points, one cluster after the other, and the rows of these in the paint
     order: np.ndarray
     bounds: list[tuple[int, int]]   # first and end row of each cluster in the records, and its Shape
     shapes: list[Shape]
     work: ApartWork
 
 
-def _pieces(paint, work, settings, progress):
+def _pieces(paint, labels, work, settings, progress):
     """_Pieces of one road: compound clusters divided, what wear has parted joined."""
-    records = paint.records
-    split = split_compounds(records, _with_rows_divided(records, paint.labels), partial(work.parts, progress=progress.part(0.0, 0.3)))
+    split = split_compounds(paint, _with_rows_divided(paint, labels), partial(work.parts, progress=progress.part(0.0, 0.3)))
     order, starts, _ = _by_cluster(split, 1)
-    records = records.take(order)
+    records = paint.take(order)
     pieces = work.shapes(records, starts, progress.part(0.3, 0.9))
     joins = join_fragments(pieces, settings.classes.max_width)
     again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
@@ -404,7 +395,7 @@ class ApartWork:
         bounds = np.cumsum([0, *(len(spots) for spots, _ in crossings)])
         rows = np.concatenate([np.empty(0, np.intp), *(spots for spots, _ in crossings)])
         stripes = self._run(_zebra_stripes, lambda a, b: tuple(values[rows[bounds[a]:bounds[b]]] for values in (places, way)), bounds, progress,
-                            alone=True, looks=[tuple(comb) for _, comb in crossings])
+                            looks=[tuple(comb) for _, comb in crossings])
         return [[Stripe(*stripe) for stripe in crossing_stripes] for crossing_stripes in stripes]
 
     def parts(self, s: np.ndarray, d: np.ndarray, spacing: np.ndarray, spans: Sequence[tuple[int, int]],
@@ -412,8 +403,7 @@ class ApartWork:
         """Of each compound cluster, which begins and ends at rows of the columns, the part of every point, and how many parts there are."""
         rows = np.concatenate([np.empty(0, np.intp), *(np.arange(first, end) for first, end in spans)])
         bounds = np.cumsum([0, *(end - first for first, end in spans)])
-        return self._run(_parts_of_compounds, lambda a, b: tuple(column[rows[bounds[a]:bounds[b]]] for column in (s, d, spacing)), bounds, progress,
-                         alone=True)
+        return self._run(_parts_of_compounds, lambda a, b: tuple(column[rows[bounds[a]:bounds[b]]] for column in (s, d, spacing)), bounds, progress)
 
     def shapes(self, records: Columns, bounds: np.ndarray, progress: Progress) -> list[Shape]:
         """The Shape of each cluster; bounds : of the clusters in the records."""
@@ -436,9 +426,9 @@ class ApartWork:
         return self.executor.run(phase, groups, progress.part(begin, end))
 
     def _run(self, function: Callable[..., Any], columns: Callable[[int, int], tuple[np.ndarray, ...]], bounds: np.ndarray, progress: Progress,
-             alone: bool = False, looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),
+             looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),
              read: Callable[[Any], list[Any]] = list) -> list[Any]:
-        """Results of all clusters; threads of this process take one after the other, or each `alone`: for the small ones Python is the cost.
+        """Results of all clusters.
 
         `columns` gives those of the clusters from a number to before another, one after the other: PHASE_POINTS are there at a time.
         """
@@ -446,10 +436,7 @@ class ApartWork:
         batches, results = _cuts(bounds, PHASE_POINTS), []
         for begin, end in zip(batches[:-1].tolist(), batches[1:].tolist()):
             batch_bounds = bounds[begin:end + 1]
-            if self.executor.folder is not None:
-                cuts = _cuts(batch_bounds, TASK_POINTS)
-            else:
-                cuts = np.arange(len(batch_bounds)) if alone else np.array([0, len(batch_bounds) - 1])
+            cuts = _cuts(batch_bounds, TASK_POINTS)
             batch_columns = columns(begin, end)
             items = [_item(batch_columns, batch_bounds[a:b + 1] - batch_bounds[0], None if looks is None else list(looks[begin + a:begin + b]))
                      for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist())]

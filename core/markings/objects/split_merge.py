@@ -101,10 +101,7 @@ def _parts_of_filled(cells):
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
     # scan lines lie apart within a bar
     bars = rest[_in_runs(turned[rest], COMPOUNDS.max_paint_gap, COMPOUNDS.min_run_across)]
-    before, count = count, _number_strips(parts, count, turned, bars, COMPOUNDS.max_paint_gap, COMPOUNDS.max_scan_gap, COMPOUNDS.min_run_across)
-    along = np.ascontiguousarray(cells[:, 0])
-    for _, bar in members_of(np.where(parts >= before, parts, -1)):
-        complete_bar(parts, bar, turned, along)
+    count = _number_strips(parts, count, turned, bars, COMPOUNDS.max_paint_gap, COMPOUNDS.max_scan_gap, COMPOUNDS.min_run_across)
     if not count:
         return bar_with_lines(cells)
     rest = np.flatnonzero(parts < 0)
@@ -306,23 +303,6 @@ def even_strip(cells: np.ndarray) -> tuple[np.ndarray, float]:
     even = np.flatnonzero(painted & (high - low <= usual + COMPOUNDS.width_tolerance))
     middle = np.interp(step, even, (low[even] + high[even]) / 2)
     return np.abs(cells[:, 1] - middle) <= (usual + COMPOUNDS.width_tolerance) / 2, usual
-
-
-def complete_bar(parts: np.ndarray, bar: np.ndarray, turned: np.ndarray, along: np.ndarray) -> None:
-    """Give a bar, in `parts`, what is left over between its front and its rear: where it is worn it is no less its paint.
-
-    Parameters
-    ----------
-    parts : (K,) int, the part of every cell, below 0 for what is left over; bar : (N,) the numbers of the bar's cells, ascending
-    turned : (K, 2) int cells, across the road first, sorted along it; along : (K,) its second column
-    """
-    bar_cells = turned[bar]
-    (left, front), (right, rear) = bar_cells.min(axis=0), bar_cells.max(axis=0)
-    window = stretch_of(along, front, rear)
-    leftover = window.start + np.flatnonzero((parts[window] < 0) & (turned[window, 0] >= left) & (turned[window, 0] <= right))
-    rows = np.sort(np.concatenate([bar, leftover]))
-    inside, _ = even_strip(turned[rows])
-    parts[rows[inside & (parts[rows] < 0)]] = parts[bar[0]]
 
 
 def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:

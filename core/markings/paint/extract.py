@@ -25,21 +25,17 @@ from ..weights import ASPHALT
 from .settings import MarkingSettings, PaintMethod
 from .windows import (
     THRESHOLD_WINDOW,
-    Bins,
     Burn,
     PaintSource,
-    WindowExtractor,
-    bins_about,
     burn_points,
-    levels_of_windows,
     marking_mask,
-    paint_of_windows,
+    paint_of_window,
     place_of,
     points_of_rows,
     windows_of,
 )
 
-WINDOWS_PER_TASK = 4   # derived: windows of 20 m that a worker process is given together: at everyday density a fifth of a second of its time
+WINDOWS_PER_TASK = 12   # derived: windows of 20 m that a worker process is best given together: it looks at two more on either side
 
 
 def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
@@ -88,28 +84,18 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
     """Paint by multi-thresholds on the image, and from averages where points are noisy."""
     source = PaintSource(road_points, image, frame)
     executor: Executor = road_points.executor if isinstance(image, TiledImage) and image.folder is not None else THREADS
-    in_process = executor.folder is None   # the threads of this process share what neighbouring windows need
     paint = replace(RoadPoints.empty_like(road_points), has_spacing=True)
     windows = [(road, windows_of(road_points, road)) for road in road_points.roads()]
     scatter = ScannerScatter.of(road_points, [(road, window) for road, numbers in windows for window in numbers], executor, progress.part(0.0, 0.1))
     progress.info(scatter.summary(THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE))
     noisy = {road: sorted(scatter.noisy_windows(road)) for road, _ in windows}
-    masked, size = burn is not None, 1 if in_process else WINDOWS_PER_TASK
-    stretches = [(road, first, min(first + size, numbers[-1] + 1)) for road, numbers in windows for first in numbers[::size]]
-    bins_of: dict[int, dict[int, Bins]] = {road: {} for road, _ in windows}
-    if in_process:
-        source.kept = {road: WindowExtractor(source, (road, numbers[0], numbers[-1] + 1), settings, noisy[road], masked) for road, numbers in windows}
-    else:
-        phase = Phase(levels_of_windows, source, (settings, noisy), lambda item: place_of(road_points, item))
-        for (road, first, _), levels in zip(stretches, executor.run(phase, stretches, progress.part(0.1, 0.4))):
-            bins_of[road].update(enumerate(levels, first))
-    phase = Phase(paint_of_windows, source, (settings, noisy, masked), lambda item: place_of(road_points, item[0]))
-    items = [(stretch, {} if in_process else bins_about(stretch, bins_of[stretch[0]])) for stretch in stretches]
-    for (road, *_), painted in zip(stretches, executor.run(phase, items, progress.part(0.1 if in_process else 0.4, 1.0))):
-        for columns, x, y in painted:
-            paint.store.append(road, Columns(columns, paint.store.dtype))
-            if burn is not None:
-                burn(x, y)
+    items = [(road, window) for road, numbers in windows for window in numbers]
+    phase = Phase(paint_of_window, source, (settings, noisy, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
+                  together=WINDOWS_PER_TASK)
+    for (road, _), (columns, x, y) in zip(items, executor.run(phase, items, progress.part(0.1, 1.0))):
+        paint.store.append(road, Columns(columns, paint.store.dtype))
+        if burn is not None:
+            burn(x, y)
     return paint
 
 
@@ -117,7 +103,6 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
 # scanners, a sixth under mirror scanners. A scanner is judged by all roads of a survey.
 
 MAX_SCATTER_POINTS = 100_000   # derived: of a window that are examined; of twice as many an evenly spread share
-EXAMINED_WINDOWS = 16   # derived: windows of 20 m that a worker process is given together
 SAMPLED_WINDOW_STEP = 4   # derived: every fourth window of a road is examined; the others only for scanners that are in none of these
 
 WindowKey = tuple[int, int]   # road, number of the window
@@ -140,12 +125,10 @@ class ScannerScatter:
         sampled = {key for key in windows if key[1] % SAMPLED_WINDOW_STEP == 0}
         roads = {road for road, _ in sampled}
         sampled |= {key for key in windows if key[0] not in roads}
-        together = EXAMINED_WINDOWS if executor.folder else 1
         phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)))
 
         def run(items, part):
-            tasks = [items[k:k + together] for k in range(0, len(items), together)]
-            return [measured for entry in executor.run(phase, tasks, part) for measured in entry]
+            return list(executor.run_together(phase, items, WINDOWS_PER_TASK, part))
 
         measured = run([(*key, key in sampled) for key in windows], progress)
         counts = {key: count for key, (count, _) in zip(windows, measured)}

@@ -33,6 +33,7 @@ from .settings import MarkingSettings
 
 THRESHOLD_WINDOW = 500   # derived: cells: thresholds are taken from 20 m of road
 WINDOW_HALO = 100   # derived: cells: 4 m around a window that are read too, for rims and runs that cross its ends
+WINDOWS_KEPT = 8   # derived: windows on either side whose data are kept: more than threads work on at once, and than thresholds mostly look at
 MAX_HEIGHTS = 30_000   # derived: points of a piece of 5 m whose heights are compared; of twice as many an evenly spread share
 MAX_OFFSET_POINTS = 300_000   # derived: points of a window whose offsets are kept; of twice as many an evenly spread share
 
@@ -60,73 +61,54 @@ def place_of(road_points: RoadPoints, windows: Windows) -> str:
 
 
 class PaintSource:
-    """What paint is extracted from: road points, their image in memory or on disk, and the frame, by default that of the survey.
-
-    kept : {road: WindowExtractor} whose windows share what they compute; where there is none, each stretch of windows is worked on by itself
-    """
+    """What paint is extracted from in one phase: road points, their image in memory or on disk, and the frame, by default that of the survey."""
 
     def __init__(self, road_points: RoadPoints, image: Any, frame: RoadFrame | None = None):
         self.road_points, self.image, self.frame = road_points, image, frame or road_points.survey.frame
-        self.kept: dict[int, WindowExtractor] = {}
+        self._extractors: dict[int, WindowExtractor] = {}
+        self._lock = threading.Lock()
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open points and image."""
         return Recipe("core.markings.paint.windows:PaintSource", dict(road_points=self.road_points.recipe(folder), image=self.image.recipe(folder)))
 
-
-def levels_of_windows(source: PaintSource, windows: Windows, settings: MarkingSettings, noisy: dict[int, list[int]]) -> list[Bins]:
-    """The phase that finds the level of asphalt: its bins and Otsu's splits in each window, empty where there are no data.
-
-    `noisy` : {road: windows with noisy points}, which have no level.
-    """
-    extractor = WindowExtractor(source, windows, settings, noisy.get(windows[0], ()))
-    return [extractor.bins(window) for window in range(*windows[1:])]
+    def extractor(self, road: int, *others: Any) -> WindowExtractor:
+        """The one WindowExtractor of a road, whose windows share what they compute; `others` : its further arguments, always the same."""
+        with self._lock:
+            if road not in self._extractors:
+                self._extractors[road] = WindowExtractor(self, road, windows_of(self.road_points, road), *others)
+            return self._extractors[road]
 
 
-def paint_of_windows(source: PaintSource, item: tuple[Windows, dict[int, Bins]], settings: MarkingSettings, noisy: dict[int, list[int]],
-                     masked: bool) -> list[Paint]:
+def paint_of_window(source: PaintSource, item: tuple[int, int], settings: MarkingSettings, noisy: dict[int, list[int]], masked: bool) -> Paint:
     """The phase that extracts paint.
 
-    `item` : Windows of a road, and the bins that are known, by window; `masked` : whether the mask's pixels are asked for.
+    `item` : number of a road and of a window; `noisy` : {road: windows with noisy points}; `masked` : whether the mask's pixels are asked for.
     """
-    windows, bins = item
-    road, first, end = windows
-    extractor = source.kept.get(road) or WindowExtractor(source, windows, settings, noisy.get(road, ()), masked, bins)
-    return [extractor.extract(window) for window in range(first, end)]
-
-
-def bins_about(windows: Windows, bins: dict[int, Bins]) -> dict[int, Bins]:
-    """Of the bins of all windows of a road those that the thresholds of some depend on: up to the next ones with data and one more."""
-    _, first, end = windows
-    low = next((w for w in range(first - 1, min(bins) - 1, -1) if bins[w]), min(bins)) - 1
-    high = max(next((w for w in range(end, max(bins) + 1) if bins[w]), max(bins)), end) + 1
-    return {w: bins[w] for w in range(low, high + 1) if w in bins}
+    road, window = item
+    return source.extractor(road, settings, noisy.get(road, ()), masked).extract(window)
 
 
 class WindowExtractor:
     """Extracts paint from the windows of one road, in two steps: the level of asphalt, then the cells that are brighter.
 
-    A window is extracted when the level of its neighbours is known; its data are kept until then. Several threads may extract windows at once, in
-    the order of the road.
+    A window is extracted when the level of its neighbours is known; its data are kept until then. Several threads may extract windows at once, about
+    in the order of the road.
 
     Parameters
     ----------
-    masked : whether the mask's pixels are asked for
+    windows : numbers of all windows of the road
     noisy : windows with noisy points: there paint is searched for in averages, and no other window's threshold depends on them
-    bins : {window: bins} of `bins_about`; none where all windows of the road are asked for
+    masked : whether the mask's pixels are asked for
     """
 
-    def __init__(self, source: PaintSource, windows: Windows, settings: MarkingSettings, noisy: Collection[int] = (), masked: bool = False,
-                 bins: dict[int, Bins] | None = None):
-        road, *between = windows
+    def __init__(self, source: PaintSource, road: int, windows: range, settings: MarkingSettings, noisy: Collection[int] = (), masked: bool = False):
         self.road_points, self.image, self.frame, self.road, self.settings = source.road_points, source.image, source.frame, road, settings
         self.masked, self.noisy = masked, set(noisy)
-        # the windows asked for, and those with levels
-        self.begin, self.end = between
-        self.first, self.last = (min(bins), max(bins)) if bins else (self.begin, self.end - 1)
+        self.first, self.last = windows[0], windows[-1]
         # by window
         self._pieces: dict[int, list[PieceOfRoad]] = {}
-        self._bins: dict[int, Bins] = dict(bins or {})
+        self._bins: dict[int, Bins] = {}
         self._views: dict[int, _WindowView | None] = {}
         # data that several threads ask for are computed by one
         self._bin_locks: dict[int, threading.Lock] = {}
@@ -134,17 +116,19 @@ class WindowExtractor:
 
     def extract(self, window: int) -> Paint:
         """Paint of one window."""
+        for kept in (self._pieces, self._views):
+            for other in [other for other in list(kept) if abs(other - window) > WINDOWS_KEPT]:
+                kept.pop(other, None)
         return self._from_averages(window) if window in self.noisy else self._from_thresholds(window)
 
     def _points(self, first, last):
         return points_of_rows(self.road_points, self.road, first, last)
 
     def _in_cells(self, window):
-        """[PieceOfRoad] of a window's own points, kept for its neighbours until it is extracted; of one that is not asked for those of the halo."""
+        """[PieceOfRoad] of a window's own points, kept for its neighbours until it is extracted."""
         with self._piece_locks.setdefault(window, threading.Lock()):
             if window not in self._pieces:
                 first, last = window * THRESHOLD_WINDOW, (window + 1) * THRESHOLD_WINDOW
-                first, last = last - WINDOW_HALO if window < self.begin else first, first + WINDOW_HALO if window >= self.end else last
                 step = max(len(self._points(first, last)) // MAX_OFFSET_POINTS, 1)
                 self._pieces[window] = cells_of_road(self.road_points, self.road, first, last, step)
             return self._pieces[window]

@@ -54,10 +54,7 @@ def phase_along(function: Callable, source: Any, arguments: tuple[Any, ...], wid
         start, end = (k * width for k in section)
         return f"road {road}, {start:.0f} to {end:.0f} m" if survey is None else survey.stretch(road, start, end)
 
-    def size(section):
-        return 0 if survey is None else survey.store.points_between(road, *(k * width for k in section))
-
-    return Phase(function, source, arguments, place, size, join, CURBS.sections_together)
+    return Phase(function, source, arguments, place, join, CURBS.sections_together)
 
 
 def merged_passes(found: Sequence[AnySteps]) -> AnySteps:

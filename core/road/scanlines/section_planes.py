@@ -120,7 +120,7 @@ def all_scanlines(survey: Survey, road: int, settings: ScanlineSettings = Scanli
     sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
 
     phase = Phase(_scanlines_of_section, survey, (road, settings, lattice), lambda section: survey.stretch(road, *section),
-                  lambda section: survey.store.points_between(road, *section), Scanlines.join)
+                  Scanlines.join)
     yield from survey.executor.run(phase, [(a * interval, b * interval) for a, b in sections], progress)
 
 

@@ -17,8 +17,8 @@ from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
+from ...survey.density import counted_cubes, cube_density
 from ...survey.store.road_points import RoadPoints
-from ...survey.store.section_store import STRETCH_POINTS
 from ..weights import SURFACE
 from .ground_change import follow_road, smooth_road
 from .ground_grid import GroundCells, MeasuredGround, windows_of
@@ -50,7 +50,8 @@ class SurfaceSettings:
 
 
 def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, settings: SurfaceSettings = SurfaceSettings(),
-                         progress: Progress = Progress(), ground: MeasuredGround | None = None) -> tuple[RoadPoints, SurfaceOutlines]:
+                         progress: Progress = Progress(), ground: MeasuredGround | None = None,
+                         counted: bool = False) -> tuple[RoadPoints, SurfaceOutlines]:
     """Select the points of the road surface and draw its outline.
 
     Between road edges, all points at the height of the road belong to the surface. The height is followed from the
@@ -60,6 +61,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     straight line; where a side street joins there, the surface goes on into it as far as its ground was scanned.
 
     ground : MeasuredGround that an earlier stage kept, or None
+    counted : whether the density of points is asked for
 
     Returns
     -------
@@ -72,20 +74,23 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
         If no road surface is found.
     """
     road_points = RoadPoints.of_survey(survey)
-    stretches, margins = [], Margins()
+    stretches, margins, cubes = [], Margins(), []
     roads = survey.store.roads()
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         carriageway = find_carriageway(survey, road, edges, settings, part.part(0.0, 0.5), ground)
         if carriageway is None:
             progress.warn(f"Road {road}: no ground was measured near the track, so this road has no surface.")
+            cubes += [(counted_cubes(survey.section(road, number)), None) for number in survey.store.sections(road) if counted]
             continue
-        per_row = _take_points(survey, road, carriageway, road_points, part.part(0.5, 1.0))
+        per_row = _take_points(survey, road, carriageway, road_points, counted, cubes, part.part(0.5, 1.0))
         stretches += outlines(survey.frame, road, carriageway, per_row)
         margins.add(road, carriageway, *(rows_with_edge(edges, road, carriageway.cells.stations, curb) for curb in (True, False)))
     if not len(road_points):
         raise RoadExtractionError("No road surface was found: no points lie under or beside the trajectory at the height "
                                   "of the road. Check that the trajectory belongs to the point cloud.")
+    if counted:
+        road_points.density = tuple(cube_density(part) for part in zip(*cubes))
     surface = SurfaceOutlines.of_rows(stretches, survey.crs, said_of_thin(margins.unknown))
     if surface.thin:
         progress.warn(surface.thin)
@@ -151,15 +156,15 @@ def _has_road(ground, offsets):
     return np.convolve(measured, np.ones(11), "same") > 0
 
 
-def _take_points(survey, road, carriageway, road_points, progress):
-    """Put the surface points of one road into `road_points`; returns the number of points in each row of cells."""
+def _take_points(survey, road, carriageway, road_points, counted, cubes, progress):
+    """Put the surface points of one road into `road_points`, and what is counted of its sections into `cubes`; the points in each row of cells."""
     per_row = np.zeros(len(carriageway.height), np.int64)
     executor, length = survey.executor.passing(), survey.store.section_length
-    stretches = [stretch for stretch in survey.store.stretches(STRETCH_POINTS if executor.folder else 0) if stretch[0] == road]
-    phase = Phase(surface_points, road_points, (), lambda item: survey.stretch(road, item[0][1] * length, item[0][2] * length),
-                  lambda item: survey.store.points_between(road, item[0][1] * length, item[0][2] * length))
-    for index, first_row, rows in executor.run(phase, [(stretch, surface_about(carriageway, stretch, length)) for stretch in stretches], progress):
+    phase = Phase(surface_points, road_points, (counted,), lambda item: survey.stretch(road, item[0][1] * length, item[0][2] * length))
+    items = [(stretch, surface_about(carriageway, stretch, length)) for stretch in survey.store.stretches([road])]
+    for index, first_row, rows, of_sections in executor.run(phase, items, progress):
         road_points.store.adopt(index, executor.folder)
+        cubes += of_sections
         first = first_row - carriageway.cells.first_row
         per_row[first:first + len(rows)] += rows
     return per_row

@@ -402,50 +402,44 @@ class MeasuredGround:
                                          for row, wanted in zip(rows, profiled))
                    if any(window[1:])]
         executor = self.survey.executor.passing()
-        size = SURFACE.measured_windows if executor.folder else 1
-        items = [windows[k:k + size] for k in range(0, len(windows), size)]
         phase = Phase(ground_of_windows, self.survey, (road,), lambda item: self.survey.stretch(
             road, item[0][0] * SURFACE.row_length, (item[-1][0] + SURFACE.window_rows) * SURFACE.row_length))
         self._file = self._file or ArrayFile()
-        for item, measured in zip(items, executor.run(phase, items, progress)):
-            self._keep(road, item, measured)
-
-    def _keep(self, road, item, found):
-        """Put what `ground_of_windows` found of some windows into the file."""
-        for kind, (kept, parts) in enumerate(zip(self._kept, found), 1):
-            for values, row in zip(parts, [window[0] for window in item if window[kind]]):
-                kept[road, row] = self._file.put([values], values.nbytes)
+        for (row, *_), measured in zip(windows, executor.run_together(phase, windows, SURFACE.measured_windows, progress)):
+            for kept, values in zip(self._kept, measured):
+                if values is not None:
+                    kept[road, row] = self._file.put([values], values.nbytes)
 
     def _read(self, kind, road, row, out):
         """Fill an array with what is kept of a window: 0 its cells, 1 its profiles."""
         out[:] = self._file.get(self._kept[kind][road, row], out.size, out.dtype).reshape(out.shape)
 
 
-def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> tuple[np.ndarray, np.ndarray]:
+def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> list[tuple[np.ndarray | None, np.ndarray | None]]:
     """The phase that measures the ground.
 
     windows : what is wanted of each window
 
     Returns
     -------
-    cells : (W, 3, R, C) float32, the attributes CELL_NAMES of the GroundCells of W windows
-    profiles : (V, 5, P, K) float32, the attributes NAMES of the SurfaceProfiles of V windows
+    for each window, None where it is not wanted:
+    cells : (3, R, C) float32, the attributes CELL_NAMES of its GroundCells
+    profiles : (5, P, K) float32, the attributes NAMES of its SurfaceProfiles
     """
-    cells, profiles = [], []
+    result = []
 
     def height(s):
         return survey.road_height(road, s)
 
     for row, with_cells, with_profiles in windows:
         points = survey.window(road, row * SURFACE.row_length, (row + SURFACE.window_rows) * SURFACE.row_length)
-        if with_profiles:
-            profiles.append(SurfaceProfiles.of(points, row * SURFACE.row_length, SURFACE.window_rows * SURFACE.row_length, FRAME.corridor, height,
-                                               lambda seen: ahead_of_vehicle(survey, seen, seen.s)))
-        if with_cells:
-            cells.append(_ground_cells(points, row, SURFACE.window_rows, FRAME.corridor, height))
-    return _stacked(cells, CELL_NAMES), _stacked(profiles, SurfaceProfiles.NAMES)
+        profiles = SurfaceProfiles.of(points, row * SURFACE.row_length, SURFACE.window_rows * SURFACE.row_length, FRAME.corridor, height,
+                                      lambda seen: ahead_of_vehicle(survey, seen, seen.s)) if with_profiles else None
+        cells = _ground_cells(points, row, SURFACE.window_rows, FRAME.corridor, height) if with_cells else None
+        result.append((_stacked(cells, CELL_NAMES), _stacked(profiles, SurfaceProfiles.NAMES)))
+    return result
 
 
-def _stacked(parts, names):
-    """Attributes of each part as one array."""
-    return np.array([[getattr(part, name) for name in names] for part in parts], np.float32)
+def _stacked(part, names):
+    """Attributes of a part as one array; None where there is none."""
+    return None if part is None else np.array([getattr(part, name) for name in names], np.float32)

@@ -1,8 +1,7 @@
 """Strip adjustment: passes over one road are adjusted to each other, where navigation drifted between them.
 
-The correction of each pass is a smooth function of station. It is the least-squares solution for the measured offsets
-between passes, with small changes along the road and small corrections as prior. Two passes meet in their middle,
-because nothing shows which of them is more accurate.
+The correction of each pass is a smooth function of station. It is the least-squares solution for the measured offsets between passes, with small
+changes along the road and small corrections as prior. Two passes meet in their middle, because nothing shows which of them is more accurate.
 """
 
 from __future__ import annotations
@@ -201,7 +200,6 @@ def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: P
 # A drive that was laid on others goes on where it measures alone: it is moved on as where it left them, not back to where it was measured.
 
 
-
 def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: list[PassOffsets]) -> PassCorrections:
     """Corrections of passes with those of the passes that follow or precede them in the same drive and could be compared with no other.
 
@@ -257,7 +255,6 @@ def _led_on(moves, p, before, after):
 
 
 # Where passes still differ after they were laid on each other, and where one was moved that no other confirms, place by place.
-
 
 
 def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np.ndarray, np.ndarray]]) -> list[tuple[float, float, float]]:
@@ -363,21 +360,15 @@ def _further(places):
 # difference in height to millimetres. Across they tell nothing: of a guard rail each drive sees its own side, and rails hide the paint behind them.
 
 
-
 class Beside(NamedTuple):
-    """Two roads, `one` and `other`, that run beside each other.
-
-    stations, places : (N,) m on the first, middles of windows of `correction_step`, and on the second
-    apart : (N,) m of offset, left positive, from the first to the second
-    up : (N,) m by which the points of the second lie higher, NaN where both hardly see the same
-    """
+    """Two roads, `one` and `other`, that run beside each other."""
 
     one: int
     other: int
-    stations: np.ndarray
+    stations: np.ndarray   # stations, places: (N,) m on the first, middles of windows of `correction_step`, and on the second
     places: np.ndarray
-    apart: np.ndarray
-    up: np.ndarray
+    apart: np.ndarray   # (N,) m of offset, left positive, from the first to the second
+    up: np.ndarray   # (N,) m by which the points of the second lie higher, NaN where both hardly see the same
 
 
 def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
@@ -414,11 +405,10 @@ def warnings_of_levels(frame: Any) -> list[str]:
         middle = float(np.median(rise[rows]))
         if np.quantile(np.abs(rise[rows] - middle), ADJUST.share_along) < ADJUST.even_rise:
             first, last = s[rows].min() - REGISTER.correction_step / 2, s[rows].max() + REGISTER.correction_step / 2
-            messages.append(
-                f"Roads {road} and {other_road} run along each other at stations {first:.0f} to {last:.0f} m of road {road}, and one lies "
-                f"{abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two kinds (above the "
-                "ellipsoid and above sea level), and the map shows it twice. Bring the drives to one kind of heights, or process the files of each "
-                "drive by itself.")
+            messages.append(f"Roads {road} and {other_road} run along each other at stations {first:.0f} to {last:.0f} m of road {road}, and one "
+                            f"lies {abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two "
+                            "kinds (above the ellipsoid and above sea level), and the map shows it twice. Bring the drives to one kind of heights, "
+                            "or process the files of each drive by itself.")
     return messages
 
 

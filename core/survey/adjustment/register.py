@@ -1,16 +1,15 @@
 """Offsets between two passes over the same stretch of road: across, along and up.
 
-Navigation drifts by centimetres between two drives, so that every curb and line appears twice. Both passes are
-rasterised as strips of cells; slow variations of height and intensity are removed; the strips are correlated at every
-offset up to 30 cm. The offset of best correlation is the offset between the passes. Objects that only one pass
-measured, such as vehicles, do not correlate and have no effect.
+Navigation drifts by centimetres between two drives, so that every curb and line appears twice. Both passes are rasterised as strips of cells; slow
+variations of height and intensity are removed; the strips are correlated at every offset up to 30 cm. The offset of best correlation is the offset
+between the passes. Objects that only one pass measured, such as vehicles, do not correlate and have no effect.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
@@ -25,10 +24,6 @@ from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..weights import REGISTER
-
-if TYPE_CHECKING:
-    import laspy
-
 
 # Corrections of passes that were adjusted to each other; stored with the points, so that measured coordinates can be restored.
 
@@ -61,7 +56,7 @@ class PassCorrections:
                 corrections[:, rows] = [to_units(v) for v in self.metres(number, records["s"].take(rows) * COORDINATE_SCALE)]
         return corrections
 
-    def to_records(self) -> list[laspy.VLR]:
+    def to_records(self) -> list[Any]:
         """The corrections as LAS variable length records, one per pass."""
         import laspy
 
@@ -70,7 +65,7 @@ class PassCorrections:
                 for number, (first, values) in sorted(self.by_pass.items())]
 
     @classmethod
-    def of_records(cls, records: Iterable[laspy.VLR]) -> PassCorrections | None:
+    def of_records(cls, records: Iterable[Any]) -> PassCorrections | None:
         """Read what `to_records` wrote, from the records of a file; None where there is nothing."""
         by_pass = {}
         for record in records:
@@ -93,21 +88,15 @@ ROUGH_LAGS = 2 * np.arange(-_ROUGH_REACH, _ROUGH_REACH + 1)   # narrower than ha
 
 @dataclass(frozen=True)
 class PassOffsets:
-    """Offsets to be added to pass `other` to match pass `one`, window by window of a road.
+    """Offsets to be added to pass `other` to match pass `one`, window by window of a road."""
 
-    one, other : pass numbers
-    stations : (N,) middles of the windows, m
-    along, left, up : (N,) metres, NaN where unknown
-    far : (K,) middles of the windows in which the offset seems to exceed `max_offset`
-    """
-
-    one: int
+    one: int   # one, other: pass numbers
     other: int
-    stations: np.ndarray
-    along: np.ndarray
+    stations: np.ndarray   # (N,) middles of the windows, m
+    along: np.ndarray   # along, left, up: (N,) metres, NaN where unknown
     left: np.ndarray
     up: np.ndarray
-    far: np.ndarray
+    far: np.ndarray   # (K,) middles of the windows in which the offset seems to exceed `max_offset`
 
     def everywhere(self, axis: str) -> np.ndarray:
         """(N,) metres along an axis, interpolated where unknown; 0 where nothing is known."""
@@ -120,12 +109,11 @@ class PassOffsets:
 class Strips:
     """One pass, or one scanner of it, in one window: rows of cells of height and intensity without their slow variations.
 
-    heights, steps : (rows, cells) float32, m, NaN where unknown; offsets are measured along a row
     paint : (rows, cells) float32, intensity in units of its robust standard deviation, NaN where unknown and at faces, of whose brightness each
         drive sees another side
     """
 
-    heights: np.ndarray
+    heights: np.ndarray   # heights, steps: (rows, cells) float32, m, NaN where unknown; offsets are measured along a row
     steps: np.ndarray
     paint: np.ndarray
 
@@ -468,7 +456,7 @@ def _apart(pair):
     return np.where(anywhere > REGISTER.max_offset, anywhere, pair.left)
 
 
-def sigma_to_record(sigma: dict[int, SigmaAlong]) -> list[laspy.VLR]:
+def sigma_to_record(sigma: dict[int, SigmaAlong]) -> list[Any]:
     """{road number: SigmaAlong} as LAS variable length records; none where nothing is known."""
     import laspy
 
@@ -477,7 +465,7 @@ def sigma_to_record(sigma: dict[int, SigmaAlong]) -> list[laspy.VLR]:
             for k, first in enumerate(range(0, len(rows), NODES_PER_RECORD))]
 
 
-def sigma_of_records(records: Iterable[laspy.VLR]) -> dict[int, SigmaAlong]:
+def sigma_of_records(records: Iterable[Any]) -> dict[int, SigmaAlong]:
     """{road number: SigmaAlong} as `sigma_to_record` wrote it, from the records of a file."""
     data = {record.record_id: bytes(record.record_data_bytes()) for record in records if record.user_id.rstrip("\0") == SIGMA_USER_ID}
     if ROAD_RECORD in data:

@@ -31,18 +31,14 @@ MOVE_WORDS = ("ahead", "behind"), ("left", "right"), ("above", "below")
 class _ScannerOffsets:
     """Moves of a scanner onto the first one, on the right and the left of the vehicle.
 
-    scanner : its number
-    beside : (2, 3) m left of the track at which each move was measured, negative on the right
-    moves : (2, 3) m ahead, left and up that bring its points onto those of the first scanner; NaN where nothing shows it
     sigma : (2, 3) m, of the moves: how far they differ between windows of road, of which all show the same mounting; infinite of one window
-    far : whether they lie farther apart than could be measured
     """
 
-    scanner: int
-    beside: np.ndarray
-    moves: np.ndarray
+    scanner: int   # its number
+    beside: np.ndarray   # (2, 3) m left of the track at which each move was measured, negative on the right
+    moves: np.ndarray   # (2, 3) m ahead, left and up that bring its points onto those of the first scanner; NaN where nothing shows it
     sigma: np.ndarray
-    far: bool
+    far: bool   # whether they lie farther apart than could be measured
 
 
 def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | None = None) -> float:

@@ -26,16 +26,11 @@ from ..weights import ADJUST, FRAME, LATTICE, MIRROR, RAYS, TRACK, VEHICLE
 
 @dataclass(frozen=True)
 class _FittedTrajectory:
-    """A trajectory as the scanners were carried.
+    """A trajectory as the scanners were carried."""
 
-    trajectory : the one given where everything fits
-    sigma : m across, one sigma that is left of what did not
-    seen : whether the rays of the scanners show where they rode
-    """
-
-    trajectory: Trajectory
-    sigma: float
-    seen: bool
+    trajectory: Trajectory   # the one given where everything fits
+    sigma: float   # m across, one sigma that is left of what did not
+    seen: bool   # whether the rays of the scanners show where they rode
 
 
 def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scanner_field: str | None = "automatic",
@@ -187,20 +182,13 @@ def _moved_aside(trajectory, mountings, at, beside):
 
 @dataclass(frozen=True)
 class _Mounting:
-    """A scanner in the frame of the vehicle, whose origin is the trajectory.
+    """A scanner in the frame of the vehicle, whose origin is the trajectory."""
 
-    scanner : its number
-    time : (W,) s, middles of windows
-    lever : (W, 3) m ahead, left and up
-    ground : m of the ground above the scanner; negative where the scanner rides above it
-    misfit : m, median distance of points from their rays
-    """
-
-    scanner: int
-    time: np.ndarray
-    lever: np.ndarray
-    ground: float
-    misfit: float
+    scanner: int   # its number
+    time: np.ndarray   # (W,) s, middles of windows
+    lever: np.ndarray   # (W, 3) m ahead, left and up
+    ground: float   # m of the ground above the scanner; negative where the scanner rides above it
+    misfit: float   # m, median distance of points from their rays
 
 
 @dataclass(frozen=True)

@@ -19,18 +19,14 @@ from .poses import PITCH, POSE, ROLL, YAW, Poses, X, Y, Z, spline_slopes, spline
 
 @dataclass
 class Returns:
-    """The returns that are adjusted, in order of intervals.
+    """The returns that are adjusted, in order of intervals."""
 
-    interval, share : (N,) place in the splines; time : (N,) s; place : (N, 3) m; scanner : (N,) numbers
-    tick : s to which the times are rounded; 0 where they are exact
-    """
-
-    interval: np.ndarray
+    interval: np.ndarray   # interval, share: (N,) place in the splines
     share: np.ndarray
-    time: np.ndarray
-    place: np.ndarray
-    scanner: np.ndarray
-    tick: float = 0.0
+    time: np.ndarray   # (N,) s
+    place: np.ndarray   # (N, 3) m
+    scanner: np.ndarray   # (N,) numbers
+    tick: float = 0.0   # s to which the times are rounded; 0 where they are exact
 
     def __getitem__(self, which: np.ndarray) -> Returns:
         return Returns(self.interval[which], self.share[which], self.time[which], self.place[which], self.scanner[which], self.tick)
@@ -38,21 +34,14 @@ class Returns:
 
 @dataclass
 class Adjusted:
-    """The adjusted poses.
-
-    usual, unexplained : m, medians of the misfits and of what the rounding of the times does not explain of them
-    misfit, noise : (K, S) m, mean misfit of each interval and scanner, NaN without returns, and by which returns were weighted
-    place_covariance : (K, 3, 3) m^2 of each control value's place; includes what the mounting leaves open
-    mounting_sigma : (S, 5) radians and metres
-    """
+    """The adjusted poses."""
 
     poses: Poses
-    usual: float
+    usual: float   # usual, unexplained: m, medians of the misfits and of what the rounding of the times does not explain of them
     unexplained: float
-    misfit: np.ndarray
+    misfit: np.ndarray   # misfit, noise: (K, S) m, mean misfit of each interval and scanner, NaN without returns, and by which returns were weighted
     noise: np.ndarray
-    place_covariance: np.ndarray
-    mounting_sigma: np.ndarray
+    place_covariance: np.ndarray   # (K, 3, 3) m^2 of each control value's place; includes what the mounting leaves open
 
 
 def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Returns, noise: np.ndarray,
@@ -78,7 +67,7 @@ def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Re
     place_covariance = conditional + np.einsum("kia,ab,kjb->kij", by_mounting, covariance, by_mounting)
     usual = float(np.median(misfit[count > 0]))
     unexplained = float(np.median(np.maximum(misfit - RAYS.most_of_mean * by_rounding, 0.0)[count > 0]))
-    return Adjusted(poses, usual, unexplained, misfit, noise, place_covariance, np.sqrt(np.diag(covariance)).reshape(-1, MOUNTING))
+    return Adjusted(poses, usual, unexplained, misfit, noise, place_covariance)
 
 
 def _equations(poses, guess, crossfall, returns, noise, progress):
@@ -163,10 +152,7 @@ def _add_mounting(equations, poses, guess):
         equations.common[every] -= RAYS.held * poses.lever[:, axis].sum()
 
 
-
-
 # The adjustment, begun where the poses are known well enough and grown along time from there.
-
 
 
 def grown_poses(poses: Poses, known: np.ndarray, returns: Returns, progress: Progress = Progress()) -> Adjusted:
@@ -381,10 +367,7 @@ class _BandedEquations:
                               axis=1).reshape(3 * blocks, columns, columns)[:knots]
 
 
-
-
 # How the road is inclined across under the vehicle, by the returns on its own way.
-
 
 
 def _crossfall_of(poses: Poses, returns: Returns) -> np.ndarray:

@@ -29,20 +29,17 @@ WAYS = {"rays": "the rays of the mirrors", "turns": "the turns of a many-beam he
 class EstimatedTrajectory:
     """A trajectory of the middle of the scanners, and how well it is known.
 
-    sigma, sigma_height : (N,) m, standard deviation of the place on the map and of the height
-    method : "rays" of mirrors, "turns" of a many-beam head, or "density" of points alone, which is rough
     scanners, adjusted : that took part, and the adjustment of their poses; none with density alone
-    above_road : m, median height above the road where it was measured, NaN where it was not
     notes, cloud_notes : sentences for the user, the latter on the point clouds, which whoever reads them with this trajectory says too
     """
 
     trajectory: Trajectory
-    sigma: np.ndarray
+    sigma: np.ndarray   # sigma, sigma_height: (N,) m, standard deviation of the place on the map and of the height
     sigma_height: np.ndarray
-    method: str
+    method: str   # "rays" of mirrors, "turns" of a many-beam head, or "density" of points alone, which is rough
     scanners: list[Spinning] = field(default_factory=list)
     adjusted: Adjusted | None = None
-    above_road: float = np.nan
+    above_road: float = np.nan   # m, median height above the road where it was measured, NaN where it was not
     notes: list[str] = field(default_factory=list)
     cloud_notes: list[str] = field(default_factory=list)
 
@@ -72,14 +69,10 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
     crs : WKT for clouds that carry none
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
 
-    Returns
-    -------
-    EstimatedTrajectory, on the clock of the points
+    Returns EstimatedTrajectory, on the clock of the points
 
-    Raises
-    ------
-    RoadExtractionError
-        If a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a road.
+    Raises RoadExtractionError if a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a
+    road.
     """
     copies: list[str] = []
     files = without_copies(read_headers(paths, copies.append, crs), copies.append)
@@ -95,9 +88,8 @@ def _estimated(files, scanner_field, wkt, progress):
     if not samples.has_time:
         return _without_time(samples, wkt)
     if not samples.drives:
-        raise RoadExtractionError(
-            "The points come in pieces too short to tell a drive: no stretch of time without gaps of a second holds enough of them. "
-            "Give the whole survey.")
+        raise RoadExtractionError("The points come in pieces too short to tell a drive: no stretch of time without gaps of a second holds enough of "
+                                  "them. Give the whole survey.")
     tracks = []
     for number, drive in enumerate(samples.drives):
         tracks.append(first_track(samples.time[drive], samples.place[drive]))
@@ -230,9 +222,8 @@ def _of_rays(samples, tracks, scanners, found, crs):
         rows.append(np.column_stack([time, found.poses.at(interval, share)[:, :YAW + 1], flat, up])[kept])
     time, x, y, z, roll, pitch, yaw, flat, up = np.concatenate(rows).T
     if not len(time):
-        raise RoadExtractionError(
-            f"The places of the scanner could not be told to {ESTIMATE.max_sigma:g} m anywhere. The times may be those of an export, not of the "
-            "measuring: give the cloud as the scanner's own program writes it, or a trajectory.")
+        raise RoadExtractionError(f"The places of the scanner could not be told to {ESTIMATE.max_sigma:g} m anywhere. The times may be those of an "
+                                  "export, not of the measuring: give the cloud as the scanner's own program writes it, or a trajectory.")
     ox, oy, oz = samples.origin
     trajectory = Trajectory(time + samples.start, x + ox, y + oy, z + oz, np.degrees(roll), np.degrees(pitch), (90.0 - np.degrees(yaw)) % 360.0, crs)
     ground = np.interp(time, *(np.concatenate(column) for column in zip(*((track.time, track.foot[:, 2]) for track in tracks))))
@@ -301,15 +292,13 @@ def _rough(time, place, yaw, origin, crs, has_time):
 # Clouds that no vehicle on a road has measured are refused by name.
 
 
-
 def _refuse_airborne(tracks: list[FirstTrack]) -> None:
     """Refuse a cloud whose points are spread so wide at any time that they were measured from high above."""
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     if reach > ESTIMATE.farthest_median:
-        raise RoadExtractionError(
-            f"This looks like an airborne survey: at any moment half of its points lie more than {reach:.0f} m from where they are densest, and "
-            f"a vehicle on the road sees half of them within {ESTIMATE.farthest_median:.0f} m. A trajectory is estimated for mobile laser "
-            "scanning from the road alone.")
+        raise RoadExtractionError(f"This looks like an airborne survey: at any moment half of its points lie more than {reach:.0f} m from where they "
+                                  f"are densest, and a vehicle on the road sees half of them within {ESTIMATE.farthest_median:.0f} m. A trajectory "
+                                  "is estimated for mobile laser scanning from the road alone.")
 
 
 def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
@@ -355,11 +344,10 @@ def _refuse_without_road(tracks: list[FirstTrack]) -> None:
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     sharp = _usual_acceleration([track.foot for track in tracks], TRACK.window)
     if reach > ESTIMATE.max_road_reach or sharp > ESTIMATE.max_acceleration:
-        raise RoadExtractionError(
-            "No mirror is seen to turn in the points' times, and their density does not show the way either: half of the points lie more than "
-            f"{reach:.1f} m from where they are densest, and that place moves with accelerations of {sharp:.0f} m/s². The road under the vehicle may "
-            "be missing from the cloud, as when it was wet, or the times may be those of an export. Give the cloud as the scanner's own program "
-            "writes it, or a trajectory.")
+        raise RoadExtractionError("No mirror is seen to turn in the points' times, and their density does not show the way either: half of the "
+                                  f"points lie more than {reach:.1f} m from where they are densest, and that place moves with accelerations of "
+                                  f"{sharp:.0f} m/s². The road under the vehicle may be missing from the cloud, as when it was wet, or the times may "
+                                  "be those of an export. Give the cloud as the scanner's own program writes it, or a trajectory.")
 
 
 def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> None:

@@ -76,14 +76,11 @@ def lines_of_each(direction: np.ndarray, row: np.ndarray, size: int, ways: list[
 
 @dataclass(frozen=True)
 class ScannerSplitter:
-    """Tells by the rays which of several scanners measured a point.
+    """Tells by the rays which of several scanners measured a point."""
 
-    poses : with all of them; start : s of time 0 of the poses; origin : (3,) map coordinates of their places
-    """
-
-    poses: Poses
-    start: float
-    origin: np.ndarray
+    poses: Poses   # with all of them
+    start: float   # s of time 0 of the poses
+    origin: np.ndarray   # (3,) map coordinates of their places
 
     def numbers(self, time: np.ndarray, place: np.ndarray) -> np.ndarray:
         """(N,) uint8 number of the scanner on whose ray a point lies nearest; (N,) s and (N, 3) map coordinates."""

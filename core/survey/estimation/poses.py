@@ -40,17 +40,14 @@ class Poses:
 
     control : (K, 6 + S) control values: x, y, z (m), roll (right side down), pitch (nose up), yaw (counter-clockwise from east; radians),
         and of each scanner what its direction angle is ahead of 2 pi rate t (radians)
-    rate : (S,) Hz; turn : (S,) radians by which the scan line is turned counter-clockwise from straight across
-    lean : (S,) radians by which the scan plane leans, its upper half forward
-    lever : (S, 3) m ahead, left and up from the place of the pose; their mean is 0
     """
 
     drives: tuple[_DriveKnots, ...]
     control: np.ndarray
-    rate: np.ndarray
-    turn: np.ndarray
-    lean: np.ndarray
-    lever: np.ndarray
+    rate: np.ndarray   # (S,) Hz
+    turn: np.ndarray   # (S,) radians by which the scan line is turned counter-clockwise from straight across
+    lean: np.ndarray   # (S,) radians by which the scan plane leans, its upper half forward
+    lever: np.ndarray   # (S, 3) m ahead, left and up from the place of the pose; their mean is 0
 
     @property
     def scanners(self) -> int:
@@ -105,21 +102,18 @@ def vehicle_axes(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> tuple[
 # is linear and homogeneous in cos(phi), sin(phi) and two combinations of them with u and v; the smallest eigenvector solves it.
 
 
-
 @dataclass
 class _Fixes:
     """Places of one scanner in windows of one drive; only windows with a good one.
 
-    time, place : (W,) s, middles, and (W, 3) m, as if the scan plane stood upright; misfit : (W,) m
     phase : (W,) radians that the direction of a point was ahead of 2 pi rate t, in the plane, 0 to the left, from the middle of the window
-    yaw : (W,) radians by which the scan line is turned, counter-clockwise, from straight across
     """
 
-    time: np.ndarray
+    time: np.ndarray   # time, place: (W,) s, middles, and (W, 3) m, as if the scan plane stood upright
     place: np.ndarray
     phase: np.ndarray
-    yaw: np.ndarray
-    misfit: np.ndarray
+    yaw: np.ndarray   # (W,) radians by which the scan line is turned, counter-clockwise, from straight across
+    misfit: np.ndarray   # (W,) m
 
 
 def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> float | None:
@@ -211,7 +205,6 @@ def resected(a: np.ndarray, b: np.ndarray, angle: np.ndarray, window: np.ndarray
 
 
 # Poses to start the adjustment from, of the fixes of every scanner.
-
 
 
 @dataclass

@@ -26,22 +26,16 @@ ROUNDINGS = tuple(sorted((*(10.0**-k for k in range(2, 7)), *(2.0**-k for k in r
 
 @dataclass
 class Samples:
-    """Points in order of time.
+    """Points in order of time."""
 
-    time : (N,) seconds since `start`, of the drives; zeros without time; start : s, the gps_time of the first drive's first point
-    place : (N, 3) metres from `origin`, (3,) map coordinates; scanner : (N,) numbers of the scanners from 0
-    has_time : whether the points' times differ; drives : slices of the rows between gaps in time
-    left_out : points of drives too short to be estimated
-    """
-
-    time: np.ndarray
-    place: np.ndarray
-    scanner: np.ndarray
-    start: float
+    time: np.ndarray   # (N,) seconds since `start`, of the drives; zeros without time
+    place: np.ndarray   # (N, 3) metres from `origin`, (3,) map coordinates
+    scanner: np.ndarray   # (N,) numbers of the scanners from 0
+    start: float   # s, the gps_time of the first drive's first point
     origin: np.ndarray
-    has_time: bool
-    drives: list[slice]
-    left_out: int = 0
+    has_time: bool   # whether the points' times differ
+    drives: list[slice]   # slices of the rows between gaps in time
+    left_out: int = 0   # points of drives too short to be estimated
 
     def __len__(self) -> int:
         return len(self.time)
@@ -71,9 +65,8 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     del parts
     if len(time) < TRACK.min_drive_samples:
-        raise RoadExtractionError(
-            f"The point clouds have {len(time)} usable points; a trajectory is estimated from {TRACK.min_drive_samples} and more. Give the whole "
-            "survey.")
+        raise RoadExtractionError(f"The point clouds have {len(time)} usable points; a trajectory is estimated from {TRACK.min_drive_samples} and "
+                                  "more. Give the whole survey.")
     field, values = census.choose(scanner_field)
     scanner = np.zeros(len(time), np.uint8)
     if field is not None:
@@ -139,21 +132,15 @@ def _sample(block, slots, origin):
 # The first track: in every short window of time, the place around which points lie densest, on the ridge of density.
 
 
-
 @dataclass
 class FirstTrack:
-    """The rough track of one drive.
+    """The rough track of one drive."""
 
-    time, foot, count : (W,) s, middles of windows, (W, 3) m, on the ground, and (W,) samples
-    heading : (W,) radians, where the vehicle looked ahead, counter-clockwise from east, continuous
-    reach : (W,) m, median horizontal distance of the samples from the densest place
-    """
-
-    time: np.ndarray
+    time: np.ndarray   # time, foot, count: (W,) s, middles of windows, (W, 3) m, on the ground, and (W,) samples
     foot: np.ndarray
-    heading: np.ndarray
+    heading: np.ndarray   # (W,) radians, where the vehicle looked ahead, counter-clockwise from east, continuous
     count: np.ndarray
-    reach: np.ndarray
+    reach: np.ndarray   # (W,) m, median horizontal distance of the samples from the densest place
 
     def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(N, 3) feet and (N,) headings at (N,) times."""
@@ -233,7 +220,6 @@ def _headings_by_distance(track):
 
 
 # The track of a cloud without times: the ridge of its density on the ground.
-
 
 
 def ridge_of(place: np.ndarray) -> np.ndarray:

@@ -18,20 +18,15 @@ from .samples import FirstTrack, Samples, headings_of, thinned
 
 @dataclass
 class HeadTrack:
-    """Places of the head, one a turn.
+    """Places of the head, one a turn."""
 
-    time : (T,) s; place : (T, 2) m; sigma : (T,) m; heading : (T,) radians counter-clockwise from east
-    speed : (T, 2) m/s by which the head moves in a turn; nothing in clouds whose turns were moved to one place each
-    noise : radians, usual residual of a bearing; rate : turns per second, negative clockwise
-    """
-
-    time: np.ndarray
-    place: np.ndarray
-    sigma: np.ndarray
-    heading: np.ndarray
-    speed: np.ndarray
-    noise: float
-    rate: float
+    time: np.ndarray   # (T,) s
+    place: np.ndarray   # (T, 2) m
+    sigma: np.ndarray   # (T,) m
+    heading: np.ndarray   # (T,) radians counter-clockwise from east
+    speed: np.ndarray   # (T, 2) m/s by which the head moves in a turn; nothing in clouds whose turns were moved to one place each
+    noise: float   # radians, usual residual of a bearing
+    rate: float   # turns per second, negative clockwise
 
 
 def turning_heads(samples: Samples, tracks: list[FirstTrack]) -> list[HeadTrack] | None:
@@ -132,7 +127,6 @@ def _headings(time, place):
 # A beam draws a ring on the road and lines on walls, cars and trunks, at many distances, and seen from the head all of them have one elevation.
 # Seen from too high or too low they have not, and the elevations of all points smear. The height sought is that from which they lie closest
 # together. Ground, and the slope of the road, come from the points about each turn.
-
 
 
 def head_heights(samples: Samples, tracks: list[FirstTrack], heads: list[HeadTrack]) -> tuple[list[np.ndarray], float | None, float]:

@@ -22,15 +22,13 @@ MAX_ROAD_LENGTH = 200_000.0  # derived: m: stations have 32 bits of 0.1 mm; a lo
 class _DrivenPath:
     """A stretch of the trajectory.
 
-    first, last : trajectory rows, `last` exclusive
-    length : metres driven
     line_first, line_last : rows without the halves of turns on the spot at the ends, where the vehicle turns but the
         road does not; `line_last` exclusive
     """
 
-    first: int
+    first: int   # first, last: trajectory rows, `last` exclusive
     last: int
-    length: float
+    length: float   # metres driven
     line_first: int
     line_last: int
 
@@ -184,28 +182,21 @@ def _return_cuts(px, py, along, heading):
     return cuts
 
 
-
 @dataclass
 class Pass:
     """One run of the vehicle along a road.
 
-    number : of the pass, in order of time
-    road : number of its road
-    direction : +1 along the reference line, -1 against it
-    time : (N,) s, ascending
-    x, y, z : (N,) local coordinates of the vehicle, m
-    s, d : (N,) station and offset of the vehicle on the road, m
     attitude : (3, N) roll, pitch and heading in radians, 0 where unknown; None without attitude
     """
 
-    number: int
-    road: int
-    direction: int
-    time: np.ndarray
-    x: np.ndarray
+    number: int   # of the pass, in order of time
+    road: int   # number of its road
+    direction: int   # +1 along the reference line, -1 against it
+    time: np.ndarray   # (N,) s, ascending
+    x: np.ndarray   # x, y, z: (N,) local coordinates of the vehicle, m
     y: np.ndarray
     z: np.ndarray
-    s: np.ndarray
+    s: np.ndarray   # s, d: (N,) station and offset of the vehicle on the road, m
     d: np.ndarray
     attitude: np.ndarray | None = field(default=None, repr=False)
     _by_station: tuple[np.ndarray, np.ndarray, np.ndarray] | None = field(default=None, repr=False)

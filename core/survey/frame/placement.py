@@ -20,9 +20,8 @@ COORDINATE_DECIMALS = 4  # derived: of coordinates in layers: 0.1 mm
 def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Stations and offsets of local places on given roads, (V,) metres; NaN where a place has no foot on its road, see `Road.locate`.
 
-    The places are taken as their map coordinates hold them. A layer that was written
-    and read again therefore gives the same stations and offsets, and the stages give
-    the same results in one call and one by one.
+    The places are taken as their map coordinates hold them. A layer that was written and read again therefore gives the same stations and offsets,
+    and the stages give the same results in one call and one by one.
 
     road : (V,) int, number of the road of each place; numbers that the frame does not have are allowed
     x, y : (V,) local metres
@@ -43,7 +42,6 @@ def as_written(frame: RoadFrame, x: np.ndarray, y: np.ndarray, z: np.ndarray) ->
     return frame.to_local(*(np.round(values, COORDINATE_DECIMALS) for values in (x, y, z)))
 
 
-
 # Lines of a map in the road frame: the one conversion from map coordinates to station and offset that lines go through.
 
 LINE_VERTEX_SPACING = 0.5  # cost: m between vertices at most: straight on the map is not straight in the road frame
@@ -51,20 +49,14 @@ LINE_VERTEX_SPACING = 0.5  # cost: m between vertices at most: straight on the m
 
 @dataclass(frozen=True)
 class FrameLines:
-    """L lines, stored vertex by vertex.
+    """L lines, stored vertex by vertex."""
 
-    road : (L,) int, number of the road; -1 where a line lies on none
-    start : (L + 1,) int, first vertex of each line, and V
-    x, y, z : (V,) local metres (map coordinates less the origin of the frame); z is NaN where there is none
-    s, d : (V,) metres, station and offset; NaN where a vertex has no foot on its road
-    """
-
-    road: np.ndarray
-    start: np.ndarray
-    x: np.ndarray
+    road: np.ndarray   # (L,) int, number of the road; -1 where a line lies on none
+    start: np.ndarray   # (L + 1,) int, first vertex of each line, and V
+    x: np.ndarray   # x, y, z: (V,) local metres (map coordinates less the origin of the frame); z is NaN where there is none
     y: np.ndarray
     z: np.ndarray
-    s: np.ndarray
+    s: np.ndarray   # s, d: (V,) metres, station and offset; NaN where a vertex has no foot on its road
     d: np.ndarray
 
     def __len__(self) -> int:

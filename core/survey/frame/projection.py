@@ -188,8 +188,6 @@ def _beside(share):
     return (share >= -NODE_TOLERANCE) & (share <= 1.0 + NODE_TOLERANCE)
 
 
-
-
 class RoadProjection:
     """Station and offset of points with times, in a corridor of some metres either side."""
 

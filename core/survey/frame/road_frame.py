@@ -26,25 +26,18 @@ MAX_POINT_DISTANCE = 200.0    # derived: m from the track: exceeds the widest co
 class RoadFrame:
     """All roads and passes of a survey.
 
-    origin : (3,) map coordinates of the local origin, m
-    roads : list of Road, by number
-    passes : list of Pass, by number
-    crs : WKT, "" where unknown
-    has_time : whether points are assigned to passes by their time
-    way_known : whether the direction of its passes is that of the drive, which an estimated trajectory may not know
-    notes : remarks on the trajectory, for the log
     pass_sigma : {road number: SigmaAlong}, one sigma across of the middle of its passes, by what they differ or
         by the accuracy of the trajectory where it was told, whichever is more; without entry where both are unknown
     """
 
-    origin: np.ndarray
-    roads: list[Road]
-    passes: list[Pass]
-    crs: str = ""
-    has_time: bool = True
-    notes: Sequence[str] = ()
+    origin: np.ndarray   # (3,) map coordinates of the local origin, m
+    roads: list[Road]   # list of Road, by number
+    passes: list[Pass]   # list of Pass, by number
+    crs: str = ""   # WKT, "" where unknown
+    has_time: bool = True   # whether points are assigned to passes by their time
+    notes: Sequence[str] = ()   # remarks on the trajectory, for the log
     pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)
-    way_known: bool = True
+    way_known: bool = True   # whether the direction of its passes is that of the drive, which an estimated trajectory may not know
 
     def road(self, number: int) -> Road:
         return self.roads[number]
@@ -115,7 +108,6 @@ class RoadFrame:
 
 
 # Roads and passes of a trajectory: which parts of the drive run over the same road, and along which line.
-
 
 
 def build_frame(trajectory: Trajectory) -> RoadFrame:

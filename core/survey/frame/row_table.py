@@ -166,7 +166,6 @@ def stacked(tables: Sequence[RowTable]) -> RowTable:
 # An uncertainty that changes along a road.
 
 
-
 @dataclass(frozen=True)
 class SigmaAlong:
     """One sigma by station of a road: `metres` at the rising `stations` of nodes; it changes evenly between them and stays beyond them."""

@@ -26,13 +26,9 @@ TYPE_SIZES = 1, 1, 2, 2, 4, 4, 8, 8, 4, 8   # source: bytes (LAS 1.4 R15, table 
 
 @dataclass(frozen=True)
 class HeaderFields:
-    """The numbers of a header as they stand there.
+    """The numbers of a header as they stand there."""
 
-    head : its first bytes; counts : its counts of points that are not 0, that of 64 bits first
-    first_waveform : byte of the first waveform packet, 0 without any in the file
-    """
-
-    head: bytes
+    head: bytes   # its first bytes
     version: int
     header_size: int
     points_at: int
@@ -40,8 +36,8 @@ class HeaderFields:
     point_format: int
     compressed: bool
     record_size: int
-    counts: tuple[int, ...]
-    first_waveform: int
+    counts: tuple[int, ...]   # its counts of points that are not 0, that of 64 bits first
+    first_waveform: int   # byte of the first waveform packet, 0 without any in the file
     first_evlr: int
     evlrs: int
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-import laspy
 import numpy as np
 
 from ...common.errors import RoadExtractionError
@@ -55,13 +54,11 @@ class ScannerCensus:
         """
         if wanted not in ("", "automatic", None):
             if wanted not in self.spans:
-                raise RoadExtractionError(
-                    f"Scanner field {wanted!r} is not known; choose automatic, scanner_channel or point_source_id.")
+                raise RoadExtractionError(f"Scanner field {wanted!r} is not known; choose automatic, scanner_channel or point_source_id.")
             values = sorted(self.spans[wanted])
             if len(values) > 4 * LAS.max_scanners:
                 raise RoadExtractionError(
-                    f"{wanted} has more than {4 * LAS.max_scanners} different values, too many to be scanners. "
-                    "Set the scanner field to automatic.")
+                    f"{wanted} has more than {4 * LAS.max_scanners} different values, too many to be scanners. Set the scanner field to automatic.")
             return wanted, values if len(values) <= LAS.max_scanners else _heads(self.spans[wanted])
         channels = self.spans["scanner_channel"]
         if 1 < len(channels) <= LAS.max_scanners:
@@ -147,18 +144,13 @@ MAX_POWER = 290.0         # derived: of ten, with which a double can be multipli
 
 @dataclass(frozen=True)
 class IntensitySource:
-    """How the intensity of points is read.
+    """How the intensity of points is read."""
 
-    field : "intensity", an extra field, or "rgb" for the luminance of colours; signed : whether values from SIGN on stand for negative ones
-    per_decibel : values that make a decibel, 0 where they are linear; zero : of linear values, what counts as 0
-    factor : by which linear values, or those of decibels made linear, are multiplied
-    """
-
-    field: str = "intensity"
-    signed: bool = False
-    per_decibel: float = 0.0
-    zero: float = 0.0
-    factor: float = 1.0
+    field: str = "intensity"   # "intensity", an extra field, or "rgb" for the luminance of colours
+    signed: bool = False   # whether values from SIGN on stand for negative ones
+    per_decibel: float = 0.0   # values that make a decibel, 0 where they are linear
+    zero: float = 0.0   # of linear values, what counts as 0
+    factor: float = 1.0   # by which linear values, or those of decibels made linear, are multiplied
 
     @property
     def layers(self) -> tuple[str, ...]:
@@ -257,9 +249,8 @@ def check_coloured(files: Sequence[CloudHeader], taken_from: str) -> None:
     """Raise RoadExtractionError where intensity is taken from "rgb", and a file that has points holds no colours."""
     grey = [file for file in files if file.count and not file.has_colour]
     if grey and taken_from == "rgb":
-        raise RoadExtractionError(
-            f"The points of {grey[0].path} have no colours (point format {grey[0].point_format}), from which the intensity was to be taken. "
-            "Set Intensity from to intensity, or export the points with red, green and blue.")
+        raise RoadExtractionError(f"The points of {grey[0].path} have no colours (point format {grey[0].point_format}), from which the intensity was "
+                                  "to be taken. Set Intensity from to intensity, or export the points with red, green and blue.")
 
 
 def without_intensity(files: Sequence[CloudHeader], taken_from: str, fields: Sequence[str] = ()) -> str:
@@ -287,13 +278,13 @@ def _has_colours(file):
 NOISE_CLASSES = 7, 18   # source: as above
 
 
-def flagged(block: laspy.ScaleAwarePointRecord) -> bool:
-    """Whether any point of a block has a flag or a scanner channel: LAS 1.4 keeps them in one byte, and most clouds have none."""
+def flagged(block: Any) -> bool:
+    """Whether any of laspy's points has a flag or a scanner channel: LAS 1.4 keeps them in one byte, and most clouds have none."""
     raw = block.array
     return "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max(initial=0))
 
 
-def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
+def valid_points(block: Any) -> np.ndarray | None:
     """(N,) bool: the points of a block that are neither withheld nor noise; None for all. Its layers `flags` and `classification` are decoded."""
     has_withheld = flagged(block) and "withheld" in block.point_format.dimension_names
     withheld = np.asarray(block["withheld"]) != 0 if has_withheld else np.zeros(1, bool)
@@ -306,7 +297,6 @@ def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
 
 
 # Coordinates of a LAS file, stored as integers, converted to the local integers of a record.
-
 
 
 class LasAxis:

@@ -29,34 +29,24 @@ ReadResult = TypeVar("ReadResult")
 
 @dataclass(frozen=True)
 class CloudHeader:
-    """The header of one LAS, LAZ or COPC file.
-
-    version : such as "1.4"; point_format : number of the ASPRS point data record format; count : points
-    minimum, maximum : (3,) map coordinates; scales : (3,) metres; crs : WKT, metric, "" where the file has none
-    has_time, has_channel, has_colour : whether the points have gps_time, a scanner channel, and colours
-    adjusted_time : whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
-    chunk : points that are compressed together; 1 in a LAS file, 0 where the number varies
-    notes : sentences about what the header states otherwise than the file shows
-    units : of the coordinates in the file; all others here are in metres
-    crs_problem : why what the file says about its coordinates is not used, "" for nothing
-    """
+    """The header of one LAS, LAZ or COPC file."""
 
     path: str
-    version: str
-    point_format: int
-    count: int
-    minimum: tuple[float, ...]
+    version: str   # such as "1.4"
+    point_format: int   # number of the ASPRS point data record format
+    count: int   # points
+    minimum: tuple[float, ...]   # minimum, maximum: (3,) map coordinates
     maximum: tuple[float, ...]
-    scales: tuple[float, ...]
-    crs: str
-    has_time: bool
+    scales: tuple[float, ...]   # (3,) metres
+    crs: str   # WKT, metric, "" where the file has none
+    has_time: bool   # has_time, has_channel, has_colour: whether the points have gps_time, a scanner channel, and colours
     has_channel: bool
-    adjusted_time: bool
-    chunk: int = 0
+    adjusted_time: bool   # whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
+    chunk: int = 0   # points that are compressed together; 1 in a LAS file, 0 where the number varies
     has_colour: bool = False
-    notes: tuple[str, ...] = ()
-    units: FileUnits = METRES
-    crs_problem: str = ""
+    notes: tuple[str, ...] = ()   # sentences about what the header states otherwise than the file shows
+    units: FileUnits = METRES   # of the coordinates in the file; all others here are in metres
+    crs_problem: str = ""   # why what the file says about its coordinates is not used, "" for nothing
 
 
 def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None, sparse: bool = False,
@@ -70,10 +60,7 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
     sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
     units : of its coordinates, where it does not state them by its CRS
 
-    Raises
-    ------
-    RoadExtractionError
-        If the file is missing, is not a LAS or LAZ file, is damaged, or cannot be read.
+    Raises RoadExtractionError if the file is missing, is not a LAS or LAZ file, is damaged, or cannot be read.
     """
     reader = _open(path, _mended(path) if known is None else _as_known(path, known), layers, sparse)
     _to_metres(reader.header, _stated_units(reader.header, units) if known is None else known.units)
@@ -157,9 +144,8 @@ def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
         names = set(header.point_format.dimension_names)
         scales, offsets = np.abs(header.scales), np.abs(header.offsets)
         if not ((scales > 0) & (scales < LAS.max_header_scale) & (offsets < LAS.max_header_offset)).all():
-            raise RoadExtractionError(
-                f"{path} gives its points no coordinates: its header says scales of {_listed(header.scales)} and offsets of "
-                f"{_listed(header.offsets)}. Export the file again, with a scale such as 0.001 m.")
+            raise RoadExtractionError(f"{path} gives its points no coordinates: its header says scales of {_listed(header.scales)} and offsets of "
+                                      f"{_listed(header.offsets)}. Export the file again, with a scale such as 0.001 m.")
         overflow = _overflow(header)
         count, units, bounds_hold = int(header.point_count), _stated_units(header, in_metres(given)[1]), _bounds_hold(path, mended, header)
         _to_metres(header, units)
@@ -215,10 +201,7 @@ def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], 
     warn : is told what headers state otherwise than their files show
     given : WKT of the CRS of those that state none
 
-    Raises
-    ------
-    RoadExtractionError
-        If there is no file, a file cannot be read, or all files are empty.
+    Raises RoadExtractionError if there is no file, a file cannot be read, or all files are empty.
     """
     by_real_path: dict[str, str] = {}
     for path in paths:
@@ -280,9 +263,8 @@ def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str]
     except BaseException as problem:
         if isinstance(problem, NOT_FILE_ERRORS):
             raise
-        raise RoadExtractionError(
-            f"{path} is damaged: its header promises {promised} points, and from number {first + 1} on they cannot be read ({problem}). "
-            "Copy or export the file again.") from problem
+        raise RoadExtractionError(f"{path} is damaged: its header promises {promised} points, and from number {first + 1} on they cannot be read "
+                                  f"({problem}). Copy or export the file again.") from problem
 
 
 # The CRS of a LAS file from its WKT and GeoKeys records, which may contradict each other.

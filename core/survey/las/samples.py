@@ -85,7 +85,6 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
 # An even sample of a survey's points that keeps neighbours together, whatever the order of the files.
 
 
-
 @dataclass(frozen=True)
 class TimeSlots:
     """Every `stride`-th slot of time: points of one slot follow each other along a scan line, and slots pass through all parts of a turn."""
@@ -129,10 +128,7 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
     x, y : map coordinates of the middle
     radius : m, half the side of the square
 
-    Raises
-    ------
-    RoadExtractionError
-        If a file is missing or cannot be read.
+    Raises RoadExtractionError if a file is missing or cannot be read.
     """
     files = read_headers(paths, progress.warn)
     units = files[0].units   # of the map, in which the results of these clouds are
@@ -153,7 +149,6 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
 
 
 # Copies of files and of points among the files of a survey: they would count twice.
-
 
 
 def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> list[CloudHeader]:

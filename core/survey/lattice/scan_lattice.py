@@ -37,16 +37,11 @@ NO_TURNING = "no mirror is seen to turn steadily"
 
 @dataclass
 class ScanLattice:
-    """The mirror phases of a survey.
+    """The mirror phases of a survey."""
 
-    mirror_phases : {(pass number, scanner): MirrorPhase}
-    without : (pass number, scanner) that have no regular scan lines, and why
-    notes : sentences for the user about these
-    """
-
-    mirror_phases: dict[tuple[int, int], MirrorPhase] = field(default_factory=dict)
-    without: dict[tuple[int, int], str] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
+    mirror_phases: dict[tuple[int, int], MirrorPhase] = field(default_factory=dict)   # {(pass number, scanner): MirrorPhase}
+    without: dict[tuple[int, int], str] = field(default_factory=dict)   # (pass number, scanner) that have no regular scan lines, and why
+    notes: list[str] = field(default_factory=list)   # sentences for the user about these
 
 
 def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progress = Progress()) -> ScanLattice:
@@ -367,28 +362,18 @@ def _line_properties(windows, mirror):
 # The phase of a scanner's mirror: turns as a function of time.
 
 
-
 @dataclass(frozen=True)
 class MirrorPhase:
-    """The turns of one scanner's mirror during one pass; a scan line is a turn.
+    """The turns of one scanner's mirror during one pass; a scan line is a turn."""
 
-    frequency : Hz, the mean; negative where the mirror turns clockwise seen in the direction of the road
-    time, turns : (K,) seconds and turns of nodes between which the mirror turns evenly; turns increase
-    pulse : usual share of a turn between neighbouring points of a line
-    spacing : turns between neighbouring lines, more than 1 where lines were left out of the cloud
-    leftward : whether the lines run to the left, offset increasing with time
-    peak : 0 to 1, how well the points fit this frequency
-    origin : "angle" where the phase follows from the points' angles, "gap" where it follows from gaps in their times
-    """
-
-    frequency: float
-    time: np.ndarray
+    frequency: float   # Hz, the mean; negative where the mirror turns clockwise seen in the direction of the road
+    time: np.ndarray   # time, turns: (K,) seconds and turns of nodes between which the mirror turns evenly; turns increase
     turns: np.ndarray
-    pulse: float = 0.0
-    spacing: int = 1
-    leftward: bool = False
-    peak: float = 1.0
-    origin: str = "angle"
+    pulse: float = 0.0   # usual share of a turn between neighbouring points of a line
+    spacing: int = 1   # turns between neighbouring lines, more than 1 where lines were left out of the cloud
+    leftward: bool = False   # whether the lines run to the left, offset increasing with time
+    peak: float = 1.0   # 0 to 1, how well the points fit this frequency
+    origin: str = "angle"   # "angle" where the phase follows from the points' angles, "gap" where it follows from gaps in their times
 
     def turns_at(self, time: np.ndarray) -> np.ndarray:
         """(N,) turns since the pass began, at (N,) times in seconds: whole turns count lines, the fraction is the mirror phase."""

@@ -29,6 +29,7 @@ class RoadPoints:
     moves : PassCorrections, the shifts of the passes against the coordinates that were measured; None where there are none
     pass_sigma : {road number: SigmaAlong}, as in RoadFrame
     survey : Survey whose points these are, None where they are their own
+    density : CubeDensity of all points of the survey and of these, where that was asked for
     """
 
     store: SectionStore
@@ -40,6 +41,7 @@ class RoadPoints:
     has_spacing: bool = False
     pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)
     survey: Any = field(default=None, repr=False)
+    density: Any = ()
 
     @property
     def executor(self) -> Executor:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...common.arrays import RADIX_BITS, above_least, bucket_argsort, order_by
 from ...common.parallel import ScratchBuffers, check_cancelled, column_buffers
+from ...execution.weights import EXECUTION
 from ..weights import STORE
 from .array_file import ArrayFile, close_files, new_file, opened
 from .columns import Columns, columns_in_order
@@ -180,13 +181,14 @@ class SectionStore:
         """Points of a section, before `finish` removes any."""
         return sum(part.size for part in self._sections[road, section].parts)
 
-    def stretches(self, points: int = 0, numbers: Sequence[int] | None = None) -> list[Stretch]:
-        """All sections, as stretches of road with about so many points each; every section by itself for 0. Of all roads, or of some `numbers`."""
+    def stretches(self, numbers: Sequence[int] | None = None) -> list[Stretch]:
+        """Stretches of road with STRETCH_POINTS each, or fewer where there would be few stretches: of all roads, or of some `numbers`."""
         stretches: list[Stretch] = []
+        points = max(min(STRETCH_POINTS, self._count // EXECUTION.least_tasks), 1)
         for road in self.roads() if numbers is None else numbers:
             sections = np.array(self.sections(road))
             ends = np.cumsum([self.size(road, number) for number in sections.tolist()])
-            cuts = sections[np.searchsorted(ends, np.arange(points, ends[-1], points))] + 1 if points else sections
+            cuts = sections[np.searchsorted(ends, np.arange(points, ends[-1], points))] + 1
             bounds = np.unique(np.r_[sections[0], cuts, sections[-1] + 1]).tolist()
             stretches += [(road, first, end) for first, end in zip(bounds[:-1], bounds[1:])]
         return stretches
@@ -285,11 +287,6 @@ class SectionStore:
                 return 0.0, 0.0
             ends.append(int(stations[row]))
         return ends[0] * COORDINATE_SCALE, (ends[1] + 1) * COORDINATE_SCALE
-
-    def points_between(self, road: int, start: float, end: float) -> int:
-        """Points in the sections that reach between two stations (m), before `finish` removes any."""
-        first, last = (int(np.floor(station / self.section_length)) for station in (start, end))
-        return sum(self.size(road, number) for number in range(first, last + 1) if (road, number) in self._sections)
 
     def with_column(self, name: str, folder: Path | None = None) -> SectionStore:
         """A store of the same points in which one column is put anew, section by section; it shares all other columns with this one."""

@@ -22,16 +22,13 @@ FIRST_WHOLE_WEEK, LAST_WEEK = 1024.0, 4096.0  # source: weeks since 1980 (IS-GPS
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column of a table, or several fields of it that are one value: (N,) float64, NaN where no number stands.
+    """A column of a table, or several fields of it that are one value: (N,) float64, NaN where no number stands."""
 
-    title : "" without a name; written : gives the (N,) texts as they stand in the table; first : the first of them
-    """
-
-    title: str
+    title: str   # "" without a name
     values: np.ndarray
     unit: Unit = field(default=Unit())
-    written: Callable[[], Sequence[str]] = list
-    first: str = ""
+    written: Callable[[], Sequence[str]] = list   # gives the (N,) texts as they stand in the table
+    first: str = ""   # the first of them
 
     @property
     def is_text(self) -> bool:

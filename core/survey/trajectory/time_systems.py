@@ -44,19 +44,13 @@ FIRST_SURVEY, LAST_SURVEY = "1990-01-01", "2050-01-01"
 
 @dataclass(frozen=True)
 class ClockTimes:
-    """Clock times that were written as text, or as days.
+    """Clock times that were written as text, or as days."""
 
-    seconds : (N,) since 6 January 1980 as the clock counts, or since its midnight where no date is written; NaN where a text is no time
-    dated, order_known : whether dates are written, and whether day and month can be distinguished
-    zone : "UTC" or "GPS" where the texts say so, "" otherwise; times with an offset from UTC are brought to UTC
-    kind, first : what was written, and the first of them
-    """
-
-    seconds: np.ndarray
-    dated: bool
-    zone: str
+    seconds: np.ndarray   # (N,) since 6 January 1980 as the clock counts, or since its midnight where no date is written; NaN where a text is no time
+    dated: bool   # dated, order_known: whether dates are written, and whether day and month can be distinguished
+    zone: str   # "UTC" or "GPS" where the texts say so, "" otherwise; times with an offset from UTC are brought to UTC
     order_known: bool
-    kind: str = "times of a clock"
+    kind: str = "times of a clock"   # kind, first: what was written, and the first of them
     first: str = ""
 
 
@@ -264,10 +258,7 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
     system : "gps" (seconds since 1980), "adjusted" (the same minus 1e9), "week", "day", or "automatic"
     adjusted : whether the header of the cloud states adjusted standard GPS time
 
-    Raises
-    ------
-    RoadExtractionError
-        If the time system is not known, the trajectory has no times, or cloud and trajectory overlap in no time system.
+    Raises RoadExtractionError if the time system is not known, the trajectory has no times, or cloud and trajectory overlap in no time system.
     """
     if system not in TIME_SYSTEMS:
         raise RoadExtractionError(f"The time system {system!r} is not known; choose one of {', '.join(TIME_SYSTEMS)}.")

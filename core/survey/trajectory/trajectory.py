@@ -18,32 +18,24 @@ from .time_systems import unwrap_time
 class Trajectory:
     """Positions of the vehicle in driving order.
 
-    time : (N,) seconds, strictly increasing once cleaned; the index of the position where the source has no time
-    x, y, z : (N,) map coordinates, metres
     roll, pitch, heading : (N,) degrees (heading clockwise from grid north), NaN where unknown, which is the default
-    crs : WKT, "" where unknown
-    has_time : False where the source has no time
-    notes : sentences for the user about what was recognised and changed
-    doubts : those that are warnings
-    way_known : False where the order of the positions is not known to be that of the drive
-    sigma_across : m, one sigma across the way as its processing tells; 0 where unknown
     stated_units : (role, unit) of x, y and z as their columns state them, while the CRS, and with it the units of the others, is unknown
     """
 
-    time: np.ndarray
-    x: np.ndarray
+    time: np.ndarray   # (N,) seconds, strictly increasing once cleaned; the index of the position where the source has no time
+    x: np.ndarray   # x, y, z: (N,) map coordinates, metres
     y: np.ndarray
     z: np.ndarray
     roll: np.ndarray = None  # type: ignore[assignment]  # filled with NaN on construction
     pitch: np.ndarray = None  # type: ignore[assignment]
     heading: np.ndarray = None  # type: ignore[assignment]
-    crs: str = ""
-    has_time: bool = True
-    notes: tuple[str, ...] = field(default=())
-    sigma_across: float = 0.0
+    crs: str = ""   # WKT, "" where unknown
+    has_time: bool = True   # False where the source has no time
+    notes: tuple[str, ...] = field(default=())   # sentences for the user about what was recognised and changed
+    sigma_across: float = 0.0   # m, one sigma across the way as its processing tells; 0 where unknown
     stated_units: tuple[tuple[str, str], ...] = ()
-    doubts: tuple[str, ...] = ()
-    way_known: bool = True
+    doubts: tuple[str, ...] = ()   # those that are warnings
+    way_known: bool = True   # False where the order of the positions is not known to be that of the drive
 
     def __post_init__(self) -> None:
         for name in ("roll", "pitch", "heading"):
@@ -55,8 +47,7 @@ class Trajectory:
 
     def rows(self, which: Any) -> Trajectory:
         """The positions of a mask, slice or index array."""
-        return replace(self, **{name: getattr(self, name)[which]
-                                for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
+        return replace(self, **{name: getattr(self, name)[which] for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
 
     def attitude(self) -> np.ndarray | None:
         """(3, N) roll, pitch and heading in radians, the heading unwrapped, unknown roll and pitch as 0; None where a heading is unknown."""
@@ -74,10 +65,7 @@ def clean_trajectory(trajectory: Trajectory) -> Trajectory:
 
     Standstills remain, since time goes on while the vehicle waits; the road's reference line, which is sampled by distance, does not contain them.
 
-    Raises
-    ------
-    RoadExtractionError
-        If fewer than two different positions remain, they are in degrees, or there are two drives at the same time.
+    Raises RoadExtractionError if fewer than two different positions remain, they are in degrees, or there are two drives at the same time.
     """
     notes = list(trajectory.notes)
     _refuse_degrees(trajectory)
@@ -118,9 +106,8 @@ def refuse_standstill(trajectory: Trajectory) -> None:
     x, y = trajectory.x[usable], trajectory.y[usable]
     length = float(np.hypot(np.diff(x), np.diff(y)).sum())
     if len(x) < 2 or length < 1.0:
-        raise RoadExtractionError(
-            f"The trajectory has {len(x)} usable position(s) over {length:.1f} m. At least two positions and "
-            "1 m of driving are needed; check the time and coordinate columns of the file.")
+        raise RoadExtractionError(f"The trajectory has {len(x)} usable position(s) over {length:.1f} m. At least two positions and 1 m of driving "
+                                  "are needed; check the time and coordinate columns of the file.")
 
 
 def _refuse_two_drives(trajectory, rows):
@@ -167,13 +154,11 @@ def _refuse_degrees(trajectory):
 
     crs = parse_crs(trajectory.crs)
     if crs is not None and horizontal_part(crs).is_geographic:
-        raise RoadExtractionError(
-            f"The trajectory is in {horizontal_part(crs).name} (degrees) and the CRS to convert it to is unknown: the point cloud "
-            "carries no CRS. Give the projected CRS of the survey, or run Import trajectory with it as the target.")
+        raise RoadExtractionError(f"The trajectory is in {horizontal_part(crs).name} (degrees) and the CRS to convert it to is unknown: the point "
+                                  "cloud carries no CRS. Give the projected CRS of the survey, or run Import trajectory with it as the target.")
 
 
 # A trajectory in another coordinate reference system.
-
 
 
 def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
@@ -182,11 +167,8 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
     It is unchanged where its CRS or the target is unknown. Heights stay as they are; whether they are ellipsoidal or orthometric is absorbed by the
     estimated height of the sensor.
 
-    Raises
-    ------
-    RoadExtractionError
-        If the target is not projected, the source is of a kind that has no map coordinates, units contradict the CRS, or positions cannot be
-        brought to the target.
+    Raises RoadExtractionError if the target is not projected, the source is of a kind that has no map coordinates, units contradict the CRS, or
+    positions cannot be brought to the target.
     """
     from pyproj import Transformer
     from pyproj.exceptions import ProjError

@@ -100,17 +100,13 @@ class SameFindings:
 
 @dataclass
 class Findings:
-    """All findings of one map, and what the map has.
-
-    lanes, successors, neighbours : driven lanes (of a section), links from one to the next, pairs side by side
-    crs : WKT, "" where unknown
-    """
+    """All findings of one map, and what the map has."""
 
     found: list[Finding] = field(default_factory=list)
-    lanes: int = 0
+    lanes: int = 0   # lanes, successors, neighbours: driven lanes (of a section), links from one to the next, pairs side by side
     successors: int = 0
     neighbours: int = 0
-    crs: str = ""
+    crs: str = ""   # WKT, "" where unknown
 
     def add(self, fault: str, element: str, text: str, place: np.ndarray) -> None:
         """Append one; the place may lack a height."""

@@ -25,12 +25,9 @@ TABLE_STEP = 0.25   # m between the places by which arc lengths on poly3 are fou
 
 @dataclass(frozen=True)
 class Cubics:
-    """A function of s in pieces ``a + b ds + c ds^2 + d ds^3``.
+    """A function of s in pieces ``a + b ds + c ds^2 + d ds^3``."""
 
-    rows : (N, 5) start, a, b, c, d, in order of start; before the first start the first piece is not used: the value is 0
-    """
-
-    rows: np.ndarray
+    rows: np.ndarray   # (N, 5) start, a, b, c, d, in order of start; before the first start the first piece is not used: the value is 0
 
     @classmethod
     def constant(cls, value: float = 0.0) -> Cubics:
@@ -93,20 +90,17 @@ def on_spirals(u: np.ndarray, x: Any, y: Any, heading: Any, bend: Any, change: A
 class PlanElement:
     """One piece of a reference line.
 
-    s, x, y, heading, length : start and length, metres and radians
-    kind : line, arc, spiral, poly3 or paramPoly3
     values : line (); arc (curvature,); spiral (curvature at start, at end); poly3 (a, b, c, d); paramPoly3 (a, b, c, d of u, then of v)
-    normalized : whether the parameter of paramPoly3 runs from 0 to 1 instead of to `length`
     """
 
-    s: float
+    s: float   # s, x, y, heading, length: start and length, metres and radians
     x: float
     y: float
     heading: float
     length: float
-    kind: str = "line"
+    kind: str = "line"   # line, arc, spiral, poly3 or paramPoly3
     values: tuple[float, ...] = ()
-    normalized: bool = False
+    normalized: bool = False   # whether the parameter of paramPoly3 runs from 0 to 1 instead of to `length`
 
     def at(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths u from its start."""
@@ -155,12 +149,9 @@ class PlanElement:
 
 @dataclass(frozen=True)
 class PlanView:
-    """The reference line of a road in plan.
+    """The reference line of a road in plan."""
 
-    elements : in order of s
-    """
-
-    elements: tuple[PlanElement, ...]
+    elements: tuple[PlanElement, ...]   # in order of s
 
     @property
     def length(self) -> float:
@@ -252,22 +243,15 @@ BAND = 3              # unknowns beside each other that one piece joins: levels 
 
 
 class LineBundle(NamedTuple):
-    """Lines along a road that functions with common pieces follow, such as the borders of a section.
+    """Lines along a road that functions with common pieces follow, such as the borders of a section."""
 
-    s, values : for each line (n,) metres, rising, and its values there
-    start, end : metres, of the functions; the first and last value are met there
-    tolerance : how far a value may be missed
-    slopes : for each line those at its start and end, NaN for any; none are given by default
-    broken : whether straight pieces lead from place to place everywhere, which are never below what they join
-    """
-
-    s: Sequence[np.ndarray]
+    s: Sequence[np.ndarray]   # s, values: for each line (n,) metres, rising, and its values there
     values: Sequence[np.ndarray]
-    start: float
+    start: float   # start, end: metres, of the functions; the first and last value are met there
     end: float
-    tolerance: float
-    slopes: Sequence[tuple[float, float]] = ()
-    broken: bool = False
+    tolerance: float   # how far a value may be missed
+    slopes: Sequence[tuple[float, float]] = ()   # for each line those at its start and end, NaN for any; none are given by default
+    broken: bool = False   # whether straight pieces lead from place to place everywhere, which are never below what they join
 
 
 def fit_cubics(bundles: Sequence[LineBundle]) -> list[list[Cubics]]:
@@ -280,9 +264,7 @@ def fit_cubics(bundles: Sequence[LineBundle]) -> list[list[Cubics]]:
     ----------
     bundles : of any number of sections and roads
 
-    Returns
-    -------
-    for each bundle a list of Cubics, its `start` counted as 0
+    Returns for each bundle a list of Cubics, its `start` counted as 0
     """
     fitted: dict[int, list[Cubics]] = {}
     divided = [_Division(number, bundle) for number, bundle in enumerate(bundles)]

@@ -53,14 +53,11 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
 
 @dataclass
 class _Faults:
-    """What is wrong with the geometry of the map.
+    """What is wrong with the geometry of the map."""
 
-    folds : (road, lane, place) of borders; negative : (road, lane, least width, s); jumps : (road, s, metres by which a border jumps there, its lane)
-    """
-
-    jumps: list[tuple[str, float, float, int]] = field(default_factory=list)
-    folds: list[tuple[str, int, np.ndarray]] = field(default_factory=list)
-    negative: list[tuple[str, int, float, float]] = field(default_factory=list)
+    jumps: list[tuple[str, float, float, int]] = field(default_factory=list)   # (road, s, metres by which a border jumps there, its lane)
+    folds: list[tuple[str, int, np.ndarray]] = field(default_factory=list)   # (road, lane, place) of borders
+    negative: list[tuple[str, int, float, float]] = field(default_factory=list)   # (road, lane, least width, s)
 
     def said(self) -> list[str]:
         sentences = []

@@ -139,22 +139,17 @@ class Junction:
 
 @dataclass
 class OpenDriveMap:
-    """A whole file.
+    """A whole file."""
 
-    version : (major, minor); reference : text of geoReference; offset : x, y, z, heading added to coordinates
-    problems : (line, text) of what the reader passed over; bounds : west, south, east, north of the header, None where it has none
-    tree : the file's elements, for what the map has no place for; None where it was not read
-    """
-
-    version: tuple[int, int] = (1, 7)
+    version: tuple[int, int] = (1, 7)   # (major, minor)
     name: str = ""
-    reference: str = ""
-    offset: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    reference: str = ""   # text of geoReference
+    offset: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)   # x, y, z, heading added to coordinates
     roads: list[MapRoad] = field(default_factory=list)
     junctions: list[Junction] = field(default_factory=list)
-    problems: list[tuple[int, str]] = field(default_factory=list)
-    bounds: tuple[float, float, float, float] | None = None
-    tree: XmlElement | None = field(default=None, repr=False)
+    problems: list[tuple[int, str]] = field(default_factory=list)   # (line, text) of what the reader passed over
+    bounds: tuple[float, float, float, float] | None = None   # west, south, east, north of the header, None where it has none
+    tree: XmlElement | None = field(default=None, repr=False)   # the file's elements, for what the map has no place for; None where it was not read
 
     def road(self, id: str) -> MapRoad | None:
         """The road of an id, None where there is none."""
@@ -259,7 +254,6 @@ GAP, KINK = 1e-4, 1e-4  # m and rad between elements of the reference line from 
 class RoadSurface:
     """The borders of one road's lanes.
 
-    road : MapRoad
     """
 
     def __init__(self, road: MapRoad) -> None:

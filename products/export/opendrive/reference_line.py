@@ -49,9 +49,7 @@ def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None
     ends : radians, headings that it has at its start and end, None for any
     turn_tolerance : radians by which an arc or a line may miss that at the end
 
-    Returns
-    -------
-    PlanView from the first point to the last one; None where even short elements miss the points
+    Returns PlanView from the first point to the last one; None where even short elements miss the points
 
     References
     ----------

@@ -35,21 +35,18 @@ LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 @dataclass
 class RoadShape:
     """plan : reference line; s, t, z : for each slice a (borders, n) array of its vertices; starts : (sections + 1,) metres.
-    lifts : for each slice (cells, n) metres that its lanes lie above the road, as beyond a curb; z is that of the road
-
     courses : for each slice and border (3, n) s, t, z that reach from the start of its section to its end at least, s rising: sections are cut
         square, lanes are not
-    follows : whether the reference line lies on the border at which lane 0 is; else that has corners, which a smoother line cuts
     """
 
     plan: PlanView
     s: list[np.ndarray]
     t: list[np.ndarray]
     z: list[np.ndarray]
-    lifts: list[np.ndarray]
+    lifts: list[np.ndarray]   # for each slice (cells, n) metres that its lanes lie above the road, as beyond a curb; z is that of the road
     starts: np.ndarray
     courses: list[list[np.ndarray]]
-    follows: bool
+    follows: bool   # whether the reference line lies on the border at which lane 0 is; else that has corners, which a smoother line cuts
 
 
 def centre_of(one: Slice, left_hand: bool) -> int:
@@ -296,9 +293,7 @@ def fit_borders(roads: Sequence[tuple[RoadShape, list[Slice], list[int]]], toler
     tolerance : metres that a border may be missed
     directions : {number of a vertex: radians} of the borders where roads meet others
 
-    Returns
-    -------
-    for each road and each of its sections the functions from left to right
+    Returns for each road and each of its sections the functions from left to right
     """
     bundles = [bundle for shape, strip, _ in roads for bundle in _border_bundles(shape, strip, tolerance, directions)]
     centres = [centre for *_, road_centres in roads for centre in road_centres]
@@ -326,9 +321,7 @@ def _border_bundles(shape, strip, tolerance, directions):
 def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list[int], sections: list[list[Cubics]]) -> list[list[int]]:
     """Give a road its lane offset and sections with widths, by the functions of their borders.
 
-    Returns
-    -------
-    for every slice the numbers of the lanes of its cells
+    Returns for every slice the numbers of the lanes of its cells
     """
     offsets, numbers = [], []
     lines = _lines_of_lane_0(sections, centres, np.diff(shape.starts), int(np.argmax([part.length for part in strip])))

@@ -19,14 +19,13 @@ MOST_TURN = 0.3          # rad from before to after it: more is a corner, which 
 class Cell:
     """A part of one lane between two cuts, with borders along the road's direction.
 
-    piece : row of Lanes; left, right : (n, 3) local metres; left_nodes, right_nodes : their numbers
     before, after : cells that touch its start and its end along the road, by its lane or by successors
     """
 
-    piece: int
-    left: np.ndarray
+    piece: int   # row of Lanes
+    left: np.ndarray   # left, right: (n, 3) local metres
     right: np.ndarray
-    left_nodes: tuple[int, ...]
+    left_nodes: tuple[int, ...]   # left_nodes, right_nodes: their numbers
     right_nodes: tuple[int, ...]
     direction: int
     before: list[Cell] = field(default_factory=list, repr=False)
@@ -44,13 +43,10 @@ class Cell:
 
 @dataclass
 class Slice:
-    """Cells side by side from left to right, all with vertices at the same places.
-
-    at_start, at_end : whether ways through a junction begin or end within the slice, there
-    """
+    """Cells side by side from left to right, all with vertices at the same places."""
 
     cells: list[Cell]
-    at_start: bool = False
+    at_start: bool = False   # at_start, at_end: whether ways through a junction begin or end within the slice, there
     at_end: bool = False
 
     @property

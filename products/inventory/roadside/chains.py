@@ -22,21 +22,15 @@ SMOOTHED_SLICES = 9                     # over which offsets and heights of a ch
 
 @dataclass(frozen=True)
 class Chain:
-    """Uprights of one line along a road, in order of station.
+    """Uprights of one line along a road, in order of station."""
 
-    road, side : number; 1 left, -1 right
-    members : Uprights
-    d, ground, top : (N,) m, smoothed
-    empty : (N,) number of slices after each of them, before the next, that show what lies beyond the line
-    """
-
-    road: int
+    road: int   # road, side: number; 1 left, -1 right
     side: int
     members: Uprights
-    d: np.ndarray
+    d: np.ndarray   # d, ground, top: (N,) m, smoothed
     ground: np.ndarray
     top: np.ndarray
-    empty: np.ndarray
+    empty: np.ndarray   # (N,) number of slices after each of them, before the next, that show what lies beyond the line
 
     @property
     def s(self) -> np.ndarray:
@@ -196,24 +190,19 @@ SIGHT_REACH = 12.0       # m along the road from a gap of points whose line of s
 class Gaps(Rows):
     """G gaps between two uprights of what may be one line.
 
-    before, after : (G,) int, rows of the uprights
-    first, last : (G,) int, the first and the last slice without one
     d, low, high : (G, 2) m, offset and heights of the lower and upper end of the line before and after the gap; local z, or above the road
-    share : (G,) share of the pulses that reach the line which it stops
-    empty : (G,) number of slices that show what lies beyond
-    hidden : (G,) number of slices that something before the line hides
     """
 
-    before: np.ndarray
+    before: np.ndarray   # before, after: (G,) int, rows of the uprights
     after: np.ndarray
-    first: np.ndarray
+    first: np.ndarray   # first, last: (G,) int, the first and the last slice without one
     last: np.ndarray
     d: np.ndarray
     low: np.ndarray
     high: np.ndarray
-    share: np.ndarray
-    empty: np.ndarray
-    hidden: np.ndarray
+    share: np.ndarray   # (G,) share of the pulses that reach the line which it stops
+    empty: np.ndarray   # (G,) number of slices that show what lies beyond
+    hidden: np.ndarray   # (G,) number of slices that something before the line hides
 
     @property
     def covered(self) -> np.ndarray:
@@ -259,9 +248,7 @@ def pulses_at(gaps: Gaps, side: int, s: np.ndarray, d: np.ndarray, h: np.ndarray
     across : (2, N) m from the point to the scanner, ahead and left along the road
     up : (N,) m that the scanner is higher above the road
 
-    Returns
-    -------
-    (3, K) pulses that passed each slice of all gaps, one after the other, that met something there, and that something before it stopped
+    Returns (3, K) pulses that passed each slice of all gaps, one after the other, that met something there, and that something before it stopped
     """
     length = gaps.last - gaps.first + 1
     start = np.cumsum(length) - length

@@ -33,15 +33,11 @@ RIM_STEP = 0.3            # m of height within a cell from which it holds a face
 
 @dataclass(frozen=True)
 class _LocalGround:
-    """Heights of the ground in cells of a stretch of road.
+    """Heights of the ground in cells of a stretch of road."""
 
-    start, origin : m, station and offset of the corner
-    height : (I, J) m above the line that the points' heights count from; NaN where the ground is not known
-    """
-
-    start: float
+    start: float   # start, origin: m, station and offset of the corner
     origin: float
-    height: np.ndarray
+    height: np.ndarray   # (I, J) m above the line that the points' heights count from; NaN where the ground is not known
 
     def at(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) heights of the ground at (N,) stations and offsets; NaN where it is not known."""
@@ -239,9 +235,7 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
     side : 1 left, -1 right
     edge : function of stations that gives the offset of the edge of that side
 
-    Returns
-    -------
-    Uprights whose `top` is how deep the gutter lies below its outer side; one for each UPRIGHT_SLICE
+    Returns Uprights whose `top` is how deep the gutter lies below its outer side; one for each UPRIGHT_SLICE
     """
     s = start + (np.arange(slices) + 0.5) * SLICE_LENGTH
     edges = edge(s)

@@ -31,31 +31,20 @@ BEHIND = 0.30, 3.0       # m behind it where points seen through it are counted
 
 @dataclass
 class Uprights(Rows):
-    """N uprights.
+    """N uprights."""
 
-    slice : (N,) int, number of the slice, counted from station 0
-    d, ground : (N,) m, offset of the face, and local z of the ground at its foot
-    top, foot : (N,) m above the ground
-    below_top : (N, TOP_BINS) number of points in bins counted down from the top
-    thickness : (N,) m across between the 10 % and 90 % quantile of its points
-    batter : (N,) m across per m of height, positive where it leans away from the road
-    points, behind : (N,) number of points on it, and of those seen through it
-    above_view : (N,) bool, may it be higher than what the scanner saw of it?
-    rough : (N,) m across between two points of its face of which one is next above the other, median
-    """
-
-    slice: np.ndarray
-    d: np.ndarray
+    slice: np.ndarray   # (N,) int, number of the slice, counted from station 0
+    d: np.ndarray   # d, ground: (N,) m, offset of the face, and local z of the ground at its foot
     ground: np.ndarray
-    top: np.ndarray
+    top: np.ndarray   # top, foot: (N,) m above the ground
     foot: np.ndarray
-    below_top: np.ndarray
-    thickness: np.ndarray
-    batter: np.ndarray
-    points: np.ndarray
+    below_top: np.ndarray   # (N, TOP_BINS) number of points in bins counted down from the top
+    thickness: np.ndarray   # (N,) m across between the 10 % and 90 % quantile of its points
+    batter: np.ndarray   # (N,) m across per m of height, positive where it leans away from the road
+    points: np.ndarray   # points, behind: (N,) number of points on it, and of those seen through it
     behind: np.ndarray
-    above_view: np.ndarray
-    rough: np.ndarray
+    above_view: np.ndarray   # (N,) bool, may it be higher than what the scanner saw of it?
+    rough: np.ndarray   # (N,) m across between two points of its face of which one is next above the other, median
 
     @staticmethod
     def joined(parts: list[Uprights]) -> Uprights:
@@ -245,18 +234,13 @@ MIN_HEAD_POINTS = 15
 
 @dataclass(frozen=True)
 class Pole:
-    """One upright thing.
+    """One upright thing."""
 
-    kind : pole, sign or trunk
-    s, d, z : m, station and offset of its middle, local z of the ground
-    diameter, height : m
-    """
-
-    kind: str
-    s: float
+    kind: str   # pole, sign or trunk
+    s: float   # s, d, z: m, station and offset of its middle, local z of the ground
     d: float
     z: float
-    diameter: float
+    diameter: float   # diameter, height: m
     height: float
 
 

@@ -26,38 +26,25 @@ _FINER = (0.5, 0.25)      # of a step, tried about each place in the second roun
 
 
 class Place(NamedTuple):
-    """A similarity from the photo's middle to the map.
+    """A similarity from the photo's middle to the map."""
 
-    x, y : m, local, of the photo's middle
-    turn : radians, counter-clockwise, from the rows of the photo to east
-    size : m of a pixel
-    sign : 1, or -1 where paint is darker than the road
-    score : 0 to 1, correlation of the contrasts where both are known
-    """
-
-    x: float
+    x: float   # x, y: m, local, of the photo's middle
     y: float
-    turn: float
-    size: float
-    sign: int
-    score: float
+    turn: float   # radians, counter-clockwise, from the rows of the photo to east
+    size: float   # m of a pixel
+    sign: int   # 1, or -1 where paint is darker than the road
+    score: float   # 0 to 1, correlation of the contrasts where both are known
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """What is tried.
+    """What is tried."""
 
-    x, y : m, local, about where the photo's middle lies
-    reach : m, how far off that may be; infinite where nothing is known
-    turns : (from, to) radians
-    sizes : (from, to) m of a pixel
-    """
-
-    x: float
+    x: float   # x, y: m, local, about where the photo's middle lies
     y: float
-    reach: float
-    turns: tuple[float, float]
-    sizes: tuple[float, float]
+    reach: float   # m, how far off that may be; infinite where nothing is known
+    turns: tuple[float, float]   # (from, to) radians
+    sizes: tuple[float, float]   # (from, to) m of a pixel
 
     def of_pixels(self, factor: int) -> Bounds:
         """The same for a photo whose pixels are `factor` times as wide."""
@@ -76,9 +63,7 @@ def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bound
     bounds : Bounds, of the pixels of `photo`
     sign : 1, or -1 where paint is darker than the road
 
-    Returns
-    -------
-    list of Place, each some metres or a turn away from the others
+    Returns list of Place, each some metres or a turn away from the others
     """
     middle_size = float(np.sqrt(bounds.sizes[0] * bounds.sizes[1]))
     half = 0.5 * max(photo.shape) * middle_size
@@ -215,27 +200,20 @@ def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace
     ----------
     rough : RoughPlace in its CRS
 
-    Returns
-    -------
-    SurveyedPaint, Bounds in its local coordinates, for the pixels of the image itself
+    Returns SurveyedPaint, Bounds in its local coordinates, for the pixels of the image itself
 
-    Raises
-    ------
-    RoadExtractionError
-        If the image covers too much ground, the intensity image has nothing there, or too much would have to be searched.
+    Raises RoadExtractionError if the image covers too much ground, the intensity image has nothing there, or too much would have to be searched.
     """
     ground = max(image.width, image.height) * rough.size
     if ground > MOST_GROUND:
-        raise RoadExtractionError(
-            f"{image.path} covers {ground:.0f} m by its pixel size of {rough.size:.3g} m; images of up to {MOST_GROUND:.0f} m are "
-            "matched. Give the single photo or a part of the mosaic, or the right pixel size.")
+        raise RoadExtractionError(f"{image.path} covers {ground:.0f} m by its pixel size of {rough.size:.3g} m; images of up to {MOST_GROUND:.0f} m "
+                                  "are matched. Give the single photo or a part of the mosaic, or the right pixel size.")
     placed = bool(np.isfinite(rough.reach))
     far = 0.5 * float(np.hypot(image.width, image.height)) * rough.size * (1.0 + rough.size_range) + (rough.reach if placed else 0.0)
     sides = intensity.width * intensity.cell_size, intensity.height * intensity.cell_size
     if not placed and max(sides) > MOST_SEARCHED:
-        raise RoadExtractionError(
-            f"The intensity image is {max(sides):.0f} m long; without any position an image is looked for within {MOST_SEARCHED:.0f} m. Give two "
-            "points or a world file, or cut the intensity image.")
+        raise RoadExtractionError(f"The intensity image is {max(sides):.0f} m long; without any position an image is looked for within "
+                                  f"{MOST_SEARCHED:.0f} m. Give two points or a world file, or cut the intensity image.")
     paint = read_paint(intensity, (rough.x - far, rough.y - far, rough.x + far, rough.y + far) if placed else None)
     if not paint.known.any():
         raise RoadExtractionError(_no_overlap(image, intensity, rough, sides))

@@ -19,18 +19,12 @@ _LUMINANCE = (0.299, 0.587, 0.114)  # of red, green and blue (ITU-R BT.601)
 
 @dataclass(frozen=True)
 class SurveyedPaint:
-    """Contrast of a part of the intensity image, north up.
+    """Contrast of a part of the intensity image, north up."""
 
-    contrast : (H, W) float32, 0 where unknown
-    values : (H, W) float32 intensity, NaN where unknown
-    cell : m
-    left, top : map coordinates of its outer corner, the origin of local coordinates
-    """
-
-    contrast: np.ndarray
-    values: np.ndarray
-    cell: float
-    left: float
+    contrast: np.ndarray   # (H, W) float32, 0 where unknown
+    values: np.ndarray   # (H, W) float32 intensity, NaN where unknown
+    cell: float   # m
+    left: float   # left, top: map coordinates of its outer corner, the origin of local coordinates
     top: float
 
     @property
@@ -41,16 +35,11 @@ class SurveyedPaint:
 
 @dataclass(frozen=True)
 class Photo:
-    """Contrast of the photo.
+    """Contrast of the photo."""
 
-    contrast : (H, W) float32
-    luminance : (H, W) float32, NaN where there is none
-    factor : pixels of the image side by side in a pixel here
-    """
-
-    contrast: np.ndarray
-    luminance: np.ndarray
-    factor: int
+    contrast: np.ndarray   # (H, W) float32
+    luminance: np.ndarray   # (H, W) float32, NaN where there is none
+    factor: int   # pixels of the image side by side in a pixel here
 
 
 def read_paint(image: IntensityImage, box: tuple[float, float, float, float] | None = None) -> SurveyedPaint:
@@ -95,10 +84,7 @@ def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
     size : m of a pixel, roughly
     cell : m of a cell of the intensity image
 
-    Raises
-    ------
-    RoadExtractionError
-        If the image cannot be read.
+    Raises RoadExtractionError if the image cannot be read.
     """
     from osgeo import gdal
 

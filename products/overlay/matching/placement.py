@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ....core.lazy import cv2
-from ..polynomial import (
+from ..georeference import (
     COLLINEAR_RATIO,
     MIN_CONTROL_POINTS,
     MIN_INVERSE_CONDITION,
@@ -17,24 +16,17 @@ from ..polynomial import (
     inverse_condition,
     principal_extents,
 )
-from .photo import reduced
-
-if TYPE_CHECKING:
-    from .photo import Photo
+from .photo import Photo, reduced
 
 _NODE = 16  # cells between places whose pixels are computed; between them they are interpolated
 
 
 @dataclass(frozen=True)
 class Placement:
-    """From local map coordinates to pixel and line.
+    """From local map coordinates to pixel and line."""
 
-    polynomial : ImagePolynomial whose input is x and y, m, and whose output is pixel and line
-    sign : -1 where paint is darker than the road
-    """
-
-    polynomial: ImagePolynomial
-    sign: int = 1
+    polynomial: ImagePolynomial   # ImagePolynomial whose input is x and y, m, and whose output is pixel and line
+    sign: int = 1   # -1 where paint is darker than the road
 
     @classmethod
     def fitted(cls, x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray, order: int, sign: int = 1) -> Placement:
@@ -76,9 +68,7 @@ class Placement:
         corner : first column and row, counted from local 0, 0 to the east and to the south
         reduction : pixels of the photo that are averaged first, where cells are larger than they
 
-        Returns
-        -------
-        (H, W) float32, 0 outside the photo
+        Returns (H, W) float32, 0 outside the photo
         """
         height, width = shape
         across = np.linspace(0, width, max(2, -(-width // _NODE) + 1))
@@ -119,9 +109,7 @@ def agreeing(x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float, 
     tolerance : m, from the displacement that the transformation gives
     weights : (N,) what each pair counts
 
-    Returns
-    -------
-    (N,) bool; none where there are too few places
+    Returns (N,) bool; none where there are too few places
     """
     if len(x) < MIN_CONTROL_POINTS[1]:
         return np.zeros(len(x), dtype=bool)

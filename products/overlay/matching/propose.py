@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
 from ....core.common.errors import RoadExtractionError
+from ....core.common.features import PROPOSED_POINTS, Features
 from ....core.common.progress import Progress
+from ....core.common.setting import check_limits, setting
 from ....core.io.geotiff import IntensityImage
 from ....core.lazy import cv2
 from ..rough_place import RoughPlace
 from ..source_image import SourceImage
 from .coarse import find_places, paint_about
-from .patches import find_patches
 from .photo import Photo, SurveyedPaint, read_photo, reduced
 from .placement import Placement, highest_order, left_out_residuals, robust_placement
-from .proposal import Proposal, ProposalSettings, corner_scores, nearby_rival, rival_elsewhere
 
 _CORNERS = 400          # corners looked for
 _CANDIDATES = 4         # places of the search that are followed up
@@ -37,10 +39,7 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     intensity : IntensityImage in a projected CRS in metres
     rough : RoughPlace in that CRS
 
-    Raises
-    ------
-    RoadExtractionError
-        If the image does not lie over the intensity image, covers too much ground, or shows other paint.
+    Raises RoadExtractionError if the image does not lie over the intensity image, covers too much ground, or shows other paint.
     """
     settings = settings or ProposalSettings()
     paint, bounds = paint_about(image, intensity, rough)
@@ -48,24 +47,22 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     progress.report(0.1)
     x, y = _paint_corners(paint.contrast, paint.known, paint.cell, _CORNERS)
     if len(x) < LEAST_PAIRS:
-        raise RoadExtractionError(
-            f"The intensity image shows {len(x)} corners of paint where {image.path} may lie; {LEAST_PAIRS} are needed. Measure the control "
-            "points by hand there, at manholes and curbs for example.")
+        raise RoadExtractionError(f"The intensity image shows {len(x)} corners of paint where {image.path} may lie; {LEAST_PAIRS} are needed. "
+                                  "Measure the control points by hand there, at manholes and curbs for example.")
     for sign, part in ((1, progress.part(0.1, 0.5)), (-1, progress.part(0.5, 0.9))):
         tried = _followed(image, photo, paint, bounds, sign, x, y, part)
         for chosen in tried:
             pairs = _pair_corners(chosen.placement, paint, photo, x, y, settings)
             if pairs is not None:
                 middle = _middle_on_map(chosen.placement, image)
-                rivals = [rival_elsewhere(chosen.scores, candidate.scores, tuple((_middle_on_map(candidate.placement, image) - middle).tolist()))
+                rivals = [_rival_elsewhere(chosen.scores, candidate.scores, tuple((_middle_on_map(candidate.placement, image) - middle).tolist()))
                           for candidate in tried if candidate is not chosen]
-                near = nearby_rival(pairs.placement, paint, photo, x, y)
+                near = _nearby_rival(pairs.placement, paint, photo, x, y)
                 rival = min([*rivals, *([near] if near else [])], key=lambda one: one.margin, default=None)
                 return _proposal(image, intensity, rough, settings, pairs, rival, paint)
-    raise RoadExtractionError(
-        f"The paint of {image.path} and that of the intensity image do not fit each other, though it was looked for {_range(rough, bounds)}. "
-        "Is it another stretch of road, another scale, or a photo from before or after the road was painted anew? Give a closer position, "
-        "two points or the pixel size, or measure the control points by hand.")
+    raise RoadExtractionError(f"The paint of {image.path} and that of the intensity image do not fit each other, though it was looked for "
+                              f"{_range(rough, bounds)}. Is it another stretch of road, another scale, or a photo from before or after the road was "
+                              "painted anew? Give a closer position, two points or the pixel size, or measure the control points by hand.")
 
 
 def _followed(image, photo, paint, bounds, sign, x, y, progress):
@@ -77,7 +74,7 @@ def _followed(image, photo, paint, bounds, sign, x, y, progress):
         start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, (image.width / 2, image.height / 2), place.sign)
         placement = _align(start, paint, photo, progress)
         if placement is not None and not any(_same(placement, candidate.placement, x, y) for candidate in tried):
-            tried.append(_Tried(placement, corner_scores(placement, paint, photo, x, y)))
+            tried.append(_Tried(placement, _corner_scores(placement, paint, photo, x, y)))
     progress.report(1.0)
     return sorted(tried, key=lambda one: -one.total)
 
@@ -103,10 +100,9 @@ def _proposal(image, intensity, rough, settings, pairs, rival, paint):
     why = pairs.why[shown]
     if rival is not None and rival.margin < 1.0:
         why = np.where(why == "", AMBIGUOUS, why)
-        notes.append(
-            f"The paint repeats: {rival.votes_for:.0f} corners speak for this place and {rival.votes_against:.0f} for one "
-            f"{np.hypot(rival.dx, rival.dy):.1f} m away, so no pair is accepted. Give two points or a smaller search distance, or accept the "
-            "pairs by hand if the place is right.")
+        notes.append(f"The paint repeats: {rival.votes_for:.0f} corners speak for this place and {rival.votes_against:.0f} for one "
+                     f"{np.hypot(rival.dx, rival.dy):.1f} m away, so no pair is accepted. Give two points or a smaller search distance, or accept "
+                     "the pairs by hand if the place is right.")
     slope = pairs.placement.polynomial.jacobian(pairs.x.mean(keepdims=True), pairs.y.mean(keepdims=True))[0]
     east = np.linalg.solve(slope, [1.0, 0.0])   # along a row of the image, m
     size = 1.0 / float(np.sqrt(abs(np.linalg.det(slope))))
@@ -196,7 +192,7 @@ def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: P
         drawn = placement.sign * placement.drawn(photo.contrast, photo, cell_size, small.shape, reduction=placement.reduction(photo, cell_size))
         height, width = (n * cell_size for n in small.shape)
         x, y = (axis.ravel() for axis in np.meshgrid(np.arange(half / 2, width, half), -np.arange(half / 2, height, half)))
-        patches = find_patches(small, drawn, cell_size, x, y, half, search)
+        patches = _find_patches(small, drawn, cell_size, x, y, half, search)
         patches = patches.where((patches.score > _LEAST_SCORE) & (patches.second < _MOST_SECOND_OF_PATCHES))
         fitted = robust_placement(placement, patches.x, patches.y, np.column_stack([patches.dx, patches.dy]), tolerance, patches.score, 2)
         if fitted is None:
@@ -221,26 +217,17 @@ WEAK, REPEATS, AWAY = "looks different", "repeats nearby", "does not fit the oth
 
 
 class Pairs(NamedTuple):
-    """N corners of paint and where the image has them.
+    """N corners of paint and where the image has them."""
 
-    placement : Placement that those that agree were fitted to
-    order : of the polynomial that the residuals belong to
-    x, y : (N,) m, local
-    pixel, line : (N,)
-    score : (N,) correlation of the two cut-outs
-    residual : (N,) m, from where the pairs that agree place it, each without itself
-    why : (N,) texts, why a pair is false or doubtful; "" for a sound one
-    """
-
-    placement: Placement
-    order: int
-    x: np.ndarray
+    placement: Placement   # Placement that those that agree were fitted to
+    order: int   # of the polynomial that the residuals belong to
+    x: np.ndarray   # x, y: (N,) m, local
     y: np.ndarray
-    pixel: np.ndarray
+    pixel: np.ndarray   # pixel, line: (N,)
     line: np.ndarray
-    score: np.ndarray
-    residual: np.ndarray
-    why: np.ndarray
+    score: np.ndarray   # (N,) correlation of the two cut-outs
+    residual: np.ndarray   # (N,) m, from where the pairs that agree place it, each without itself
+    why: np.ndarray   # (N,) texts, why a pair is false or doubtful; "" for a sound one
 
 
 def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray, settings: ProposalSettings) -> Pairs | None:
@@ -248,7 +235,7 @@ def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
     for search, times in _ROUNDS:
         drawn = placement.sign * placement.drawn(photo.contrast, photo, paint.cell, paint.contrast.shape,
                                                  reduction=placement.reduction(photo, paint.cell))
-        patches = find_patches(paint.contrast, drawn, paint.cell, x, y, _PATCH, search)
+        patches = _find_patches(paint.contrast, drawn, paint.cell, x, y, _PATCH, search)
         patches = patches.where(patches.score > _LISTED_SCORE)
         alike = (patches.score >= settings.min_score) & (patches.second <= _MOST_SECOND)
         moved = np.column_stack([patches.dx, patches.dy])
@@ -267,3 +254,245 @@ def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
     fits = residual <= min(settings.tolerance, max(_SIGMAS * spread, _FINEST))
     why = np.select([patches.score < settings.min_score, patches.second > _MOST_SECOND, ~fits | ~used], [WEAK, REPEATS, AWAY], "")
     return Pairs(placement, order, patches.x, patches.y, pixel, line, patches.score, residual, why)
+
+
+# What is proposed: pairs of places, which of them are accepted, what is known of the whole, and whether the paint allows another place.
+
+@dataclass(frozen=True)
+class ProposalSettings:
+    """How pairs are found and accepted.
+
+    tolerance : m, largest distance of a pair that is accepted from where the others place it
+    pixel_size : m on the ground of the image's pixels, roughly; 0: as its position or its tags say
+    """
+
+    search: float = setting(15.0, 1.0, 100.0, "The search distance", "m")   # m, how far off the rough position may be
+    tolerance: float = setting(0.10, 0.01, 1.0, "The tolerance", "m")
+    min_score: float = setting(0.6, 0.3, 0.99, "The smallest score")   # smallest correlation of the two cut-outs of a pair that is accepted
+    count: int = setting(40, 6, 400, "The number of pairs")   # most pairs that are accepted
+    pixel_size: float = setting(0.0, 0.001, 1.0, "The pixel size", "m", zero="as the image says")
+
+    def __post_init__(self) -> None:
+        """Check the limits of all settings."""
+        check_limits(self)
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """N pairs of places, in the image and on the map, the most certain first."""
+
+    image: SourceImage   # image, intensity: as given
+    intensity: IntensityImage
+    settings: ProposalSettings
+    rough: RoughPlace
+    crs: str   # WKT of the map
+    easting: np.ndarray   # easting, northing: (N,) m, in the intensity image
+    northing: np.ndarray
+    pixel: np.ndarray   # pixel, line: (N,) in the image
+    line: np.ndarray
+    score: np.ndarray   # (N,) correlation of the two cut-outs
+    residual: np.ndarray   # (N,) m, distance from where the accepted pairs without this one place it
+    accepted: np.ndarray   # (N,) bool, by default
+    why: tuple[str, ...]   # N texts, why a pair is not accepted
+    order: int   # of the polynomial that the residuals belong to
+    turn: float   # turn, size: radians and m, of the image on the map
+    size: float
+    rival: _Rival | None   # the most likely other place, None where there is none
+    notes: list[str] = field(default_factory=list)   # warnings for the user, one sentence each
+
+    def __len__(self) -> int:
+        return len(self.pixel)
+
+    @property
+    def rmse(self) -> float:
+        """Root mean square of the residuals of the accepted pairs, m; NaN without any."""
+        return float(np.sqrt(np.mean(self.residual[self.accepted] ** 2))) if self.accepted.any() else float("nan")
+
+    @property
+    def turn_degrees(self) -> float:
+        """Degrees counter-clockwise, from the rows of the image to east."""
+        return float(np.degrees(self.turn))
+
+    def features(self) -> Features:
+        """Features PROPOSED_POINTS, as "Georeference image" takes them: pairs that are not accepted are switched off."""
+        from shapely import Point
+
+        layer = Features("PointZ", PROPOSED_POINTS, crs=self.crs)
+        for k in range(len(self)):
+            layer.add(Point(self.easting[k], self.northing[k], 0.0), point=k + 1, accepted=self.accepted[k], role="control",
+                      score=self.score[k], residual=self.residual[k], pixel=self.pixel[k], line=self.line[k], why=self.why[k])
+        return layer
+
+
+# Whether a place is the only one that the paint allows: on a road of equal dashes several fit equally well.
+
+_HALF = 0.8           # m, half the side of the patch about a corner
+_AROUND = 6.0         # m within which shifted places are compared
+_SAME_SHIFT = 0.6           # m, shifts nearer than this are the same place
+_OFF = 0.24           # m by which a corner may be off its place
+_CELL = 0.08          # m
+_DECISIVE = 0.3       # difference of two correlations of a corner that speaks for one place
+LEAST_DECISIVE = 4    # more corners must speak for a place than for another one
+_SIGN_SIGMAS = 2.0         # and by so many standard deviations of their number (sign test)
+_UNLIKE = 0.4         # correlation below which a corner is not what lies there
+
+
+class _Rival(NamedTuple):
+    """Another place that the paint might allow."""
+
+    dx: float   # dx, dy: m, from the place
+    dy: float
+    votes_for: float   # votes_for, votes_against: corners that speak for the place, and for the rival
+    votes_against: float
+
+    @property
+    def margin(self) -> float:
+        """How clearly the corners speak for the place, 1 or more: clearly enough."""
+        needed = max(LEAST_DECISIVE, _SIGN_SIGMAS * float(np.sqrt(self.votes_for + self.votes_against)))
+        return (self.votes_for - self.votes_against) / needed
+
+
+def _corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """How well the photo fits about corners of paint.
+
+    x, y : (N,) m, local
+    Returns (N,) correlation of the best place within some decimetres; NaN outside the photo
+    """
+    maps = _maps(placement, paint, photo, x, y, _OFF)
+    return np.array([np.nan if match is None else match.max() for match in maps])
+
+
+def _nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
+    """The shift by some metres that the corners allow best, besides none at all.
+
+    as of `_corner_scores` Returns _Rival, None where no corner lies in the photo
+    """
+    near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
+    maps = [cv2.dilate(match, near) for match in _maps(placement, paint, photo, x, y, _AROUND) if match is not None]
+    if not maps:
+        return None
+    votes = np.maximum(maps, 0.0)
+    total = votes.sum(axis=0)
+    middle = len(total) // 2
+    down, across = np.mgrid[:len(total), :len(total)] - middle
+    total[np.hypot(down, across) * _CELL < _SAME_SHIFT] = -1.0
+    row, column = divmod(int(total.argmax()), len(total))
+    better = votes[:, middle, middle] - votes[:, row, column]
+    return _Rival((column - middle) * _CELL, -(row - middle) * _CELL, int((better > _DECISIVE).sum()), int((better < -_DECISIVE).sum()))
+
+
+def _rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, float]) -> _Rival:
+    """A place against another one that lies too far away to be compared corner by corner: by the corners that look unlike at each.
+
+    best, other : (N,) `_corner_scores` of the two placements, NaN outside the photo
+    shift : m, from the one to the other
+    """
+    best_scores, other_scores = best[np.isfinite(best)], other[np.isfinite(other)]
+    scale = len(other_scores) / max(len(best_scores), 1)
+    return _Rival(*shift, float((other_scores < _UNLIKE).sum()), scale * float((best_scores < _UNLIKE).sum()))
+
+
+def _maps(placement, paint, photo, x, y, search):
+    """Correlations about each corner, (2 n + 1, 2 n + 1) each, its own place in the middle; None outside the photo."""
+    factor = max(1, round(_CELL / paint.cell))
+    small = reduced(paint.contrast, factor)
+    cell = paint.cell * factor
+    drawn = placement.sign * placement.drawn(photo.contrast, photo, cell, small.shape, reduction=placement.reduction(photo, cell))
+    return _correlation_maps(small, drawn, cell, x, y, _HALF, search)
+
+
+# Patches of the intensity image found again in the photo, once that lies roughly on the map.
+
+_OTHER_PEAK = 0.3     # of the patch's half-width, from the best place, beyond which a second one is another
+_LEAST_KNOWN = 0.3    # of a patch that the intensity image must hold
+_LEAST_STRUCTURE = 0.02   # mean square contrast of a patch, below which there is no paint in it
+
+
+class Found(NamedTuple):
+    """Patches found again."""
+
+    x: np.ndarray   # x, y: (N,) m, local, middles of the patches
+    y: np.ndarray
+    dx: np.ndarray   # dx, dy: (N,) m, from there to where the drawn photo has them
+    dy: np.ndarray
+    score: np.ndarray   # (N,) correlation, 0 to 1
+    second: np.ndarray   # (N,) the largest correlation elsewhere in the window, as a share of the best
+    sharpness: np.ndarray   # (N,) how fast the correlation falls in the direction in which it falls slowest, per m²
+
+    def where(self, kept: np.ndarray) -> Found:
+        """The patches of a (N,) bool or index array."""
+        return Found(*(column[kept] for column in self))
+
+
+def _find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float, search: float) -> Found:
+    """Find patches of the intensity image in the photo drawn on the same cells.
+
+    Parameters
+    ----------
+    paint : (H, W) contrast of the intensity image, 0 where unknown, its corner at local 0, 0
+    drawn : (H, W) contrast of the photo on the same cells
+    cell : m
+    x, y : (N,) middles of the patches, m, local
+    half : m, half the side of a patch
+    search : m, how far off it may be
+
+    Returns Found, without patches that lie too near the border, hold no paint, or were found at the border of their window
+    """
+    margin = max(2, round(search / cell))
+    exclusion = max(2, round(_OTHER_PEAK * half / cell))
+    rows: list[tuple[float, ...]] = []
+    for at_x, at_y, match in zip(x, y, _correlation_maps(paint, drawn, cell, x, y, half, search)):
+        best = None if match is None else _peak(match, exclusion)
+        if best is not None:
+            right, down, score, second, sharpness = best
+            rows.append((at_x, at_y, (right - margin) * cell, -(down - margin) * cell, score, second, sharpness / cell**2))
+    return Found(*np.array(rows, float).reshape(-1, 7).T)
+
+
+def _correlation_maps(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float,
+                     search: float) -> Iterator[np.ndarray | None]:
+    """The correlation of each patch with the photo, for every shift by whole cells.
+
+    as of `_find_patches`
+    Returns iterator of (2 n + 1, 2 n + 1) float32, the shift by nothing in the middle; None where a patch holds no paint or the photo is empty
+    """
+    reach, margin = max(2, round(half / cell)), max(2, round(search / cell))
+    edge = reach + margin + 1
+    framed, templates = (cv2.copyMakeBorder(values, edge, edge, edge, edge, cv2.BORDER_CONSTANT, value=0.0) for values in (drawn, paint))
+    for at_x, at_y in zip(x, y):
+        column, row = int(np.floor(at_x / cell)) + edge, int(np.floor(-at_y / cell)) + edge
+        template = templates[row - reach:row + reach + 1, column - reach:column + reach + 1]
+        mask = (template != 0).astype(np.float32)
+        window = framed[row - reach - margin:row + reach + margin + 1, column - reach - margin:column + reach + margin + 1]
+        without_paint = mask.mean() < _LEAST_KNOWN or float((template * template).mean()) < _LEAST_STRUCTURE
+        outside = not window[margin:-margin, margin:-margin].any()
+        yield None if without_paint or outside else _correlation(window, template, mask)
+
+
+def _correlation(window, template, mask):
+    """Normalised correlation of the contrasts over the known part of the template, their means removed."""
+    count = mask.sum()
+    zero_mean = (template - (template * mask).sum() / count) * mask
+    product = cv2.matchTemplate(window, zero_mean, cv2.TM_CCORR)
+    total, square = (cv2.matchTemplate(values, mask, cv2.TM_CCORR) for values in (window, window * window))
+    spread = np.maximum(square - total * total / count, 1e-3 * count)  # at least a noise of 0.03: nothing else is nothing
+    return product / np.sqrt(spread * (zero_mean * zero_mean).sum())
+
+
+def _peak(match, other):
+    """(column, row, value, second peak as a share of it, sharpness per cell²) of the largest value; None at the border."""
+    row, column = divmod(int(match.argmax()), match.shape[1])
+    if not (0 < row < match.shape[0] - 1 and 0 < column < match.shape[1] - 1):
+        return None
+    a = match[row - 1:row + 2, column - 1:column + 2].astype(float)
+    slope = np.array([a[1, 2] - a[1, 0], a[2, 1] - a[0, 1]]) / 2
+    bend = np.array([[a[1, 2] - 2 * a[1, 1] + a[1, 0], (a[2, 2] - a[2, 0] - a[0, 2] + a[0, 0]) / 4],
+                     [0.0, a[2, 1] - 2 * a[1, 1] + a[0, 1]]])
+    bend[1, 0] = bend[0, 1]
+    flattest = -np.linalg.eigvalsh(bend).max()
+    if flattest <= 0 or a[1, 1] <= 0:
+        return None
+    move = np.clip(-np.linalg.solve(bend, slope), -1.0, 1.0)
+    remaining = match.copy()
+    remaining[max(0, row - other):row + other + 1, max(0, column - other):column + other + 1] = 0.0
+    return column + move[0], row + move[1], a[1, 1], max(float(remaining.max()), 0.0) / a[1, 1], flattest

@@ -21,7 +21,7 @@ EVERY_CURVE = [
 
 
 def painted(curve, noise=0.01, step=0.25, seed=1):
-    """PointGroups on a line with lateral noise, one per `step` metres."""
+    """Points on a line with lateral noise, one per `step` metres."""
     u = np.arange(0.0, curve.length, step)
     heading = curve.heading(u)
     e = np.random.default_rng(seed).normal(0, noise, len(u)) if noise else np.zeros(len(u))
@@ -29,7 +29,7 @@ def painted(curve, noise=0.01, step=0.25, seed=1):
 
 
 def along(elements, noise=0.008, step=0.5):
-    """PointGroups along straights (0, 0, L), arcs (k, k, L) and transitions (k0, k1, L) laid end to end."""
+    """Points along straights (0, 0, L), arcs (k, k, L) and transitions (k0, k1, L) laid end to end."""
     x, y, heading, places = 0.0, 0.0, 0.0, []
     for k, (first, last, length) in enumerate(elements):
         curve = Clothoid(x, y, heading, first, (last - first) / length, length)

@@ -6,7 +6,7 @@ from lanewright.core.curves.segmentation import element_ranges
 
 
 def alignment(*parts, step=0.5, noise=0.01, seed=3):
-    """PointGroups along straights, arcs and clothoids given as (length, curvature at start, at end)."""
+    """Points along straights, arcs and clothoids given as (length, curvature at start, at end)."""
     curvature = np.concatenate([np.linspace(a, b, int(length / step), endpoint=False) for length, a, b in parts])
     heading = np.r_[0.0, np.cumsum(curvature[:-1] * step)] + curvature * step / 2
     x = np.r_[0.0, np.cumsum(step * np.cos(heading))]

@@ -76,12 +76,10 @@ def test_beside_a_curb_a_lane_has_the_room_in_whose_middle_one_drives_and_so_has
     assert sorted(found) == pytest.approx([-middle, middle], abs=0.1)
 
 
-def test_where_one_drives_between_the_middle_of_the_room_and_that_of_a_usual_lane_both_are_said():
+def test_where_one_drives_between_the_middle_of_the_room_and_that_of_a_usual_lane_the_lane_lies_there():
+    """Within 15 cm of both: with and without a gutter it is right."""
     street = Street(vehicle=-1.9, again=(1.9,)).paint(0.0, kind="centre")
-    for offset, row in readings(street, edges=curbs(street, 4.1, -4.1)).items():
-        assert row["confidence"] <= 0.6
-        (middle, width, way), = other_lanes(row, -1.9)
-        assert way == row["direction"] and abs(middle.expected - offset) > 0.15 and 3.2 < width.expected < 4.2
+    assert sorted(readings(street, edges=curbs(street, 4.1, -4.1))) == pytest.approx([-1.9, 1.9], abs=0.06)
 
 
 def test_a_row_of_parked_cars_between_lane_and_curb_is_no_second_reading_where_one_drove_beside_it():

@@ -59,22 +59,6 @@ def test_a_lane_keeps_its_width_where_it_was_taken_to_reach_over_the_beginning_o
     np.testing.assert_allclose(kept.width, 3.2)
 
 
-@pytest.mark.parametrize("head", [True, False])
-@pytest.mark.parametrize("narrows, kept", [(True, 0.0), (False, 1.2)], ids=["a taper that goes on", "a lane that divides into two"])
-def test_a_lane_keeps_its_width_beside_a_taper_that_goes_on_beyond_the_survey(narrows, kept, head):
-    """30 m from the beginning of the survey a lane opens, along a taper of 33 m; or a broad lane divides into two."""
-    count = 260
-    at = np.arange(count)
-    widening = np.where(at < 60, 1.2 * (1.0 - 0.015 * (60 - at) * narrows), 0.0)
-    through, opening = track(0, -1.6 - widening / 2, 3.2 + widening), track(58, np.full(count - 58, -4.8), np.full(count - 58, 3.2))
-    if not head:
-        through = track(0, through.d[::-1], through.width[::-1])
-        opening = track(0, opening.d[::-1], opening.width[::-1])
-    found, _ = laid_out([through, opening])
-    width = found.width if head else found.width[::-1]
-    np.testing.assert_allclose(width[:55], 3.2 + kept)
-
-
 @pytest.mark.parametrize("again, end", [((), 86.0), ((1.75,), 114.5)])
 def test_a_lane_that_nobody_drove_goes_no_farther_than_lanes_are_built_wide(again, end):
     street = Street(length=120.0, vehicle=-1.75, again=again).paint(-3.5, kind="edge").paint(0.0, kind="centre")
@@ -163,3 +147,15 @@ def test_beside_a_centre_line_alone_lanes_reach_as_far_as_the_edge_of_the_paveme
     assert sorted({row["direction"] for row in lines.rows}) == [-1, 1]
     for line, row in lines:
         np.testing.assert_allclose(street.offsets(line), -row["direction"] * room / 2, atol=0.05)
+
+
+def test_a_lane_goes_on_where_it_is_driven_while_the_line_beside_it_moves_aside_for_a_turning_lane():
+    street = Street(length=LENGTH, vehicle=-2.2).paint(0.0, 5.0, 110.0, pattern="dashed").paint(0.0, 130.0, 195.0)
+    street.paint(lambda s: 3.0 * np.clip((s - 110.0) / 20.0, 0.0, 1.0), 110.0, 195.0)
+    edges, along = Features("LineStringZ", list(ROAD_EDGES)), np.arange(5.0, 195.0, 0.5)
+    for chain, left in enumerate((4.4 + 1.6 * np.clip((along - 110.0) / 20.0, 0.0, 1.0), np.full(len(along), -4.4))):
+        edges.add(LineString(np.c_[street.places(along, left), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
+                  part="bottom", chain=chain, side="right" if chain else "left")
+    places = np.concatenate([np.c_[np.asarray(line.coords)[:, 0] - EAST, street.offsets(line)] for line, _ in street.lanes(edges=edges)[0]])
+    opening = places[(places[:, 0] > 110.0) & (places[:, 0] < 119.0) & (places[:, 1] < 0.9)]
+    assert len(opening) and np.abs(opening[:, 1] + 2.2).max() < 0.15

@@ -8,6 +8,7 @@ import socket
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from curbed_streets import street, survey_of
@@ -15,7 +16,7 @@ from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.parallel import check_cancelled
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import cluster, tasks
+from lanewright.core.execution import cluster, folder_executor, tasks
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import Cluster, check_address, client_of, is_loopback
 from lanewright.core.execution.phase import Phase, Threads, read_plain, write_plain
@@ -27,8 +28,8 @@ class KilledWorker(Exception):
     """What Dask raises where workers end at a task."""
 
 
-class StandIn:
-    """Does in threads what a distributed.Client has done; `deadly(first, last)` says at which items a worker would end.
+class StandIn(ThreadPoolExecutor):
+    """Does in threads what a distributed.Client and its executor have done; `deadly(first, last)` says at which items a worker would end.
 
     tasks : the items of each task that was sent, in this order
     """
@@ -36,48 +37,41 @@ class StandIn:
     status = "running"
 
     def __init__(self, deadly=lambda first, last: False):
-        self.pool, self.deadly, self.tasks, self.priorities = ThreadPoolExecutor(2), deadly, [], []
+        super().__init__(2)
+        self.deadly, self.tasks = deadly, []
 
     @property
     def items(self):
         return [item for some in self.tasks for item in some if len(item) == 2]   # a window of ground is no section
 
-    def submit(self, function, phase, items, results, code, pure, retries, priority, key):
-        self.tasks.append([tuple(read_plain(item)) for item in items])
-        self.priorities.append(priority)
-        return StandInFuture(key, self.pool.submit(self._do, function, phase, items, results, code))
+    def get_executor(self, pure, retries):
+        return Shared(self)
 
-    def _do(self, function, phase, items, results, code):
-        for k, item in enumerate(items):
-            if len(section := read_plain(item)) == 2 and self.deadly(*section):
-                function(phase, items[:k], results[:k], code)
+    def submit(self, function, phase, items, results):
+        self.tasks.append([tuple(item) for item in read_plain(Path(items))])
+        return super().submit(self._do, function, phase, items, results)
+
+    def _do(self, function, phase, items, results):
+        some = read_plain(Path(items))
+        for k, section in enumerate(some):
+            if len(section) == 2 and self.deadly(*section):
+                write_plain(Path(items), some[:k])
+                function(phase, items, results[:k])
                 raise KilledWorker
-        return function(phase, items, results, code)
-
-    def cancel(self, futures, force):
-        for future in futures:
-            future.own.cancel()
+        return function(phase, items, results)
 
     def close(self):
-        self.pool.shutdown()
+        self.shutdown()
 
 
-class StandInFuture:
-    def __init__(self, key, own):
-        self.key, self.own = key, own
+class Shared:
+    """The executor of a phase, of a client that goes on."""
 
-    def add_done_callback(self, call):
-        self.own.add_done_callback(lambda _: call(self))
+    def __init__(self, client):
+        self.submit = client.submit
 
-    @property
-    def status(self):
-        return "cancelled" if self.own.cancelled() else "error" if self.own.exception() else "finished"
-
-    def result(self):
-        return self.own.result()
-
-    def exception(self):
-        return self.own.exception()
+    def shutdown(self, wait):
+        pass
 
 
 @pytest.fixture(scope="module")
@@ -127,7 +121,7 @@ lengths_of = build_frame   # any function of core: it is never called
 def test_workers_that_all_pause_for_ever_are_not_waited_for(monkeypatch):
     monkeypatch.setattr(cluster, "EXECUTION", replace(cluster.EXECUTION, paused_time=0.3))
     client = StandIn()
-    client.submit = lambda *_, key, **__: StandInFuture(key, Future())
+    client.submit = lambda *_: Future()
     client.scheduler_info = lambda n_workers: dict(workers=dict(one=dict(status="paused"), other=dict(status="paused")))
     executor = Cluster(client)
     with pytest.raises(RoadExtractionError, match="All workers of the cluster pause.*memory-limit"):
@@ -135,19 +129,10 @@ def test_workers_that_all_pause_for_ever_are_not_waited_for(monkeypatch):
     executor.close()
 
 
-def test_the_largest_sections_begin():
-    client = StandIn(deadly=lambda first, last: True)
-    executor = Cluster(client)
-    with pytest.raises(RoadExtractionError):
-        list(executor.run(Phase(lengths_of, survey_of(street()), size=lambda item: item[1] - item[0]), [(0, 8), (8, 30), (30, 33), (33, 55)]))
-    assert client.priorities == [1, 2, 0, 2]
-    executor.close()
-
-
 @pytest.fixture
 def few_rounds(monkeypatch):
     """Tasks of several sections on a short street."""
-    monkeypatch.setattr(tasks, "EXECUTION", replace(tasks.EXECUTION, work_rounds=1))
+    monkeypatch.setattr(folder_executor, "EXECUTION", replace(folder_executor.EXECUTION, work_rounds=1))
 
 
 def test_successive_sections_go_to_a_worker_together_and_every_worker_has_rounds_of_work(by_threads, few_rounds):
@@ -161,53 +146,49 @@ def test_successive_sections_go_to_a_worker_together_and_every_worker_has_rounds
     assert max(map(len, shared.tasks)) == 1 and sorted(set(shared.items)) == sorted(set(client.items))
 
 
-def test_tasks_with_the_most_work_begin(few_rounds):
-    client = StandIn(deadly=lambda first, last: True)
-    executor = Cluster(client, threads=2)
-    items = [(0, 9), (9, 18), (18, 50), (50, 60), (60, 61)]
-    with pytest.raises(RoadExtractionError):
-        list(executor.run(Phase(lengths_of, survey_of(street()), size=lambda item: item[1] - item[0]), items))
-    assert client.tasks[:3] == [[(0, 9), (9, 18)], [(18, 50), (50, 60)], [(60, 61)]] and client.priorities[:3] == [1, 2, 0]
-    executor.close()
-
-
 def test_where_workers_end_only_the_section_that_they_end_at_is_computed_again(by_threads, few_rounds, monkeypatch):
-    computed, answer = [], tasks._tasks.answer
+    computed, write = [], tasks.write_plain
 
-    def counted(phase, item, result):
-        computed.append(result)
-        return answer(phase, item, result)
+    def counted(path, *others):
+        computed.append(path)
+        write(path, *others)
 
-    monkeypatch.setattr(tasks._tasks, "answer", counted)
+    monkeypatch.setattr(tasks, "write_plain", counted)
     client = StandIn(lambda first, last: first <= 100 < last and not any((a == first) != (b == last) for a, b in client.items))
     assert numbers_of(boundaries(Cluster(client))) == by_threads
     assert len(computed) == len(set(computed)), "what was finished before a worker ended stays"
 
 
-def test_memory_that_one_section_lacks_does_not_divide_the_others(few_rounds, monkeypatch):
-    def scarce(phase, item, result):
-        first, last = read_plain(item)
-        if first <= 20 < last and last - first > 5:
-            return {"memory": "out of memory"}
-        write_plain(result, last - first)
-        return {}
+SECTIONS = [(0, 9), (9, 18), (18, 27), (27, 36)]
 
-    monkeypatch.setattr(tasks._tasks, "answer", scarce)
-    client = StandIn()
+
+def lengths_by(monkeypatch, client, length, **phase):
+    """What a phase of SECTIONS gives whose function is `length(first, last)`."""
+    monkeypatch.setattr(tasks, "_phase", lambda path: (lambda source, item: length(*item), None, ()))
     executor = Cluster(client)
-    items = [(0, 9), (9, 18), (18, 27), (27, 36)]
-    assert list(executor.run(Phase(lengths_of, survey_of(street()), join=sum), items)) == [9, 9, 9, 9]
-    assert client.tasks == [items, *([item] for item in items), [(18, 22)], [(22, 27)]]
-    executor.close()
+    try:
+        return list(executor.run(Phase(lengths_of, survey_of(street()), **phase), SECTIONS))
+    finally:
+        executor.close()
+
+
+def test_memory_that_one_section_lacks_does_not_divide_the_others(few_rounds, monkeypatch):
+    def scarce(first, last):
+        if first <= 20 < last and last - first > 5:
+            raise MemoryError
+        return last - first
+
+    client = StandIn()
+    assert lengths_by(monkeypatch, client, scarce, join=sum) == [9, 9, 9, 9]
+    assert client.tasks == [SECTIONS, *([item] for item in SECTIONS), [(18, 22)], [(22, 27)]]
 
 
 def test_what_goes_wrong_names_the_section_where_it_did(few_rounds, monkeypatch):
-    monkeypatch.setattr(tasks._tasks, "answer",
-                        lambda phase, item, result: {"bug": "a traceback"} if read_plain(item) == (18, 27) else write_plain(result, 0) or {})
-    executor, items = Cluster(StandIn()), [(0, 9), (9, 18), (18, 27), (27, 36)]
-    with pytest.raises(RuntimeError, match=r"failed at section 18 to 27:\na traceback"):
-        list(executor.run(Phase(lengths_of, survey_of(street()), place=lambda item: "section {} to {}".format(*item)), items))
-    executor.close()
+    def fails(first, last):
+        return 1 // (first - 18)
+
+    with pytest.raises(RuntimeError, match=r"A worker of the cluster failed at section 18 to 27:\n(?s:.*)ZeroDivisionError"):
+        lengths_by(monkeypatch, StandIn(), fails, place=lambda item: "section {} to {}".format(*item))
 
 
 def test_cancel_leaves_no_folder():
@@ -234,15 +215,16 @@ def test_a_task_stops_when_its_phase_is_no_longer_wanted(tmp_path, monkeypatch):
 
 
 def test_a_result_that_is_there_is_not_computed_again(tmp_path):
-    write_plain(tmp_path / "result.plain", 7)
-    assert tasks.items_done(str(tmp_path / "no phase"), [str(tmp_path / "no item")], [str(tmp_path / "result.plain")], code_digest()) == {}
-    assert read_plain(tmp_path / "result.plain") == 7
+    files = items, result = tmp_path / "items.plain", tmp_path / "result.plain"
+    for path in files:
+        write_plain(path, [7])
+    assert tasks.items_done_here(code_digest(), str(tmp_path / "no phase"), str(items), [str(result)]) == {}
+    assert read_plain(result) == [7]
 
 
 def test_a_worker_with_other_code_computes_nothing(tmp_path):
-    answer = tasks.items_done(str(tmp_path / "phase"), [str(tmp_path / "item")], [str(tmp_path / "result")], "another")
-    assert answer == {"code": code_digest()}
-    assert not list(tmp_path.iterdir())
+    answer = tasks.items_done_here("another", str(tmp_path / "phase"), str(tmp_path / "items"), [str(tmp_path / "result")])
+    assert "another Lanewright" in answer["refused"] and not list(tmp_path.iterdir())
 
 
 def test_the_folder_of_a_caller_that_is_gone_is_removed_and_that_of_another_stays(tmp_path, monkeypatch):

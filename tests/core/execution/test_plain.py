@@ -35,6 +35,12 @@ def test_arrays_keep_their_order_in_memory(tmp_path):
     assert all(array.flags.writeable for array in (rows, columns, part))
 
 
+@pytest.mark.parametrize("texts", [[], ["left", "right", "Straße"]])
+def test_columns_of_texts_come_back(tmp_path, texts):
+    found = there_and_back(tmp_path, np.array(texts, object))
+    assert found.dtype == object and found.shape == (len(texts),) and found.tolist() == texts
+
+
 def test_a_file_that_ends_early_and_one_of_others_are_refused(tmp_path):
     path = tmp_path / "value.plain"
     write_plain(path, [np.arange(9)])

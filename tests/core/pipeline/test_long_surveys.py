@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive, joined, surveyed_points, write_cloud
-from lanewright.core.survey.density import cube_density
+from lanewright.core.survey.density import counted_cubes, cube_density
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.core.survey.road_points_las import read_road_points, scale_for, write_road_points
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -101,8 +101,8 @@ def test_a_file_has_the_finest_scale_in_which_its_points_fit():
 
 
 def test_cubes_of_two_towns_are_counted_apart(survey):
-    both = cube_density([(road, number) for road in (0, 1) for number in survey.store.sections(road)], lambda key: survey.section(*key))
-    one = cube_density([(0, number) for number in survey.store.sections(0)], lambda key: survey.section(*key))
+    towns = [[counted_cubes(survey.section(road, number)) for number in survey.store.sections(road)] for road in (0, 1)]
+    both, one = cube_density(towns[0] + towns[1]), cube_density(towns[0])
     assert both.points == 2 * one.points
     assert both.mean == pytest.approx(one.mean, rel=0.05)
 

@@ -13,7 +13,7 @@ from lanewright.core.execution.work_folder import WorkFolder
 
 pytestmark = pytest.mark.slow
 
-KILLED_IN = ("surface_points", "corrected_of_stretch", "sums_of_pieces", "levels_of_windows", "paint_of_windows", "links_of_windows",
+KILLED_IN = ("surface_points", "corrected_of_stretch", "sums_of_pieces", "paint_of_window", "links_of_windows",
              "combs_of_windows", "shapes_of_clusters", "seen_in_stretch", "heights_of_windows")
 
 
@@ -35,7 +35,7 @@ class Noting(WorkerProcesses):
         killer = threading.Thread(target=self.kill_one, daemon=True)
         if killed := name in self.killed_in:
             self.killed_in.remove(name)
-            if any(worker._process.poll() is not None for worker in self._all):
+            if any(worker.process.poll() is not None for worker in self._all):
                 self.release()   # it had no task when it was killed; no item may lose two workers
             killer.start()
         yield from super().run(phase, items, *others)
@@ -46,8 +46,8 @@ class Noting(WorkerProcesses):
         until = time.monotonic() + 20.0
         while time.monotonic() < until:
             for worker in list(self._all):
-                if worker._process.poll() is None:
-                    worker._process.kill()
+                if worker.process.poll() is None:
+                    worker.process.kill()
                     return
             time.sleep(0.005)
 

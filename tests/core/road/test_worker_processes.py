@@ -3,7 +3,6 @@
 import threading
 import time
 from contextlib import closing
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,12 +13,11 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.execution import choice, processes
 from lanewright.core.execution import tasks as interpreter
 from lanewright.core.execution.choice import ExecutionSettings, executor_for
-from lanewright.core.execution.phase import NoSource, Phase, Threads
+from lanewright.core.execution.phase import NoSource, Phase, Threads, read_plain, write_plain
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.markings.objects.figures import figures_of_group
+from lanewright.core.road.surface.ground_grid import ground_of_windows
 from lanewright.core.survey.blocks import sensor_height_of
-from lanewright.core.survey.density import cubes_of_stretch
-from lanewright.core.survey.store.road_points import RoadPoints
 
 
 @pytest.fixture(scope="module")
@@ -49,10 +47,10 @@ def killed_while_it_works(executor, times):
     """Kill workers that have a task, so many of them."""
     def kill():
         for _ in range(times):
-            while not (busy := [worker for worker in list(executor._all) if worker._process.poll() is None]):
+            while not (busy := [worker for worker in list(executor._all) if worker.process.poll() is None]):
                 time.sleep(0.01)
             time.sleep(0.3)
-            busy[0]._process.kill()
+            busy[0].process.kill()
             time.sleep(0.2)
 
     threading.Thread(target=kill, daemon=True).start()
@@ -68,31 +66,35 @@ def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(by_threads, pyt
 @pytest.mark.parametrize(("items", "together"), [(40, 2), (70, 4), (9, 1)])
 def test_items_that_share_something_go_to_one_worker_and_come_in_order(monkeypatch, items, together):
     """As many together as the phase wants, where each of two workers still has eight rounds."""
-    monkeypatch.setattr(WorkerProcesses, "_result", lambda self, phase, shipped, item: (threading.get_ident(), time.sleep(0.001), item))
+    monkeypatch.setattr(WorkerProcesses, "task", lambda self: tasks_of_a_thread)
     with closing(WorkerProcesses("python", 2)) as executor:
         found = list(executor.run(Phase(figures_of_group, NoSource(), together=4), list(range(items))))
-    assert [item for *_, item in found] == list(range(items))
+    assert [item for _, item in found] == list(range(items))
     runs = [found[k:k + together] for k in range(0, items, together)]
-    assert all(len({thread for thread, *_ in run}) == 1 for run in runs)
+    assert all(len({task for task, _ in run}) == 1 for run in runs)
+
+
+def tasks_of_a_thread(phase, items, results):
+    for item, result in zip(read_plain(Path(items)), results):
+        write_plain(Path(result), (items, item))
+    return {}
 
 
 def test_workers_that_forget_what_they_read_go_on_with_the_next_phase(python):
-    points = RoadPoints.of_survey(survey_of(street()))
-    stretches = points.survey.store.stretches()[:4]
+    survey = survey_of(street())
     with closing(WorkerProcesses(python, 1)) as executor:
         found, workers = [], []
         for _ in range(2):
-            counted = executor.run(Phase(cubes_of_stretch, points), stretches)
-            found.append([[part.tolist() for part in section] for stretch in counted for section, _ in stretch])
-            workers.append([worker._process.pid for worker in executor._all])
+            found.append([part.tolist() for part, _ in executor.run_together(Phase(ground_of_windows, survey, (0,)), [(0, True, False)] * 2, 1)])
+            workers.append([worker.process.pid for worker in executor._all])
             executor.forget()
-    assert found[0] == found[1] and found[0]
+    assert str(found[0]) == str(found[1]) and found[0]
     assert workers[0] == workers[1] and len(workers[0]) == 1
 
 
 def test_where_workers_keep_ending_the_road_is_named(python, monkeypatch):
-    monkeypatch.setattr(processes, "EXECUTION", replace(processes.EXECUTION, trials=1))
-    executor = killed_while_it_works(WorkerProcesses(python, 1), 1)
+    monkeypatch.setattr(processes._Worker, "answer_to", lambda worker, task: worker.process.kill())
+    executor = WorkerProcesses(python, 1)
     with pytest.raises(RoadExtractionError, match=r"road 0, -?\d+ to \d+ m.*fewer workers"):
         boundaries(executor)
     assert not executor.folder.exists()
@@ -112,7 +114,7 @@ def test_cancel_ends_the_workers_within_two_seconds(python):
     with pytest.raises(Cancelled):
         boundaries(executor, progress=impatient)
     assert time.monotonic() - impatient.at < 2.0
-    assert not executor.folder.exists() and all(worker._process.poll() is not None for worker in workers)
+    assert not executor.folder.exists() and all(worker.process.poll() is not None for worker in workers)
 
 
 def test_a_bug_in_a_worker_keeps_its_traceback(python):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.survey.density import cube_density
+from lanewright.core.survey.density import counted_cubes, cube_density
 from lanewright.core.survey.store.records import SURVEY_POINT, Points, to_units
 
 
@@ -10,7 +10,7 @@ def cloud(x, y, z):
     records = np.zeros(len(x), SURVEY_POINT)
     for name, axis in zip("xyz", (x, y, z)):
         records[name] = to_units(axis)
-    return Points(records)
+    return counted_cubes(Points(records))
 
 
 def test_a_cube_of_three_points_and_one_of_one():

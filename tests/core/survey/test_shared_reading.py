@@ -17,8 +17,8 @@ from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey import survey_reader
-from lanewright.core.survey import survey_reader as ordering
 from lanewright.core.survey.open_survey import open_survey
+from lanewright.core.survey.store import section_store
 from lanewright.core.survey.survey import SurveySettings, survey_in_folder
 
 SETTINGS = SurveySettings(block=700)   # points
@@ -28,7 +28,7 @@ SETTINGS = SurveySettings(block=700)   # points
 def small_parts(monkeypatch):
     # few samples of the height: only the first blocks are read by the caller
     monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=2000, height_samples=20))
-    monkeypatch.setattr(ordering, "STRETCH_POINTS", 2000)
+    monkeypatch.setattr(section_store, "STRETCH_POINTS", 2000)
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +101,7 @@ def killed_while_it_reads(executor):
     def kill():
         while not (list(executor.folder.glob("points/points-*")) and executor._all):
             time.sleep(0.005)
-        next(iter(executor._all))._process.kill()
+        next(iter(executor._all)).process.kill()
 
     threading.Thread(target=kill, daemon=True).start()
     return executor
@@ -114,7 +114,7 @@ def test_a_worker_that_is_killed_while_it_reads_is_replaced_and_nothing_is_lost(
 
 
 def test_where_workers_keep_ending_the_file_is_named(street, python, monkeypatch):
-    monkeypatch.setattr(processes, "EXECUTION", replace(processes.EXECUTION, trials=0))
+    monkeypatch.setattr(processes._Worker, "answer_to", lambda worker, task: worker.process.kill())
     executor = WorkerProcesses(python, 1)
     with pytest.raises(RoadExtractionError, match=r"drive\d.la[sz], points [\d,]+ to [\d,]+.*fewer workers"):
         opened(street, executor)
@@ -135,7 +135,7 @@ def test_a_cancel_ends_the_reading_workers_within_two_seconds(street, python):
     with pytest.raises(Cancelled):
         opened(street, executor, impatient)
     assert time.monotonic() - impatient.at < 2.0
-    assert not executor.folder.exists() and all(worker._process.poll() is not None for worker in workers)
+    assert not executor.folder.exists() and all(worker.process.poll() is not None for worker in workers)
 
 
 def test_a_folder_that_cannot_be_used_is_named(street, python):

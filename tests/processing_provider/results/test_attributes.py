@@ -57,6 +57,13 @@ def test_a_feature_says_what_it_is(qgis_app, output, row, said):
     assert said in evaluated(layer, layer.mapTipTemplate())
 
 
+def test_columns_of_a_table_are_as_wide_as_their_headings(qgis_app):
+    layer = loaded("ROAD_EDGES", road=0, side="left")
+    widths = {column.name: column.width for column in layer.attributeTableConfig().columns() if column.name}
+    headings = {name: layer.attributeDisplayName(layer.fields().lookupField(name)) for name in widths}
+    assert all(widths[name] >= 8 * len(heading) for name, heading in headings.items()) and widths["agree_cm"] > widths["road"]
+
+
 def test_patterns_are_shown_in_words_where_a_value_holds_one(qgis_app):
     layer = loaded("MARKING_LINES", line=3, kind="centre", pattern="double-solid", length_m=9.0, status="measured")
     assert evaluated(layer, f"[% {layer.displayExpression()} %]") == "Centre line 3, double, solid, 9 m, measured"
@@ -100,12 +107,17 @@ def test_a_name_is_short_and_keeps_its_unit(alias, short):
     assert short_alias(alias) == short
 
 
-def test_looks_by_status_and_confidence_stand_ready_and_the_usual_one_is_in_force(qgis_app):
-    layer = loaded("LANES", status="measured", confidence=0.9)
-    assert set(layer.styleManager().styles()) == {"By class", "By confidence", "By status"}
-    assert layer.styleManager().currentStyle() == "By class"
+def test_the_road_plan_is_in_force_and_further_looks_stand_ready(qgis_app):
+    layer = loaded("DRIVING_LINES", status="measured", confidence=0.9)
+    assert set(layer.styleManager().styles()) == {"Road plan", "By class", "By confidence", "By status", "By uncertainty"}
+    assert layer.styleManager().currentStyle() == "Road plan" and layer.hasScaleBasedVisibility()
+    layer.styleManager().setCurrentStyle("By class")
+    assert not layer.hasScaleBasedVisibility() and not layer.labelsEnabled()
     layer.styleManager().setCurrentStyle("By status")
     assert layer.renderer().classAttribute() == "status"
+    layer.styleManager().setCurrentStyle("By uncertainty")
+    assert layer.renderer().classAttribute() == "sigma_m"
+    assert set(loaded("CURB_POINTS", status="measured").styleManager().styles()) >= {"By class", "By status"}
     assert layer.displayExpression() and layer.attributeAlias(layer.fields().lookupField("direction")) == "Direction"
 
 

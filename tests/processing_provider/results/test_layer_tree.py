@@ -54,9 +54,9 @@ def test_a_survey_is_called_by_its_folder_and_its_files(clouds, name):
     assert survey_name(clouds) == name
 
 
-def test_a_map_made_in_one_call_has_a_group_named_by_survey_and_time(qgis_app):
+def test_a_map_made_in_one_call_has_a_group_named_by_time_and_survey(qgis_app):
     group = run_of(run_in("").provenance, ["/data/B12/cloud.laz"], True, QgsProcessingContext()).group
-    assert re.fullmatch(r"B12/cloud, \d{4}-\d\d-\d\d \d\d:\d\d:\d\d", group)
+    assert re.fullmatch(r"\d\d-\d\d \d\d:\d\d:\d\d B12/cloud", group)
 
 
 def test_stages_of_a_survey_share_a_group_and_those_of_a_model_know_the_survey(qgis_app):

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import DRIVING_LINES, Features
-from lanewright.products.export.cad.dxf import dxf_lines, write_dxf
-from lanewright.products.export.cad.landxml import NAMESPACE, alignments_of, elements_without_reversal, landxml_text
+from lanewright.products.cad import NAMESPACE, alignments_of, dxf_lines, elements_without_reversal, landxml_text, write_dxf
 from lanewright.products.export.opendrive.geometry import PlanElement, PlanView
 from lanewright.products.export.sources import RoadMapSource, checked
 from lanewright.products.export.xml_tree import read_xml

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import ROAD_EDGES, Features
-from lanewright.products.export.cad.dxf import dxf_lines
+from lanewright.products.cad import dxf_lines
 from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.products.export.lanelet_map import layers_of_lanelets, read_lanelet2
 from lanewright.products.export.opendrive.exporter import draft_opendrive

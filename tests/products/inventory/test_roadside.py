@@ -7,8 +7,7 @@ from lanewright.core.common.features import Features
 from lanewright.products.inventory.borders import BorderLayers
 from lanewright.products.inventory.roadside import find as finding
 from lanewright.products.inventory.roadside.chains import find_chains, things_of
-from lanewright.products.inventory.roadside.find import find_roadside
-from lanewright.products.inventory.roadside.result import roadside_to_features
+from lanewright.products.inventory.roadside.find import find_roadside, roadside_to_features
 from lanewright.products.inventory.roadside.uprights import TOP_BINS, Uprights, find_poles
 from lanewright.products.inventory.settings import RoadsideSettings
 from lanewright.products.report.inventory import roadside_report

@@ -5,7 +5,7 @@ import pytest
 from drives import drive, joined, straight
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.products.inventory.roadside.chains import Chain
-from lanewright.products.inventory.roadside.result import Roadside, SideEdges, SideLine, told_once
+from lanewright.products.inventory.roadside.find import Roadside, SideEdges, SideLine, told_once
 from lanewright.products.inventory.roadside.uprights import LOW_BINS, UPRIGHT_SLICE, Pole, Uprights
 from lanewright.products.inventory.settings import RoadsideSettings
 

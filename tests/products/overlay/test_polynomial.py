@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from flown_images import HEIGHT, WIDTH, ground, measured
-from lanewright.products.overlay.polynomial import MIN_CONTROL_POINTS, fit_image_polynomial, fit_shift, term_powers
+from lanewright.products.overlay.georeference import MIN_CONTROL_POINTS, fit_image_polynomial, fit_shift, term_powers
 from osgeo import gdal
 
 ORDERS = [1, 2, 3]

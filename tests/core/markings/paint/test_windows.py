@@ -1,27 +1,28 @@
-"""Windows of paint that are worked on apart see the levels of asphalt of the whole road."""
+"""Windows of paint that one process works on share what they compute, and no more of it is kept than is needed."""
 
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
-from lanewright.core.markings.paint.asphalt_level import AsphaltBin, OtsuSplit
+from lanewright.core.markings.paint import windows
 from lanewright.core.markings.paint.settings import MarkingSettings
-from lanewright.core.markings.paint.windows import WindowExtractor, bins_about
+from lanewright.core.markings.paint.windows import THRESHOLD_WINDOW, WindowExtractor
+from lanewright.core.survey.store.records import ROAD_POINT
+from lanewright.core.survey.store.section_store import SectionStore
 
-SOURCE = SimpleNamespace(road_points=None, image=None, frame=None)
 
-
-@pytest.mark.parametrize("empty", [0.0, 0.3, 0.8, 1.0])
-@pytest.mark.parametrize("size", [1, 4])
-def test_a_stretch_of_windows_has_the_levels_of_the_whole_road(empty, size):
-    """Some windows have no level: all of a gap, or all windows of a noisy scanner."""
-    rng, settings = np.random.default_rng(1), MarkingSettings()
-    bins = {w: [] if rng.random() < empty else [(AsphaltBin(0.0, 600, float(w), 1.0), OtsuSplit(0.0, 1.0, 4.0, 0.0, 8.0, 0.1, bool(w % 2)))]
-            for w in range(-3, 30)}
-    whole = WindowExtractor(SOURCE, (0, -3, 30), settings, bins=bins)
-    for first in range(-3, 30, size):
-        stretch = 0, first, min(first + size, 30)
-        own = WindowExtractor(SOURCE, stretch, settings, bins=bins_about(stretch, bins))
-        for window in range(*stretch[1:]):
-            known, found = whole._levels(window), own._levels(window)
-            assert found.windows == known.windows and found._limits == known._limits
+@pytest.mark.parametrize("stretches", [[range(90)], [range(70, 82), range(12), range(40, 52)]])
+def test_a_road_of_any_length_has_the_data_of_few_windows_in_memory(monkeypatch, stretches):
+    store, read, looked = SectionStore(ROAD_POINT), [], []
+    road_points = SimpleNamespace(store=store, window=store.window, has_corrected=False)
+    monkeypatch.setattr(windows, "cells_of_road", lambda points, road, first, last, step: read.append(first // THRESHOLD_WINDOW) or ["a piece"])
+    monkeypatch.setattr(WindowExtractor, "_view", lambda self, window: [self._in_cells(number) for number in (window - 1, window, window + 1)])
+    monkeypatch.setattr(WindowExtractor, "_bins_of", lambda self, window, view: [window])
+    monkeypatch.setattr(windows, "AsphaltLevels", lambda bins, *_: looked.append(list(bins)) or SimpleNamespace(numbers=[]))
+    extractor = WindowExtractor(SimpleNamespace(road_points=road_points, image=None, frame=None), 0, range(90), MarkingSettings())
+    for stretch in stretches:
+        for window in stretch:
+            extractor.extract(window)
+            assert len(extractor._pieces) + len(extractor._views) <= 4 * windows.WINDOWS_KEPT
+    assert looked == [[w, *(n for n in (w - 1, w - 2, w + 1, w + 2) if 0 <= n < 90)] for stretch in stretches for w in stretch]
+    if len(stretches) == 1:
+        assert len(read) == len(set(read)), "each is read once where windows follow each other"
