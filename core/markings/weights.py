@@ -61,11 +61,6 @@ class _GroupWeights:
     road_edge_clearance: float = 0.10   # m: strips so near to the road edge are taken for verge
     reach_along_factor: float = 2.5   # neighbours may be this times the distance apart along the road,
     reach_across_divisor: float = 2.0   # and across it the distance over this, or the reach between tracks of the scan
-    largest_figure: float = 8.0   # m, of an arrow: what is longer runs on along a road
-    line_width: float = 0.35   # m: what is no broader,
-    line_elongation: float = 4.0   # and so many times as long, is a line
-    spot_units: int = 1000   # units of 0.1 mm: points are compared in squares of 10 cm,
-    touching: float = 1.5   # squares: and those that touch, at a corner too, are of one figure
 
 
 GROUPS = _GroupWeights()
@@ -322,11 +317,7 @@ class _SelectionWeights:
     max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it
     max_bar_end_offset: float = 0.35   # m between the end of a bar and the outline
     max_bar_pitch: float = 3.0   # m from bar to bar along an outline
-    max_border_gap: float = 2.0   # m along the road between pieces of one outline that bend off each other
     min_bars: int = 4   # that make an outline
-    min_bars_of_strand: int = 2   # that tell which strands of an outline are its own
-    at_crossing: float = 0.5   # m across beyond a crossing where a line still leads to it
-    least_turn_aside: float = 0.3   # m from the straight way between two strands: farther than links reach across, a strand is another line
     # Solid or dashed.
     max_worn_hole: float = 0.8   # m: a shorter hole is wear within a dash
     min_gap_per_dash: float = 0.4   # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more

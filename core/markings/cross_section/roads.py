@@ -22,15 +22,7 @@ from ..weights import ROADS
 from .beside import lanes_beside
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimate_road, lane_spans
-from .evidence import (
-    between_ends,
-    borders_of_hatching,
-    driven_offsets,
-    evidence_of,
-    hatched_places,
-    other_carriageway,
-    surface_coverage,
-)
+from .evidence import between_ends, borders_of_hatching, driven_offsets, evidence_of, hatched_places, other_carriageway, surface_coverage
 from .sections import STATION_STEP, CrossSections, no_lines
 from .weights import PAVEMENT, EstimateWeights, TakenReading
 
