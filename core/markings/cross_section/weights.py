@@ -61,7 +61,7 @@ class EstimateWeights:
     width_sigma_lined: float = 0.15   # m, scatter of the widths of these,
     width_sigma_beside: float = 0.8   # and of others about the usual one
     widest_beside: float = 5.5   # m, of them
-    # m, scatter of where vehicles keep within a lane about its middle, averaged over a block: 0.09 on half of the simulated streets, 0.13 on the others
+    # m, scatter of where vehicles keep within a lane about its middle, averaged over a block: 0.09 on half of the streets at hand, 0.13 on the others
     track_sigma: float = 0.1
     alike_beside: float = 4.0   # by how many times more lanes of the same road that were driven tell what is left over than what is usual
     between_widths: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75)   # shares of the way between two readings, at which a lane's width is tried,
