@@ -96,9 +96,8 @@ class Algorithm:
             "and come in any order. Withheld points and noise (classes 7 and 18) are left out."))
 
     def add_trajectory(self, optional=False, without=""):
-        text = tr(
-            "Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or "
-            "the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care.")
+        text = tr("Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or the path of a CSV, TXT or "
+                  "SBET file. Made with Import trajectory it needs no further care.")
         self.add_input("trajectory", "TRAJECTORY", tr("Trajectory"), f"{text} {tr(without) if without else ''}".strip(), optional=optional)
 
     def add_crs(self):

@@ -22,16 +22,10 @@ def cloud_files(given: Iterable[str], label: str) -> list[str]:
     given : files, folders (their LAS and LAZ files, without those of folders inside) and names with the wildcards * ? [ ]
     label : what messages call the parameter
 
-    Returns
-    -------
-    list of paths, each once, those of a folder or wildcard by name. A file that is named is not looked for. Of a
-    folder or wildcard, `a.copc.laz` is left out where `a.laz` or `a.las` is among it: QGIS makes such a copy of a
-    cloud that it shows, and no point shall count twice.
+    Returns list of paths, each once, those of a folder or wildcard by name. A file that is named is not looked for. Of a folder or wildcard,
+    `a.copc.laz` is left out where `a.laz` or `a.las` is among it: QGIS makes such a copy of a cloud that it shows, and no point shall count twice.
 
-    Raises
-    ------
-    RoadExtractionError
-        If a folder or wildcard holds no point cloud.
+    Raises RoadExtractionError if a folder or wildcard holds no point cloud.
     """
     files: list[str] = []
     for name in filter(None, given):

@@ -27,10 +27,7 @@ def corrections_of(call):
 def read_corrections(source):
     """A VectorSource as Features with the fields of CORRECTIONS, of which only `action` and `target` have to be there.
 
-    Raises
-    ------
-    RoadExtractionError
-        If one of these two is missing.
+    Raises RoadExtractionError if one of these two is missing.
     """
     import shapely
 

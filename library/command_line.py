@@ -29,9 +29,8 @@ JSON, LANG = "--json", "--lang"
 
 def about_layers():
     """What stands below every help."""
-    return tr("A layer is a file (.gpkg, .fgb, .shp, .geojson), or one layer of a GeoPackage: map.gpkg|layername=lanes. "
-              "A result that is not named is not made. With --json the results, or the reason of a failure, are printed as JSON; "
-              "--lang de speaks German.")
+    return tr("A layer is a file (.gpkg, .fgb, .shp, .geojson), or one layer of a GeoPackage: map.gpkg|layername=lanes. A result that is not named "
+              "is not made. With --json the results, or the reason of a failure, are printed as JSON; --lang de speaks German.")
 
 
 class Parser(argparse.ArgumentParser):

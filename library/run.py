@@ -35,9 +35,8 @@ def run(name, progress=None, **parameters):
     ----------
     name : the algorithm's id, such as "roadmap"; with or without "lanewright:" before it
     progress : Progress that listens, and may raise Cancelled
-    parameters : by the names of the algorithm's parameters. Files and layers are paths, one layer of a GeoPackage is
-        `map.gpkg|layername=lanes`; POINT_CLOUDS is a list. Outputs that are not named are not made; what is not
-        given keeps its default.
+    parameters : by the names of the algorithm's parameters. Files and layers are paths, one layer of a GeoPackage is `map.gpkg|layername=lanes`;
+        POINT_CLOUDS is a list. Outputs that are not named are not made; what is not given keeps its default.
 
     Returns dict, name of each result to its path or number
 

@@ -201,8 +201,7 @@ def no_trajectory(declaration, parameters):
 def accept_trajectory_file(declaration, parameters, context):
     """Parameters for QGIS's own check, which knows no SBET and no table without a header.
 
-    Such a file passes as an empty stand-in layer; whether it is there and can be
-    read is said by the reader, in its own words.
+    Such a file passes as an empty stand-in layer; whether it is there and can be read is said by the reader, in its own words.
     """
     from ..algorithms.trajectory_source import trajectory_path
 

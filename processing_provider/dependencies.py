@@ -1,8 +1,7 @@
 """Which of the Python packages we need are missing, and how to install them on this system.
 
-Nothing in this folder imports them when QGIS starts, so that the algorithms are
-listed, and can say what they lack, on a machine that has none of them. Nothing is
-ever installed from here: the user is told the command.
+Nothing in this folder imports them when QGIS starts, so that the algorithms are listed, and can say what they lack, on a machine that has none of
+them. Nothing is ever installed from here: the user is told the command.
 """
 
 import sys

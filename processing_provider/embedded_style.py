@@ -15,8 +15,7 @@ POSTGIS = "postgres://"
 def embed_style(name, dest, title, schema=(), provenance=None):
     """Give the result `dest` of the output `name` its style, and the note of where it comes from: in the database, or beside the raster.
 
-    Other formats have no room for one. A style that cannot be kept costs a look, not the result, so
-    nothing is raised.
+    Other formats have no room for one. A style that cannot be kept costs a look, not the result, so nothing is raised.
     """
     path = destination_path(dest)
     look, _ = LOOKS.get(name, (None, None))

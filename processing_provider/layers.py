@@ -125,8 +125,7 @@ def _value(value):
 def crs_text(crs):
     """WKT of a QgsCoordinateReferenceSystem, "" where it is unknown.
 
-    GeoPackage has entries of its own for that: "Undefined geographic SRS" is what
-    GDAL writes for a layer without CRS, whatever its coordinates are.
+    GeoPackage has entries of its own for that: "Undefined geographic SRS" is what GDAL writes for a layer without CRS, whatever its coordinates are.
     """
     defined = crs.isValid() and not crs.description().lower().startswith("undefined ")
     return crs.toWkt(Qgis.CrsWktVariant.Preferred) if defined else ""

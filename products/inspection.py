@@ -196,9 +196,8 @@ class _Counter:
         west, width, height = column.min(), int(np.ptp(column)) + 1, int(last - first) + 1
         corner = (self.corner[0] + west * cell, self.corner[1] + (last + 1) * cell)
         if width * height > MAX_DENSITY_CELLS:
-            raise RoadExtractionError(
-                f"A density raster of {width:,} x {height:,} cells of {cell} m would be too large. Choose a larger cell, or "
-                "inspect fewer files at once.")
+            raise RoadExtractionError(f"A density raster of {width:,} x {height:,} cells of {cell} m would be too large. Choose a larger cell, or "
+                                      "inspect fewer files at once.")
         image = np.full((height, width), np.nan, np.float32)
         image[last - row, column - west] = self.cells.counts / cell**2
         return image, corner
@@ -275,8 +274,7 @@ def _judge_trajectory(found, wkt, has_time, progress):
         shared = min(last, trajectory.time[-1]) - max(first, trajectory.time[0])
         found.in_time_share = float(np.clip(shared / (last - first), 0.0, 1.0))
     if not found.near_share:
-        found.notes.append(
-            f"No point lies within {NEAR_TRAJECTORY:.0f} m of the trajectory. Check that both belong to one survey and use one CRS.")
+        found.notes.append(f"No point lies within {NEAR_TRAJECTORY:.0f} m of the trajectory. Check that both belong to one survey and use one CRS.")
 
 
 @dataclass(frozen=True)

@@ -45,8 +45,7 @@ class AssessDrivingLines(Algorithm):
         self.add_input("layer", "REFERENCE", tr("Reference lines"), tr(
             "Lines that are known to be right, such as those drawn over an orthoimage."), "LineStringZ")
         self.add_trajectory(optional=True)
-        add_tolerances(self, LINES, tr("Tolerances (m)"), tr(
-            "Sizes of the buffer, with commas between them. The report has a row for each."))
+        add_tolerances(self, LINES, tr("Tolerances (m)"), tr("Sizes of the buffer, with commas between them. The report has a row for each."))
         self.add_input("choice", "WIDTH", tr("Tolerances are"),
                        tr("Half-width: from the line to the rim of its buffer. Total-width: from rim to rim, so that 0.20 lets a line be 0.10 m off. "
                           "Published figures seldom say which they mean; the report shows both."), default=WIDTHS[0], choices=WIDTHS)

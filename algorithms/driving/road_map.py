@@ -21,7 +21,6 @@ from ..markings.extract_markings import METHOD as MARKING_METHOD
 from ..markings.extract_markings import marking_settings
 from ..markings.fit_marking_lines import LINE_SETTINGS
 from ..markings.intensity_image import IMAGE_SETTINGS
-from ..markings.remove_outliers import OUTLIER_SETTINGS
 from ..road.detect_boundaries import METHOD_SETTING, SCANLINE_METHOD_SETTINGS
 from ..road.detect_curbs import CURB_SETTINGS
 from ..road.extract_road_surface import SURFACE_SETTINGS
@@ -39,7 +38,6 @@ STAGES = {
     "surface": SURFACE_SETTINGS,
     "intensity": INTENSITY_SETTINGS,
     "image": IMAGE_SETTINGS,
-    "outliers": OUTLIER_SETTINGS,
     "clusters": CLUSTER_SETTINGS,
     "lines": LINE_SETTINGS,
     "driving": DRIVING_SETTINGS,
@@ -86,6 +84,9 @@ class RoadMap(Algorithm):
             self.add_settings(specs, only=OFFERED, advanced=True)
             if stage == "image":
                 self.add_settings((MARKING_METHOD,), advanced=True)
+                self.add_input("flag", "REMOVE_OUTLIERS", tr("Remove outliers from paint"),
+                               tr("Markings need a least size, so single stray points rarely matter. Switch it on where much dust or wet asphalt "
+                                  "gives bright specks about the paint."), default=False, advanced=True)
         self.add_settings(SURVEY_SETTINGS)
         add_corrections(self)
         add_execution(self)
@@ -100,6 +101,7 @@ class RoadMap(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
+        from ...core.markings.outliers import OutlierSettings
         from ...core.pipeline.road_map import RoadMapSettings, make_road_map
         from ...core.survey.road_points_las import write_road_points
 
@@ -109,6 +111,7 @@ class RoadMap(Algorithm):
             survey=call.settings(SURVEY_SETTINGS, crs=call.crs()),
             execution=execution_of(call),
             markings=marking_settings(call),
+            outliers=OutlierSettings() if call.value("REMOVE_OUTLIERS") else None,
             **{field: call.settings(specs) for field, specs in STAGES.items()})
         if not any(call.wants(output.name) for output in self.outputs()):
             raise RoadExtractionError(tr(

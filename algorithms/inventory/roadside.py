@@ -45,8 +45,7 @@ class Roadside(Algorithm):
             "along an edge that the road falls to; the higher side of a road has none.")
     TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")
     LOOKS = {"OUTPUT": "ROADSIDE", "OBJECTS": "ROADSIDE_OBJECTS"}
-    NUMBERS = (("LENGTH", tr("Length of all lines but gutters (m)")),
-               ("POLES", tr("Poles, signs and trunks")))
+    NUMBERS = (("LENGTH", tr("Length of all lines but gutters (m)")), ("POLES", tr("Poles, signs and trunks")))
 
     def declare(self):
         self.add_survey()

@@ -9,10 +9,9 @@ EXTRACTION = "core.markings.paint.settings:MarkingSettings"
 
 METHOD = ParameterSpec(
     "choice", "METHOD", tr("Method"),
-    tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The "
-       "other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the "
-       "road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither "
-       "tells concrete gutters from paint."),
+    tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The other two are published "
+       "methods to compare with. intensity-peaks looks for narrow peaks in profiles across the road and finds lines only; point-segments sets "
+       "thresholds on the points and keeps the dense ones. Neither tells concrete gutters from paint."),
     default="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"))
 
 MARKING_SETTINGS = (

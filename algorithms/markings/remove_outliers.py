@@ -33,6 +33,5 @@ class RemoveOutliers(Algorithm):
         from ...core.survey.road_points_las import write_road_points
 
         points = paint_of(call, "INPUT", progress.part(0.0, 0.3))
-        settings = call.settings(OUTLIER_SETTINGS)
-        kept = remove_outliers(points, settings, progress.part(0.3, 0.8)) if len(points) else points
+        kept = remove_outliers(points, call.settings(OUTLIER_SETTINGS), progress.part(0.3, 0.8))
         write_road_points(kept, call.new_file("OUTPUT"), progress.part(0.8, 1.0))

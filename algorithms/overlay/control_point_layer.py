@@ -14,10 +14,7 @@ def read_control_point_layer(source, image, crs=""):
     image : SourceImage that the points belong to
     crs : WKT where the layer carries none
 
-    Raises
-    ------
-    RoadExtractionError
-        If the layer holds lines or polygons, or lacks a field.
+    Raises RoadExtractionError if the layer holds lines or polygons, or lacks a field.
     """
     from ...products.overlay.control_points import control_points
 

@@ -11,13 +11,12 @@ SAMPLE = "simulator.survey:SampleSettings"
 SAMPLE_SETTINGS = (
     SettingSpec(
         "SCENE", SAMPLE, "scene", tr("Scene"),
-        tr("street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. "
-           "one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line "
-           "between them. hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, "
-           "and an exit. serpentine: a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. "
-           "roundabout: a ring with splitter islands, driven straight on and to the left. outskirts: two lanes with guard rail, concrete "
-           "barrier, walls, fences and a hedge beside them, driven both ways. cycle-lanes: two lanes with the word BUS, and cycle lanes "
-           "with bicycles."),
+        tr("street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. one-lane "
+           "and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line between them. "
+           "hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, and an exit. serpentine: "
+           "a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. roundabout: a ring with splitter islands, "
+           "driven straight on and to the left. outskirts: two lanes with guard rail, concrete barrier, walls, fences and a hedge beside them, "
+           "driven both ways. cycle-lanes: two lanes with the word BUS, and cycle lanes with bicycles."),
         choices=("street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine",
                  "crossing", "roundabout", "outskirts", "cycle-lanes")),
     SettingSpec("LENGTH", SAMPLE, "length", tr("Length of the road, 0: as usual for the scene (m)"),

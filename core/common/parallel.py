@@ -40,10 +40,9 @@ def ordered_map(function: Callable[[Item], Result], items: Iterable[Item], progr
                 threads: int | None = None) -> Iterator[Result]:
     """Apply a function to every item in several threads and yield the results in the order of the items.
 
-    At most one result more than there are threads is computed ahead, so memory stays bounded. While a result is
-    awaited, cancellation is checked too, by `progress` and by `check_cancelled`. numpy and scipy release the
-    interpreter lock in their heavy loops, which is where most of the time is spent. Whatever the function raises is raised, and the remaining items
-    are dropped.
+    At most one result more than there are threads is computed ahead, so memory stays bounded. While a result is awaited, cancellation is checked too,
+    by `progress` and by `check_cancelled`. numpy and scipy release the interpreter lock in their heavy loops, which is where most of the time is
+    spent. Whatever the function raises is raised, and the remaining items are dropped.
 
     progress : reports the share of the items that are done
     threads : number of threads; by default one per processor core, at most four
@@ -124,9 +123,8 @@ def by_rows(function: Callable[[slice], np.ndarray], count: int, at_once: int = 
 def trim_heap() -> None:
     """Return freed memory from the C library to the operating system.
 
-    glibc keeps freed memory per thread, and the threads of the next stage allocate anew: after a few stages most of
-    the memory of a process would be such remains. Nothing happens where the C library has no `malloc_trim` (Windows,
-    macOS, musl).
+    glibc keeps freed memory per thread, and the threads of the next stage allocate anew: after a few stages most of the memory of a process would be
+    such remains. Nothing happens where the C library has no `malloc_trim` (Windows, macOS, musl).
     """
     if sys.platform.startswith("linux"):
         trim = getattr(ctypes.CDLL(None), "malloc_trim", None)

@@ -83,9 +83,8 @@ class RememberedMessages(_PassedOn):
 class RemainingTime:
     """Estimates the remaining time from the fraction done, in round steps.
 
-    The remaining work is assumed to advance as fast as the work so far. Each of `PROGRESS.remaining_steps` is returned at most
-    once as the time runs down, so a run of one minute gets four estimates. A longer estimate than the last one is
-    returned only if it is clearly longer.
+    The remaining work is assumed to advance as fast as the work so far. Each of `PROGRESS.remaining_steps` is returned at most once as the time runs
+    down, so a run of one minute gets four estimates. A longer estimate than the last one is returned only if it is clearly longer.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic):

@@ -64,8 +64,7 @@ class _SplineBasis:
         scale = self.sizes / np.maximum(lengths, 1e-6) * np.array([b for _, b in blocks]) ** 6 / steps**5
         self._penalty = np.concatenate([_roughness(count) * factor for count, factor in zip(self.counts.tolist(), scale.tolist())])
 
-    def robustly_solved(self, values: np.ndarray, residuals_of: Callable[[np.ndarray, np.ndarray], np.ndarray],
-                        rounds: int) -> list[Any]:
+    def robustly_solved(self, values: np.ndarray, residuals_of: Callable[[np.ndarray, np.ndarray], np.ndarray], rounds: int) -> list[Any]:
         """(control points (K, C), residuals (N,)) of each block, by least squares whose weights follow the residuals until they change no more.
 
         values : (N, C) metres of the points of all blocks; residuals_of : gives (N,) m from values and slopes of the splines at these points

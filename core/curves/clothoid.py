@@ -70,8 +70,7 @@ class Clothoid(Curve):
     def cut(self, first: float, last: float) -> Clothoid:
         """The part from arc length `first` to `last`."""
         (x, y), = self.at(np.array([first]))
-        return Clothoid(float(x), float(y), float(self.heading(first)), float(self.curvature(first)),
-                        self.change, float(last - first))
+        return Clothoid(float(x), float(y), float(self.heading(first)), float(self.curvature(first)), self.change, float(last - first))
 
 
 def fit_clothoids(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:

@@ -41,8 +41,7 @@ def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: in
         return fit_curves([(x, y)])[0]
     least = {"line": 2, "circle": 3, "ellipse": 6, "clothoid": 5, "polynomial": degree + 1, "b-spline": 4}[curve]
     if len(x) < least:
-        raise RoadExtractionError(
-            f"A {curve} needs at least {least} places along the line, there are {len(x)}. Choose curve = automatic.")
+        raise RoadExtractionError(f"A {curve} needs at least {least} places along the line, there are {len(x)}. Choose curve = automatic.")
     if curve == "polynomial":
         return fit_polynomial(x, y, degree)
     if curve == "ellipse":

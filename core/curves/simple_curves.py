@@ -147,8 +147,7 @@ def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> Cur
     ellipse = Ellipse(float(cx), float(cy), abs(float(a)), abs(float(b)), float(tilt), float(t[0]), float(t[-1]))
     if abs(ellipse.heading(np.array([ellipse.length]))[0] - ellipse.heading(np.zeros(1))[0]) < FITS.min_ellipse_turn:
         raise RoadExtractionError(
-            "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. "
-            "Choose curve = automatic or circle.")
+            "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. Choose curve = automatic or circle.")
     # outside the ellipse is right of a left turn
     return CurveFit(ellipse.moved(*problem.centre), -np.sign(t[-1] - t[0]) * outside, 5)
 
@@ -272,8 +271,7 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
     problem = _PolynomialProblem(*checked_points(x, y, degree + 1), degree)
     ahead = problem.ahead
     if not ahead[0] < ahead[-1] or np.abs(ahead).max() > 1.02 * max(-ahead[0], ahead[-1]) + 0.5:
-        raise RoadExtractionError(
-            "A polynomial cannot follow a line that turns back on itself. Choose curve = automatic or b-spline.")
+        raise RoadExtractionError("A polynomial cannot follow a line that turns back on itself. Choose curve = automatic or b-spline.")
     coefficients, *_ = problem.fitted()
     middle_x, middle_y = problem.centre.tolist()
     curve = Polynomial(middle_x, middle_y, problem.direction, problem.size, tuple(coefficients.tolist()), float(ahead[0]), float(ahead[-1]))

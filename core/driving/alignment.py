@@ -14,8 +14,7 @@ from ..common.parallel import check_cancelled
 from ..countries.model import Country
 from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc
-from ..curves.clothoid import fit_clothoids
-from ..curves.model_selection import MAX_MISFIT, fit_curves, select_each
+from ..curves.model_selection import fit_curves, select_each
 from ..curves.segmentation import element_ranges
 from ..io.crs import FOOT
 from ..markings.cross_section.sections import STATION_STEP
@@ -165,48 +164,8 @@ def _divided(axes):
     divisions = [[] for _ in axes]
     for (k, first, last), choice in zip(parts, choices):
         divisions[k].append((first, last, choice.best))
-    divisions = _without_steps(axes, divisions)
     return [[(*map(float, np.interp([first, last], axis.u, axis.at)), best.curve) for first, last, best in parts]
             for axis, parts in zip(axes, divisions)]
-
-
-def _without_steps(axes, found):
-    """Divisions in which no transition is a staircase of short arcs.
-
-    A short arc and its neighbour make way for one clothoid where that keeps within 2 cm of the places: on the road an arc this short, with no
-    straight around it, is half a transition.
-    """
-    found = [list(elements) for elements in found]
-    # of each pair of neighbours the clothoid in place of both, and how far it misses their places
-    joints = [[None] * max(len(elements) - 1, 0) for elements in found]
-    missed = [[np.inf] * len(row) for row in joints]
-    new = [(k, j) for k, row in enumerate(joints) for j in range(len(row))]
-    open_ones = list(range(len(axes)))
-    while open_ones:
-        new = [(k, j) for k, j in new if _is_step(found[k][j], found[k][j + 1])]
-        parts = [axes[k].part(found[k][j][0], found[k][j + 1][1]) for k, j in new]
-        for (k, j), joint in zip(new, fit_clothoids(parts, MAX_MISFIT)):
-            joints[k][j], missed[k][j] = joint, joint.residual_p95
-        new, merging, open_ones = [], open_ones, []
-        for k in merging:
-            best_misfit = min(missed[k], default=np.inf)
-            if best_misfit < ALIGNMENT.max_transition_misfit:
-                j = missed[k].index(best_misfit)
-                found[k][j:j + 2] = [(found[k][j][0], found[k][j + 1][1], joints[k][j])]
-                del joints[k][j], missed[k][j]
-                neighbours = [i for i in (j - 1, j) if 0 <= i < len(missed[k])]
-                for i in neighbours:
-                    missed[k][i] = np.inf
-                new += [(k, i) for i in neighbours]
-                open_ones.append(k)
-    return found
-
-
-def _is_step(one, other):
-    """Whether an element may, with the next, be half a transition each."""
-    (first, middle, a), (_, last, b) = one, other
-    short = any(q.curve.kind == "circle" and length < ALIGNMENT.min_arc_length for q, length in ((a, middle - first), (b, last - middle)))
-    return short and not ({a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * ALIGNMENT.min_arc_length)
 
 
 def _of_lane(track, offset, divided, s, road):

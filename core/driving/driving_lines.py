@@ -199,7 +199,7 @@ def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:
 #
 # What adds up as squares: how well the borders of the lane are placed, and how well the line follows the lane.
 #
-# A painted border is found to a millimetre however many points show it, and worse with the spacing of the points; and it is off by a share of the
+# A painted border is found to some millimetres however many points show it, and worse with the spacing of the points; and it is off by a share of the
 # scatter of its paint about its curve, most of which averages out along the curve. How much these are was found on simulated streets with truth
 # (docs/accuracy.md). More is added with the distance to its next paint, where it is bridged. The border of a hatched area is known as well as the
 # outline of its bars. Between two borders the middle takes half of the error of each; where two lanes lie between them with nothing painted in the

@@ -11,7 +11,7 @@ from ..common.parallel import check_cancelled
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import LaneSpan, RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
-from ..markings.cross_section.sequence import beside_island, beside_surface_end, lane_places
+from ..markings.cross_section.sequence import beside_surface_end, lane_places
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
 from .weights import TRACKS
 
@@ -89,7 +89,6 @@ def _without_steps(parts):
             continue
         step = np.array([track.d[k - 1] - track.d[k], track.width[k - 1] - track.width[k]])
         before, after = rank[:k][::-1], rank[k:]
-        before, after = _with_lines_up_to(before, after), _with_lines_up_to(after, before)
         share = (1 + np.sign(after[0] - before[0])) / 2
         for ranks, other, sign, part_of_step, window in ((before, after, -1, share, slice(None, k)), (after, before, 1, 1 - share, slice(k, None))):
             if part_of_step:
@@ -101,17 +100,6 @@ def _without_steps(parts):
 def _run(rank, least):
     """How many places from the first on have a rank above `least`."""
     return len(rank) if (rank > least).all() else int(np.argmin(rank > least))
-
-
-def _with_lines_up_to(rank, other):
-    """(N,) ranks from a joint on, with the lane as sure as between its lines up to where these end, if the `other` (M,) beyond the joint is divided.
-
-    Intervals are coarser than stations: that the lines end within one is no gap between two stretches of them, but why the strip beyond is divided.
-    """
-    lines = np.flatnonzero(rank == BETWEEN_LINES)
-    if other[0] != DIVIDED or not len(lines) or lines[0] >= STATIONS_OF_CELL or (rank[:lines[0]] != BETWEEN_WORN).any():
-        return rank
-    return np.r_[np.full(lines[0], BETWEEN_LINES), rank[lines[0]:]]
 
 
 def _led(rank, held):
@@ -131,7 +119,7 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     made_of = [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]
     seen = np.stack([boundaries.seen[row, rows] for row in sides])
     begin, width = lane_places(left, right, *made_of, span.count, lane_width, span.beside)
-    between_both = all(painted) or not any(painted) or not line_distance and _has_all_room(made_of, seen, left - right - span.count * width)
+    between_both = all(painted) or not any(painted)
     beside_one = any(painted) and not between_both
     if beside_one and (line_distance or beside_surface_end(*made_of)):
         # the end of the surface is ragged, a lane is not
@@ -141,11 +129,6 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 and any(painted) else INFERRED])
     return _track_of(span, first, d, width, status, beside_one)
-
-
-def _has_all_room(made_of, seen, left_over):
-    """Whether a lane has all the room between a line and the curb of an island: it is placed by both."""
-    return bool(beside_island(*made_of)) and seen.mean(axis=1).min() > 0.5 and float(np.median(np.abs(left_over))) < TRACKS.full_room
 
 
 def _track_of(span, first, d, width, status, beside_one):
@@ -233,21 +216,12 @@ def _keep_width(track, opens, at, head):
     begin = int(np.argmax(wider))
     as_wide = np.flatnonzero(~wider[begin:])
     # a lane that is as wide all along divides into two, and has no taper
-    if not wider[:int(TRACKS.border_before_lane / STATION_STEP)].any() or not (len(as_wide) or _narrows(track.width[ahead[begin:]] - width)):
+    if not wider[:int(TRACKS.border_before_lane / STATION_STEP)].any() or not len(as_wide):
         return
-    ahead = ahead[begin:begin + int(as_wide[0])] if len(as_wide) else ahead[begin:]
+    ahead = ahead[begin:begin + int(as_wide[0])]
     track.d[ahead] -= side * (track.width[ahead] - width) / 2
     track.width[ahead] = width
     track.status[ahead] = np.maximum(track.status[ahead], INFERRED)
-
-
-def _narrows(excess):
-    """Whether a lane that is wider by (N,) m as far as it is known becomes narrower all along, as beside a taper that ends farther on."""
-    distance = STATION_STEP * np.arange(len(excess))
-    if len(excess) < 2 or distance[-1] < TRACKS.shown_taper:
-        return False
-    slope = np.polyfit(distance, excess, 1)[0]
-    return slope < 0.0 and distance[-1] + excess[-1] / -slope <= TRACKS.longest_taper
 
 
 def _from_full_width(track, head):

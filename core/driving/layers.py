@@ -98,10 +98,8 @@ class Lanes(LayerRows):
         `lane_id` is needed; other fields have the defaults of `of_pieces`; rows without geometry are left out. Without a frame lanes stay in map
         coordinates.
 
-        Raises
-        ------
-        RoadExtractionError
-            If a polygon has no two borders of the same number of vertices, a lane_id is missing or there twice, or a type is unknown.
+        Raises RoadExtractionError if a polygon has no two borders of the same number of vertices, a lane_id is missing or there twice, or a type is
+        unknown.
         """
         origin, rows, borders = np.zeros(3) if frame is None else np.asarray(frame.origin), [], []
         for geometry, row in features:
@@ -127,9 +125,8 @@ def _ring(geometry: Any, name: str) -> np.ndarray:
         raise RoadExtractionError(f"Lane {name} is no polygon of one part without holes, so it has no two borders. Draw it as one strip.")
     ring = shapely.get_coordinates(parts[0].exterior, include_z=True)[:-1]
     if len(ring) % 2 or len(ring) < 4:
-        raise RoadExtractionError(
-            f"Lane {name} has {len(ring)} vertices; its two borders need the same number, at least two each. Take the layer of lanes as Driving "
-            "lines or Road map made it: simplifying it or adding vertices takes the borders away.")
+        raise RoadExtractionError(f"Lane {name} has {len(ring)} vertices; its two borders need the same number, at least two each. Take the layer of "
+                                  "lanes as Driving lines or Road map made it: simplifying it or adding vertices takes the borders away.")
     return ring
 
 

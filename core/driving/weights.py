@@ -13,8 +13,6 @@ class _AlignmentWeights:
 
     max_parallel_deviation: float = 0.06   # m: 95 % of a lane's places are nearer than this to a parallel of the others
     min_shared_lane_length: float = 10.0   # m that a lane must share with others to be compared
-    min_arc_length: float = 25.0   # m: a shorter arc may be a stair of a transition
-    max_transition_misfit: float = 0.02   # m
     division_spacing: float = 1.0   # m between places that are divided: fitted lines err alike over metres
     min_status_length: float = 5.0   # m: a shorter change of status is not worth a piece
     min_element_share: float = 0.9   # share of a piece that one element must cover to give it its name
@@ -35,7 +33,9 @@ class _SigmaWeights:
 
     border_share: float = 0.13   # of the RMS distance of a border's paint from its curve, that the border is off by
     usual_scatter: float = 0.010   # m, of paint about its curve, where no border says it
-    border_sigma: float = 0.0008   # m, of a painted border, however many points show it
+    # m, of a painted border, however many points show it; fitted on nine simulated surveys and scenes: lines of a street are within one or two
+    # sigma in 73 and 85 % on average there, and so they are on nine others; two of these streets are off by 3 and 5 cm throughout
+    border_sigma: float = 0.005
     spacing_share: float = 0.028   # of the spacing of the points, that a painted border is off by
     usual_spacing: float = 0.03   # m, where there are no points to say it
     gap_share: float = 0.003   # m per m to the next place where a border is painted, or, without borders, where the lane is measured
@@ -102,11 +102,9 @@ class _TrackWeights:
     longest_lead: float = 20.0   # m along, at most
     most_oblique_border: float = 0.3   # m across for each m along: no border is painted or built more oblique, not even at a bus bay
     # Lanes followed from interval to interval.
-    full_room: float = 0.05   # m: less of a strip than that is not left over
     step_length: float = 10.0   # m along which a step between two stretches of a lane is evened out
     # Lanes that open or close beside another one.
     longest_taper: float = 100.0   # m
-    shown_taper: float = 8.0   # m of a taper that show its course where the survey ends before it does
     full_share: float = 0.9   # of a lane's width: from there on it is taken to have its full width
     least_widening: float = 0.05   # m: less is how lines are painted
     border_before_lane: float = 30.0   # m by which the line between two lanes may begin before the new one has 2 m: these at one in ten, and a gap

@@ -21,15 +21,12 @@ class ExecutionSettings:
     """Who does the work.
 
     workers : worker processes; 0 for threads of this process or, for a large survey, up to one process per processor core
-    work_folder : folder in which the points that were read and the results of phases are kept for later runs; "" for none
-    scheduler : address of a running Dask scheduler whose workers do the work instead; "" for none
-    insecure : whether the connection to it may go unencrypted beyond this computer
     """
 
     workers: int = setting(0, 0, 256, "The number of workers", "", "for the automatic choice")
-    work_folder: str = ""
-    scheduler: str = ""
-    insecure: bool = False
+    work_folder: str = ""   # folder in which the points that were read and the results of phases are kept for later runs; "" for none
+    scheduler: str = ""   # address of a running Dask scheduler whose workers do the work instead; "" for none
+    insecure: bool = False   # whether the connection to it may go unencrypted beyond this computer
 
     def __post_init__(self) -> None:
         check_limits(self)

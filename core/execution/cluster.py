@@ -47,8 +47,7 @@ def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: 
     except BaseException:
         (cluster or client).close()
         raise
-    progress.info(f"The work is shared among {len(workers)} worker(s) of the Dask cluster {address}. "
-                  f"They can be watched at {client.dashboard_link}.")
+    progress.info(f"The work is shared among {len(workers)} worker(s) of the Dask cluster {address}. They can be watched at {client.dashboard_link}.")
     return cluster
 
 
@@ -156,14 +155,12 @@ def check_address(address: str, insecure: bool) -> None:
     Raises RoadExtractionError if it is none, or does not begin with tls://, leaves this computer, and `insecure` is not set.
     """
     if not ADDRESS.fullmatch(address):
-        raise RoadExtractionError(
-            f"{address} is no address of a scheduler: it needs a port. Give the address that its log shows, such as tls://name:8786, or "
-            "tcp://127.0.0.1:8786 on this computer.")
+        raise RoadExtractionError(f"{address} is no address of a scheduler: it needs a port. Give the address that its log shows, such as "
+                                  "tls://name:8786, or tcp://127.0.0.1:8786 on this computer.")
     if not address.startswith("tls://") and not is_loopback(address) and not insecure:
-        raise RoadExtractionError(
-            f"The scheduler {address} lies outside this computer, and the connection to it would not be encrypted: anybody in the network "
-            "could run programs on the workers. Start scheduler and workers with certificates and give its tls:// address, or set INSECURE "
-            "where the network is yours alone.")
+        raise RoadExtractionError(f"The scheduler {address} lies outside this computer, and the connection to it would not be encrypted: anybody in "
+                                  "the network could run programs on the workers. Start scheduler and workers with certificates and give its tls:// "
+                                  "address, or set INSECURE where the network is yours alone.")
 
 
 def client_of(address: str, insecure: bool = False) -> Any:

@@ -26,14 +26,10 @@ PACKAGE = __name__.rpartition(".core.")[0]   # whose functions are sent: the pac
 
 @dataclass(frozen=True)
 class Recipe:
-    """How a source is opened in another process.
+    """How a source is opened in another process."""
 
-    function : "module:name" within the package
-    arguments : by name: plain values, or the Recipe of another source
-    """
-
-    function: str
-    arguments: dict[str, Any]
+    function: str   # "module:name" within the package
+    arguments: dict[str, Any]   # by name: plain values, or the Recipe of another source
 
     def open(self, opened: dict[Any, Any]) -> Any:
         """The source; sources that `opened` holds already, by their keys, are shared, and new ones are added."""
@@ -68,16 +64,14 @@ class Phase:
         result, an item and the arguments are plain values (see plain.py)
     source : what it reads from, open in this process; its `recipe(folder)` puts into the folder what another process needs, unless it is
         there, and gives the Recipe
-    arguments : plain values that all items share
-    place : names the stretch of road that an item is, for messages
     together : so many items, one after the other along the road, are best given to one worker, which keeps what they share
     join : the result of an item from those of the two halves of its range of numbers; None where an item cannot be halved
     """
 
     function: Callable[..., Any]
     source: Any
-    arguments: tuple[Any, ...] = ()
-    place: Callable[[Any], str] = field(default=str, compare=False)
+    arguments: tuple[Any, ...] = ()   # plain values that all items share
+    place: Callable[[Any], str] = field(default=str, compare=False)   # names the stretch of road that an item is, for messages
     join: Callable[[list[Any]], Any] | None = field(default=None, compare=False)
     together: int = field(default=1, compare=False)
 

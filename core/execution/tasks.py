@@ -30,16 +30,11 @@ from .work_folder import code_digest
 
 @dataclass(frozen=True)
 class ShippedPhase:
-    """A Phase in a file.
+    """A Phase in a file."""
 
-    function : "module:name" within the package
-    source : Recipe
-    arguments : plain values
-    """
-
-    function: str
+    function: str   # "module:name" within the package
     source: Recipe
-    arguments: tuple[Any, ...]
+    arguments: tuple[Any, ...]   # plain values
 
 
 _lock = threading.Lock()

@@ -221,8 +221,7 @@ class IntensityHistograms:
 def asphalt_of_histograms(histograms: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Median and lower spread of asphalt in each of (..., INTENSITY_LEVELS) histograms of levels, NaN where there are fewer than 200 points.
 
-    Levels brighter than three lower spreads above the median are taken for paint
-    and left out, and the median is taken again: paint never raises it.
+    Levels brighter than three lower spreads above the median are taken for paint and left out, and the median is taken again: paint never raises it.
     """
     total = histograms.sum(axis=-1)
     dense = total >= ASPHALT.min_asphalt_points

@@ -221,8 +221,7 @@ def _run(function, road_points, arguments, progress, source=None):
 def _reason_of_counts(table, lost, points):
     """Why nothing can be corrected with a table of asphalt, of which so many points had no position of the vehicle; "" where it can."""
     if lost > ASPHALT.max_share_without_vehicle * points:
-        return ("Intensity was not corrected: the trajectory does not say where the vehicle was when "
-                f"{lost:,} of {points:,} points were measured.")
+        return (f"Intensity was not corrected: the trajectory does not say where the vehicle was when {lost:,} of {points:,} points were measured.")
     if table is None:
         return "Intensity was not corrected: there are too few road points to estimate the intensity of asphalt at each distance."
     return ""

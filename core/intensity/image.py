@@ -279,9 +279,8 @@ def check_fits(width: float, height: float, settings: ImageSettings) -> None:
     """Refuse an image of so many metres east and north that would have too many tiles for one file (2**24)."""
     side = GEOTIFF_TILE * settings.cell_size
     if np.ceil(width / side) * np.ceil(height / side) > MAX_TILES:
-        raise RoadExtractionError(
-            f"The road points span {width / 1000:.1f} by {height / 1000:.1f} km, "
-            f"too far for an image with {settings.cell_size} m cells. Use a larger cell size, or split the survey.")
+        raise RoadExtractionError(f"The road points span {width / 1000:.1f} by {height / 1000:.1f} km, too far for an image with "
+                                  f"{settings.cell_size} m cells. Use a larger cell size, or split the survey.")
 
 
 def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Progress) -> tuple[_Grid, Iterator[tuple[int, int, np.ndarray]]]:
@@ -464,7 +463,6 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     shown = np.isfinite(image.sample(x, y))
     if shown.mean() < IMAGE.min_shown_share:
         raise RoadExtractionError(
-            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, "
-            f"y {top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, "
-            f"y {y.min():.1f} to {y.max():.1f}, and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that "
-            "was made from these points.")
+            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, y "
+            f"{top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to {y.max():.1f}, "
+            f"and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that was made from these points.")

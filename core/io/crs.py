@@ -58,14 +58,12 @@ def check_metric(crs: Any, what: str) -> None:
         raise RoadExtractionError(f"{what} is in {flat.name}, a CRS of {coordinates}. Road geometry needs x and y on a map: reproject it to a "
                                   "projected CRS, such as the UTM zone of the survey, and run again.")
     if flat.is_geographic:
-        raise RoadExtractionError(
-            f"{what} is in the geographic CRS {flat.name} (degrees). Road geometry needs metres: reproject it to a "
-            "projected CRS, such as the UTM zone of the survey, and run again.")
+        raise RoadExtractionError(f"{what} is in the geographic CRS {flat.name} (degrees). Road geometry needs metres: reproject it to a projected "
+                                  "CRS, such as the UTM zone of the survey, and run again.")
     units = _not_metres(axis for axis in flat.axis_info if axis.direction.lower() not in ("up", "down"))
     if units:
         raise RoadExtractionError(
-            f"{what} is in {flat.name}, whose unit is {', '.join(units)}. Lanewright works in metres: "
-            "reproject it to a metric CRS and run again.")
+            f"{what} is in {flat.name}, whose unit is {', '.join(units)}. Lanewright works in metres: reproject it to a metric CRS and run again.")
     vertical = _not_metres(crs.sub_crs_list[-1].axis_info) if crs.is_compound else []
     if vertical:
         raise RoadExtractionError(f"{what} has heights in {', '.join(vertical)} ({crs.sub_crs_list[-1].name}). Lanewright works in metres: convert "
@@ -171,13 +169,11 @@ def _refuse_degrees(files, trajectory_crs):
     """Refuse clouds without a CRS where that of the trajectory does not help: it is geographic and they are not, or there is none and they are."""
     crs = horizontal_part(parse_crs(trajectory_crs))
     if crs is not None and crs.is_geographic and not _in_degrees(files):
-        raise RoadExtractionError(
-            f"The point cloud carries no CRS, and the trajectory is in {crs.name} (degrees), so "
-            "the position of one relative to the other is unknown. Give the CRS of the point cloud by the parameter CRS.")
+        raise RoadExtractionError(f"The point cloud carries no CRS, and the trajectory is in {crs.name} (degrees), so the position of one relative "
+                                  "to the other is unknown. Give the CRS of the point cloud by the parameter CRS.")
     if crs is None and _in_degrees(files):
-        raise RoadExtractionError(
-            "The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees: it is less than 1 m wide if they "
-            "are metres. Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
+        raise RoadExtractionError("The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees: it is less than "
+                                  "1 m wide if they are metres. Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
 
 
 def _bounds(files):
@@ -309,9 +305,8 @@ def _not_true_to_scale(what, crs, place, there, area):
     else:
         lengths = f"Lengths in it are {there.scale:.3f} times those on the ground at {_degrees(there)}"
         zone = f", such as UTM zone {_utm_zone(there)},"
-    return RoadExtractionError(
-        f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that is made for this "
-        f"place{zone} or correct the CRS.")
+    return RoadExtractionError(f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that "
+                               f"is made for this place{zone} or correct the CRS.")
 
 
 def check_extent(wkt: str, bounds: Sequence[Sequence[float]], what: str) -> str:
@@ -369,8 +364,7 @@ def _named(area):
 
 
 def _degrees(place):
-    return (f"{abs(place.latitude):.2f}° {'N' if place.latitude >= 0 else 'S'} "
-            f"{abs(place.longitude):.2f}° {'E' if place.longitude >= 0 else 'W'}")
+    return (f"{abs(place.latitude):.2f}° {'N' if place.latitude >= 0 else 'S'} {abs(place.longitude):.2f}° {'E' if place.longitude >= 0 else 'W'}")
 
 
 def _utm_zone(place):

@@ -48,14 +48,12 @@ class IntensityImage:
         if transform is None:
             raise RoadExtractionError(f"{path} is an image without georeferencing. Give the intensity image written by “Intensity image”.")
         if transform[2] or transform[4] or abs(transform[1] + transform[5]) > 1e-6 * abs(transform[1]) or transform[1] <= 0:
-            raise RoadExtractionError(
-                f"{path} has pixels of {transform[1]:g} by {-transform[5]:g} map units or is rotated. "
-                "An intensity image has square pixels and north up: make it again with “Intensity image”.")
+            raise RoadExtractionError(f"{path} has pixels of {transform[1]:g} by {-transform[5]:g} map units or is rotated. An intensity image has "
+                                      "square pixels and north up: make it again with “Intensity image”.")
         reference = dataset.GetSpatialRef()
         if reference is not None and reference.IsGeographic():
-            raise RoadExtractionError(
-                f"{path} is in {reference.GetName()} (degrees). Markings are measured in metres: make the image again "
-                "from road points in a projected CRS.")
+            raise RoadExtractionError(f"{path} is in {reference.GetName()} (degrees). Markings are measured in metres: make the image again from "
+                                      "road points in a projected CRS.")
         eight_bit = dataset.GetRasterBand(1).DataType == 1  # GDT_Byte
         return cls(path, transform, dataset.RasterXSize, dataset.RasterYSize, crs, eight_bit)
 

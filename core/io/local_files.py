@@ -114,9 +114,8 @@ _enabled: list[Any] = []    # GDAL's modules whose exceptions the first of them 
 def gdal_exceptions() -> Iterator[None]:
     """A context, or a decorator of a function, in which GDAL raises RuntimeError and asks no server; afterwards it is as it was before.
 
-    Whether GDAL raises is a state of the whole process, which all plugins of QGIS share. Since GDAL 3.7 a
-    thread may have a state of its own, and only that is changed; with older versions, the state is restored
-    when the last thread leaves.
+    Whether GDAL raises is a state of the whole process, which all plugins of QGIS share. Since GDAL 3.7 a thread may have a state of its own, and
+    only that is changed; with older versions, the state is restored when the last thread leaves.
     """
     from osgeo import gdal, ogr
 

@@ -97,9 +97,8 @@ def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
         recognised = _recognise_format(mixed)
         if recognised is None:
             first_line = next((line.strip()[:80] for line in lines if line.strip()), "")
-            raise RoadExtractionError(
-                f"{path} holds no table of numbers: it begins {first_line!r}. A trajectory needs rows with at least x, y and z, "
-                "and time where there is one, with a decimal point.")
+            raise RoadExtractionError(f"{path} holds no table of numbers: it begins {first_line!r}. A trajectory needs rows with at least x, y and "
+                                      "z, and time where there is one, with a decimal point.")
         lines = mixed
     delimiter, columns, style = recognised
     first = next(k for k, line in enumerate(lines) if _is_row(_fields(line, delimiter), columns, style))
@@ -211,9 +210,8 @@ def _refuse_ambiguous_commas(first_row, above, path):
     padded = any(re.match(r"0\d+$", field) for field in first_row)
     header = next((line.split(",") for line in reversed(above) if line.strip()), [])
     if whole and len(first_row) >= 6 and (padded or 2 * len(header) == len(first_row)):
-        raise RoadExtractionError(
-            f"{path} uses the comma between columns and as the decimal sign, so its columns cannot be separated. "
-            "Export it with a decimal point, or with semicolons between the columns.")
+        raise RoadExtractionError(f"{path} uses the comma between columns and as the decimal sign, so its columns cannot be separated. Export it "
+                                  "with a decimal point, or with semicolons between the columns.")
 
 
 def _parse(body, delimiter, columns, style=STYLES[0]):

@@ -61,11 +61,6 @@ class _GroupWeights:
     road_edge_clearance: float = 0.10   # m: strips so near to the road edge are taken for verge
     reach_along_factor: float = 2.5   # neighbours may be this times the distance apart along the road,
     reach_across_divisor: float = 2.0   # and across it the distance over this, or the reach between tracks of the scan
-    largest_figure: float = 8.0   # m, of an arrow: what is longer runs on along a road
-    line_width: float = 0.35   # m: what is no broader,
-    line_elongation: float = 4.0   # and so many times as long, is a line
-    spot_units: int = 1000   # units of 0.1 mm: points are compared in squares of 10 cm,
-    touching: float = 1.5   # squares: and those that touch, at a corner too, are of one figure
 
 
 GROUPS = _GroupWeights()
@@ -322,11 +317,7 @@ class _SelectionWeights:
     max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it
     max_bar_end_offset: float = 0.35   # m between the end of a bar and the outline
     max_bar_pitch: float = 3.0   # m from bar to bar along an outline
-    max_border_gap: float = 2.0   # m along the road between pieces of one outline that bend off each other
     min_bars: int = 4   # that make an outline
-    min_bars_of_strand: int = 2   # that tell which strands of an outline are its own
-    at_crossing: float = 0.5   # m across beyond a crossing where a line still leads to it
-    least_turn_aside: float = 0.3   # m from the straight way between two strands: farther than links reach across, a strand is another line
     # Solid or dashed.
     max_worn_hole: float = 0.8   # m: a shorter hole is wear within a dash
     min_gap_per_dash: float = 0.4   # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
@@ -372,19 +363,6 @@ class _EvidenceWeights:
     half_border: float = 0.06   # m from the outside of its border line to the middle: half of a narrow line
     shortest_area: float = 5.0   # m
     border_line_reach: float = 0.5   # m between the ends of bars and the middle of the border line that they lead to: gap, and half of a broad line
-    max_tip: float = 20.0   # m from the last bar to where the borders meet
-    max_tip_gap: float = 2.0   # m of border that is not seen
-    tip_course: float = 4.0   # m of border that give its course
-    # Rows of parking bays.
-    least_reach: float = 1.2   # m across the road that is seen of a line: a parked car hides the rest
-    max_skew: float = 1.3   # m along the road for each metre across
-    bay_pitch: tuple[float, float] = 2.0, 8.0   # m along the road from line to line
-    max_bays_hidden: int = 3   # bays without a line between them, which cars hide
-    even_pitch: float = 0.12   # of the pitch, by which a line may lie off an even row
-    min_bay_lines: int = 4   # of a row
-    min_even: float = 0.75   # of the steps of a row that are even
-    pieces_of_line: float = 0.5   # m along the road between pieces of one line at most
-    shared_reach: float = 0.5   # of the shorter of two neighbours that lies beside the other
 
 
 EVIDENCE = _EvidenceWeights()
@@ -402,10 +380,6 @@ class _RoadWeights:
     shaft_breadth: float = 0.36   # m, of a single stroke at most: shafts have 0.10 to 0.20 m, and a cell more on either side; heads begin at 0.5 m
     pointed: float = 0.03   # of the length: the tip gets broad in a longer way than the end of a letter, which is as broad as the letter
     sure_lean: float = 0.15   # of the length by which the shaft is longer than the tip where it is sure which is which; painted arrows: 0.15 to 0.5
-    # How long the dashes of a line are.
-    beside: float = 0.15   # m between the middle of a dash and its line
-    full_dash: int = 75   # percent: of the dashes of a run those that are not worn; wear only ever shortens them
-    min_dashes: int = 4   # in a run: fewer may be remnants of a line that is worn away
 
 
 ROADS = _RoadWeights()
@@ -581,8 +555,6 @@ class _LaneWeights:
     usual_lines: float = 0.3   # of the painted length of a road: its lines of usual breadth
     wide_line: float = 1.6   # times the usual breadth: a wide line has twice of it (RMS, MUTCD 3A.04), measured to some 2 cm
     wide_softness: float = 0.1   # times it, by which that is uncertain
-    short_dash: float = 1.5   # m: dashes between lanes have 2 m and more in all countries of the catalogue, interrupted edges 1 m and less
-    short_softness: float = 0.1   # m by which that is uncertain
     surface_merge: float = 0.8   # m: the surface, or a hatched area, ends at the line or curb that lies this near
     # Lanes in the strip between two boundaries.
     likely_share: tuple[float, float] = 0.8, 1.5   # of the usual width of a lane: lanes in bends

@@ -691,6 +691,7 @@ class _SurfaceWeights:
     # lines of the pavement
     agreeing_length: float = 7.0   # m of road of which most must show the edge
     min_pavement_length: float = 10.0   # m of a line and of the curb beside it: rows are averages of 7 m, so what is shorter is a single observation
+    smoothing_length: float = 2.0   # m along the road over which a line through the rows is smoothed: they are averages of 7 m already
     max_row_jump: float = 0.5   # m across from one row to the next at which a line ends: a street joins
     max_line_miss: float = 0.2   # m, of single rows from one even bend through both sides of a gap that is longer than `max_gap`
     meeting_length: float = 0.5   # m at the end of a line in which it may meet a curb

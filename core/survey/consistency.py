@@ -1,9 +1,8 @@
 """Check that the result of an earlier stage belongs to the trajectory it is used with.
 
-Stations start where the road of a trajectory begins. With another trajectory, or another part of the same one, every
-station in a file refers to another position. Offsets are counted from its way: where a trajectory beside its scanners was
-moved to them as the points were read, offsets in a file are those of the way as moved. One that was moved in height alone shows
-as a road on which its vehicle cannot have driven.
+Stations start where the road of a trajectory begins. With another trajectory, or another part of the same one, every station in a file refers to
+another position. Offsets are counted from its way: where a trajectory beside its scanners was moved to them as the points were read, offsets in a
+file are those of the way as moved. One that was moved in height alone shows as a road on which its vehicle cannot have driven.
 """
 
 from __future__ import annotations
@@ -144,9 +143,8 @@ def _above(frame, road, s, z):
 def _refuse_mismatch(agree, label, what):
     agree = np.asarray(agree, bool)
     if len(agree) and agree.mean() < 0.5:
-        raise RoadExtractionError(
-            f"{label} and the trajectory do not belong together: only {np.count_nonzero(agree)} of {len(agree)} {what} lie "
-            "at the station they carry. Give the trajectory that they were made with, whole.")
+        raise RoadExtractionError(f"{label} and the trajectory do not belong together: only {np.count_nonzero(agree)} of {len(agree)} {what} lie at "
+                                  "the station they carry. Give the trajectory that they were made with, whole.")
 
 
 def _refuse_moved(beside, above, label):
@@ -154,10 +152,9 @@ def _refuse_moved(beside, above, label):
     beside, above = np.asarray(beside, float), np.asarray(above, float)
     above = above[np.isfinite(above)]
     if np.count_nonzero(np.abs(beside) > FRAME.offset_tolerance) > 0.5 * len(beside):
-        raise RoadExtractionError(
-            f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry from the trajectory. They were made with another "
-            "trajectory, or with one that was moved to the scanners, as a warning said then. Run Road map, which makes all layers with the moved "
-            "trajectory, or give every stage the trajectory that belongs to the cloud.")
+        raise RoadExtractionError(f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry from the trajectory. They were made "
+                                  "with another trajectory, or with one that was moved to the scanners, as a warning said then. Run Road map, which "
+                                  "makes all layers with the moved trajectory, or give every stage the trajectory that belongs to the cloud.")
     if np.count_nonzero((above < -VEHICLE.lowest_sensor) | (above > MIRROR.heights[1])) > 0.5 * len(above):
         depth = float(np.median(above))
         raise RoadExtractionError(

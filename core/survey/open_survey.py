@@ -186,9 +186,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     height = float(np.mean(list(reader.heights.values())))
     feet = _check_height(height, crs, (fitted.seen, reader.uneven), progress)
     survey = _survey_of(files, frame, reader, settings, crs, progress)
-    progress.info(f"Points read: {survey.counts['read']:,} from {len(files)} file(s), {store.count:,} near the road kept; "
-                 f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); "
-                 f"sensor {height:.2f} m above the road.")
+    progress.info(f"Points read: {survey.counts['read']:,} from {len(files)} file(s), {store.count:,} near the road kept; {len(frame.roads)} "
+                 f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
     parts_at = read_at if shared is None else READING.parts_progress * read_at
     _tell_scanners_apart(survey, reader, progress.part(parts_at, parts_at))
@@ -294,8 +293,7 @@ def _say_left_out(files, frame, reader, settings, progress):
     if left.excluded:
         progress.info(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if left.without_time:
-        progress.warn(f"{left.without_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
-                      "trajectory's.")
+        progress.warn(f"{left.without_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the trajectory's.")
     if reader.uneven:
         progress.warn("The trajectory does not keep to one height above the road: half of the points under the vehicle lie more than "
                       f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
@@ -417,10 +415,9 @@ def _check_extent(files, frame, crs, trajectory_crs):
     y = np.concatenate([p.y for p in frame.passes]) + frame.origin[1]
     reach = FRAME.corridor
     if not _runs_through(low, high, x, y, reach):
-        raise RoadExtractionError(
-            f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, "
-            f"y {low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, "
-            f"y {y.min():.1f} to {y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
+        raise RoadExtractionError(f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, y "
+                                  f"{low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to "
+                                  f"{y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
 
 
 def _runs_through(low, high, x, y, reach):

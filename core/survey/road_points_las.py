@@ -175,9 +175,8 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         names = set(header.point_format.dimension_names)
         missing = [name for name in REQUIRED_FIELDS if name not in names]
         if missing:
-            raise RoadExtractionError(
-                f"{path} lacks the extra field(s) {', '.join(missing)} that tell where on the road a point lies. "
-                "Give it the road points written by “Extract road surface” or a stage after it.")
+            raise RoadExtractionError(f"{path} lacks the extra field(s) {', '.join(missing)} that tell where on the road a point lies. Give it the "
+                                      "road points written by “Extract road surface” or a stage after it.")
         origin, scales, total = np.asarray(header.offsets, float), np.asarray(header.scales), header.point_count
         # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
         farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0

@@ -32,9 +32,8 @@ class DatabaseDialog(QDialog):
         form.addRow(tr("Connection"), self.connection)
         form.addRow(tr("Schema"), self.schema)
         form.addRow(tr("Names of the tables begin with"), self.prefix)
-        form.addRow(wrapped(tr(
-            "One table for each layer; a table of the same name is replaced. The intensity image and the report are files: choose a "
-            "folder for them too.")))
+        form.addRow(wrapped(tr("One table for each layer; a table of the same name is replaced. The intensity image and the report are files: choose "
+                               "a folder for them too.")))
         self.buttons = answers(self, button(tr("New connection…"), self._make_connection))
         form.addRow(self.buttons)
         self.resize(520, self.sizeHint().height())

@@ -119,8 +119,7 @@ def map_crs(layers: list[QgsMapLayer], project: QgsProject) -> QgsCoordinateRefe
     return next((crs for crs in all_crs if not crs.isGeographic()), all_crs[0] if all_crs else project.crs())
 
 
-def lie_of_the_road(layers: list[QgsMapLayer], crs: QgsCoordinateReferenceSystem | None = None,
-                    project: QgsProject | None = None) -> tuple:
+def lie_of_the_road(layers: list[QgsMapLayer], crs: QgsCoordinateReferenceSystem | None = None, project: QgsProject | None = None) -> tuple:
     """Centre, angle to the page (degrees), length and width of the rectangle around the road, in the map's CRS.
 
     Of the road's surface where it is among the layers, or of whatever is drawn.

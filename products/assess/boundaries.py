@@ -1,9 +1,8 @@
 """Road boundaries against a reference, in intervals of 2 m and by side.
 
-The protocol of the scanline paper, completed by the tolerance that it does not state: an interval is correct
-if result lines cover at least half of it and four fifths of them lie within the tolerance of the
-reference. Otherwise the line is false and the reference is missed; an occluded curb that was not found is missed
-like any other.
+The protocol of the scanline paper, completed by the tolerance that it does not state: an interval is correct if result lines cover at least half of
+it and four fifths of them lie within the tolerance of the reference. Otherwise the line is false and the reference is missed; an occluded curb that
+was not found is missed like any other.
 """
 
 from __future__ import annotations

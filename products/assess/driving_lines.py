@@ -1,7 +1,6 @@
 """Lines against reference lines: completeness, correctness and deviations.
 
-Measures after Heipke et al. (1997) and Wiedemann (2003), evaluated at points 0.1 m apart;
-a tolerance is the half-width of the buffer.
+Measures after Heipke et al. (1997) and Wiedemann (2003), evaluated at points 0.1 m apart; a tolerance is the half-width of the buffer.
 """
 
 from __future__ import annotations
@@ -42,8 +41,7 @@ def checked_tolerances(tolerances: Sequence[float], one: float, largest: float) 
     checked = tuple(sorted({*tolerances, one}))
     if not all(0.001 <= t <= largest for t in checked):
         text = ", ".join(f"{t:g}" for t in checked)
-        raise RoadExtractionError(
-            f"The tolerances are {text}; give lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
+        raise RoadExtractionError(f"The tolerances are {text}; give lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
     return checked
 
 
@@ -54,8 +52,7 @@ class LineAccuracy:
     miscoding : 1 - correctness, as the driving-line thesis reports it (here the buffer is about the
         reference; about the result, as printed there, it would not be a share of wrong lines)
     gaps_per_km, mean_gap : stretches of at least 0.5 m of reference without a result, and their mean length in metres
-    lateral, height : Errors in metres over result points within 0.75 m of the reference; lateral is positive
-        left of the reference as drawn
+    lateral, height : Errors in metres over result points within 0.75 m of the reference; lateral is positive left of the reference as drawn
     """
 
     completeness: dict[float, float]   # share of the reference's length within the tolerance of the result
@@ -85,8 +82,7 @@ class LineAccuracy:
 class LineMatch:
     """Two sets of lines with the distance of every point from the other set.
 
-    lateral, height : (N,) deviations of the result's points, metres, NaN beyond 0.75 m; lateral is signed,
-        positive left of the reference as drawn
+    lateral, height : (N,) deviations of the result's points, metres, NaN beyond 0.75 m; lateral is signed, positive left of the reference as drawn
     """
 
     result: Sequence[Any]   # result, reference: lists of LineString

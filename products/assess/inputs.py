@@ -76,9 +76,8 @@ def common_crs(layers: Sequence[AssessedLayer]) -> str:
         raise refused
     for layer in layers:
         if len(layer.geometries) and _looks_like_degrees(layer.geometries):
-            raise RoadExtractionError(
-                f"{layer.label} has no CRS and coordinates that look like degrees. Distances need metres: set the layer's CRS and "
-                "reproject it to a projected one.")
+            raise RoadExtractionError(f"{layer.label} has no CRS and coordinates that look like degrees. Distances need metres: set the layer's CRS "
+                                      "and reproject it to a projected one.")
     return ""
 
 
@@ -92,9 +91,8 @@ def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore
         return layer
     if source is None:
         if _looks_like_degrees(layer.geometries):
-            raise RoadExtractionError(
-                f"{layer.label} has no CRS and coordinates that look like degrees, while the others are in {horizontal_part(target).name}. "
-                "Set the layer's CRS and run again.")
+            raise RoadExtractionError(f"{layer.label} has no CRS and coordinates that look like degrees, while the others are in "
+                                      f"{horizontal_part(target).name}. Set the layer's CRS and run again.")
         warn(f"{layer.label} has no CRS; its coordinates are taken to be in {horizontal_part(target).name}.")
         return AssessedLayer(layer.label, layer.geometries, layer.rows, wkt)
     if same_crs(source, target):
@@ -141,9 +139,8 @@ def check_overlap(result: AssessedLayer, reference: AssessedLayer) -> None:
         def extent(box):
             return f"x {box[0]:.0f} to {box[2]:.0f}, y {box[1]:.0f} to {box[3]:.0f}"
 
-        raise RoadExtractionError(
-            f"{result.label} and {reference.label} lie {np.hypot(*gap):.0f} m apart ({extent(a)} against {extent(b)}), so nothing can be "
-            "compared. Check that both show the same road and that their CRSs are right.")
+        raise RoadExtractionError(f"{result.label} and {reference.label} lie {np.hypot(*gap):.0f} m apart ({extent(a)} against {extent(b)}), so "
+                                  "nothing can be compared. Check that both show the same road and that their CRSs are right.")
 
 
 def _with_heights_of(old, new):
@@ -233,9 +230,8 @@ def check_reference(reference: AssessedLayer, result: AssessedLayer, frame: Any 
     if not len(inside):
         raise RoadExtractionError(f"{reference.label} has no lines inside the area. Check that the area covers the road, or leave it empty.")
     if frame is not None and (TrajectoryStationing(frame, corridor).of_reference(inside).unit < 0).all():
-        raise RoadExtractionError(
-            f"The trajectory does not pass {reference.label}: none of it lies within {corridor:g} m. Check that both show the same road, and their "
-            "CRSs, or leave the trajectory empty to measure along the reference.")
+        raise RoadExtractionError(f"The trajectory does not pass {reference.label}: none of it lies within {corridor:g} m. Check that both show the "
+                                  "same road, and their CRSs, or leave the trajectory empty to measure along the reference.")
     if not single_lines(result.geometries)[0]:
         warn(f"{result.label} has no lines: everything is missed.")
 
@@ -244,8 +240,7 @@ def check_marking_reference(reference: AssessedLayer, result: AssessedLayer, are
     """Refuse, with RoadExtractionError, reference polygons of which none has an area or lies in the area given; warn if the result has none."""
     shapes = np.asarray(reference.geometries, object)
     if not len(shapes) or not (shapely.area(shapes) > 0).any():
-        raise RoadExtractionError(
-            f"{reference.label} has no polygons, lines or cells that are painted. Choose the layer of reference markings.")
+        raise RoadExtractionError(f"{reference.label} has no polygons, lines or cells that are painted. Choose the layer of reference markings.")
     if area is not None and not shapely.intersects(area, shapes).any():
         raise RoadExtractionError(f"{reference.label} has nothing inside the area. Check that the area covers the road, or leave it empty.")
     if not len(result.geometries):

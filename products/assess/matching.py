@@ -153,8 +153,7 @@ class ReferenceStationing:
 def _sides_of(lines: Sequence[shapely.LineString]) -> np.ndarray:
     """(N,) side of every line: 1 left, -1 right or 0 unknown, along the longest line as it is drawn.
 
-    The middle of the road is taken halfway between the outermost lines; lines less
-    than 2 m apart, or a single one, have no sides.
+    The middle of the road is taken halfway between the outermost lines; lines less than 2 m apart, or a single one, have no sides.
     """
     if len(lines) < 2:
         return np.zeros(len(lines), int)

@@ -337,14 +337,12 @@ def _say(found: RoadSections, progress: Progress) -> None:
                           "sections); such steps and tilts were taken off before anything was measured.")
     unknown = [road for road, errors in found.errors.items() if not errors.opposite]
     if unknown:
-        found.notes.append(
-            f"Road {', '.join(map(str, unknown))}: no two passes in opposite directions overlap, so an error in roll cannot be told from crossfall: "
-            "0.1° of roll is 0.17 % of crossfall. Widths, ruts, curbs and clearances do not depend on it. Drive the road in both "
-            "directions to know it.")
+        found.notes.append(f"Road {', '.join(map(str, unknown))}: no two passes in opposite directions overlap, so an error in roll cannot be told "
+                           "from crossfall: 0.1° of roll is 0.17 % of crossfall. Widths, ruts, curbs and clearances do not depend on it. Drive the "
+                           "road in both directions to know it.")
     if found.without_ruts:
-        found.notes.append(
-            f"At {found.without_ruts} lane sections the points are too few or too noisy for a rut depth: noise alone would show more than "
-            f"{1000 * MAX_RUT_CORRECTION:.0f} mm under the straight edge.")
+        found.notes.append(f"At {found.without_ruts} lane sections the points are too few or too noisy for a rut depth: noise alone would show more "
+                           f"than {1000 * MAX_RUT_CORRECTION:.0f} mm under the straight edge.")
     if all(part.strip.borders == "track" for section in found.sections for part in section.parts):
         found.notes.append("Without road edges, marking lines, driving lines or lanes, a lane of the country's usual width about the driven "
                            "track was measured: its width is no measurement.")

@@ -32,9 +32,8 @@ class CrossSectionSettings:
         limits = self.limits()
         if limits.min_crossfall is not None and limits.max_crossfall is not None and limits.min_crossfall > limits.max_crossfall:
             least, most = ("" if user_limit else f" in the rules of {self.country}" for user_limit in (self.min_crossfall, self.max_crossfall))
-            raise RoadExtractionError(
-                f"The least crossfall is {limits.min_crossfall:g} %{least}, the greatest {limits.max_crossfall:g} %{most}: no lane can keep both. "
-                "Set both limits so that the least is below the greatest.")
+            raise RoadExtractionError(f"The least crossfall is {limits.min_crossfall:g} %{least}, the greatest {limits.max_crossfall:g} %{most}: no "
+                                      "lane can keep both. Set both limits so that the least is below the greatest.")
 
     def limits(self) -> SectionLimits:
         """The limits that hold: the user's own, else the country's; None where neither has one."""

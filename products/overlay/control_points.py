@@ -1,9 +1,8 @@
 """Ground control points: places known in the image and on the map, from a table.
 
-Columns are recognised by their names or, without names, by the size of the image; where the rows name images, only those of
-the image in hand are used. Pixel and line count from the outer corner of the
-first pixel, whose middle is 0.5, 0.5. The QGIS georeferencer counts lines upward, as negative numbers; this
-is recognised and converted.
+Columns are recognised by their names or, without names, by the size of the image; where the rows name images, only those of the image in hand are
+used. Pixel and line count from the outer corner of the first pixel, whose middle is 0.5, 0.5. The QGIS georeferencer counts lines upward, as negative
+numbers; this is recognised and converted.
 """
 
 from __future__ import annotations
@@ -93,9 +92,8 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     table = {key: _numbers(rows, columns.get(key)) for key in ("pixel", "line", "easting", "northing", "height")}
     complete = np.isfinite([table[key] for key in ("pixel", "line", "easting", "northing")]).all(axis=0)
     if not complete.any():
-        raise RoadExtractionError(
-            f"{what} holds no row with numbers for pixel, line, easting and northing. "
-            "Write numbers with a decimal point (or a comma, where semicolons separate the columns).")
+        raise RoadExtractionError(f"{what} holds no row with numbers for pixel, line, easting and northing. Write numbers with a decimal point (or a "
+                                  "comma, where semicolons separate the columns).")
     usable = [row for row, good in zip(rows, complete) if good]
     roles = _roles(usable, columns)
     pixel, line = _in_the_image(table["pixel"][complete], table["line"][complete], roles != DISABLED, image, what)
@@ -155,9 +153,8 @@ def _find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
             columns[free[0]] = plain.index(bare)
     missing = [key for key in REQUIRED_COLUMNS if key not in columns]
     if missing:
-        raise RoadExtractionError(
-            f"{what} has the columns {', '.join(map(str, names))}; none of them was recognised as {' or '.join(missing)}. "
-            "Name the columns pixel, line, easting, northing.")
+        raise RoadExtractionError(f"{what} has the columns {', '.join(map(str, names))}; none of them was recognised as {' or '.join(missing)}. Name "
+                                  "the columns pixel, line, easting, northing.")
     return columns
 
 
@@ -185,9 +182,8 @@ def _guess_columns(rows: Sequence[Sequence[Any]], image: SourceImage, what: str)
     if len(fits) > 1:
         fits = _that_lies_like_an_image(fits, values, image)
     if len(fits) != 1:
-        raise RoadExtractionError(
-            f"The columns of {what} have no names, and their numbers do not show which are pixel and line in an image of "
-            f"{image.width} by {image.height}. Put a line above them: pixel,line,easting,northing.")
+        raise RoadExtractionError(f"The columns of {what} have no names, and their numbers do not show which are pixel and line in an image of "
+                                  f"{image.width} by {image.height}. Put a line above them: pixel,line,easting,northing.")
     return fits[0]
 
 
@@ -231,10 +227,9 @@ def _in_the_image(pixel, line, used, image, what):
             return columns, lines
     columns, lines = (axis[used] for axis in max(forms, key=lambda form: image.holds(*form, margin)[used].sum()))
     outside = int((~image.holds(columns, lines, margin)).sum())
-    raise RoadExtractionError(
-        f"{outside} of {len(columns)} points of {what} lie outside the image: pixels run from {columns.min():.0f} to {columns.max():.0f} "
-        f"and lines from {lines.min():.0f} to {lines.max():.0f}, the image has {image.width} by {image.height}. "
-        "Do they belong to another image or to another size of it, or are pixel and line swapped?")
+    raise RoadExtractionError(f"{outside} of {len(columns)} points of {what} lie outside the image: pixels run from {columns.min():.0f} to "
+                              f"{columns.max():.0f} and lines from {lines.min():.0f} to {lines.max():.0f}, the image has {image.width} by "
+                              f"{image.height}. Do they belong to another image or to another size of it, or are pixel and line swapped?")
 
 
 def _names(rows, column):
@@ -282,9 +277,8 @@ def read_control_points(path: str | Path, image: SourceImage, crs: str = "") -> 
 
     Parameters
     ----------
-    path : `.points` of the QGIS georeferencer (with or without a line "#CRS: ..."; mapX, mapY, sourceX, sourceY or
-        pixelX, pixelY; commas or, from QGIS 1, tabs), `gcp_list.txt` (the CRS in its first line, then x, y, z, pixel, line and
-        image in each row), or a CSV or TXT table
+    path : `.points` of the QGIS georeferencer (with or without a line "#CRS: ..."; mapX, mapY, sourceX, sourceY or pixelX, pixelY; commas or, from
+        QGIS 1, tabs), `gcp_list.txt` (the CRS in its first line, then x, y, z, pixel, line and image in each row), or a CSV or TXT table
     image : SourceImage that the points belong to; rows that name another image are passed over
     crs : WKT of the map coordinates where the file names none
 
@@ -322,8 +316,7 @@ def _file_text(path):
             raise RoadExtractionError(f"{path} is too large for a table of control points. Was the image given instead?")
         data = Path(path).read_bytes()
     except OSError as problem:
-        raise RoadExtractionError(
-            f"{path} cannot be read ({problem.strerror or problem}). Check the path and the rights to read it.") from problem
+        raise RoadExtractionError(f"{path} cannot be read ({problem.strerror or problem}). Check the path and the rights to read it.") from problem
     if b"\0" in data and data[:2] not in (b"\xff\xfe", b"\xfe\xff"):
         raise RoadExtractionError(f"{path} is no text. Control points are read from a .points or CSV file.")
     return data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", "replace")

@@ -166,9 +166,8 @@ def _rough_position(image, points, settings):
                 "needs both in one CRS: reproject the image or the points, or choose order 1.")
         return image.geotransform
     if settings.pixel_size <= 0:
-        raise RoadExtractionError(
-            "The image has no position of its own, so there is nothing to shift (order 0). Give its pixel size, if north "
-            "is up in the image, or choose order 1 with three or more control points.")
+        raise RoadExtractionError("The image has no position of its own, so there is nothing to shift (order 0). Give its pixel size, if north is up "
+                                  "in the image, or choose order 1 with three or more control points.")
     return (0.0, settings.pixel_size, 0.0, 0.0, 0.0, -settings.pixel_size)
 
 
@@ -177,13 +176,11 @@ def _well_spread(pixel, line, easting, northing, order):
     for places, unit, digits in ((np.column_stack([pixel, line]), "pixels", 0), (np.column_stack([easting, northing]), "m", 2)):
         along, across = principal_extents(places)
         if across <= COLLINEAR_RATIO * along:
-            raise RoadExtractionError(
-                f"The {len(pixel)} control points lie in a line: they spread {along:.{digits}f} {unit} along it and "
-                f"{across:.{digits}f} {unit} across. Measure points on both sides of it, spread over the image.")
+            raise RoadExtractionError(f"The {len(pixel)} control points lie in a line: they spread {along:.{digits}f} {unit} along it and "
+                                      f"{across:.{digits}f} {unit} across. Measure points on both sides of it, spread over the image.")
     if order > 1 and inverse_condition(pixel, line, order) < MIN_INVERSE_CONDITION:
-        raise RoadExtractionError(
-            f"The {len(pixel)} control points lie so (in few rows, on one curve, or several in one place) that a polynomial of order "
-            f"{order} is not determined between them. Add points away from the others, or choose order {order - 1}.")
+        raise RoadExtractionError(f"The {len(pixel)} control points lie so (in few rows, on one curve, or several in one place) that a polynomial of "
+                                  f"order {order} is not determined between them. Add points away from the others, or choose order {order - 1}.")
 
 
 def _unfolded(fit, area, hull, points, used, order):
@@ -194,17 +191,14 @@ def _unfolded(fit, area, hull, points, used, order):
     if (turn < 0).all():
         return
     if (turn > 0).all():
-        raise RoadExtractionError(
-            "The control points turn the image into its mirror image. Are pixel and line, or easting and northing, swapped?")
+        raise RoadExtractionError("The control points turn the image into its mirror image. Are pixel and line, or easting and northing, swapped?")
     within = hull is not None and shapely.contains_xy(hull, pixel[inside], line[inside])[turn >= 0].any()
     if within:
         worst = int(np.argmax(_burden(fit)))
-        raise RoadExtractionError(
-            f"Between the control points the polynomial of order {order} folds the image over itself. A point is wrong (check "
-            f"{points.names[used[worst]]} first), or the order is too high: choose a lower one.")
-    raise RoadExtractionError(
-        f"Outside the control points the polynomial of order {order} folds the image over itself. Choose a lower order, "
-        "measure points nearer to the image's corners, or leave out what lies outside the points (extrapolation).")
+        raise RoadExtractionError(f"Between the control points the polynomial of order {order} folds the image over itself. A point is wrong (check "
+                                  f"{points.names[used[worst]]} first), or the order is too high: choose a lower one.")
+    raise RoadExtractionError(f"Outside the control points the polynomial of order {order} folds the image over itself. Choose a lower order, "
+                              "measure points nearer to the image's corners, or leave out what lies outside the points (extrapolation).")
 
 
 def node_grid(bounds: tuple[float, float, float, float], count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -443,9 +437,8 @@ def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarra
 
     Notes
     -----
-    The terms are those of the polynomials of ArcGIS and GDAL. They are centred and scaled, and solved by QR. With R of the QR,
-    h_i = |R^-T t_i|^2 is the leverage, and r_i / (1 - h_i) the residual of a point that is left out (Belsley, Kuh
-    and Welsch 1980, Regression Diagnostics).
+    The terms are those of the polynomials of ArcGIS and GDAL. They are centred and scaled, and solved by QR. With R of the QR, h_i = |R^-T t_i|^2 is
+    the leverage, and r_i / (1 - h_i) the residual of a point that is left out (Belsley, Kuh and Welsch 1980, Regression Diagnostics).
     """
     places, target = np.column_stack([pixel, line]).astype(float), np.column_stack([easting, northing]).astype(float)
     centre, whiten = _frame(places)

@@ -58,9 +58,8 @@ def rough_place(image: SourceImage, crs: str, reach: float, pixel_size: float = 
     if not size:
         reason = "its tags say where the camera hung, but not how high or with what focal length" if tags else \
             "it has neither a position nor position tags"
-        raise RoadExtractionError(
-            f"Nothing tells how large the pixels of {image.path} are on the ground: {reason}. Give the pixel size, or two points, or a "
-            "world file beside the image.")
+        raise RoadExtractionError(f"Nothing tells how large the pixels of {image.path} are on the ground: {reason}. Give the pixel size, or two "
+                                  "points, or a world file beside the image.")
     size_range = _GIVEN_SIZE if pixel_size else _TAGGED_SIZE
     if tags is None or not crs:
         return RoughPlace(np.nan, np.nan, np.inf, 0.0, np.pi, size, size_range, f"a pixel size of {size:.3g} m alone")

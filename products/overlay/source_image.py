@@ -54,8 +54,7 @@ class SourceImage:
         margin : pixels around the image that count as inside
         Returns (N,) bool
         """
-        return ((pixel >= -margin) & (pixel <= self.width + margin)
-                & (line >= -margin) & (line <= self.height + margin))
+        return ((pixel >= -margin) & (pixel <= self.width + margin) & (line >= -margin) & (line <= self.height + margin))
 
 
 @gdal_exceptions()

@@ -36,8 +36,7 @@ def drawn_area(found: Georeferencing) -> shapely.Geometry:
 def output_grid(found: Georeferencing) -> tuple[tuple[float, float, float, float], int, int]:
     """Bounds and size of the result.
 
-    Bounds are whole multiples of the pixel size. A shift at the pixel size of the image keeps the bounds of the image, so that
-    no pixel is resampled.
+    Bounds are whole multiples of the pixel size. A shift at the pixel size of the image keeps the bounds of the image, so that no pixel is resampled.
 
     Returns
     -------
@@ -55,9 +54,8 @@ def output_grid(found: Georeferencing) -> tuple[tuple[float, float, float, float
         x0, y0 = np.floor(x0 / size + 1e-6) * size, np.floor(y0 / size + 1e-6) * size
     width, height = (max(int(np.ceil((b - a) / size - 1e-6)), 1) for a, b in ((x0, x1), (y0, y1)))
     if width * height > MAX_RESULT_PIXELS:
-        raise RoadExtractionError(
-            f"The result would have {width} by {height} pixels of {size:g} m. Give a larger pixel size, choose a lower order, "
-            "or check the control points.")
+        raise RoadExtractionError(f"The result would have {width} by {height} pixels of {size:g} m. Give a larger pixel size, choose a lower order, "
+                                  "or check the control points.")
     y1 = y0 + height * size if not _keeps_its_pixels(found) else y1
     return (float(x0), float(y1 - height * size), float(x0 + width * size), float(y1)), width, height
 
@@ -72,8 +70,7 @@ def _keeps_its_pixels(found):
 def draw_image(found: Georeferencing, path: str | Path, progress: Progress | None = None) -> float:
     """Write the image as a tiled GeoTIFF with lossless compression and overviews; the file appears when it is complete.
 
-    Images of bytes get an alpha band. Images of larger integers get 0, and those of real numbers NaN, as no-data value,
-    unless the image has its own.
+    Images of bytes get an alpha band. Images of larger integers get 0, and those of real numbers NaN, as no-data value, unless the image has its own.
 
     Parameters
     ----------
@@ -120,8 +117,7 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
     if cancelled:
         raise Cancelled
     if failure:
-        raise RoadExtractionError(
-            f"The image could not be drawn to {path} ({failure}). Is {found.image.path} whole, and is there room on the disk?")
+        raise RoadExtractionError(f"The image could not be drawn to {path} ({failure}). Is {found.image.path} whole, and is there room on the disk?")
     progress.report(1.0)
     return departure
 

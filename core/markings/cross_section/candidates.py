@@ -36,7 +36,6 @@ class Boundaries:
     paint: np.ndarray   # (R,) m of paint of each row
     named: np.ndarray   # (R,) what a row separates by its layer, -1 where that is not said
     wide: RowTable   # (R, K) 0 to 1, whether a row is a wide line, which is at least twice as broad as the usual lines of its road
-    short: RowTable   # (R, K) the same of dashes shorter than those between lanes; NaN where unknown
 
     @cached_property
     def bounding(self) -> np.ndarray:
@@ -51,11 +50,10 @@ class Boundaries:
 
 def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, surface: np.ndarray | None = None,
                       open_ends: np.ndarray | None = None, hatching: RowTable | None = None,
-                      pavement: CrossSections | None = None, dashes: RowTable | None = None) -> Boundaries:
+                      pavement: CrossSections | None = None) -> Boundaries:
     """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines.
 
-    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it. `dashes` are the lengths of those of the lines,
-    (L, K) m or None.
+    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it.
     """
     count = len(lines.s)
     of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], np.int8)
@@ -85,8 +83,7 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     paint = STATION_STEP * np.bincount(found_d.spans.owner, found_seen, len(found_d))
     return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in tables]), all_patterns,
                       paint, np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(unpainted, -1)].astype(int),
-                      *(found_d.like(np.append(share, np.full(found_d.spans.size - len(share), np.nan)), np.nan)
-                        for share in (_wide_share(lines), _short_share(lines, dashes))))
+                      found_d.like(np.append(wide := _wide_share(lines), np.full(found_d.spans.size - len(wide), np.nan)), np.nan))
 
 
 def _on_stations(sections, s):
@@ -120,11 +117,6 @@ def _wide_share(lines):
     return np.where(measured, 1 / (1 + np.exp(-(np.where(measured, width, usual) / usual - LANES.wide_line) / LANES.wide_softness)), np.nan)
 
 
-def _short_share(lines, dashes):
-    """Of each place of lines, 0 to 1, whether dashes are shorter than any country draws them between lanes."""
-    return np.full(lines.d.spans.size, np.nan) if dashes is None else 1 / (1 + np.exp((dashes.values - LANES.short_dash) / LANES.short_softness))
-
-
 def _made_of(pattern):
     if "double" in pattern:
         return DOUBLE
@@ -146,7 +138,6 @@ class Candidates:
     valid: np.ndarray   # (I, M) False where there are fewer boundaries than M
     named: np.ndarray   # (I, M) what the layer says that a boundary separates, -1 where it does not
     wide: np.ndarray   # (I, M) as there, NaN of double lines
-    short: np.ndarray
     beside: np.ndarray   # (I, M, 2, 4) as `lanes_beside` gives it; NaN before
 
     @property
@@ -239,7 +230,7 @@ def _entries(boundaries, intervals, size, weights):
                        np.where(edge > 0.5, PAVEMENT, boundaries.made_of[row]))
     trust = np.clip((boundaries.paint[row] - weights.stroke) / (weights.long_line - weights.stroke), 0.02, 1.0)
     return dict(interval=intervals.of, row=row, d=intervals.sums(np.where(present, boundaries.d.values, 0.0)) / stations, made=made_of,
-                wide=intervals.means(boundaries.wide.values), short=intervals.means(boundaries.short.values),
+                wide=intervals.means(boundaries.wide.values),
                 seen=np.minimum(intervals.sums(boundaries.seen.values) / size[intervals.of], 1.0), trust=np.where(made_of <= DOUBLE, trust, 1.0))
 
 
@@ -273,13 +264,13 @@ def _grouped(entries):
         return {**entries, "right_row": entries["row"], "right": entries["d"]}
     end = np.r_[begin[1:], len(entries["d"])] - 1
     groups = _rows(entries, begin)
-    for name in ("trust", "seen", "wide", "short"):
+    for name in ("trust", "seen", "wide"):
         groups[name] = np.maximum.reduceat(entries[name], begin)
     made_of, right = np.minimum.reduceat(entries["made"], begin), entries["d"][end]
     # two lines closer than that are the two sides of one broad line
     double = (end > begin) & (groups["d"] - right > LANES.double_spacing[0]) & (made_of <= DOUBLE)
     groups["made"] = np.where(double, DOUBLE, np.where(made_of == DOUBLE, SOLID, made_of))
-    groups |= {name: np.where(double, np.nan, groups[name]) for name in ("wide", "short")}
+    groups["wide"] = np.where(double, np.nan, groups["wide"])
     return {**groups, "right_row": entries["row"][end], "right": right}
 
 
@@ -305,5 +296,4 @@ def _table(groups, boundaries, first, last):
     valid[:, [0, -1]] = True
     rows = np.stack([column(groups[name], -1) for name in ("row", "right_row")], axis=2)
     return Candidates(first, last, left, right, column(groups["made"], OUTSIDE), column(groups["trust"], 0.0), column(groups["seen"], 0.0), rows,
-                      valid, column(boundaries.named[groups["row"]], -1), column(groups["wide"], np.nan),
-                      column(groups["short"], np.nan), np.full((*shape, 2, 4), np.nan))
+                      valid, column(boundaries.named[groups["row"]], -1), column(groups["wide"], np.nan), np.full((*shape, 2, 4), np.nan))

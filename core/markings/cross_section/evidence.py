@@ -1,4 +1,4 @@
-"""What speaks for or against lanes beside lines and curbs: the drive, the road surface, hatched areas, parking bays, arrows and stop lines."""
+"""What speaks for or against lanes beside lines and curbs: the drive, the road surface, hatched areas, arrows and stop lines."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 import shapely
 from scipy.ndimage import binary_closing, grey_closing, median_filter
 
-from ...common.arrays import linked_groups
 from ...execution.phase import Phase
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
@@ -242,7 +241,7 @@ def _stop_lines(candidates, s, markings, road):
     return np.array(stops).reshape(-1, 3)
 
 
-# Hatched areas and parking bays: where nobody drives, and the borders that bound the lanes beside.
+# Hatched areas: where nobody drives, and the borders that bound the lanes beside.
 
 OUTSIDE_PAINT = CELL_SIZE / 2   # derived: m: outlines are of whole cells, of which paint reaches into the outermost ones by half on average
 
@@ -269,16 +268,16 @@ def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.
 
 
 def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> RowTable:
-    """RowTable (2 G, K) of m, the left and the right border of each of G hatched areas and of tips of them, NaN where it is not.
+    """RowTable (2 G, K) of m, the left and the right border of each of G hatched areas, NaN where it is not.
 
     Nobody drives between them, and they bound the lanes beside. A border is the middle of the line that is painted along the ends of the bars; where
-    there is none, the ends themselves. Where the area narrows to a tip, too narrow for bars, the borders go on along their lines to where these meet.
+    there is none, the ends themselves.
     """
     on_road = markings.road == road
     bars, lines = ([shape for shape in shapely.force_2d(markings.outlines.polygons()[on_road & kind]) if not shape.is_empty]
                    for kind in (markings.kind == "hatch", np.isin(markings.kind.astype(str), LINE_KINDS)))
     areas = shapely.get_parts(shapely.union_all(shapely.buffer(bars, EVIDENCE.bar_reach))) if bars else np.empty(0, object)
-    bars_of, lines_of = _meeting(areas, bars), _meeting(shapely.buffer(areas, EVIDENCE.max_tip), lines)
+    bars_of, lines_of = _meeting(areas, bars), _meeting(areas, lines)
     borders_found = []
     for k in range(len(areas)):
         first, reach = _reach([bars[j] for j in bars_of[k]], frame, road, s)
@@ -291,49 +290,12 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
             outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR),
                                  size=int(2 * EVIDENCE.bar_reach / STATION_STEP) + 1, mode="nearest")
             borders[side] = sign * (outer - OUTSIDE_PAINT - EVIDENCE.half_border)
-        courses = [(begin, reached.mean(axis=0)) for begin, reached in (_reach([lines[j]], frame, road, s) for j in lines_of[k])]
-        for begin, middle in courses:
-            low, high = max(begin, first), min(begin + len(middle), first + reach.shape[1])
+        for begin, reached in (_reach([lines[j]], frame, road, s) for j in lines_of[k]):
+            low, high = max(begin, first), min(begin + reached.shape[1], first + reach.shape[1])
             if low < high:
-                _follow(borders[:, low - first:high - first], middle[low - begin:high - begin])
-        before, behind = _tip(borders[:, ::-1], first, -1, courses), _tip(borders, first + reach.shape[1] - 1, 1, courses)
-        for begin, rows in ((first - before.shape[1], before[:, ::-1]), (first, borders), (first + reach.shape[1], behind)):
-            if rows.size:
-                borders_found += [(begin, border) for border in rows]
+                _follow(borders[:, low - first:high - first], reached.mean(axis=0)[low - begin:high - begin])
+        borders_found += [(first, border) for border in borders]
     return RowTable.of_rows(borders_found, len(s))
-
-
-def _tip(borders, last, step, lines):
-    """Where both borders go on along lines behind the last bar and come nearer to each other: (2, N) m.
-
-    `borders` : (2, M) m, those beside the bars, up to the station of the number `last`; `step` : 1 or -1, the way that stations are counted on;
-    `lines` : (number of the first station, (L,) m of its middle) of the lines about the area
-    """
-    course, count = int(EVIDENCE.tip_course / STATION_STEP), int(EVIDENCE.max_tip / STATION_STEP)
-    table = np.full((len(lines), course + count), np.nan)
-    for row, (begin, middle) in zip(table, lines):
-        indices = (begin + np.arange(len(middle)) - last) * step + course - 1
-        inside = (indices >= 0) & (indices < len(row))
-        row[indices[inside]] = middle[inside]
-    result = np.full((2, course + count), np.nan)
-    result[:, max(course - borders.shape[1], 0):course] = borders[:, -course:]
-    for border in result:
-        last_known = course
-        for k in range(course, course + count):
-            before = np.arange(last_known - course, last_known)
-            before = before[np.isfinite(border[before])]
-            if k - last_known > EVIDENCE.max_tip_gap / STATION_STEP or len(before) < 2:
-                break
-            slope, level = np.polyfit(before - k, border[before], 1)
-            distances = np.abs(table[:, k] - level)
-            if np.isfinite(distances).any() and np.nanmin(distances) <= EVIDENCE.border_line_reach:
-                border[k] = table[np.nanargmin(distances), k]
-                border[last_known:k] = np.interp(np.arange(last_known, k), [last_known - 1, k], border[[last_known - 1, k]])
-                last_known = k + 1
-    width = result[0] - result[1]
-    narrowing = (width[course:] > 0) & (np.diff(width[course - 1:]) <= 0)
-    end = course + (len(narrowing) if narrowing.all() else int(np.argmin(narrowing)))
-    return result[:, course:end]
 
 
 def _meeting(areas, shapes):
@@ -343,19 +305,6 @@ def _meeting(areas, shapes):
         for shape, area in sorted(zip(*shapely.STRtree(areas).query(shapes, predicate="intersects").tolist())):
             numbers[area].append(shape)
     return numbers
-
-
-def places_of_bays(rows: list[np.ndarray], s: np.ndarray, driven: np.ndarray) -> tuple[np.ndarray, RowTable]:
-    """(K, BINS) bool, where the bays of `rows_of_bays` lie, and RowTable (G, K) of m, where the lines of each row end towards the vehicle."""
-    places, ends = np.zeros((len(s), BINS), bool), []
-    offsets = (np.arange(BINS) + 0.5) * BIN - FAR
-    for row in rows:
-        window = slice(*np.searchsorted(s, [row[0, 0], row[-1, 0]]))
-        low, high = (np.interp(s[window], row[:, 0], row[:, k]) for k in (1, 2))
-        places[window] |= (offsets > low[:, None]) & (offsets < high[:, None])
-        track = driven[:, window][np.isfinite(driven[:, window])]
-        ends.append((window.start, high if np.median(row[:, 1:].sum(axis=1)) < 2 * (track.mean() if len(track) else 0.0) else low))
-    return places, RowTable.of_rows(ends, len(s))
 
 
 def _reach(shapes, frame, road, s):
@@ -380,84 +329,3 @@ def _follow(borders, middle):
         close = np.abs(borders - middle) < EVIDENCE.border_line_reach
     for border, follows in zip(borders, close):
         border[follows] = middle[follows]
-
-
-# Rows of parking bays: the lines between bays are as narrow as other lines and run across or obliquely, from the lane to the edge of the road (RMS
-# part 1, bays of 2.3 to 2.7 m, parallel ones of 5 to 7 m; MUTCD 3B.19). Joints of a concrete road and rumble bars lie across driven lanes, too.
-
-WIDEST_BAY_LINE = 0.20   # source: m, of lines of usual breadth in all countries of the catalogue
-
-
-def rows_of_bays(markings: MarkingObjects, road: int, s: np.ndarray, driven: np.ndarray) -> list[np.ndarray]:
-    """Rows of parking bays on one road: (n, 3) m each, station of the middle, least and greatest offset of its lines, by station.
-
-    `driven` : (P, K) m, offset of every pass at (K,) increasing stations, NaN where it did not drive.
-    """
-    rows = _rows(_lines_across(markings, road))
-    crossed = [_driven_over(row, s, driven) for row in rows]
-    return [row for row, over in zip(rows, crossed) if not over
-            and not any(_beside(row, crossed_row) for crossed_row, driven_over in zip(rows, crossed) if driven_over)]
-
-
-def _lines_across(markings, road):
-    """(N, 3) station of the middle, least and greatest offset of narrow lines across the road; the parts of one marking are one."""
-    rows = np.flatnonzero((markings.road == road) & ~markings.keep & (markings.width <= WIDEST_BAY_LINE) & np.isfinite(markings.extent[:, 0]))
-    if not len(rows):
-        return np.empty((0, 3))
-    cluster = markings.cluster[rows]
-    _, of = np.unique(np.where(cluster >= 0, cluster, -2 - np.arange(len(rows))), return_inverse=True)
-    first, last, low, high = (pick(markings.extent[rows, k], of) for k, pick in enumerate((_least, _greatest, _least, _greatest)))
-    crosswise = (high - low >= EVIDENCE.least_reach) & (last - first <= EVIDENCE.max_skew * (high - low) + WIDEST_BAY_LINE)
-    lines = np.column_stack([(first + last) / 2, low, high])[crosswise]
-    return lines[np.argsort(lines[:, 0], kind="stable")]
-
-
-def _least(values, of):
-    result = np.full(of.max() + 1, np.inf)
-    np.minimum.at(result, of, values)
-    return result
-
-
-def _greatest(values, of):
-    return -_least(-values, of)
-
-
-def _rows(lines):
-    """Rows of lines that follow each other at an even pace: list of (n, 3), each by station."""
-    station = lines[:, 0]
-    low, high = np.searchsorted(station, station + EVIDENCE.bay_pitch[0]), np.searchsorted(station, station + EVIDENCE.bay_pitch[1], side="right")
-    a = np.repeat(np.arange(len(lines)), high - low)
-    b = np.arange(len(a)) - np.repeat(np.cumsum(high - low) - (high - low), high - low) + low[a]
-    shared = np.minimum(lines[a, 2], lines[b, 2]) - np.maximum(lines[a, 1], lines[b, 1])
-    linked = shared >= EVIDENCE.shared_reach * np.minimum(lines[a, 2] - lines[a, 1], lines[b, 2] - lines[b, 1])
-    group = linked_groups(a[linked], b[linked], len(lines))
-    groups = [_whole(lines[group == number]) for number in np.flatnonzero(np.bincount(group) >= EVIDENCE.min_bay_lines)]
-    return [row for row in groups if _even(row)]
-
-
-def _whole(row):
-    """The row with the pieces of each line, which lie at one station, put together."""
-    start = np.flatnonzero(np.r_[True, np.diff(row[:, 0]) > EVIDENCE.pieces_of_line])
-    return np.column_stack([np.add.reduceat(row[:, 0], start) / np.diff(np.r_[start, len(row)]), np.minimum.reduceat(row[:, 1], start),
-                            np.maximum.reduceat(row[:, 2], start)])
-
-
-def _even(row):
-    if len(row) < EVIDENCE.min_bay_lines:
-        return False
-    steps = np.diff(row[:, 0])
-    pitch = float(np.median(steps))
-    times = np.clip(np.round(steps / pitch), 1, EVIDENCE.max_bays_hidden)
-    return np.mean(np.abs(steps - times * pitch) <= EVIDENCE.even_pitch * pitch) >= EVIDENCE.min_even
-
-
-def _driven_over(row, s, driven):
-    """Whether a pass drove across the lines of a row."""
-    stations = np.clip(np.searchsorted(s, row[:, 0]), 0, len(s) - 1)
-    with np.errstate(invalid="ignore"):
-        return bool((((driven[:, stations] > row[:, 1]) & (driven[:, stations] < row[:, 2])).mean(axis=1) > 0.5).any())
-
-
-def _beside(row, other):
-    """Whether two rows lie at the same stations."""
-    return min(row[-1, 0], other[-1, 0]) > max(row[0, 0], other[0, 0])

@@ -16,25 +16,13 @@ from ...countries.traffic_side import side_of_traffic
 from ...io.crs import horizontal_part, parse_crs, place_on_ground
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
-from ...survey.frame.row_table import RowTable, stacked
 from ...survey.store.road_points import RoadPoints
-from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..weights import ROADS
 from .beside import lanes_beside
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimate_road, lane_spans
-from .evidence import (
-    between_ends,
-    borders_of_hatching,
-    driven_offsets,
-    evidence_of,
-    hatched_places,
-    other_carriageway,
-    places_of_bays,
-    rows_of_bays,
-    surface_coverage,
-)
+from .evidence import between_ends, borders_of_hatching, driven_offsets, evidence_of, hatched_places, other_carriageway, surface_coverage
 from .sections import STATION_STEP, CrossSections, no_lines
 from .weights import PAVEMENT, EstimateWeights, TakenReading
 
@@ -155,8 +143,8 @@ def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, d
     s, likely, (curbs, pavement) = of_road.s, _likely_ends(of_road, usual_width), edges
     covered, ends = _surface(*points, number, s, likely)
     open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
-    hatched, borders = _closed_areas(markings, frame, number, s, driven[0])
-    boundaries = gather_boundaries(of_road, curbs, ends, open_ends, borders, pavement, dash_lengths(of_road, markings, number))
+    hatched, borders = (None if markings is None else of_areas(markings, frame, number, s) for of_areas in (hatched_places, borders_of_hatching))
+    boundaries = gather_boundaries(of_road, curbs, ends, open_ends, borders, pavement)
     candidates = boundary_candidates(boundaries, weights)
     evidence = evidence_of(candidates, s, *driven, covered, hatched, arrows, markings, number, other_carriageway(frame, number, s), bare)
     return boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, s))
@@ -199,18 +187,6 @@ def _taken_on(taken, number, candidates, s):
             for interval, d in zip(inside.tolist(), np.interp(middle[inside], reading.s, reading.d).tolist()):
                 result.append((interval, d, tuple((d + offset, width, way) for offset, width, way in reading.lanes)))
     return tuple(result)
-
-
-def _closed_areas(markings, frame, number, s, driven):
-    """Where paint says that nobody drives, hatched areas and parking bays, and the borders of these; None and None without markings."""
-    if markings is None:
-        return None, None
-    hatched, borders = hatched_places(markings, frame, number, s), borders_of_hatching(markings, frame, number, s)
-    rows = rows_of_bays(markings, number, s, driven)
-    if not rows:
-        return hatched, borders
-    bays, ends = places_of_bays(rows, s, driven)
-    return bays if hatched is None else hatched | bays, stacked([borders, ends])
 
 
 def _surface(road_points, paint, number, s, likely):
@@ -320,35 +296,3 @@ def stems(shapes: np.ndarray) -> np.ndarray:
     broad = np.nan_to_num(left - right) > ROADS.shaft_breadth
     bare = np.stack([np.argmax(broad, axis=1), np.argmax(broad[:, ::-1], axis=1)]) / SLICES
     return np.where(broad.any(axis=1), bare, 0.0)
-
-
-# How long the dashes of lines are, from the markings that lie on them.
-
-
-def dash_lengths(lines: CrossSections, markings: MarkingObjects | None, road: int) -> RowTable:
-    """RowTable (L, K) of m, length of the dashes of L lines at K stations, the same along each dashed stretch.
-
-    It is NaN where a line is not dashed, or has too few dashes to tell.
-    """
-    result = RowTable.full(lines.d.spans, np.nan)
-    if markings is None:
-        return result
-    dashed = np.array([name == "dashed" for name in lines.names] + [False])[lines.drawn.values] & np.isfinite(lines.d.values)
-    rows = (markings.road == road) & markings.keep & np.isin(markings.kind.astype(str), LINE_KINDS) & np.isfinite(markings.extent[:, 0])
-    first, last, low, high = markings.extent[rows].T
-    station = np.rint(((first + last) / 2 - lines.s[0]) / STATION_STEP).astype(int)
-    inside = (station >= 0) & (station < len(lines.s))
-    order = np.flatnonzero(inside)
-    order = order[np.argsort(station[order], kind="stable")]
-    station, length, middle = station[order], (last - first)[order], ((low + high) / 2)[order]
-    # runs of dashed stations of one row
-    row, index = lines.d.spans.owner, lines.d.spans.station
-    edges = np.flatnonzero(np.diff(np.r_[-1, np.where(dashed, row, -1), -1]))
-    for begin, end in zip(edges[:-1].tolist(), edges[1:].tolist()):
-        if not dashed[begin]:
-            continue
-        window = slice(*np.searchsorted(station, [index[begin], index[end - 1] + 1]))
-        lengths = length[window][np.abs(lines.d.values[begin:end][station[window] - index[begin]] - middle[window]) < ROADS.beside]
-        if len(lengths) >= ROADS.min_dashes:
-            result.values[begin:end] = np.percentile(lengths, ROADS.full_dash)
-    return result

@@ -146,8 +146,7 @@ def _piece(s, d, z, kind, pattern, seen, width):
 
 def _on_grid(pieces: dict[int, list[_PieceOfLine]]) -> CrossSections:
     """CrossSections of the lines of one road, which go on over short gaps."""
-    grid, gaps = joined(_lines_on_grid(pieces))
-    even_doubles(grid, lead_over(grid, gaps))
+    grid = joined(_lines_on_grid(pieces))
     lengthen_dashed(grid)
     return _sections(grid)
 
@@ -269,18 +268,14 @@ def _row_of(number, pieces, s, names, longest):
     return _GridRow(row.kind, row.pattern, first, row.columns)
 
 
-def joined(lines: _GridLines) -> tuple[_GridLines, list[tuple[int, int, int, bool, bool]]]:
-    """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction.
-
-    Returns the lines, and of each gap that was closed the row, the stations on both its sides and whether the line is double there.
-    """
+def joined(lines: _GridLines) -> _GridLines:
+    """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction."""
     rows = lines.rows
     present = [k for k, row in enumerate(rows) if row.end >= row.begin]
     chains = {k: [k] for k in present}     # the lines that a row is made of, by the number of its first one
     ending = defaultdict(set)           # rows by the station that they end at
     for k in present:
         ending[rows[k].end].add(k)
-    gaps: list[tuple[int, int, int, bool, bool]] = []
     for k in sorted(present, key=lambda k: (rows[k].begin, k)):
         check_cancelled()
         last, d = rows[k].begin, rows[k].columns["d"][rows[k].begin - rows[k].first]
@@ -291,14 +286,11 @@ def joined(lines: _GridLines) -> tuple[_GridLines, list[tuple[int, int, int, boo
             continue
         j = int(behind[np.argmin(steps)])
         before = rows[chains[j][-1]]
-        gaps.append((j, before.end, last, "double" in before.pattern, "double" in rows[k].pattern))
         ending[before.end].remove(j)
         ending[rows[k].end].remove(k)
         ending[rows[k].end].add(j)
         chains[j] += chains.pop(k)
-    number = {j: k for k, j in enumerate(sorted(chains))}
-    rows_joined = [_chained([rows[k] for k in chains[j]]) for j in sorted(chains)]
-    return _GridLines(lines.s, rows_joined, lines.names), [(number[j], first, last, before, behind) for j, first, last, before, behind in gaps]
+    return _GridLines(lines.s, [_chained([rows[k] for k in chains[j]]) for j in sorted(chains)], lines.names)
 
 
 def _chained(rows):
@@ -319,71 +311,6 @@ def _chained(rows):
             # a gap of a dashed line is no gap
             result.columns["seen"][gap] = head.pattern.startswith("dash") or row.pattern.startswith("dash")
     return _GridRow(head.kind, head.pattern, head.begin, result.columns)
-
-
-def lead_over(lines: _GridLines, gaps: list[tuple[int, int, int, bool, bool]]) -> set[tuple[int, int]]:
-    """Where a double line goes on as a single one, both of its lines lead over to it: lanes on either side end at that one.
-
-    Returns the ends of lines that were continued, as (row, 1 where it ended or -1 where it began).
-    """
-    led: set[tuple[int, int]] = set()
-    for j, last, first, before, after in gaps:
-        if before == after:
-            continue
-        single = lines.rows[j]
-        # from the double line's own end to where the single one begins, in whichever direction
-        double_end, single_end, step = (last, first, 1) if before else (first, last, -1)
-        # a line that was continued before reaches farther than it did
-        nearby = sorted({*lines.near(double_end, GAP_REACH), *(k for k, _ in led)})
-        for k in nearby:
-            row = lines.rows[k]
-            end = row.end if step > 0 else row.begin
-            if k == j or "double" not in row.pattern or not 0 <= (double_end - end) * step <= GAP_REACH:
-                continue
-            apart = _step_between(row, single, end)
-            if abs(apart["d"]) >= SECTIONS.min_boundary_spacing:
-                continue
-            shared, gap = np.arange(end + step, double_end + step, step), np.arange(double_end + step, single_end, step)
-            for name in ("d", "z"):
-                row.put(name, shared, single.at(name, shared) + apart[name])
-                row.put(name, gap, single.at(name, gap) + apart[name] * (single_end - gap) / (single_end - double_end))
-            for columns in (shared, gap):
-                row.put("seen", columns, single.at("seen", columns))
-            led.add((k, step))
-    return led
-
-
-def _step_between(row, other, station):
-    """By how much, of d and z, a row lies beside another one at a station."""
-    stations = np.array([station])
-    return {name: row.at(name, stations)[0] - other.at(name, stations)[0] for name in ("d", "z")}
-
-
-def even_doubles(lines: _GridLines, led: set[tuple[int, int]]) -> None:
-    """The two lines of a double line begin and end together: the shorter goes on beside the longer, a dash gap at most.
-
-    Else a lane would reach for the farther of the two where the nearer is worn away.
-    """
-    lines = _GridLines(lines.s, lines.rows, lines.names)
-    extents = [(row.begin, row.end) for row in lines.rows]
-    for k, row in enumerate(lines.rows):
-        if "double" not in row.pattern:
-            continue
-        for end, step in ((extents[k][1], 1), (extents[k][0], -1)):
-            if (k, step) in led:
-                continue
-            numbers, offsets = _beside(lines, extents, k, end)
-            twin = _nearest(np.abs(offsets) < SECTIONS.min_boundary_spacing, np.abs(offsets))
-            if twin is None:
-                continue
-            longer = lines.rows[numbers[twin]]
-            ahead = _ahead(lines, end, step)
-            go = _present(longer, extents[numbers[twin]], ahead)
-            ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
-            apart = _step_between(row, longer, end)
-            for name in ("d", "z"):
-                row.put(name, ahead, longer.at(name, ahead) + apart[name])
-            row.put("seen", ahead, longer.at("seen", ahead))
 
 
 def _beside(lines, known, k, station):

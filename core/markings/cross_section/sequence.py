@@ -21,6 +21,7 @@ from .weights import (
     CENTRE_LINE,
     CURB,
     DASHED,
+    DOUBLE,
     EDGE_LINE,
     HATCHING,
     ISLAND,
@@ -120,10 +121,10 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     cost = np.full((len(STRIPS), count, size, size), np.inf)
     lanes, first_lanes = np.zeros((2, len(STRIPS), count, size, size), np.int8)
     between = np.where(width > NEUTRAL.widest_lane, w.unused_wide, w.unused_asphalt[0])
-    # beyond short dashes the bay that they open, however it is bounded
-    opened = np.nan_to_num(c.short) > 0.5
-    lined = both_paint & ~(opened[:, :, None] | opened[:, None, :])
-    unused = np.where(lined, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, w.unused_asphalt[1]))
+    unused = np.where(both_paint, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, w.unused_asphalt[1]))
+    # two lines on both sides are the border of a painted median: each is drawn as between the directions
+    double = c.made_of == DOUBLE
+    unused = np.where(double[:, :, None] & double[:, None, :], 2 * (w.double[CENTRE_LINE] - w.double[EDGE_LINE]), unused)
     inside = _inside(evidence.driven, c)
     idle = scale * (np.where(hatched, 0.0, unused) + rest_cost) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
     cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)
@@ -379,9 +380,8 @@ def _boundary_costs(c, stops, w):
     scale = c.observations(w)[:, None]
     table = w.boundary[c.made_of]
     stopped = _stops_across(stops, (c.left + c.right) / 2)
-    for share, costs in ((c.short, np.array(w.short_dashed)), (c.wide, w.wide_line[c.made_of.clip(SOLID, DASHED)])):
-        share = np.nan_to_num(share)[..., None]
-        table = np.where(share > 0, (1 - share) * table + share * costs, table)
+    wide = np.nan_to_num(c.wide)[..., None]
+    table = np.where(wide > 0, (1 - wide) * table + wide * w.wide_line[c.made_of.clip(SOLID, DASHED)], table)
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
     for left in STRIPS:
         for right in STRIPS:

@@ -26,24 +26,18 @@ POINTS_LOOKED_AT = 2**18   # derived: marking points looked at together
 
 @dataclass(frozen=True)
 class MarkingCurvature:
-    """Mean absolute mean curvature of marking points in a kernel of 0.2 m.
+    """Mean absolute mean curvature of marking points in a kernel of 0.2 m."""
 
-    before : of the points as measured, 1/m
-    after : of the same points at the height of the line fitted to them, 1/m
-    points : number of points
-    """
-
-    before: float
-    after: float
-    points: int
+    before: float   # of the points as measured, 1/m
+    after: float   # of the same points at the height of the line fitted to them, 1/m
+    points: int   # number of points
 
 
 def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[float]) -> MarkingCurvature | None:
     """Roughness of line markings before and after fitting.
 
-    The mean curvature of the quadric z = f(x, y) through the neighbours of each point, in the frame of their own
-    plane, as point cloud software computes it and the thesis shows it for its fitted markings. It measures how
-    rough the markings are, not how the road curves.
+    The mean curvature of the quadric z = f(x, y) through the neighbours of each point, in the frame of their own plane, as point cloud software
+    computes it and the thesis shows it for its fitted markings. It measures how rough the markings are, not how the road curves.
 
     Parameters
     ----------
@@ -51,9 +45,7 @@ def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[flo
     lines : fitted lines with Z in map coordinates
     origin : (3,) map coordinates of the local origin
 
-    Returns
-    -------
-    MarkingCurvature, or None without a line or with too few points beside one
+    Returns MarkingCurvature, or None without a line or with too few points beside one
     """
     lines, _ = single_lines(lines)
     if not lines or not len(points):
@@ -109,8 +101,7 @@ def _cell(column, row):
 def _before_and_after(xyz, which, nearest, segments):
     """Mean curvature at the rows `which`, (K,) each: of the points, and of these at the height of the line beside them.
 
-    Points in the kernel are brought to the line that is nearest to the middle of the kernel, which on
-    0.2 m is as good as the line nearest to each.
+    Points in the kernel are brought to the line that is nearest to the middle of the kernel, which on 0.2 m is as good as the line nearest to each.
     """
     tree, result = _tree(xyz), np.full((2, len(which)), np.nan)
     heading = segments.heading_at(nearest.line, nearest.station)
@@ -146,9 +137,7 @@ def mean_curvature(xyz: np.ndarray, which: np.ndarray, radius: float = CURVATURE
     which : (K,) rows whose curvature is computed
     radius : of the neighbourhood, metres
 
-    Returns
-    -------
-    (K,) 1/m; NaN with fewer than 12 neighbours, or if these lie in one or two lines
+    Returns (K,) 1/m; NaN with fewer than 12 neighbours, or if these lie in one or two lines
     """
     tree, result = _tree(xyz), np.full(len(which), np.nan)
     for first in range(0, len(which), KERNELS_PER_BATCH):

@@ -35,8 +35,8 @@ from ..objects.marking_objects import MarkingObjects
 from ..weights import STRANDS
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
 from .painted_lines import PaintedLines, painted_lines_of
-from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, same_dash_pattern, select_lines
-from .strands import EdgesBeside, LinkedLine, Strand, edges_beside, line_paint, painted_strands
+from .selection import SelectedLine, hatching_bars, same_dash_pattern, select_lines
+from .strands import EdgesBeside, LinkedLine, edges_beside, line_paint, painted_strands
 
 # The course of one marking line in plan and height: places from its paint, a curve through them.
 
@@ -345,17 +345,9 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         part.report(0.1)
         strands = painted_strands(records, rank)
         part.report(0.2)
-        hatched = hatching_bars(markings, road)
         lines, trend = _linked(strands, edge_lines[road], settings)
-        # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
-        framing: list[Strand] = []
-        while borders := hatching_borders(lines, hatched, framing):
-            framing += borders
-            border_ids = set(map(id, borders))
-            strands = [strand for strand in strands if id(strand) not in border_ids]
-            lines, trend = _linked(strands, edge_lines[road], settings)
         part.report(0.4)
-        selected = select_lines(lines, trend, crossings(markings, road), settings.min_paint, hatched, country(settings.country).longest_dash)
+        selected = select_lines(lines, trend, settings.min_paint, hatching_bars(markings, road), country(settings.country).longest_dash)
         dropped += len(lines) - len(selected)
         shapes, unwanted = fit_line_shapes([chosen.line for chosen in selected], [chosen.span for chosen in selected], frame.road(road), trend,
                                            edge_lines[road], partial(frame.track_height, road), settings, part.part(0.45, 0.9))

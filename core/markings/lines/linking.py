@@ -68,8 +68,7 @@ def _lateral_mismatch(before: _End, after: _End) -> float:
     """Metres across by which the end of one line misses the start of the next, at the middle of the gap: the smaller of two, if lines go on as
     they pointed, and if they go on parallel to the others (a short dash hardly knows its own slope)."""
     middle = (before.s + after.s) / 2
-    return min(abs(before.offset_at(middle, trust) - after.offset_at(middle, trust))
-               for trust in (0.0, _trust(before, after)))
+    return min(abs(before.offset_at(middle, trust) - after.offset_at(middle, trust)) for trust in (0.0, _trust(before, after)))
 
 
 def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, ends: LinkedLine, begins: LinkedLine) -> float:

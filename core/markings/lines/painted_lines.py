@@ -78,10 +78,7 @@ class PaintedLines(LayerRows):
     def on_map(self, frame: RoadFrame) -> np.ndarray:
         """(P,) fitted lines with Z in map coordinates.
 
-        Raises
-        ------
-        ValueError
-            If the lines were not fitted but read from a layer.
+        Raises ValueError if the lines were not fitted but read from a layer.
         """
         if self.fitted is None:
             raise ValueError("Lines that were read from a layer have no fitted curves to write.")

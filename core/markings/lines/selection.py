@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
-from ...common.arrays import linked_groups, members_of, overlapping_pairs
 from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
 from ...curves.robust import median
 from ..objects.marking_objects import MarkingObjects
 from ..weights import CLASSES, LINKS, SELECTION
 from .linking import CommonTrend, StretchLookup, lines_beside
-from .strands import LinkedLine, Strand
+from .strands import LinkedLine
 
 
 @dataclass
@@ -36,24 +35,13 @@ class SelectedLine:
         return self.pieces[0].first, self.pieces[-1].last
 
 
-def crossings(markings: MarkingObjects, road: int) -> np.ndarray:
-    """(K, 4) first and last station, least and greatest offset of zebra crossings and stop lines of a road."""
-    return _extents(markings, road, ("zebra", "stop"))
-
-
 def hatching_bars(markings: MarkingObjects, road: int) -> np.ndarray:
-    """(K, 4) the same of the bars of hatched areas."""
-    bars = _extents(markings, road, ("hatch",))
-    return bars[bars[:, 1] - bars[:, 0] < SELECTION.max_bar_length]
+    """(K, 4) first and last station, least and greatest offset of the bars of hatched areas of a road."""
+    extents = markings.extent[(markings.road == road) & (markings.kind.astype(str) == "hatch")]
+    return extents[extents[:, 1] - extents[:, 0] < SELECTION.max_bar_length]
 
 
-def _extents(markings, road, kinds):
-    shown = (markings.road == road) & np.isin(markings.kind.astype(str), kinds)
-    extents = markings.extent[shown]
-    return extents[np.isfinite(extents[:, 0])]
-
-
-def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarray, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),
+def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),
                  longest_dash: float = NEUTRAL.longest_dash) -> list[SelectedLine]:
     """The lines worth drawing, by station.
 
@@ -62,17 +50,15 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
 
     Parameters
     ----------
-    crossed, hatched : (K, 4) as `crossings` and `hatching_bars` give them
+    hatched : (K, 4) as `hatching_bars` gives them
     longest_dash : m, longer paint is solid line
     """
     if not lines:
         return []
     bars, neighbours, strands = _Bars(hatched), lines_beside(lines), _StrandsBeside(lines)
-    crossings_there = StretchLookup(crossed[:, 0], crossed[:, 1])
-    parts = [_without_pairs_at_crossings(stretches(line, longest_dash), line, crossed, crossings_there) for line in lines]
+    parts = [stretches(line, longest_dash) for line in lines]
     level = np.array([_level(line, trend) for line in lines])
-    painted_to = max(line.last for line in lines)
-    painted_from = min(line.first for line in lines)
+    painted = min(line.first for line in lines), max(line.last for line in lines)
     ragged, double = _beside(lines, neighbours, trend, longest_dash)
     outside = _beyond_the_edge(lines, neighbours, level)
     selected = []
@@ -81,29 +67,9 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
         dashed = any(stretch.dashes for stretch in parts[k])
         if ragged[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or dashed):
             continue
-        drawn = _extended(_line_pieces(parts[k]), parts[k], (painted_from, painted_to),
-                          partial(_crossed_there, crossed, crossings_there, line.middle), partial(strands.near, level, k), line)
+        drawn = _extended(_line_pieces(parts[k]), parts[k], painted, partial(strands.near, level, k), line)
         selected.append(SelectedLine(line, bool(double[k]), drawn))
     return selected
-
-
-def _without_pairs_at_crossings(parts, line, crossed, crossings_there):
-    """Stretches, of which two pieces alone are no dashes where a crossing lies between them: that is why there is a gap."""
-    result = []
-    for part in parts:
-        if part.dashes and len(part.intervals) == 2:
-            (_, before), (after, _) = part.intervals
-            crossings = _crossed_there(crossed, crossings_there, median(line.near(part.first, part.last)[1]), before, after)
-            between = (crossings[:, 0] < after) & (crossings[:, 1] > before)
-            part = replace(part, dashes=None) if between.any() else part
-        result.append(part)
-    return result
-
-
-def _crossed_there(crossed, crossings_there, d, first, last):
-    """(M, 4) crossings that reach over an offset or near it, between two stations."""
-    crossings = crossed[crossings_there.between(first, last)]
-    return crossings[(crossings[:, 2] <= d + SELECTION.at_crossing) & (crossings[:, 3] >= d - SELECTION.at_crossing)]
 
 
 class _StrandsBeside:
@@ -192,62 +158,6 @@ def _beyond_the_edge(lines, beside, level):
     return result
 
 
-def hatching_borders(lines: list[LinkedLine], hatched: np.ndarray, known: list[Strand]) -> list[Strand]:
-    """Strands that frame hatched areas: of those lines that do so as a whole, and those that leave the straight way from strand to strand.
-
-    In a hatched area, up to the tip behind its last bar, there are no other lines that do so than its borders.
-    `known` are those found before. What leads from the straight way to one of them is its end, however short.
-    """
-    bars = _Bars(hatched)
-    framing, within = [_frames_hatching(line, bars) for line in lines], _areas(hatched)
-    borders = known + [strand for line, frames in zip(lines, framing) if frames for strand in line.strands]
-    strands = [strand for line, frames in zip(lines, framing) if len(line.strands) > 1
-               for k, strand in enumerate(line.strands)
-               if frames and _frames_hatching(LinkedLine([strand]), bars, SELECTION.min_bars_of_strand)
-               or _aside(line.strands[k - 1:k + 2]) > SELECTION.least_turn_aside
-               and (_frames_hatching(LinkedLine([strand]), bars, SELECTION.min_bars_of_strand) or _lies_within(strand, within))]
-    if strands:
-        return strands
-    aside = [strand for line in lines for k, strand in enumerate(line.strands) if _aside(line.strands[k - 1:k + 2]) > LINKS.max_stray_offset]
-    lookup = StretchLookup(np.array([border.first for border in borders]), np.array([border.last for border in borders]))
-    return [strand for strand in aside if any(_meet(strand, borders[k]) for k in lookup.between(
-        strand.first - SELECTION.max_border_gap, strand.last + SELECTION.max_border_gap) if borders[k] is not strand)]
-
-
-def _aside(strands):
-    """Metres by which the second of three strands lies beside the straight way from the end of the first to the beginning of the third."""
-    if len(strands) < 3:
-        return 0.0
-    before, strand, after = strands
-    straight = np.interp(strand.s, [before.last, after.first], [before.d[-1], after.d[0]])
-    return float(np.median(np.abs(strand.d - straight)))
-
-
-def _meet(one, other):
-    """Whether one strand begins where the other ends."""
-    return any(abs(b.first - a.last) <= SELECTION.max_border_gap and abs(b.d[0] - a.d[-1]) <= SELECTION.max_bar_end_offset
-               for a, b in ((one, other), (other, one)))
-
-
-def _areas(hatched):
-    """(A, 4) m, extents of rows of bars; along the road one pitch more, where the borders meet and no bar fits any more."""
-    if not len(hatched):
-        return np.empty((0, 4))
-    first, last, low, high = hatched.T
-    a, b = (np.concatenate(parts) for parts in zip(*overlapping_pairs(first, last, first, last, SELECTION.max_bar_pitch)))
-    overlapping = (low[a] <= high[b]) & (low[b] <= high[a])
-    rows = [hatched[bars] for _, bars in members_of(linked_groups(a[overlapping], b[overlapping], len(hatched))) if len(bars) >= SELECTION.min_bars]
-    pitch = SELECTION.max_bar_pitch
-    return np.array([[*row[:, [0, 2]].min(0), *row[:, [1, 3]].max(0)] for row in rows]).reshape(-1, 4) + [-pitch, 0, pitch, 0]
-
-
-def _lies_within(strand, areas):
-    """Whether a strand lies in one of the areas, (A, 4) as `_areas` gives them, or on its border."""
-    first, low, last, high = areas.T
-    return bool(((first <= strand.first) & (strand.last <= last) & (low - SELECTION.max_bar_end_offset <= strand.d.min())
-                 & (strand.d.max() <= high + SELECTION.max_bar_end_offset)).any())
-
-
 class _Bars:
     """Bars of hatched areas, (K, 4) as `hatching_bars` gives them, by the station of their middle."""
 
@@ -257,17 +167,17 @@ class _Bars:
         self.middle, (self.low, self.high) = middle[order], hatched[order, 2:].T
 
 
-def _frames_hatching(line, bars, fewest=SELECTION.min_bars):
+def _frames_hatching(line, bars):
     """Whether bars end at a line along most of it; an edge line beside a hatched area goes on after it."""
     inside = slice(*np.searchsorted(bars.middle, [line.first, line.last]))
     middle = bars.middle[inside]
-    if len(middle) < fewest:
+    if len(middle) < SELECTION.min_bars:
         return False
     s, d, *_ = line.places()
     offsets = np.interp(middle, s, d)
     ends = np.minimum(np.abs(bars.low[inside] - offsets), np.abs(bars.high[inside] - offsets)) < SELECTION.max_bar_end_offset
     touching = middle[ends & (middle > line.first) & (middle < line.last)]
-    if len(touching) < fewest:
+    if len(touching) < SELECTION.min_bars:
         return False
     steps = np.diff(np.sort(touching))
     return steps[steps < SELECTION.max_bar_pitch].sum() + SELECTION.max_bar_pitch > SELECTION.min_shared_paint * (line.last - line.first)
@@ -282,29 +192,22 @@ def _votes(line):
     return votes
 
 
-def _extended(drawn, parts, painted, crossed, painted_beside, line):
-    """A dashed line ends with a gap: its ends go on by one gap, but not past the road's paint, into a crossing, or past the ends of lines beside it.
+def _extended(drawn, parts, painted, painted_beside, line):
+    """A dashed line ends with a gap: its ends go on by one gap, but not past the road's paint, (first, last), or past the ends of lines beside it.
 
-    `crossed` and `painted_beside` tell crossings and paint between two stations.
+    `painted_beside` tells their paint between two stations.
     """
-    drawn = list(drawn)
-    before, after = parts[0].dashes, parts[-1].dashes
-    if before:
-        limit = line.first - before.gap
-        crossings, neighbours = crossed(limit - 1.0, line.first + 1.0), painted_beside(limit - 1.0, line.first + 1.0)
-        begun = neighbours[(neighbours[:, 0] > limit) & (neighbours[:, 0] <= line.first), 0]
-        running = ((neighbours[:, 0] <= limit) & (neighbours[:, 1] > limit + 1.0)).any()
-        start = max(limit, painted[0], *crossings[crossings[:, 1] < line.first + 0.5, 1],
-                    *(begun[:0] if running else begun[np.argsort(begun)[:1]]))
-        drawn.insert(0, _LinePiece(min(start, line.first), line.first, "measured", "dashed"))
-    if after:
-        limit = line.last + after.gap
-        crossings, neighbours = crossed(line.last - 1.0, limit + 1.0), painted_beside(line.last - 1.0, limit + 1.0)
-        ended = neighbours[(neighbours[:, 1] < limit) & (neighbours[:, 1] >= line.last), 1]
-        running = ((neighbours[:, 1] >= limit) & (neighbours[:, 0] < limit - 1.0)).any()
-        end = min(limit, painted[1], *crossings[crossings[:, 0] > line.last - 0.5, 0],
-                  *(ended[:0] if running else ended[np.argsort(-ended)[:1]]))
-        drawn.append(_LinePiece(line.last, max(end, line.last), "measured", "dashed"))
+    for sign, tip, dashes, outermost in ((-1, line.first, parts[0].dashes, painted[0]), (1, line.last, parts[-1].dashes, painted[1])):
+        if not dashes:
+            continue
+        # stations count outwards
+        tip, limit = sign * tip, sign * tip + dashes.gap
+        inner, outer = sign * painted_beside(*sorted((sign * tip - sign, sign * limit + sign)))[:, ::sign].T
+        ended = outer[(outer < limit) & (outer >= tip)]
+        running = ((outer >= limit) & (inner < limit - 1.0)).any()
+        end = max(min(limit, sign * outermost, ended.max() if len(ended) and not running else np.inf), tip)
+        piece = _LinePiece(*sorted((sign * tip, sign * end)), "measured", "dashed")
+        drawn = [piece, *drawn] if sign < 0 else [*drawn, piece]
     return merged_pieces(drawn)
 
 

@@ -108,8 +108,7 @@ class LinkedLine:
 
     @cached_property
     def _places(self):
-        return tuple(np.concatenate([getattr(strand, name) for strand in self.strands])
-                     for name in ("s", "d", "z", "weight"))
+        return tuple(np.concatenate([getattr(strand, name) for strand in self.strands]) for name in ("s", "d", "z", "weight"))
 
 
 def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[Columns, np.ndarray]:

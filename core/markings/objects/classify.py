@@ -22,16 +22,13 @@ LINE_KINDS = ("edge", "lane", "centre")
 
 @dataclass(frozen=True)
 class ClassSettings:
-    """When a cluster is a line to be kept for the marking lines; lengths in metres.
-
-    margin : m beyond the road's half width that a marking may still lie
-    """
+    """When a cluster is a line to be kept for the marking lines; lengths in metres."""
 
     min_width: float = 0.06
     max_width: float = 0.35
     min_length: float = 1.0
     min_elongation: float = 4.0
-    margin: float = 0.5
+    margin: float = 0.5   # m beyond the road's half width that a marking may still lie
 
     def __post_init__(self) -> None:
         if not 0 < self.min_width < self.max_width:

@@ -25,7 +25,7 @@ from ..road_grid import CELL_UNITS, occupied, track_reach
 from ..weights import CLASSES, ROWS, SHAPES
 from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, filled, relative_contrast, too_pale
 from .figures import Candidate, figures_of_group, painted_figures
-from .grouping import RoadPaint, connected_points, told_by_one_road
+from .grouping import connected_points
 from .marking_objects import MarkingObjects, make_marking_objects
 from .repeating import Comb, Crossing, Stripe, blocks_of_strip, comb_of_window, give_way_blocks, stripes_of_crossing, zebra_stripes
 from .shape import Shape, drawn_outline, lifted, measure, smallest_rectangle
@@ -72,31 +72,23 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     works = [ApartWork(executor, line.number) for line in lines]
     stripes_by_road = [_stripes_of_crossings(records, line, work, part.part(0.0, 0.5))
                        for (records, _), line, work, part in zip(connected, lines, works, second)]
-    unstriped = [(records.take(other_rows), labels[other_rows]) for (records, labels), (_, other_rows) in zip(connected, stripes_by_road)]
     # what is not used any more is let go, since the paint of a whole road is in memory
+    paint = [(records.take(other_rows), labels[other_rows]) for (records, labels), (_, other_rows) in zip(connected, stripes_by_road)]
     del connected
-    paint = told_by_one_road(unstriped, lines, settings.distance)
-    del unstriped
-    pieces_by_road = [_pieces(of_road, work, settings, part.part(0.5, 1.0)) for of_road, work, part in zip(paint, works, second)]
+    pieces_by_road = [_pieces(*of_road, work, settings, part.part(0.5, 1.0)) for of_road, work, part in zip(paint, works, second)]
     del paint
     blocks = _blocks_of_all(pieces_by_road)
     rows, polygons, refused = [], [], 0
     cluster = [np.zeros(count, np.int32) for count in counts]
     number = 0
-    for k, ((stripes, _), pieces, line, block, part) in enumerate(zip(stripes_by_road, pieces_by_road, lines, blocks, last)):
+    for k, ((stripes, other_rows), pieces, line, block, part) in enumerate(zip(stripes_by_road, pieces_by_road, lines, blocks, last)):
         painted, without = _markings(pieces, block, settings, marking_points.has_corrected, part.part(0.0, 0.5))
         refused += without
         markings = sorted([*stripes, *painted], key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-        for marking, drawn in zip(markings, _outlines(markings, pieces.paint.records, line, pieces.work, part.part(0.5, 1.0))):
+        for marking, drawn in zip(markings, _outlines(markings, pieces.paint, line, pieces.work, part.part(0.5, 1.0))):
             number += 1
             check_cancelled()
-            if marking.outline is not None:
-                cluster[k][marking.rows] = number
-            else:
-                owner, row = pieces.paint.home[marking.rows].T
-                for road_index in np.unique(owner).tolist():
-                    other_rows = stripes_by_road[road_index][1]
-                    cluster[road_index][other_rows[row[owner == road_index]]] = number
+            cluster[k][other_rows[marking.rows] if marking.outline is None else marking.rows] = number
             polygons += drawn
             rows += [_row(marking, number, line, frame)] * len(drawn)
     for road, numbers in zip(roads, cluster):
@@ -109,20 +101,19 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
 class _Pieces(NamedTuple):
     """Clusters of one road, before it is known what they are."""
 
-    paint: RoadPaint
-    records: Columns   # their points, one cluster after the other, and the rows of these in the paint of the road but for stripes of crossings
+    paint: Columns   # of the road but for stripes of crossings
+    records: Columns   # their points, one cluster after the other, and the rows of these in the paint
     order: np.ndarray
     bounds: list[tuple[int, int]]   # first and end row of each cluster in the records, and its Shape
     shapes: list[Shape]
     work: ApartWork
 
 
-def _pieces(paint, work, settings, progress):
+def _pieces(paint, labels, work, settings, progress):
     """_Pieces of one road: compound clusters divided, what wear has parted joined."""
-    records = paint.records
-    split = split_compounds(records, _with_rows_divided(records, paint.labels), partial(work.parts, progress=progress.part(0.0, 0.3)))
+    split = split_compounds(paint, _with_rows_divided(paint, labels), partial(work.parts, progress=progress.part(0.0, 0.3)))
     order, starts, _ = _by_cluster(split, 1)
-    records = records.take(order)
+    records = paint.take(order)
     pieces = work.shapes(records, starts, progress.part(0.3, 0.9))
     joins = join_fragments(pieces, settings.classes.max_width)
     again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)

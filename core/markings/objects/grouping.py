@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.arrays import linked_groups, order_by
+from ...common.arrays import linked_groups
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...execution.phase import THREADS, Executor, NoSource, Phase
-from ...lazy import cv2
-from ...survey.frame.road import Road
 from ...survey.store.columns import Columns
-from ...survey.store.records import COORDINATE_SCALE, join_columns, to_units
+from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..road_grid import CELL_UNITS, components, occupied, track_reach
 from ..weights import GROUPS
@@ -147,123 +145,3 @@ def _shared_labels(cells, labels, others, other_labels):
     keys, other_keys = (c[:, 0] * width + c[:, 1] - low for c in (cells, others))
     _, a, b = np.intersect1d(keys, other_keys, assume_unique=True, return_indices=True)
     return np.c_[labels[a], other_labels[b]]
-
-
-# Figures on two roads: a block of a give-way line or an arrow is one figure, whichever road its points were given to, and is described in the frame
-# of the road that has most of them. Lines along a road stay with each of the roads, which fits them in its own frame.
-
-
-class RoadPaint(NamedTuple):
-    """Points of paint told in the frame of one road."""
-
-    records: Columns   # N points
-    labels: np.ndarray   # (N,) int, the cluster of each
-    home: np.ndarray   # (N, 2) int32, whose the points are: the place of their road among all, and their row there
-
-
-def told_by_one_road(found: Sequence[tuple[Columns, np.ndarray]], roads: Sequence[Road], distance: float) -> list[RoadPaint]:
-    """The same points, those of a shared figure in the frame of one road.
-
-    Parameters
-    ----------
-    found : records and (N,) int labels of the clusters of each road
-    roads : of them
-    distance : m, by which points of one marking are joined
-
-    Returns
-    -------
-    RoadPaint of each road, the points that others gave to it behind its own
-    """
-    paint = [RoadPaint(records, labels, np.column_stack([np.full(len(records), k, np.int32), np.arange(len(records), dtype=np.int32)]))
-             for k, (records, labels) in enumerate(found)]
-    if sum(len(records) > 0 for records, _ in found) < 2:
-        return paint
-    gone = [np.zeros(len(records), bool) for records, _ in found]
-    came: list[list[RoadPaint]] = [[] for _ in found]
-    following = [int(labels.max(initial=-1)) + 1 for _, labels in found]
-    for rows in _shared_points(found):
-        home = max(rows, key=lambda k: len(rows[k]))
-        records = _told_by(roads[home], [(found[k][0].take(members), k == home) for k, members in rows.items()])
-        if records is not None:
-            labels = _clusters(records, distance) + following[home]
-            following[home] = int(labels.max()) + 1
-            came[home].append(RoadPaint(records, labels, np.concatenate([paint[k].home[members] for k, members in rows.items()])))
-            for k, members in rows.items():
-                gone[k][members] = True
-    return [_with(road_paint, ~lost, more) if lost.any() or more else road_paint for road_paint, lost, more in zip(paint, gone, came)]
-
-
-def _shared_points(found):
-    """Rows of the points of each figure that several roads have points of, {place of the road: (N,) int}."""
-    orders, starts, parts = [], [], []
-    for records, labels in found:
-        order = order_by(labels)
-        begins = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0]) if len(labels) else np.empty(0, np.int64)
-        orders.append(order)
-        starts.append(np.r_[begins, len(order)])
-        parts.append(_compact_parts(records, order, begins))
-    before = np.cumsum([0, *(len(road_starts) - 1 for road_starts in starts)])
-    spots = np.concatenate([spots for spots, _ in parts])
-    part = np.concatenate([number + first for (_, number), first in zip(parts, before)])
-    road = np.repeat(np.arange(len(found)), [len(number) for _, number in parts])
-    pairs = cKDTree(spots).query_pairs(GROUPS.touching, output_type="ndarray").reshape(-1, 2) if len(spots) else np.empty((0, 2), np.int64)
-    pairs = part[pairs[road[pairs[:, 0]] != road[pairs[:, 1]]]]
-    group = linked_groups(pairs[:, 0], pairs[:, 1], int(before[-1]))
-    members = np.unique(pairs)
-    members = members[order_by(members, group[members])]
-    for linked_parts in np.split(members, np.flatnonzero(np.diff(group[members])) + 1) if len(members) else ():
-        rows: dict[int, list[np.ndarray]] = {}
-        for k, number in zip(np.searchsorted(before, linked_parts, side="right") - 1, linked_parts):
-            first = number - before[k]
-            rows.setdefault(int(k), []).append(orders[k][starts[k][first]:starts[k][first + 1]])
-        joined = {k: np.concatenate(indices) for k, indices in rows.items()}
-        if _is_figure(np.concatenate([np.column_stack([found[k][0][name].take(indices) for name in "xy"]) for k, indices in joined.items()])):
-            yield joined
-
-
-def _compact_parts(records, order, begins):
-    """Different squares (K, 2) that the points of clusters no larger than a figure lie in, and the number of the cluster of each."""
-    if not len(begins):
-        return np.empty((0, 2), np.int64), np.empty(0, np.int64)
-    coordinates = [records[name].take(order).astype(np.int64) for name in "xy"]
-    size = np.max([np.maximum.reduceat(values, begins) - np.minimum.reduceat(values, begins) for values in coordinates], axis=0)
-    number = np.repeat(np.arange(len(begins)), np.diff(np.r_[begins, len(order)]))
-    small = np.flatnonzero(size[number] * COORDINATE_SCALE <= GROUPS.largest_figure)
-    different = np.unique(np.column_stack([number[small], *(values[small] // GROUPS.spot_units for values in coordinates)]), axis=0)
-    return different[:, 1:], different[:, 0]
-
-
-def _is_figure(places):
-    """Whether (N, 2) places, units of 0.1 mm, are no larger than a figure and no line."""
-    cells, _ = occupied(*(places // (GROUPS.spot_units // 4)).T)
-    sides = np.add(cv2.minAreaRect(cells.astype(np.float32))[1], 1.0) * (GROUPS.spot_units // 4) * COORDINATE_SCALE
-    length, width = max(sides), min(sides)
-    return length <= GROUPS.largest_figure and not (width <= GROUPS.line_width and length >= GROUPS.line_elongation * width)
-
-
-def _told_by(road, parts):
-    """Points, each part with whether it is the road's own, in the frame of a road; None where it does not reach there."""
-    result = []
-    for records, is_own in parts:
-        if not is_own:
-            s, d = road.locate(records["x"] * COORDINATE_SCALE, records["y"] * COORDINATE_SCALE)
-            if not np.isfinite(s).all():
-                return None
-            # as far from the edge of the road as on its own
-            clearance = records["half_width"] * 1e-3 - np.abs(records["d"]) * COORDINATE_SCALE
-            half_width = np.clip(np.rint((np.abs(d) + clearance) * 1e3), 0, np.iinfo(np.uint16).max).astype(np.uint16)
-            records = records.with_columns(s=to_units(s), d=to_units(d), half_width=half_width)
-        result.append(records)
-    return join_columns(result, result[0].dtype)
-
-
-def _clusters(records, distance):
-    _, member, component = _components_of_points(records, distance)
-    return component[member].astype(np.int64)
-
-
-def _with(paint, kept, more):
-    rows = np.flatnonzero(kept)
-    parts = [RoadPaint(paint.records.take(rows), paint.labels[rows], paint.home[rows]), *more]
-    return RoadPaint(join_columns([part.records for part in parts], paint.records.dtype),
-                     *(np.concatenate([getattr(part, name) for part in parts]) for name in ("labels", "home")))

@@ -7,7 +7,4 @@ from __future__ import annotations
 
 from ...lazy import public
 
-__getattr__, __all__ = public(__name__, {
-    "extract": ("extract_markings",),
-    "settings": ("MarkingSettings", "PaintMethod"),
-})
+__getattr__, __all__ = public(__name__, {"extract": ("extract_markings",), "settings": ("MarkingSettings", "PaintMethod")})

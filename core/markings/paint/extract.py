@@ -23,17 +23,7 @@ from ...survey.store.road_points import RoadPoints
 from ..road_grid import CELL_UNITS
 from ..weights import ASPHALT
 from .settings import MarkingSettings, PaintMethod
-from .windows import (
-    THRESHOLD_WINDOW,
-    Burn,
-    PaintSource,
-    burn_points,
-    marking_mask,
-    paint_of_window,
-    place_of,
-    points_of_rows,
-    windows_of,
-)
+from .windows import THRESHOLD_WINDOW, Burn, PaintSource, burn_points, marking_mask, paint_of_window, place_of, points_of_rows, windows_of
 
 WINDOWS_PER_TASK = 12   # derived: windows of 20 m that a worker process is best given together: it looks at two more on either side
 
@@ -50,10 +40,7 @@ def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: Road
     image : of the same points, in memory or on disk; a method on points needs it for the mask alone
     mask_path : where to write the mask of markings as GeoTIFF in the image's own pixels, or None
 
-    Raises
-    ------
-    RoadExtractionError
-        If the mask cannot be written.
+    Raises RoadExtractionError if the mask cannot be written.
     """
     saturated = "" if road_points.has_corrected else saturation_of(road_points).warning
     if saturated:

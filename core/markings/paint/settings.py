@@ -27,26 +27,20 @@ class MarkingSettings:
     "spreads" are those of asphalt below its median.
 
     separation : spreads of asphalt between the mean of paint and the mean of asphalt, below which a bin has no paint
-    lowest, highest : limits of the threshold in spreads above the median of asphalt
-    alone : spreads, the threshold where neither a bin nor its neighbours have two materials
-    faint : spreads, the threshold on averages of noisy points, where the shape must be that of paint, too
-    close : m, gaps along the road that are closed
-    shortest : m, shorter runs are removed
     method : PaintMethod used instead of thresholds on the intensity image, and of all other settings; None for these thresholds
     """
 
     separation: float = setting(4.0, 0.5, 20.0, "The distance of paint from asphalt", "spreads")
-    lowest: float = 3.0
+    lowest: float = 3.0   # lowest, highest: limits of the threshold in spreads above the median of asphalt
     highest: float = 8.0
-    alone: float = 5.0
-    faint: float = 3.0
-    close: float = setting(0.20, 0.0, 2.0, "The gap that is closed along the road", "m")
-    shortest: float = setting(0.20, 0.0, 2.0, "The shortest run of paint", "m")
+    alone: float = 5.0   # spreads, the threshold where neither a bin nor its neighbours have two materials
+    faint: float = 3.0   # spreads, the threshold on averages of noisy points, where the shape must be that of paint, too
+    close: float = setting(0.20, 0.0, 2.0, "The gap that is closed along the road", "m")   # m, gaps along the road that are closed
+    shortest: float = setting(0.20, 0.0, 2.0, "The shortest run of paint", "m")   # m, shorter runs are removed
     method: PaintMethod | None = None
 
     def __post_init__(self) -> None:
         check_limits(self)
         if not 1.0 <= self.lowest <= self.highest:
-            raise RoadExtractionError(
-                f"The threshold lies between {self.lowest} and {self.highest} spreads above asphalt; the first must be at "
-                "least 1 and not above the second.")
+            raise RoadExtractionError(f"The threshold lies between {self.lowest} and {self.highest} spreads above asphalt; the first must be at "
+                                      "least 1 and not above the second.")

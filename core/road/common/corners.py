@@ -1,8 +1,7 @@
 """Bottom corners of curbs, measured from the points about a rising cell.
 
-The corner is where the line of the road meets the line of the face. Road, face and
-the raised ground behind are separated by their height above the line of the road, so
-the corner does not depend on the grid of the cells.
+The corner is where the line of the road meets the line of the face. Road, face and the raised ground behind are separated by their height above the
+line of the road, so the corner does not depend on the grid of the cells.
 """
 
 from __future__ import annotations
@@ -22,32 +21,21 @@ MIN_BED_SLOPE = np.tan(np.radians(CURBS.least_slope))  # rise over run of plants
 
 @dataclass
 class CurbSteps(Rows):
-    """Bottom corners found on profiles, one entry each.
-
-    profile : (M,) number of the profile
-    s, u, h : (M,) m, station, outward offset, and height above the expected road of the bottom corner
-    skew : (M,) m outward per m along, direction of the face
-    height : (M,) m of the step
-    run : (M,) m across of the face, less what noise adds
-    noise : (M,) m, scatter of heights about the line of the road side
-    scanner_noise : (M,) m, the scanner's own noise there
-    support : (M,) points of road side and face
-    behind : (M,) points of the raised ground
-    """
+    """Bottom corners found on profiles, one entry each."""
 
     PARTS: ClassVar[tuple[tuple[str, str, str], ...]] = (("bottom", "u", "h"),)   # of a curb that each shows, and their offsets and heights
 
-    profile: np.ndarray
-    s: np.ndarray
+    profile: np.ndarray   # (M,) number of the profile
+    s: np.ndarray   # s, u, h: (M,) m, station, outward offset, and height above the expected road of the bottom corner
     u: np.ndarray
     h: np.ndarray
-    skew: np.ndarray
-    height: np.ndarray
-    run: np.ndarray
-    noise: np.ndarray
-    scanner_noise: np.ndarray
-    support: np.ndarray
-    behind: np.ndarray
+    skew: np.ndarray   # (M,) m outward per m along, direction of the face
+    height: np.ndarray   # (M,) m of the step
+    run: np.ndarray   # (M,) m across of the face, less what noise adds
+    noise: np.ndarray   # (M,) m, scatter of heights about the line of the road side
+    scanner_noise: np.ndarray   # (M,) m, the scanner's own noise there
+    support: np.ndarray   # (M,) points of road side and face
+    behind: np.ndarray   # (M,) points of the raised ground
 
     @property
     def upright(self) -> np.ndarray:
@@ -143,10 +131,8 @@ class StepPatches:
     def corners(self) -> dict[str, np.ndarray]:
         """The corner of every candidate.
 
-        Returns
-        -------
-        dict of (M,) arrays: the attributes of CurbSteps except `profile` and `scanner_noise`; `good` : bool, is it a step?;
-        `likely` : bool, may it be one in another direction or view?
+        Returns dict of (M,) arrays: the attributes of CurbSteps except `profile` and `scanner_noise`; `good` : bool, is it a step?; `likely` : bool,
+        may it be one in another direction or view?
         """
         owner, u, s, h, count = self.owner, self.u, self.s, self.h, self.count
         road = np.flatnonzero((u < -CURBS.face_margin) & (u > -CURBS.road_side_length - CURBS.face_margin))

@@ -1,9 +1,8 @@
 """How high and how steep a curb must be: the user's own limits, or as the data allow.
 
-A curb of 5 cm with an upright face is one wherever it is seen. A lower or sloped one is told from seams, rails and verges by
-what averaging along the road leaves of the noise: N profiles lower it from the scanner's sigma to sqrt(sigma² / N + texture²),
-where texture, the footprint of the beam and the registration do not average out. Such a step must stand well above that,
-keep its line to a centimetre, and continue for metres.
+A curb of 5 cm with an upright face is one wherever it is seen. A lower or sloped one is told from seams, rails and verges by what averaging along the
+road leaves of the noise: N profiles lower it from the scanner's sigma to sqrt(sigma² / N + texture²), where texture, the footprint of the beam and
+the registration do not average out. Such a step must stand well above that, keep its line to a centimetre, and continue for metres.
 """
 
 from __future__ import annotations
@@ -19,16 +18,11 @@ from ..weights import CURBS
 
 @dataclass(frozen=True)
 class CurbLimits:
-    """The least height and slope of curbs.
+    """The least height and slope of curbs."""
 
-    clear_height : m, from which a step is a curb by its height, and
-    clear_slope : radians, by its face
-    automatic_height, automatic_slope : may faint steps be lower, or less steep?
-    """
-
-    clear_height: float
-    clear_slope: float
-    automatic_height: bool = False
+    clear_height: float   # m, from which a step is a curb by its height, and
+    clear_slope: float   # radians, by its face
+    automatic_height: bool = False   # automatic_height, automatic_slope: may faint steps be lower, or less steep?
     automatic_slope: bool = False
 
     @classmethod
@@ -68,26 +62,21 @@ class CurbSettings:
     """How curbs are recognised.
 
     block_length : m of road per curb point; 0 = 0.5 to 2.0, shorter in sharp bends
-    profile_width : m of road per profile
-    point_spacing : m, width of the cells of the pseudo scan-lines
-    layer_jump : m of height between ground and what is above it
-    slope : degrees, least slope of a curb face; 0 = as the noise allows
     min_height, max_height : m, road to top of curb; 0 for the least height = as the noise allows
     """
 
     block_length: float = setting(0.0, 0.25, 10.0, "The block length", "m", "for automatic")
-    profile_width: float = setting(0.25, 0.05, 2.0, "The profile width", "m")
-    point_spacing: float = setting(0.025, 0.01, 0.1, "The point spacing", "m")
-    layer_jump: float = setting(0.05, 0.01, 0.5, "The layer jump", "m")
-    slope: float = setting(0.0, 10.0, 89.0, "The slope", "°", "for automatic")
+    profile_width: float = setting(0.25, 0.05, 2.0, "The profile width", "m")   # m of road per profile
+    point_spacing: float = setting(0.025, 0.01, 0.1, "The point spacing", "m")   # m, width of the cells of the pseudo scan-lines
+    layer_jump: float = setting(0.05, 0.01, 0.5, "The layer jump", "m")   # m of height between ground and what is above it
+    slope: float = setting(0.0, 10.0, 89.0, "The slope", "°", "for automatic")   # degrees, least slope of a curb face; 0 = as the noise allows
     min_height: float = setting(0.0, 0.01, 0.95, "The minimum curb height", "m", "for automatic")
     max_height: float = setting(0.35, 0.02, 1.0, "The maximum curb height", "m")
 
     def __post_init__(self) -> None:
         check_limits(self)
         if not self.min_height < self.max_height:
-            raise RoadExtractionError(f"Curbs from {self.min_height} m to {self.max_height} m were asked for; the maximum "
-                                      "must be above the minimum.")
+            raise RoadExtractionError(f"Curbs from {self.min_height} m to {self.max_height} m were asked for; the maximum must be above the minimum.")
 
     @property
     def limits(self) -> CurbLimits:

@@ -21,42 +21,30 @@ if TYPE_CHECKING:
 class CurbPoints(LayerRows):
     """N corners of curbs, and places at which something hides the curb.
 
-    road, nearest_pass : (N,) int, number of the road and of the pass that drove nearest
-    side : (N,) str objects, left or right
-    status : (N,) str objects, measured or occluded
-    part : (N,) str objects, bottom or top
     kind : (N,) str objects: main for the road's own curbs; corner, side_street and island for others
-    station, offset : (N,) metres
-    height : (N,) metres of the step; NaN where unknown
-    chain : (N,) int, the points of one curb share it; -1 where unknown
-    along : (N,) metres along the chain, of points that are not of a main curb; else NaN
-    residual : (N,) metres, scatter of the measurements about the curb; NaN where unknown
     sigma : (N,) metres, one sigma across that the points of a line fitted as a whole share; NaN where each was seen by itself
-    support : (N,) int, number of laser points; -1 where unknown
-    x, y, z : (N,) local metres, as the layer holds them
-    crs : WKT, "" where unknown
     """
 
     GEOMETRY_TYPE, SCHEMA = "PointZ", CURB_POINTS
 
-    road: np.ndarray = field(metadata=column())
+    road: np.ndarray = field(metadata=column())   # road, nearest_pass: (N,) int, number of the road and of the pass that drove nearest
     nearest_pass: np.ndarray = field(metadata=column(NEAREST_PASS.name))
-    side: np.ndarray = field(metadata=column())
-    status: np.ndarray = field(metadata=column())
-    part: np.ndarray = field(metadata=column(unknown="bottom"))
+    side: np.ndarray = field(metadata=column())   # (N,) str objects, left or right
+    status: np.ndarray = field(metadata=column())   # (N,) str objects, measured or occluded
+    part: np.ndarray = field(metadata=column(unknown="bottom"))   # (N,) str objects, bottom or top
     kind: np.ndarray = field(metadata=column(unknown="main"))
-    station: np.ndarray = field(metadata=column("station_m"))
+    station: np.ndarray = field(metadata=column("station_m"))   # station, offset: (N,) metres
     offset: np.ndarray = field(metadata=column("offset_m"))
-    height: np.ndarray = field(metadata=column("height_m"))
-    chain: np.ndarray = field(metadata=column())
-    along: np.ndarray = field(metadata=column("along_m"))
-    residual: np.ndarray = field(metadata=column("residual_m"))
+    height: np.ndarray = field(metadata=column("height_m"))   # (N,) metres of the step; NaN where unknown
+    chain: np.ndarray = field(metadata=column())   # (N,) int, the points of one curb share it; -1 where unknown
+    along: np.ndarray = field(metadata=column("along_m"))   # (N,) metres along the chain, of points that are not of a main curb; else NaN
+    residual: np.ndarray = field(metadata=column("residual_m"))   # (N,) metres, scatter of the measurements about the curb; NaN where unknown
     sigma: np.ndarray = field(metadata=column(SIGMA.name))
-    support: np.ndarray = field(metadata=column())
-    x: np.ndarray
+    support: np.ndarray = field(metadata=column())   # (N,) int, number of laser points; -1 where unknown
+    x: np.ndarray   # x, y, z: (N,) local metres, as the layer holds them
     y: np.ndarray
     z: np.ndarray
-    crs: str = ""
+    crs: str = ""   # WKT, "" where unknown
 
     @property
     def of_main_curb(self) -> np.ndarray:

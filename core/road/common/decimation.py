@@ -1,8 +1,7 @@
 """Decimation of dense points before curbs are looked for.
 
-A few points of a cell describe level ground as well as all of them. The face of a
-curb, a hedge, and all ground seen by a noisy scanner keep their points. The decision
-is made once for every point and serves the search along the road and the one in plan.
+A few points of a cell describe level ground as well as all of them. The face of a curb, a hedge, and all ground seen by a noisy scanner keep their
+points. The decision is made once for every point and serves the search along the road and the one in plan.
 """
 
 from __future__ import annotations
@@ -334,19 +333,13 @@ NO_OFFSET = 1 << 28   # derived: 0.1 mm, farther than any offset
 
 @dataclass
 class LevelStrip:
-    """Offsets between which the ground of profiles is level; low > high where it is not.
+    """Offsets between which the ground of profiles is level; low > high where it is not."""
 
-    first : number of the first profile
-    width : m of road per profile
-    low, high : (P,) int32, offsets in 0.1 mm
-    height : (P,) m, mean local z of the ground in the strip
-    """
-
-    first: int
-    width: float
-    low: np.ndarray
+    first: int   # number of the first profile
+    width: float   # m of road per profile
+    low: np.ndarray   # low, high: (P,) int32, offsets in 0.1 mm
     high: np.ndarray
-    height: np.ndarray
+    height: np.ndarray   # (P,) m, mean local z of the ground in the strip
 
     @classmethod
     def empty(cls, first: int, count: int, width: float) -> LevelStrip:

@@ -1,17 +1,13 @@
 """Profiles across the road, and the pseudo scan-lines made of them.
 
-The road is cut into profiles: slices across it, one profile width long, at fixed
-stations counted from 0. A profile is cut into cells one point spacing wide. Within a
-cell the points are separated into layers where the height jumps, so that branches,
-cars and ghost points lie in layers of their own. The lowest layer gives the cell's
-principal point, and the principal points of a profile are its pseudo scan-line.
+The road is cut into profiles: slices across it, one profile width long, at fixed stations counted from 0. A profile is cut into cells one point
+spacing wide. Within a cell the points are separated into layers where the height jumps, so that branches, cars and ghost points lie in layers of
+their own. The lowest layer gives the cell's principal point, and the principal points of a profile are its pseudo scan-line.
 
 References
 ----------
-Guan et al. (2014), ISPRS Journal 87, and the driving-line thesis after it, section
-3.3. The thesis takes the highest point of the lowest layer. Here it is a high
-quantile, less what noise alone would give: the highest of many noisy points would
-lift a dense road above its sparser neighbours.
+Guan et al. (2014), ISPRS Journal 87, and the driving-line thesis after it, section 3.3. The thesis takes the highest point of the lowest layer. Here
+it is a high quantile, less what noise alone would give: the highest of many noisy points would lift a dense road above its sparser neighbours.
 """
 
 from __future__ import annotations
@@ -84,35 +80,24 @@ def expand_ranges(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.nd
 class PseudoScanLines:
     """Profiles of one side of the road; offsets count outward from the reference line.
 
-    first : number of the first of P profiles; station of profile k's middle is (k + 1/2) * width
-    width, spacing : m of road per profile, and m across per cell
-    origin : m, outward offset at which the first of C cells begins
-    point : (N,) the points, sorted by profile, cell and height, by their rows in the next three
-    u, s : (N,) m, outward offset and station
-    along : (N,) m along the road from the vehicle to the point when it was measured
-    h : (N,) m, height of the sorted points above the expected road, which removes the grade
-    ground : (N,) bool, sorted points of the lowest layer
-    starts : (P * C + 1,) index of the first sorted point of every cell
-    low, high : (P, C) m, median and high quantile of the lowest layer, NaN where there is no point
-    noise : (P,) m, spread of heights within a cell of level road
     spread : (P,) m, the same with the points of all layers near the ground, in the smoother cells over a few
         metres of road: near `noise` for a scanner with millimetre noise, far above it for any other
     """
 
-    first: int
-    width: float
+    first: int   # number of the first of P profiles; station of profile k's middle is (k + 1/2) * width
+    width: float   # width, spacing: m of road per profile, and m across per cell
     spacing: float
-    origin: float
-    point: np.ndarray
-    u: np.ndarray
+    origin: float   # m, outward offset at which the first of C cells begins
+    point: np.ndarray   # (N,) the points, sorted by profile, cell and height, by their rows in the next three
+    u: np.ndarray   # u, s: (N,) m, outward offset and station
     s: np.ndarray
-    along: np.ndarray
-    h: np.ndarray
-    ground: np.ndarray
-    starts: np.ndarray
-    low: np.ndarray
+    along: np.ndarray   # (N,) m along the road from the vehicle to the point when it was measured
+    h: np.ndarray   # (N,) m, height of the sorted points above the expected road, which removes the grade
+    ground: np.ndarray   # (N,) bool, sorted points of the lowest layer
+    starts: np.ndarray   # (P * C + 1,) index of the first sorted point of every cell
+    low: np.ndarray   # low, high: (P, C) m, median and high quantile of the lowest layer, NaN where there is no point
     high: np.ndarray
-    noise: np.ndarray
+    noise: np.ndarray   # (P,) m, spread of heights within a cell of level road
     spread: np.ndarray
 
     @property
@@ -161,25 +146,20 @@ def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.nda
 
 @dataclass
 class _ProfileRun:
-    """Some of the profiles of a section; attributes as of PseudoScanLines, and in addition:
+    """Some of the profiles of a section; attributes as of PseudoScanLines, and in addition:"""
 
-    profiles : (first, last + 1)
-    count : (P, C) points of every cell
-    smooth : (P,) m, spread of heights near the ground in the smoother cells, NaN where there are too few of them
-    """
-
-    profiles: tuple[int, int]
+    profiles: tuple[int, int]   # (first, last + 1)
     point: np.ndarray
     u: np.ndarray
     s: np.ndarray
     along: np.ndarray
     h: np.ndarray
     ground: np.ndarray
-    count: np.ndarray
+    count: np.ndarray   # (P, C) points of every cell
     low: np.ndarray
     high: np.ndarray
     noise: np.ndarray
-    smooth: np.ndarray
+    smooth: np.ndarray   # (P,) m, spread of heights near the ground in the smoother cells, NaN where there are too few of them
 
 
 def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: np.ndarray, profiles: tuple[int, int],

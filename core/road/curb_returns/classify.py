@@ -30,21 +30,16 @@ if TYPE_CHECKING:
 class CurbReturn:
     """One line of curb away from the road's own.
 
-    steps : N PlanSteps in order, uphill on the right
-    s, d : (N,) m, station and offset of each
-    side : "left" or "right"
-    kind : "main" (a piece of main curb that profiles missed), "corner", "side_street" or "island"
-    closed : does it go all around an island?
     sigma : (N,) m, one sigma across that the steps share, of a line that was fitted as a whole; None of steps that were seen one by one
     falls : (N,) m uphill of each step at which the ground is down again, NaN where it stays up; empty where that does not matter
     """
 
-    steps: PlanSteps
-    s: np.ndarray
+    steps: PlanSteps   # N PlanSteps in order, uphill on the right
+    s: np.ndarray   # s, d: (N,) m, station and offset of each
     d: np.ndarray
-    side: str
-    kind: str
-    closed: bool = False
+    side: str   # "left" or "right"
+    kind: str   # "main" (a piece of main curb that profiles missed), "corner", "side_street" or "island"
+    closed: bool = False   # does it go all around an island?
     sigma: np.ndarray | None = None
     falls: np.ndarray = field(default_factory=lambda: np.empty(0))
 

@@ -1,9 +1,8 @@
 """Curbs that do not run along the road: around corners, into side streets, about islands.
 
-They are looked for in plan where the road has no boundary yet: between the main curbs,
-and where a main curb ends. A line of steps that continues a main curb is a corner, and
-a side street where it continues straight. A line behind which the ground comes down
-again is an island. Any other step does not belong to the road.
+They are looked for in plan where the road has no boundary yet: between the main curbs, and where a main curb ends. A line of steps that continues a
+main curb is a corner, and a side street where it continues straight. A line behind which the ground comes down again is an island. Any other step
+does not belong to the road.
 """
 
 from __future__ import annotations

@@ -4,11 +4,10 @@ At crossings and drives a curb is dropped to one or two centimetres, less than t
 Averaged over metres along the curb it stands out all the same; but so does every seam between two layers of asphalt. Therefore it
 counts only where it continues from the end of a sure curb, in direction and in height.
 
-From a little before such an end, arcs of the next RETURN.led_length metres are compared: the curb's own course, and some that turn and bend
-a little more or less. Across each of them the ground is averaged, and that one is taken whose averages two levels and the step between
-them explain best. The step must stand CURBS.significant_sigmas above what the same averages show on the road beside it, where nothing
-rises: their noise, and whatever part of the errors does not average out. It must do so along both halves of the arc. Then the next
-arc begins RETURN.led_step farther on.
+From a little before such an end, arcs of the next RETURN.led_length metres are compared: the curb's own course, and some that turn and bend a little
+more or less. Across each of them the ground is averaged, and that one is taken whose averages two levels and the step between them explain best. The
+step must stand CURBS.significant_sigmas above what the same averages show on the road beside it, where nothing rises: their noise, and whatever part
+of the errors does not average out. It must do so along both halves of the arc. Then the next arc begins RETURN.led_step farther on.
 """
 
 from __future__ import annotations
@@ -44,19 +43,14 @@ SHIFTS = np.array(RETURN.shifts)
 
 @dataclass
 class _Arc:
-    """An arc of RETURN.led_length metres.
+    """An arc of RETURN.led_length metres."""
 
-    x, y, h : m, where it begins
-    heading : radians; bend : 1/m, to the left
-    uphill : 1 where uphill is on the left, else -1
-    """
-
-    x: float
+    x: float   # x, y, h: m, where it begins
     y: float
     h: float
-    heading: float
-    bend: float
-    uphill: float
+    heading: float   # radians
+    bend: float   # 1/m, to the left
+    uphill: float   # 1 where uphill is on the left, else -1
 
     def onward(self, t: float) -> _Arc:
         """The same arc from t metres farther on."""
@@ -90,26 +84,18 @@ class _Arc:
 
 @dataclass
 class _Average:
-    """What the ground across an arc shows.
+    """What the ground across an arc shows."""
 
-    turn, bend, shift : radians, 1/m, and m uphill, by which the curb leaves the arc; positive uphill
-    height : m, of the step
-    bottom, grade : m, and m per m along, level of the road at the step where the arc begins
-    scatter : m, of averages about the levels
-    support, behind : cells with ground before and behind
-    good : is it a step?
-    """
-
-    turn: float
+    turn: float   # turn, bend, shift: radians, 1/m, and m uphill, by which the curb leaves the arc; positive uphill
     bend: float
     shift: float
-    height: float
-    bottom: float
+    height: float   # m, of the step
+    bottom: float   # bottom, grade: m, and m per m along, level of the road at the step where the arc begins
     grade: float
-    scatter: float
-    support: int
+    scatter: float   # m, of averages about the levels
+    support: int   # support, behind: cells with ground before and behind
     behind: int
-    good: bool
+    good: bool   # is it a step?
 
 
 def led_on(ground: GroundRaster, ends: FollowedEnds) -> list[PlanSteps]:
@@ -347,21 +333,15 @@ def _near_ends(survey, road, points, ends):
 
 @dataclass
 class FollowedEnds(Rows):
-    """Ends of K lines of curb from which they are followed.
+    """Ends of K lines of curb from which they are followed."""
 
-    x, y, h : (K,) m, local place and height of the bottom
-    tx, ty : (K,) unit vector out of the line
-    uphill : (K,) 1 where uphill is on the right of that vector, else -1
-    height : (K,) m, of the step; NaN where it is not known
-    """
-
-    x: np.ndarray
+    x: np.ndarray   # x, y, h: (K,) m, local place and height of the bottom
     y: np.ndarray
     h: np.ndarray
-    tx: np.ndarray
+    tx: np.ndarray   # tx, ty: (K,) unit vector out of the line
     ty: np.ndarray
-    uphill: np.ndarray
-    height: np.ndarray
+    uphill: np.ndarray   # (K,) 1 where uphill is on the right of that vector, else -1
+    height: np.ndarray   # (K,) m, of the step; NaN where it is not known
 
     @classmethod
     def of(cls, lines: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]], heights: np.ndarray) -> FollowedEnds:

@@ -1,8 +1,7 @@
 """A raster of the ground in plan: cells of local map coordinates, with the points of the lowest layer in each.
 
-Profiles across the road show a curb that runs along it. A curb that turns into a side
-street, or goes around an island, may have any direction: it is looked for in plan, where level
-ground that is connected with the driven track ends at a rise.
+Profiles across the road show a curb that runs along it. A curb that turns into a side street, or goes around an island, may have any direction: it is
+looked for in plan, where level ground that is connected with the driven track ends at a rise.
 """
 
 from __future__ import annotations
@@ -21,23 +20,16 @@ from ..weights import CURBS, RETURN
 
 @dataclass
 class GroundRaster:
-    """Ground of a stretch of road on a grid of local map coordinates.
+    """Ground of a stretch of road on a grid of local map coordinates."""
 
-    x0, y0 : m, the grid's corner, a whole number of cells from 0
-    x, y, h : (N,) m, the points of the lowest layer; h above the expected road
-    place : (N,) the cell of each, row * columns + column
-    low : (rows, columns) m, mean height of the lowest layer, NaN where there is no point
-    noise : m, spread of heights within a cell of level ground
-    """
-
-    x0: float
+    x0: float   # x0, y0: m, the grid's corner, a whole number of cells from 0
     y0: float
-    x: np.ndarray
+    x: np.ndarray   # x, y, h: (N,) m, the points of the lowest layer; h above the expected road
     y: np.ndarray
     h: np.ndarray
-    place: np.ndarray
-    low: np.ndarray
-    noise: float
+    place: np.ndarray   # (N,) the cell of each, row * columns + column
+    low: np.ndarray   # (rows, columns) m, mean height of the lowest layer, NaN where there is no point
+    noise: float   # m, spread of heights within a cell of level ground
 
     @property
     def box(self) -> tuple[np.ndarray, np.ndarray]:

@@ -196,14 +196,12 @@ def on_island_tops(steps: PlanSteps, behind: GroundBehind) -> np.ndarray:
 class GroundBehind:
     """What the ground behind M steps does, along a ray uphill from each.
 
-    falls : (M,) m uphill at which the ground is back at the step's bottom, NaN where it stays up
     edge : (M,) m uphill of the last raised ground, if the step down behind it was not seen, because the raised ground itself hid it; else NaN
-    slope : (M,) m per m uphill, of the road before the step
     """
 
-    falls: np.ndarray
+    falls: np.ndarray   # (M,) m uphill at which the ground is back at the step's bottom, NaN where it stays up
     edge: np.ndarray
-    slope: np.ndarray
+    slope: np.ndarray   # (M,) m per m uphill, of the road before the step
 
 
 def ground_behind(raster: GroundRaster, slopes: Sequence[np.ndarray], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray,

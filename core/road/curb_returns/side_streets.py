@@ -1,11 +1,10 @@
 """Curbs of side streets continued beyond the corridor of the road.
 
-Some tens of metres from the vehicle a metre of curb holds a few points, too few for any step to be seen by itself. But the two levels
-beside it still differ by its whole height. Therefore the straight course of a curb that leaves the corridor, or one that bends evenly, is
-fitted to all points about it from its end on, metre by metre farther out: the arc along which two levels with the curb's own height
-between them explain the heights best, and then the mean of all arcs about it that do so, each with its likelihood, whose spread is how
-uncertain the place is. It ends where less than RETURN.min_side_points lie on either side of it along RETURN.led_length metres, or where they
-no longer show half of the curb's height.
+Some tens of metres from the vehicle a metre of curb holds a few points, too few for any step to be seen by itself. But the two levels beside it still
+differ by its whole height. Therefore the straight course of a curb that leaves the corridor, or one that bends evenly, is fitted to all points about
+it from its end on, metre by metre farther out: the arc along which two levels with the curb's own height between them explain the heights best, and
+then the mean of all arcs about it that do so, each with its likelihood, whose spread is how uncertain the place is. It ends where less than
+RETURN.min_side_points lie on either side of it along RETURN.led_length metres, or where they no longer show half of the curb's height.
 """
 
 from __future__ import annotations

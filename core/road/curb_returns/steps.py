@@ -21,26 +21,17 @@ CELL_ROUNDING = 1e-3   # derived: cells, so that rounding leaves no point out
 
 @dataclass
 class PlanSteps(Rows):
-    """Bottom corners found in plan, one entry each.
+    """Bottom corners found in plan, one entry each."""
 
-    x, y : (M,) local m
-    nx, ny : (M,) unit vector across the curb, uphill
-    h : (M,) m above the expected road
-    height : (M,) m of the step
-    run : (M,) m across of the face
-    noise : (M,) m, scatter of heights about the line of the road side
-    support, behind : (M,) points of road side and face, and of the raised ground
-    """
-
-    x: np.ndarray
+    x: np.ndarray   # x, y: (M,) local m
     y: np.ndarray
-    nx: np.ndarray
+    nx: np.ndarray   # nx, ny: (M,) unit vector across the curb, uphill
     ny: np.ndarray
-    h: np.ndarray
-    height: np.ndarray
-    run: np.ndarray
-    noise: np.ndarray
-    support: np.ndarray
+    h: np.ndarray   # (M,) m above the expected road
+    height: np.ndarray   # (M,) m of the step
+    run: np.ndarray   # (M,) m across of the face
+    noise: np.ndarray   # (M,) m, scatter of heights about the line of the road side
+    support: np.ndarray   # support, behind: (M,) points of road side and face, and of the raised ground
     behind: np.ndarray
 
     @staticmethod

@@ -17,14 +17,10 @@ MAX_LINE_OVERLAP = RETURN.long_half_length   # m that two lines of one curb may:
 
 @dataclass
 class PlanStepChain:
-    """Steps of one line.
+    """Steps of one line."""
 
-    steps : (K,) indices into the PlanSteps, in order, uphill on the right
-    closed : does the line go all around an island?
-    """
-
-    steps: np.ndarray
-    closed: bool = False
+    steps: np.ndarray   # (K,) indices into the PlanSteps, in order, uphill on the right
+    closed: bool = False   # does the line go all around an island?
 
 
 def link_plan_steps(steps: PlanSteps) -> list[PlanStepChain]:
@@ -135,12 +131,9 @@ def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> 
 
 @dataclass
 class LineEnds:
-    """Both ends of K polylines.
+    """Both ends of K polylines."""
 
-    heads, tails : (K, 5) local x, y and h, m, and the unit vector that points out of the line
-    """
-
-    heads: np.ndarray
+    heads: np.ndarray   # heads, tails: (K, 5) local x, y and h, m, and the unit vector that points out of the line
     tails: np.ndarray
 
     @staticmethod

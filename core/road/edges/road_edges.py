@@ -23,22 +23,14 @@ EDGE_DECIMALS = dict(station=3, end=3, height=3, length=3, rmse=4, sigma=4, agre
 
 @dataclass(frozen=True)
 class EdgePiece:
-    """A line of one status that is to be drawn.
+    """A line of one status that is to be drawn."""
 
-    vertices : (V, 3) x, y and z in map coordinates
-    road : number
-    side, status, part, kind, what : as in RoadEdges
-    chain : number of the line; its pieces share it
-    station, end, height, length, rmse : metres, as in RoadEdges
-    sigma : m, as in RoadEdges; or (V,) at every vertex, and the piece is cut where it changes
-    """
-
-    vertices: np.ndarray
-    road: int
-    side: str
+    vertices: np.ndarray   # (V, 3) x, y and z in map coordinates
+    road: int   # number
+    side: str   # side, status, part, kind, what: as in RoadEdges
     status: str
-    chain: int
-    station: float
+    chain: int   # number of the line; its pieces share it
+    station: float   # station, end, height, length, rmse: metres, as in RoadEdges
     end: float
     length: float = np.nan   # of the vertices in plan where nothing else is given
     height: float = np.nan
@@ -47,7 +39,7 @@ class EdgePiece:
     kind: str = "main"
     what: str = "curb"
     agree: float = np.nan
-    sigma: np.ndarray | float = np.nan
+    sigma: np.ndarray | float = np.nan   # m, as in RoadEdges; or (V,) at every vertex, and the piece is cut where it changes
 
     def __post_init__(self) -> None:
         if np.isnan(self.length):
@@ -71,43 +63,32 @@ class EdgePiece:
 class RoadEdges(LayerRows):
     """E pieces of road edges, each of one status.
 
-    edge : (E,) int, row of the layer that the piece comes from or goes to
-    nearest_pass : (E,) int, number of the pass that drove nearest
-    side : (E,) str objects, left or right
-    status : (E,) str objects, measured, bridged, inferred
-    part : (E,) str objects, bottom or top
     kind : (E,) str objects: main for the road's own edges; corner, side_street and island for what leads away from it or stands in it
     what : (E,) str objects: curb, dropped, or pavement where the pavement ends without a curb
-    chain : (E,) int, the pieces of one line share it
-    station, end : (E,) metres along the road
     height, length, rmse : (E,) metres: of the curb, along the line in plan, of the curb points from the line
-    sigma : (E,) metres, uncertainty of the place across the line, one sigma, see `uncertainty.py`
-    agree : (E,) centimetres that two methods lie apart, at 95 % of the piece
-    course : FrameLines, one per piece
-    crs : WKT, "" where unknown
 
     Numbers that are unknown are -1 or NaN.
     """
 
     GEOMETRY_TYPE, SCHEMA = "LineStringZ", ROAD_EDGES
 
-    edge: np.ndarray
-    nearest_pass: np.ndarray = field(metadata=column(NEAREST_PASS.name))
-    side: np.ndarray = field(metadata=column())
-    status: np.ndarray = field(metadata=column(unknown="measured"))
-    part: np.ndarray = field(metadata=column(unknown="bottom"))
+    edge: np.ndarray   # (E,) int, row of the layer that the piece comes from or goes to
+    nearest_pass: np.ndarray = field(metadata=column(NEAREST_PASS.name))   # (E,) int, number of the pass that drove nearest
+    side: np.ndarray = field(metadata=column())   # (E,) str objects, left or right
+    status: np.ndarray = field(metadata=column(unknown="measured"))   # (E,) str objects, measured, bridged, inferred
+    part: np.ndarray = field(metadata=column(unknown="bottom"))   # (E,) str objects, bottom or top
     kind: np.ndarray = field(metadata=column(unknown="main"))
     what: np.ndarray = field(metadata=column("edge", unknown="curb"))
-    chain: np.ndarray = field(metadata=column())
-    station: np.ndarray = field(metadata=column("station_m"))
+    chain: np.ndarray = field(metadata=column())   # (E,) int, the pieces of one line share it
+    station: np.ndarray = field(metadata=column("station_m"))   # station, end: (E,) metres along the road
     end: np.ndarray = field(metadata=column("end_m"))
     height: np.ndarray = field(metadata=column("height_m"))
     length: np.ndarray = field(metadata=column("length_m"))
     rmse: np.ndarray = field(metadata=column("rmse_m"))
-    agree: np.ndarray = field(metadata=column("agree_cm"))
-    sigma: np.ndarray = field(metadata=column(SIGMA.name))
-    course: FrameLines
-    crs: str = ""
+    agree: np.ndarray = field(metadata=column("agree_cm"))   # (E,) centimetres that two methods lie apart, at 95 % of the piece
+    sigma: np.ndarray = field(metadata=column(SIGMA.name))   # (E,) metres, uncertainty of the place across the line, one sigma, see `uncertainty.py`
+    course: FrameLines   # FrameLines, one per piece
+    crs: str = ""   # WKT, "" where unknown
 
     @property
     def road(self) -> np.ndarray:

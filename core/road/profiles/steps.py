@@ -123,9 +123,8 @@ def _max_ahead(values, span):
 def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: float, layer_jump: float, overgrown: bool) -> CurbSteps:
     """Steps on the averaged profiles of one side.
 
-    They are looked for in all points together, and where those show none, in the points seen
-    ahead of the vehicle and behind it separately: positions that drifted between the two views
-    blur a face that each of them shows.
+    They are looked for in all points together, and where those show none, in the points seen ahead of the vehicle and behind it separately: positions
+    that drifted between the two views blur a face that each of them shows.
 
     lines : PseudoScanLines; the first and last PROFILE.averaging_length / 2 metres serve the averages of the others
     min_height, max_height : m, of a step

@@ -28,27 +28,21 @@ from .grid import LINE_SEPARATION, HeightGrid, Scanlines, row_of_lines
 class ScanlineBoundarySettings:
     """The parameters of table 1 of the paper.
 
-    search_width : m across within which the height must change
-    sensor_height : m from the trajectory down to the road; 0 = from the data
-    clipping_height : m above the road; higher points are not used
-    min_height : m of height change; 0 = as the noise allows
     distance_across, distance_along : m on either side of a candidate from which its planes are fitted
-    ransac_distance : m from a plane to its inliers
     vertical_angle, horizontal_angle : degrees between the normal of a plane and Z: at least that of a face, at most
         that of road and sidewalk; 0 for the face = as the noise allows
-    max_gap : m between corners that are connected
     """
 
-    search_width: float = setting(0.10, 0.04, 0.5, "The search width", "m")
-    sensor_height: float = setting(0.0, 0.0, 10.0, "The sensor height", "m")
-    clipping_height: float = setting(0.45, 0.05, 2.0, "The clipping height", "m")
-    min_height: float = setting(0.0, 0.01, 0.5, "The minimum height", "m", "for automatic")
+    search_width: float = setting(0.10, 0.04, 0.5, "The search width", "m")   # m across within which the height must change
+    sensor_height: float = setting(0.0, 0.0, 10.0, "The sensor height", "m")   # m from the trajectory down to the road; 0 = from the data
+    clipping_height: float = setting(0.45, 0.05, 2.0, "The clipping height", "m")   # m above the road; higher points are not used
+    min_height: float = setting(0.0, 0.01, 0.5, "The minimum height", "m", "for automatic")   # m of height change; 0 = as the noise allows
     distance_across: float = setting(0.50, 0.15, 2.0, "The distance across", "m")
     distance_along: float = setting(0.40, 0.1, 2.0, "The distance along", "m")
-    ransac_distance: float = setting(0.005, 0.001, 0.1, "The RANSAC distance", "m")
+    ransac_distance: float = setting(0.005, 0.001, 0.1, "The RANSAC distance", "m")   # m from a plane to its inliers
     vertical_angle: float = setting(0.0, 20.0, 90.0, "The vertical angle", "°", "for automatic")
     horizontal_angle: float = setting(20.0, 1.0, 45.0, "The horizontal angle", "°")
-    max_gap: float = setting(2.5, 0.0, 100.0, "The longest connected gap", "m")
+    max_gap: float = setting(2.5, 0.0, 100.0, "The longest connected gap", "m")   # m between corners that are connected
 
     def __post_init__(self):
         """Check the limits of all settings, and that pairs of settings are in order."""
@@ -68,23 +62,15 @@ class ScanlineBoundarySettings:
 
 @dataclass
 class CurbCandidates(Rows):
-    """M rises on the scanlines of one side, pass and scanner, sorted by row, then outward.
+    """M rises on the scanlines of one side, pass and scanner, sorted by row, then outward."""
 
-    row, cell : (M,) int, cell of the grid in which the middle of the rise is crossed
-    u : (M,) m, outward offset of that cell
-    base : (M,) m above the expected road, height there of the line through the road before the rise
-    slope : (M,) m per m, slope of that line
-    step : (M,) m, height of the rise
-    rough : (M,) m, standard deviation of the road about the line
-    """
-
-    row: np.ndarray
+    row: np.ndarray   # row, cell: (M,) int, cell of the grid in which the middle of the rise is crossed
     cell: np.ndarray
-    u: np.ndarray
-    base: np.ndarray
-    slope: np.ndarray
-    step: np.ndarray
-    rough: np.ndarray
+    u: np.ndarray   # (M,) m, outward offset of that cell
+    base: np.ndarray   # (M,) m above the expected road, height there of the line through the road before the rise
+    slope: np.ndarray   # (M,) m per m, slope of that line
+    step: np.ndarray   # (M,) m, height of the rise
+    rough: np.ndarray   # (M,) m, standard deviation of the road about the line
 
 
 def find_candidates(side: HeightGrid, measured: np.ndarray, nearest: np.ndarray, settings: ScanlineBoundarySettings) -> CurbCandidates:
@@ -210,22 +196,15 @@ def _persistent(candidates):
 
 @dataclass
 class ScanlineSamples:
-    """N vertices of resampled scanlines, in the order of the lines or, of one side, by row and outward offset.
+    """N vertices of resampled scanlines, in the order of the lines or, of one side, by row and outward offset."""
 
-    first, interval, rows : number of the first section plane, m between planes, count of planes
-    row : (N,) int, from 0
-    u : (N,) m, offset; outward offset where they are of one side
-    h : (N,) m above the expected road
-    steep : (N,) m per m, slope between the neighbours of each vertex, without sign
-    """
-
-    first: int
+    first: int   # first, interval, rows: number of the first section plane, m between planes, count of planes
     interval: float
     rows: int
-    row: np.ndarray
-    u: np.ndarray
-    h: np.ndarray
-    steep: np.ndarray
+    row: np.ndarray   # (N,) int, from 0
+    u: np.ndarray   # (N,) m, offset; outward offset where they are of one side
+    h: np.ndarray   # (N,) m above the expected road
+    steep: np.ndarray   # (N,) m per m, slope between the neighbours of each vertex, without sign
 
     def outward(self, sign: int) -> ScanlineSamples:
         """The samples of one side, 1 left or -1 right, sorted by row and outward offset."""

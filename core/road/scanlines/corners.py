@@ -33,16 +33,11 @@ TRUNCATED_SIGMA_FACTOR = 1.35   # derived: sigma of a normal distribution over t
 _RANSAC_DRAWS = np.random.default_rng(SCANLINE.ransac_seed).random((SCANLINE.ransac_trials, 3))   # derived: the same draws in every run
 @dataclass
 class Planes(Rows):
-    """M planes v = c0 + c1 p + c2 q, one through each set of points.
+    """M planes v = c0 + c1 p + c2 q, one through each set of points."""
 
-    coefficients : (M, 3); NaN where a set has fewer than three points
-    sigma : (M,) m, standard deviation of the inliers about the plane
-    inliers, points : (M,) int
-    """
-
-    coefficients: np.ndarray
-    sigma: np.ndarray
-    inliers: np.ndarray
+    coefficients: np.ndarray   # (M, 3); NaN where a set has fewer than three points
+    sigma: np.ndarray   # (M,) m, standard deviation of the inliers about the plane
+    inliers: np.ndarray   # inliers, points: (M,) int
     points: np.ndarray
 
     def steepness(self) -> np.ndarray:
@@ -54,8 +49,7 @@ def _fit_planes(v: np.ndarray, p: np.ndarray, q: np.ndarray, count: np.ndarray, 
                tolerance: np.ndarray | float = 0.0) -> Planes:
     """A plane through each of M sets of points, by RANSAC and least squares.
 
-    v, p, q : (M, N) float32 m, coordinates about an origin of each set; the first count[i] of a row are points,
-        the rest is padding
+    v, p, q : (M, N) float32 m, coordinates about an origin of each set; the first count[i] of a row are points, the rest is padding
     count : (M,) int
     distance : m, RANSAC distance: points nearer to the plane are inliers
     tolerance : (M,) m or a number; it replaces `distance` where it is larger
@@ -134,19 +128,14 @@ def _least_squares(v, p, q, weight):
 
 @dataclass
 class CurbCorners(CurbSteps):
-    """M corners measured with planes: bottom corners as CurbSteps, and the top corners.
-
-    top_u, top_h : (M,) m, outward offset and height above the expected road of the top corner
-    residual : (M,) m, standard deviation of the inliers about the three planes
-    sloped : (M,) bool, is the face less steep than an upright one?
-    """
+    """M corners measured with planes: bottom corners as CurbSteps, and the top corners."""
 
     PARTS = (*CurbSteps.PARTS, ("top", "top_u", "top_h"))
 
-    top_u: np.ndarray
+    top_u: np.ndarray   # top_u, top_h: (M,) m, outward offset and height above the expected road of the top corner
     top_h: np.ndarray
-    residual: np.ndarray
-    sloped: np.ndarray
+    residual: np.ndarray   # (M,) m, standard deviation of the inliers about the three planes
+    sloped: np.ndarray   # (M,) bool, is the face less steep than an upright one?
 
     @property
     def upright(self) -> np.ndarray:

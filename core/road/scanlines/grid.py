@@ -17,17 +17,12 @@ class HeightGrid:
     """Heights of scanlines at the middles of cells: R section planes, C cells.
 
     Row r is the plane at station (first + r) * interval. Heights are above the expected road.
-
-    first : number of the first plane
-    interval : m between planes
-    origin : m, offset at which the first cell begins
-    low : (R, C) float32 m, height of the lowest line; NaN where there is none
     """
 
-    first: int
-    interval: float
-    origin: float
-    low: np.ndarray
+    first: int   # number of the first plane
+    interval: float   # m between planes
+    origin: float   # m, offset at which the first cell begins
+    low: np.ndarray   # (R, C) float32 m, height of the lowest line; NaN where there is none
 
     @property
     def shape(self) -> tuple[int, int]:

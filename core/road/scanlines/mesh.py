@@ -34,26 +34,17 @@ PHASE_STEPS = 65535   # derived: steps of a turn by which vertices are sorted, 1
 
 @dataclass
 class ScannerLines:
-    """N points of one pass and scanner in a window, sorted by time, on L scan lines.
+    """N points of one pass and scanner in a window, sorted by time, on L scan lines."""
 
-    line : (N,) int32, number of the scan line, from 0 without gaps
-    phase : (N,) turns, phase of the mirror, 0 to 1
-    s, d, z : (N,) m, station, offset and local height
-    intensity : (N,) raw counts, or None where they were not asked for
-    ranges : (N,) float32 m from the vehicle
-    joined : (N,) bool, whether a point and the next one are neighbours on a surface
-    driven : (L,) m of road driven during the turn
-    """
-
-    line: np.ndarray
-    phase: np.ndarray
-    s: np.ndarray
+    line: np.ndarray   # (N,) int32, number of the scan line, from 0 without gaps
+    phase: np.ndarray   # (N,) turns, phase of the mirror, 0 to 1
+    s: np.ndarray   # s, d, z: (N,) m, station, offset and local height
     d: np.ndarray
     z: np.ndarray
-    intensity: np.ndarray | None
-    ranges: np.ndarray
-    joined: np.ndarray
-    driven: np.ndarray
+    intensity: np.ndarray | None   # (N,) raw counts, or None where they were not asked for
+    ranges: np.ndarray   # (N,) float32 m from the vehicle
+    joined: np.ndarray   # (N,) bool, whether a point and the next one are neighbours on a surface
+    driven: np.ndarray   # (L,) m of road driven during the turn
 
     def __len__(self) -> int:
         return len(self.line)
@@ -64,16 +55,12 @@ class Ribs(Rows):
     """R sides of the mesh that section planes intersect.
 
     A rib runs from the point `point` to a place between the point `ahead` and the one after it.
-
-    point, ahead : (R,) int, indices of points
-    share : (R,) 0 to 1, the place on the way from point `ahead` to the one after it
-    near, far : (R,) stations of both ends, in intervals of the planes
     """
 
-    point: np.ndarray
+    point: np.ndarray   # point, ahead: (R,) int, indices of points
     ahead: np.ndarray
-    share: np.ndarray
-    near: np.ndarray
+    share: np.ndarray   # (R,) 0 to 1, the place on the way from point `ahead` to the one after it
+    near: np.ndarray   # near, far: (R,) stations of both ends, in intervals of the planes
     far: np.ndarray
 
 
@@ -220,22 +207,15 @@ def slanting_edges(lines: ScannerLines, mirror: MirrorPhase, interval: float) ->
 
 @dataclass
 class PlaneVertices:
-    """N vertices of one pass and scanner, sorted by plane and by mirror phase from right to left.
+    """N vertices of one pass and scanner, sorted by plane and by mirror phase from right to left."""
 
-    plane : (N,) int, number of the section plane
-    phase : (N,) turns
-    d, z : (N,) m, offset and local height
-    across, above : (N,) m from the track where it crosses the plane
-    gap : turns between neighbours without missing pulses, at most
-    """
-
-    plane: np.ndarray
-    phase: np.ndarray
-    d: np.ndarray
+    plane: np.ndarray   # (N,) int, number of the section plane
+    phase: np.ndarray   # (N,) turns
+    d: np.ndarray   # d, z: (N,) m, offset and local height
     z: np.ndarray
-    across: np.ndarray
+    across: np.ndarray   # across, above: (N,) m from the track where it crosses the plane
     above: np.ndarray
-    gap: float
+    gap: float   # turns between neighbours without missing pulses, at most
 
     @classmethod
     def from_track(cls, p: Pass, interval: float, mirror: MirrorPhase, plane: np.ndarray, phase: np.ndarray, d: np.ndarray,

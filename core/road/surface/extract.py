@@ -54,10 +54,9 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
                          counted: bool = False) -> tuple[RoadPoints, SurfaceOutlines]:
     """Select the points of the road surface and draw its outline.
 
-    Between road edges, all points at the height of the road belong to the surface. The height is followed from the
-    track of the vehicle outward; parked cars, people and islands are not at this height. Where a side has no
-    edge, the surface ends where the ground stops being a road (a step, another slope, rougher or differently
-    bright ground), at most `max_width` from the track. An opening of up to 30 m in an edge is closed by a
+    Between road edges, all points at the height of the road belong to the surface. The height is followed from the track of the vehicle outward;
+    parked cars, people and islands are not at this height. Where a side has no edge, the surface ends where the ground stops being a road (a step,
+    another slope, rougher or differently bright ground), at most `max_width` from the track. An opening of up to 30 m in an edge is closed by a
     straight line; where a side street joins there, the surface goes on into it as far as its ground was scanned.
 
     ground : MeasuredGround that an earlier stage kept, or None
@@ -68,10 +67,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     road_points : RoadPoints with `half_width` and `covered`; the survey lives as long as they do
     surface : SurfaceOutlines
 
-    Raises
-    ------
-    RoadExtractionError
-        If no road surface is found.
+    Raises RoadExtractionError if no road surface is found.
     """
     road_points = RoadPoints.of_survey(survey)
     stretches, margins, cubes = [], Margins(), []
@@ -298,32 +294,22 @@ def _outermost(cells, offsets):
 
 
 class ThinMargin(NamedTuple):
-    """A stretch of one side of a road without a curb.
+    """A stretch of one side of a road without a curb."""
 
-    road, side : number of the road; left or right
-    start, end : stations, m
-    density : points per m² there
-    pavement : whether an edge of the pavement was drawn there
-    """
-
-    road: int
+    road: int   # road, side: number of the road; left or right
     side: str
-    start: float
+    start: float   # start, end: stations, m
     end: float
-    density: float
-    pavement: bool = False
+    density: float   # points per m² there
+    pavement: bool = False   # whether an edge of the pavement was drawn there
 
 
 @dataclass
 class Margins:
-    """What the margins of the roads of a survey show of curbs.
+    """What the margins of the roads of a survey show of curbs."""
 
-    thin : stretches that no curb bounds and that hold fewer points than curbs need
-    curb, bare : m of margins along a curb, and without one though the points are enough
-    """
-
-    thin: list[ThinMargin] = field(default_factory=list)
-    curb: float = 0.0
+    thin: list[ThinMargin] = field(default_factory=list)   # stretches that no curb bounds and that hold fewer points than curbs need
+    curb: float = 0.0   # curb, bare: m of margins along a curb, and without one though the points are enough
     bare: float = 0.0
 
     def add(self, road: int, carriageway: Carriageway, curbs: dict[str, np.ndarray], pavement: dict[str, np.ndarray]) -> None:
@@ -386,7 +372,6 @@ def said_of_thin(margins: Sequence[ThinMargin]) -> str:
     density = float(np.average([margin.density for margin in margins], weights=[margin.end - margin.start for margin in margins]))
     stretches = "; ".join(f"road {m.road}, {m.side} side, station {m.start:.0f} to {m.end:.0f} m" for m in longest)
     stretches += "; …" if len(margins) > len(longest) else ""
-    return (f"The points are too few to find curbs along {total:.0f} m, where none was drawn ({stretches}): {density:.0f} per m² beside "
-            f"the limit of the road surface, some {100 / np.sqrt(density):.0f} cm apart. A curb of 10 cm needs about "
-            f"{SURFACE.min_curb_density:.0f}, a lower one more; whether there is one is not known. Give the whole cloud if this one was thinned, or "
-            "drive slower or nearer to that side.")
+    return (f"The points are too few to find curbs along {total:.0f} m, where none was drawn ({stretches}): {density:.0f} per m² beside the limit of "
+            f"the road surface, some {100 / np.sqrt(density):.0f} cm apart. A curb of 10 cm needs about {SURFACE.min_curb_density:.0f}, a lower one "
+            "more; whether there is one is not known. Give the whole cloud if this one was thinned, or drive slower or nearer to that side.")

@@ -1,9 +1,8 @@
 """Where the ground across the road changes: the first cell outward that is no longer like the road before it.
 
-The ground changes where, over some cells, it is off the height of the road, tilts away, or is rougher than the road before, or
-where nothing was measured and no road follows. A flush sidewalk or bicycle path before such a place changes in brightness alone: paving
-and concrete are about twice as bright as asphalt. Falloff with range has no step, painted lines are narrower than what is compared, and
-patches are shorter. The rules are our own.
+The ground changes where, over some cells, it is off the height of the road, tilts away, or is rougher than the road before, or where nothing was
+measured and no road follows. A flush sidewalk or bicycle path before such a place changes in brightness alone: paving and concrete are about twice as
+bright as asphalt. Falloff with range has no step, painted lines are narrower than what is compared, and patches are shorter. The rules are our own.
 """
 
 from __future__ import annotations
@@ -20,16 +19,11 @@ from .ground_grid import GroundCells, known_median
 
 @dataclass
 class HalfProfiles:
-    """P profiles of K cells from the reference line outward.
+    """P profiles of K cells from the reference line outward."""
 
-    u : (K,) m, outward offsets of the middles of the cells, ascending
-    off : (P, K) m above the height of the road; NaN where nothing was measured, or an obstacle hides the road
-    rough : (P, K) m
-    """
-
-    u: np.ndarray
-    off: np.ndarray
-    rough: np.ndarray
+    u: np.ndarray   # (K,) m, outward offsets of the middles of the cells, ascending
+    off: np.ndarray   # (P, K) m above the height of the road; NaN where nothing was measured, or an obstacle hides the road
+    rough: np.ndarray   # (P, K) m
 
     def __post_init__(self) -> None:
         """Cells of obstacles are no ground."""
@@ -231,16 +225,11 @@ def _brighter_from(brightness, track, limit):
 
 @dataclass
 class _RoadHeight:
-    """The height of a road on a grid of R rows and C columns.
+    """The height of a road on a grid of R rows and C columns."""
 
-    height : (R, C) float32 m, local z of the road, also under obstacles
-    ground : (R, C) bool, cells that show the road itself
-    noise : m, median standard deviation of the points of a cell
-    """
-
-    height: np.ndarray
-    ground: np.ndarray
-    noise: float
+    height: np.ndarray   # (R, C) float32 m, local z of the road, also under obstacles
+    ground: np.ndarray   # (R, C) bool, cells that show the road itself
+    noise: float   # m, median standard deviation of the points of a cell
 
 
 def follow_road(cells: GroundCells, prior: np.ndarray) -> _RoadHeight | None:
@@ -334,7 +323,6 @@ def smooth_road(road: _RoadHeight, cells: GroundCells) -> np.ndarray:
 
     Following lags behind on a crowned road. A mean over 5 rows and 3 columns, weighted by points, does not.
 
-    road : _RoadHeight
 
     Returns (R, C) m, local z
     """

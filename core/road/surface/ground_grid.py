@@ -30,23 +30,15 @@ GOLDEN_RATIO_32 = 0x9E3779B9   # source: golden ratio times 2^32; its multiples,
 
 @dataclass
 class SurfaceProfiles:
-    """The ground across the road: P rows of 1 m length with K cells of 0.1 m.
+    """The ground across the road: P rows of 1 m length with K cells of 0.1 m."""
 
-    stations : (P,) m, middles of the rows
-    offsets : (K,) m, middles of the cells, ascending
-    height : (P, K) m above the expected height of the road under the vehicle
-    rough : (P, K) m
-    brightness, scatter : (P, K) counts, as in GroundCells; NaN where nothing was measured
-    count : (P, K) points
-    """
-
-    stations: np.ndarray
-    offsets: np.ndarray
-    height: np.ndarray
-    rough: np.ndarray
-    brightness: np.ndarray
+    stations: np.ndarray   # (P,) m, middles of the rows
+    offsets: np.ndarray   # (K,) m, middles of the cells, ascending
+    height: np.ndarray   # (P, K) m above the expected height of the road under the vehicle
+    rough: np.ndarray   # (P, K) m
+    brightness: np.ndarray   # brightness, scatter: (P, K) counts, as in GroundCells; NaN where nothing was measured
     scatter: np.ndarray
-    count: np.ndarray
+    count: np.ndarray   # (P, K) points
 
     NAMES = ("height", "rough", "brightness", "scatter", "count")
 
@@ -80,25 +72,20 @@ class GroundCells:
 
     Row k begins at station row_size * (first_row + k), column j at offset column_size * (first_column + j).
 
-    first_row, first_column : numbers of the first row and column
-    row_size, column_size : m
-    height : (R, C) float32 m, local z at the middle of a cell; NaN where there is no ground
     rough : (R, C) float32 m, standard deviation about the plane of the cell, each view (a scanner on a pass) at its own level; NaN where it has
         no plane
     brightness : (R, C) float32 counts, median intensity, all scanners and passes at one level; NaN where there is no ground or it was not asked for
-    scatter : (R, C) float32 counts, standard deviation of those intensities, estimated from the lower quartile
-    count : (R, C) float32, points of the lowest layer
     """
 
-    first_row: int
+    first_row: int   # first_row, first_column: numbers of the first row and column
     first_column: int
-    row_size: float
+    row_size: float   # row_size, column_size: m
     column_size: float
-    height: np.ndarray
+    height: np.ndarray   # (R, C) float32 m, local z at the middle of a cell; NaN where there is no ground
     rough: np.ndarray
     brightness: np.ndarray
-    scatter: np.ndarray
-    count: np.ndarray
+    scatter: np.ndarray   # (R, C) float32 counts, standard deviation of those intensities, estimated from the lower quartile
+    count: np.ndarray   # (R, C) float32, points of the lowest layer
 
     @property
     def stations(self) -> np.ndarray:

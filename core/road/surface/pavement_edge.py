@@ -1,7 +1,6 @@
 """Pavement edges: where a road without a curb ends at a verge, a ditch or a yard.
 
-The edge is a change of height, tilt, roughness or brightness across profiles of 5 m of road that continues along it. The rules
-are our own.
+The edge is a change of height, tilt, roughness or brightness across profiles of 5 m of road that continues along it. The rules are our own.
 """
 
 from __future__ import annotations
@@ -36,30 +35,22 @@ def _pooled(values):
 
 @dataclass(frozen=True)
 class _GrownLimit:
-    """The limit of a road on a side without an edge, on R rows.
+    """The limit of a road on a side without an edge, on R rows."""
 
-    offset : (R,) m, of the edge of the pavement
-    sigma : (R,) m, one sigma of a single row, of places that are known to the gap between two measured cells
-    shown : (R,) bool, whether it was measured as an edge; where it is not, the road ends there for want of better
-    likely : (R,) bool, whether it is rather an edge than not
-    hidden : (R,) bool, whether hardly anything was measured right behind it
-    """
-
-    offset: np.ndarray
-    sigma: np.ndarray
-    shown: np.ndarray
-    likely: np.ndarray
-    hidden: np.ndarray
+    offset: np.ndarray   # (R,) m, of the edge of the pavement
+    sigma: np.ndarray   # (R,) m, one sigma of a single row, of places that are known to the gap between two measured cells
+    shown: np.ndarray   # (R,) bool, whether it was measured as an edge; where it is not, the road ends there for want of better
+    likely: np.ndarray   # (R,) bool, whether it is rather an edge than not
+    hidden: np.ndarray   # (R,) bool, whether hardly anything was measured right behind it
 
 
 def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarray, prior: np.ndarray, sign: int | float, track: np.ndarray,
                 max_width: float) -> _GrownLimit:
     """The limit of the road on a side without an edge.
 
-    Every profile is searched outward from the track. The ground changes where, over 0.4 m, it is off the height of the
-    road, tilts away, or is rougher than the road before it. The path along the road that most profiles agree with is
-    the limit. Where nothing was measured beyond, the limit may lie farther out. A strip of another brightness before the change
-    (gravel along the asphalt) does not belong to the road either.
+    Every profile is searched outward from the track. The ground changes where, over 0.4 m, it is off the height of the road, tilts away, or is
+    rougher than the road before it. The path along the road that most profiles agree with is the limit. Where nothing was measured beyond, the limit
+    may lie farther out. A strip of another brightness before the change (gravel along the asphalt) does not belong to the road either.
 
     cells : GroundCells of the road, R rows and C columns
     height : (R, C) m, local z of the road
@@ -123,26 +114,17 @@ def _rise(height, prior, cells, stations, offsets):
 
 @dataclass
 class Carriageway:
-    """The surface of one road in rows of station.
+    """The surface of one road in rows of station."""
 
-    cells : GroundCells of the road, R rows and C columns
-    height : (R, C) float32 m, local z of the smoothed road
-    ground : (R, C) bool, cells that show the road itself
-    right, left : (R,) m, offsets of its limits; NaN in rows without road
-    right_bounded, left_bounded : (R,) bool, rows in which a measured or bridged edge is the limit
-    tolerance : m above or below the height
-    grown : {side: _GrownLimit} of the sides on which edges are missing
-    """
-
-    cells: GroundCells
-    height: np.ndarray
-    ground: np.ndarray
-    right: np.ndarray
+    cells: GroundCells   # GroundCells of the road, R rows and C columns
+    height: np.ndarray   # (R, C) float32 m, local z of the smoothed road
+    ground: np.ndarray   # (R, C) bool, cells that show the road itself
+    right: np.ndarray   # right, left: (R,) m, offsets of its limits; NaN in rows without road
     left: np.ndarray
-    right_bounded: np.ndarray
+    right_bounded: np.ndarray   # right_bounded, left_bounded: (R,) bool, rows in which a measured or bridged edge is the limit
     left_bounded: np.ndarray
-    tolerance: float
-    grown: dict[str, _GrownLimit] = field(default_factory=dict)
+    tolerance: float   # m above or below the height
+    grown: dict[str, _GrownLimit] = field(default_factory=dict)   # {side: _GrownLimit} of the sides on which edges are missing
 
 
 def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -150,12 +132,9 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
 
     stations : (N,) m, ascending
 
-    Returns
-    -------
-    dict of side (left, right) to (offset, measured): `offset` is (N,) m, NaN where there is no edge;
-    `measured` is (N,) bool, True where a measured or bridged edge gives the offset. It is False for inferred
-    edges and for closed openings. Edges of the pavement count where there is no curb; short openings between them, and beside
-    curbs, are closed too.
+    Returns dict of side (left, right) to (offset, measured): `offset` is (N,) m, NaN where there is no edge; `measured` is (N,) bool, True where a
+    measured or bridged edge gives the offset. It is False for inferred edges and for closed openings. Edges of the pavement count where there is no
+    curb; short openings between them, and beside curbs, are closed too.
     """
     result = {}
     for side, sign in (("left", 1.0), ("right", -1.0)):

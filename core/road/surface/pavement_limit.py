@@ -26,20 +26,13 @@ USUAL_QUANTILE, USUAL_SIGMAS = 0.5, 0.67   # derived: median of what the cells o
 
 @dataclass(frozen=True)
 class _PavementLimits:
-    """Where the pavement ends on P rows of one side.
+    """Where the pavement ends on P rows of one side."""
 
-    cell : (P,) cells, not necessarily whole
-    gap : (P,) cells, within which it lies: 1 or more where not every cell was measured
-    shown : (P,) bool, whether road before and other ground behind it were measured
-    likely : (P,) bool, whether rather so than not
-    hidden : (P,) bool, whether hardly anything was measured right behind it, or nothing that tells road from other ground
-    """
-
-    cell: np.ndarray
-    gap: np.ndarray
-    shown: np.ndarray
-    likely: np.ndarray
-    hidden: np.ndarray
+    cell: np.ndarray   # (P,) cells, not necessarily whole
+    gap: np.ndarray   # (P,) cells, within which it lies: 1 or more where not every cell was measured
+    shown: np.ndarray   # (P,) bool, whether road before and other ground behind it were measured
+    likely: np.ndarray   # (P,) bool, whether rather so than not
+    hidden: np.ndarray   # (P,) bool, whether hardly anything was measured right behind it, or nothing that tells road from other ground
 
 
 def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimits:
@@ -166,9 +159,8 @@ def _darker_patch(values, sigma, first):
 def _off_course(values, sigma, seen):
     """(P, K) sigmas by which cells are off the course that the cells before them take across the road.
 
-    A level is followed outward cell by cell (a Kalman filter). A cell that is far off moves it no more than one that is hardly
-    off, so a metre of other ground stays other ground. Where the density of points changes, ground is seen from elsewhere, and
-    the level is less certain.
+    A level is followed outward cell by cell (a Kalman filter). A cell that is far off moves it no more than one that is hardly off, so a metre of
+    other ground stays other ground. Where the density of points changes, ground is seen from elsewhere, and the level is less certain.
 
     values : (P, K), without their slope; `sigma` : (P, K) of single cells; `seen` : (P, K) points
     """

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
-from scipy.interpolate import splev, splrep
+from scipy.interpolate import make_smoothing_spline
 from scipy.ndimage import uniform_filter1d
 
 from ...common.arrays import stretch_of
@@ -185,9 +185,10 @@ def _drawn(frame, road, side, carriageway, grown, runs):
     stations = carriageway.cells.stations
     rows = np.concatenate([np.arange(a, b) for a, b in runs])
     offset, sigma = grown.offset[rows], grown.sigma[rows]
-    # least squares with the noise of a place; as many rows as differ
-    curve = splrep(stations[rows], offset, w=1.0 / sigma, s=len(rows))
-    residual = offset - splev(stations[rows], curve)
+    # a place depends on what lies within a few smoothing lengths, and on nothing farther along the line (Silverman 1984)
+    curve = make_smoothing_spline(stations[rows], offset, w=sigma**-2.0,
+                                  lam=SURFACE.smoothing_length**4 / (np.median(sigma)**2 * SURFACE.row_length))
+    residual = offset - curve(stations[rows])
     pieces = []
     for k, (a, b) in enumerate(runs):
         if k:
@@ -198,7 +199,7 @@ def _drawn(frame, road, side, carriageway, grown, runs):
     result = []
     for status, start, end in pieces:
         s = np.linspace(start, end, max(int(np.ceil((end - start) / EDGE.edge_vertex_spacing)), 1) + 1)
-        d = splev(s, curve) if status == "measured" else np.interp(s, [start, end], splev([start, end], curve))
+        d = curve(s) if status == "measured" else np.interp(s, [start, end], curve([start, end]))
         vertices = np.c_[frame.to_map(road, s, d, _height(carriageway, s, d))]
         near = stretch_of(stations[rows], start, end)
         passes = frame.passes_sigma(road, s)

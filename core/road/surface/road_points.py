@@ -114,16 +114,11 @@ def _points_of_section(survey, key, carriageway):
 
 @dataclass(frozen=True)
 class _OnRoad:
-    """Points of a window by their index.
+    """Points of a window by their index."""
 
-    surface : (M,) int, points of the road surface
-    half_width : (M,) uint16 mm, from the reference line to the limit of the road on the side of each point
-    above : (K,) int, points SURFACE.min_obstacle_height to SURFACE.max_obstacle_height above the surface
-    """
-
-    surface: np.ndarray
-    half_width: np.ndarray
-    above: np.ndarray
+    surface: np.ndarray   # (M,) int, points of the road surface
+    half_width: np.ndarray   # (M,) uint16 mm, from the reference line to the limit of the road on the side of each point
+    above: np.ndarray   # (K,) int, points SURFACE.min_obstacle_height to SURFACE.max_obstacle_height above the surface
 
 
 def points_on_road(points: Points, carriageway: Carriageway) -> _OnRoad:

@@ -21,29 +21,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SurfaceOutlines(LayerRows):
-    """S stretches of road surface, each of one status.
-
-    road : (S,) int
-    status : (S,) str objects: measured where both sides have a measured or bridged edge, else grown
-    station, end : (S,) metres along the road
-    area : (S,) square metres
-    points : (S,) int, road points
-    outline : (S,) shapely polygons with Z in local metres, as the layer holds them; consecutive ones share two vertices
-    crs : WKT, "" where unknown
-    thin : where no curb was found and the points are too few for one, as a user is told; "" where there is no such place
-    """
+    """S stretches of road surface, each of one status."""
 
     GEOMETRY_TYPE, SCHEMA = "PolygonZ", ROAD_SURFACE
 
-    road: np.ndarray = field(metadata=column())
-    status: np.ndarray = field(metadata=column())
-    station: np.ndarray = field(metadata=column("station_m"))
+    road: np.ndarray = field(metadata=column())   # (S,) int
+    status: np.ndarray = field(metadata=column())   # (S,) str objects: measured where both sides have a measured or bridged edge, else grown
+    station: np.ndarray = field(metadata=column("station_m"))   # station, end: (S,) metres along the road
     end: np.ndarray = field(metadata=column("end_m"))
-    area: np.ndarray = field(metadata=column("area_m2"))
-    points: np.ndarray = field(metadata=column())
-    outline: np.ndarray
-    crs: str = ""
-    thin: str = ""
+    area: np.ndarray = field(metadata=column("area_m2"))   # (S,) square metres
+    points: np.ndarray = field(metadata=column())   # (S,) int, road points
+    outline: np.ndarray   # (S,) shapely polygons with Z in local metres, as the layer holds them; consecutive ones share two vertices
+    crs: str = ""   # WKT, "" where unknown
+    thin: str = ""   # where no curb was found and the points are too few for one, as a user is told; "" where there is no such place
 
     @staticmethod
     def of_rows(rows: Sequence[Sequence[Any]], crs: str = "", thin: str = "") -> SurfaceOutlines:

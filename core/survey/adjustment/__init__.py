@@ -5,7 +5,4 @@ In: a `Survey` whose passes disagree. Out: corrections along each pass, which ar
 
 from ...lazy import public
 
-__getattr__, __all__ = public(__name__, {
-    "adjust": ("adjust_passes",),
-    "register": ("PassCorrections", "pass_offsets"),
-})
+__getattr__, __all__ = public(__name__, {"adjust": ("adjust_passes",), "register": ("PassCorrections", "pass_offsets")})

@@ -1,8 +1,7 @@
 """Strip adjustment: passes over one road are adjusted to each other, where navigation drifted between them.
 
-The correction of each pass is a smooth function of station. It is the least-squares solution for the measured offsets
-between passes, with small changes along the road and small corrections as prior. Two passes meet in their middle,
-because nothing shows which of them is more accurate.
+The correction of each pass is a smooth function of station. It is the least-squares solution for the measured offsets between passes, with small
+changes along the road and small corrections as prior. Two passes meet in their middle, because nothing shows which of them is more accurate.
 """
 
 from __future__ import annotations
@@ -406,11 +405,10 @@ def warnings_of_levels(frame: Any) -> list[str]:
         middle = float(np.median(rise[rows]))
         if np.quantile(np.abs(rise[rows] - middle), ADJUST.share_along) < ADJUST.even_rise:
             first, last = s[rows].min() - REGISTER.correction_step / 2, s[rows].max() + REGISTER.correction_step / 2
-            messages.append(
-                f"Roads {road} and {other_road} run along each other at stations {first:.0f} to {last:.0f} m of road {road}, and one lies "
-                f"{abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two kinds (above the "
-                "ellipsoid and above sea level), and the map shows it twice. Bring the drives to one kind of heights, or process the files of each "
-                "drive by itself.")
+            messages.append(f"Roads {road} and {other_road} run along each other at stations {first:.0f} to {last:.0f} m of road {road}, and one "
+                            f"lies {abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two "
+                            "kinds (above the ellipsoid and above sea level), and the map shows it twice. Bring the drives to one kind of heights, "
+                            "or process the files of each drive by itself.")
     return messages
 
 

@@ -1,9 +1,8 @@
 """Offsets between two passes over the same stretch of road: across, along and up.
 
-Navigation drifts by centimetres between two drives, so that every curb and line appears twice. Both passes are
-rasterised as strips of cells; slow variations of height and intensity are removed; the strips are correlated at every
-offset up to 30 cm. The offset of best correlation is the offset between the passes. Objects that only one pass
-measured, such as vehicles, do not correlate and have no effect.
+Navigation drifts by centimetres between two drives, so that every curb and line appears twice. Both passes are rasterised as strips of cells; slow
+variations of height and intensity are removed; the strips are correlated at every offset up to 30 cm. The offset of best correlation is the offset
+between the passes. Objects that only one pass measured, such as vehicles, do not correlate and have no effect.
 """
 
 from __future__ import annotations

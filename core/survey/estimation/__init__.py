@@ -5,6 +5,4 @@ In: point cloud files. Out: an `EstimatedTrajectory`.
 
 from ...lazy import public
 
-__getattr__, __all__ = public(__name__, {
-    "estimate": ("EstimatedTrajectory", "estimate_trajectory", "splitter_of"),
-})
+__getattr__, __all__ = public(__name__, {"estimate": ("EstimatedTrajectory", "estimate_trajectory", "splitter_of")})

@@ -88,9 +88,8 @@ def _estimated(files, scanner_field, wkt, progress):
     if not samples.has_time:
         return _without_time(samples, wkt)
     if not samples.drives:
-        raise RoadExtractionError(
-            "The points come in pieces too short to tell a drive: no stretch of time without gaps of a second holds enough of them. "
-            "Give the whole survey.")
+        raise RoadExtractionError("The points come in pieces too short to tell a drive: no stretch of time without gaps of a second holds enough of "
+                                  "them. Give the whole survey.")
     tracks = []
     for number, drive in enumerate(samples.drives):
         tracks.append(first_track(samples.time[drive], samples.place[drive]))
@@ -223,9 +222,8 @@ def _of_rays(samples, tracks, scanners, found, crs):
         rows.append(np.column_stack([time, found.poses.at(interval, share)[:, :YAW + 1], flat, up])[kept])
     time, x, y, z, roll, pitch, yaw, flat, up = np.concatenate(rows).T
     if not len(time):
-        raise RoadExtractionError(
-            f"The places of the scanner could not be told to {ESTIMATE.max_sigma:g} m anywhere. The times may be those of an export, not of the "
-            "measuring: give the cloud as the scanner's own program writes it, or a trajectory.")
+        raise RoadExtractionError(f"The places of the scanner could not be told to {ESTIMATE.max_sigma:g} m anywhere. The times may be those of an "
+                                  "export, not of the measuring: give the cloud as the scanner's own program writes it, or a trajectory.")
     ox, oy, oz = samples.origin
     trajectory = Trajectory(time + samples.start, x + ox, y + oy, z + oz, np.degrees(roll), np.degrees(pitch), (90.0 - np.degrees(yaw)) % 360.0, crs)
     ground = np.interp(time, *(np.concatenate(column) for column in zip(*((track.time, track.foot[:, 2]) for track in tracks))))
@@ -298,10 +296,9 @@ def _refuse_airborne(tracks: list[FirstTrack]) -> None:
     """Refuse a cloud whose points are spread so wide at any time that they were measured from high above."""
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     if reach > ESTIMATE.farthest_median:
-        raise RoadExtractionError(
-            f"This looks like an airborne survey: at any moment half of its points lie more than {reach:.0f} m from where they are densest, and "
-            f"a vehicle on the road sees half of them within {ESTIMATE.farthest_median:.0f} m. A trajectory is estimated for mobile laser "
-            "scanning from the road alone.")
+        raise RoadExtractionError(f"This looks like an airborne survey: at any moment half of its points lie more than {reach:.0f} m from where they "
+                                  f"are densest, and a vehicle on the road sees half of them within {ESTIMATE.farthest_median:.0f} m. A trajectory "
+                                  "is estimated for mobile laser scanning from the road alone.")
 
 
 def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
@@ -347,11 +344,10 @@ def _refuse_without_road(tracks: list[FirstTrack]) -> None:
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     sharp = _usual_acceleration([track.foot for track in tracks], TRACK.window)
     if reach > ESTIMATE.max_road_reach or sharp > ESTIMATE.max_acceleration:
-        raise RoadExtractionError(
-            "No mirror is seen to turn in the points' times, and their density does not show the way either: half of the points lie more than "
-            f"{reach:.1f} m from where they are densest, and that place moves with accelerations of {sharp:.0f} m/s². The road under the vehicle may "
-            "be missing from the cloud, as when it was wet, or the times may be those of an export. Give the cloud as the scanner's own program "
-            "writes it, or a trajectory.")
+        raise RoadExtractionError("No mirror is seen to turn in the points' times, and their density does not show the way either: half of the "
+                                  f"points lie more than {reach:.1f} m from where they are densest, and that place moves with accelerations of "
+                                  f"{sharp:.0f} m/s². The road under the vehicle may be missing from the cloud, as when it was wet, or the times may "
+                                  "be those of an export. Give the cloud as the scanner's own program writes it, or a trajectory.")
 
 
 def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> None:

@@ -65,9 +65,8 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     del parts
     if len(time) < TRACK.min_drive_samples:
-        raise RoadExtractionError(
-            f"The point clouds have {len(time)} usable points; a trajectory is estimated from {TRACK.min_drive_samples} and more. Give the whole "
-            "survey.")
+        raise RoadExtractionError(f"The point clouds have {len(time)} usable points; a trajectory is estimated from {TRACK.min_drive_samples} and "
+                                  "more. Give the whole survey.")
     field, values = census.choose(scanner_field)
     scanner = np.zeros(len(time), np.uint8)
     if field is not None:

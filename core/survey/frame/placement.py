@@ -20,9 +20,8 @@ COORDINATE_DECIMALS = 4  # derived: of coordinates in layers: 0.1 mm
 def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Stations and offsets of local places on given roads, (V,) metres; NaN where a place has no foot on its road, see `Road.locate`.
 
-    The places are taken as their map coordinates hold them. A layer that was written
-    and read again therefore gives the same stations and offsets, and the stages give
-    the same results in one call and one by one.
+    The places are taken as their map coordinates hold them. A layer that was written and read again therefore gives the same stations and offsets,
+    and the stages give the same results in one call and one by one.
 
     road : (V,) int, number of the road of each place; numbers that the frame does not have are allowed
     x, y : (V,) local metres

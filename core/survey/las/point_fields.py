@@ -54,13 +54,11 @@ class ScannerCensus:
         """
         if wanted not in ("", "automatic", None):
             if wanted not in self.spans:
-                raise RoadExtractionError(
-                    f"Scanner field {wanted!r} is not known; choose automatic, scanner_channel or point_source_id.")
+                raise RoadExtractionError(f"Scanner field {wanted!r} is not known; choose automatic, scanner_channel or point_source_id.")
             values = sorted(self.spans[wanted])
             if len(values) > 4 * LAS.max_scanners:
                 raise RoadExtractionError(
-                    f"{wanted} has more than {4 * LAS.max_scanners} different values, too many to be scanners. "
-                    "Set the scanner field to automatic.")
+                    f"{wanted} has more than {4 * LAS.max_scanners} different values, too many to be scanners. Set the scanner field to automatic.")
             return wanted, values if len(values) <= LAS.max_scanners else _heads(self.spans[wanted])
         channels = self.spans["scanner_channel"]
         if 1 < len(channels) <= LAS.max_scanners:
@@ -251,9 +249,8 @@ def check_coloured(files: Sequence[CloudHeader], taken_from: str) -> None:
     """Raise RoadExtractionError where intensity is taken from "rgb", and a file that has points holds no colours."""
     grey = [file for file in files if file.count and not file.has_colour]
     if grey and taken_from == "rgb":
-        raise RoadExtractionError(
-            f"The points of {grey[0].path} have no colours (point format {grey[0].point_format}), from which the intensity was to be taken. "
-            "Set Intensity from to intensity, or export the points with red, green and blue.")
+        raise RoadExtractionError(f"The points of {grey[0].path} have no colours (point format {grey[0].point_format}), from which the intensity was "
+                                  "to be taken. Set Intensity from to intensity, or export the points with red, green and blue.")
 
 
 def without_intensity(files: Sequence[CloudHeader], taken_from: str, fields: Sequence[str] = ()) -> str:

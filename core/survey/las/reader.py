@@ -144,9 +144,8 @@ def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
         names = set(header.point_format.dimension_names)
         scales, offsets = np.abs(header.scales), np.abs(header.offsets)
         if not ((scales > 0) & (scales < LAS.max_header_scale) & (offsets < LAS.max_header_offset)).all():
-            raise RoadExtractionError(
-                f"{path} gives its points no coordinates: its header says scales of {_listed(header.scales)} and offsets of "
-                f"{_listed(header.offsets)}. Export the file again, with a scale such as 0.001 m.")
+            raise RoadExtractionError(f"{path} gives its points no coordinates: its header says scales of {_listed(header.scales)} and offsets of "
+                                      f"{_listed(header.offsets)}. Export the file again, with a scale such as 0.001 m.")
         overflow = _overflow(header)
         count, units, bounds_hold = int(header.point_count), _stated_units(header, in_metres(given)[1]), _bounds_hold(path, mended, header)
         _to_metres(header, units)
@@ -264,9 +263,8 @@ def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str]
     except BaseException as problem:
         if isinstance(problem, NOT_FILE_ERRORS):
             raise
-        raise RoadExtractionError(
-            f"{path} is damaged: its header promises {promised} points, and from number {first + 1} on they cannot be read ({problem}). "
-            "Copy or export the file again.") from problem
+        raise RoadExtractionError(f"{path} is damaged: its header promises {promised} points, and from number {first + 1} on they cannot be read "
+                                  f"({problem}). Copy or export the file again.") from problem
 
 
 # The CRS of a LAS file from its WKT and GeoKeys records, which may contradict each other.

@@ -5,6 +5,4 @@ In: time and place of points. Out: rotation rate, mirror phase, and line and pha
 
 from ...lazy import public
 
-__getattr__, __all__ = public(__name__, {
-    "scan_lattice": ("MirrorPhase", "ScanLattice", "find_lattice", "scanner_runs", "time_order"),
-})
+__getattr__, __all__ = public(__name__, {"scan_lattice": ("MirrorPhase", "ScanLattice", "find_lattice", "scanner_runs", "time_order")})

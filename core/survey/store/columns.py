@@ -13,9 +13,8 @@ ROW_CHUNK = 1 << 14    # cost: rows that are split into columns at a time: they 
 class Columns:
     """Arrays of one length by name, used like a structured array.
 
-    `columns["z"]` is one column; `columns[mask]`, `columns[indices]` and `columns[2:5]` are Columns
-    of those rows. Evaluation is lazy: rows are taken, and parts are concatenated, only when a column of
-    the result is asked for, since most steps use few columns.
+    `columns["z"]` is one column; `columns[mask]`, `columns[indices]` and `columns[2:5]` are Columns of those rows. Evaluation is lazy: rows are
+    taken, and parts are concatenated, only when a column of the result is asked for, since most steps use few columns.
 
     Parameters
     ----------

@@ -20,28 +20,18 @@ if TYPE_CHECKING:
 
 @dataclass
 class RoadPoints:
-    """Road points by section, and the properties that later stages need.
+    """Road points by section, and the properties that later stages need."""
 
-    store : SectionStore of ROAD_POINT records
-    origin : (3,) whole numbers, map coordinates in metres that were subtracted from x, y, z
-    crs : WKT, "" where unknown
-    has_corrected, has_cluster, has_spacing : whether the columns `corrected`, `cluster` and `spacing` hold values
-    moves : PassCorrections, the shifts of the passes against the coordinates that were measured; None where there are none
-    pass_sigma : {road number: SigmaAlong}, as in RoadFrame
-    survey : Survey whose points these are, None where they are their own
-    density : CubeDensity of all points of the survey and of these, where that was asked for
-    """
-
-    store: SectionStore
-    origin: np.ndarray
-    crs: str = ""
-    has_corrected: bool = False
+    store: SectionStore   # SectionStore of ROAD_POINT records
+    origin: np.ndarray   # (3,) whole numbers, map coordinates in metres that were subtracted from x, y, z
+    crs: str = ""   # WKT, "" where unknown
+    has_corrected: bool = False   # has_corrected, has_cluster, has_spacing: whether the columns `corrected`, `cluster` and `spacing` hold values
     has_cluster: bool = False
-    moves: Any = None
+    moves: Any = None   # PassCorrections, the shifts of the passes against the coordinates that were measured; None where there are none
     has_spacing: bool = False
-    pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)
-    survey: Any = field(default=None, repr=False)
-    density: Any = ()
+    pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)   # {road number: SigmaAlong}, as in RoadFrame
+    survey: Any = field(default=None, repr=False)   # Survey whose points these are, None where they are their own
+    density: Any = ()   # CubeDensity of all points of the survey and of these, where that was asked for
 
     @property
     def executor(self) -> Executor:

@@ -60,11 +60,10 @@ class _Section:
 class StoreIndex:
     """Where the points of a store lie: all that others need to know of them.
 
-    files : names of files of one folder, or the open ArrayFile of a store without a folder
     parts : (K, 8) int64: road, section, number of the file, first byte, rows there, first row and rows of the part, whether it is in canonical order
     """
 
-    files: tuple[Any, ...]
+    files: tuple[Any, ...]   # names of files of one folder, or the open ArrayFile of a store without a folder
     parts: np.ndarray
 
     @classmethod
@@ -84,10 +83,8 @@ class StoreIndex:
 class SectionStore:
     """Points of all roads, appended in any order, read back by station.
 
-    A section is a fixed interval of station of one road, counted from 0. What is read
-    back is sorted by station, offset, height and time, so it does not depend on
-    the order of appending, and a window is a range of rows. A section is sorted
-    once, when it is first read.
+    A section is a fixed interval of station of one road, counted from 0. What is read back is sorted by station, offset, height and time, so it does
+    not depend on the order of appending, and a window is a range of rows. A section is sorted once, when it is first read.
 
     Parameters
     ----------

@@ -174,10 +174,9 @@ def _time(columns, meaning, label, notes, doubts):
         titles = " ".join(columns[column_of[role]].title for role in ("time", "date", "year", "hour") if role in column_of).lower()
         return _gps_seconds(times, column, titles, meaning.clock, label, notes)
     if column.holds_texts:
-        raise RoadExtractionError(
-            f"The column {_named(column)} of {label} should be the time, but holds {column.first[:TRAJECTORY.longest_name]!r}, which is "
-            f"neither a number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say which is "
-            "which in Columns of Import trajectory.")
+        raise RoadExtractionError(f"The column {_named(column)} of {label} should be the time, but holds {column.first[:TRAJECTORY.longest_name]!r}, "
+                                  f"which is neither a number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say "
+                                  "which is which in Columns of Import trajectory.")
     if "utc" in column.title.lower():
         doubts.append(f"The column {_named(column)} of {label} counts seconds of UTC by its name; no leap seconds were added. If points and "
                       "lines come out shifted along the road, export the trajectory with GPS time.")
@@ -272,9 +271,8 @@ def _gps_seconds(times, column, titles, clock, label, notes):
     if times.order_known and shows == "UTC" and times.dated:
         return _added_leap_seconds(times.seconds, label, notes)
     reason, advice = _unknown_clock(times, shows)
-    raise RoadExtractionError(
-        f"The column {_named(column)} of {label} holds {times.kind} such as {times.first[:TRAJECTORY.longest_name]!r}. "
-        f"GPS seconds are needed, and {reason}. Export the trajectory with GPS time in seconds; or {advice}.")
+    raise RoadExtractionError(f"The column {_named(column)} of {label} holds {times.kind} such as {times.first[:TRAJECTORY.longest_name]!r}. GPS "
+                              f"seconds are needed, and {reason}. Export the trajectory with GPS time in seconds; or {advice}.")
 
 
 def _named(column):

@@ -73,9 +73,8 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
     has_time = time is not None and bool(np.isfinite(time).any())
     x, y, crs = _plane_coordinates(columns, time if has_time else None, crs, label, remarks)
     if "z" not in columns or not np.isfinite(columns["z"]).any():
-        raise RoadExtractionError(
-            f"{label} has no heights. Each position needs a z (the height of the vehicle): name the column z or height, "
-            "or use a layer whose points have Z.")
+        raise RoadExtractionError(f"{label} has no heights. Each position needs a z (the height of the vehicle): name the column z or height, or use "
+                                  "a layer whose points have Z.")
     if time is None or not has_time:
         time = np.arange(len(x), dtype=float)
         remarks.append(f"{label} has no time; its positions are used in file order.")
@@ -170,10 +169,9 @@ def _check_complete(source, columns, place, heights_needed=True):
     missing = [role for role, roles in ways.items() if not roles & set(place)]
     if missing:
         titles = [column.title or f"column {k + 1}" for k, column in enumerate(columns)]
-        raise RoadExtractionError(
-            f"{source} has the columns {listed(titles)}; {' and '.join(missing)} cannot be found among them. Its first row reads "
-            f"{listed([column.first for column in columns])}. Name them time, x, y, z, roll, pitch, heading, or longitude, latitude, height, or "
-            "say which is which in Columns of Import trajectory.")
+        raise RoadExtractionError(f"{source} has the columns {listed(titles)}; {' and '.join(missing)} cannot be found among them. Its first row "
+                                  f"reads {listed([column.first for column in columns])}. Name them time, x, y, z, roll, pitch, heading, or "
+                                  "longitude, latitude, height, or say which is which in Columns of Import trajectory.")
 
 
 def _stated_lengths(columns, place, preamble):
@@ -217,14 +215,12 @@ def _check_map(x, y, unit, time, known, label):
     """Refuse x and y that contradict their CRS, `known`, or are latitude and longitude; `unit` is that of angles, "" of what is none."""
     if known is not None and horizontal_part(known).is_geographic:
         if not unit and max(_farthest(x), _farthest(y)) > 360:
-            raise RoadExtractionError(
-                f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach "
-                f"{_farthest(x):.0f}, {_farthest(y):.0f}. Give the CRS that its x and y are in.")
+            raise RoadExtractionError(f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach {_farthest(x):.0f}, "
+                                      f"{_farthest(y):.0f}. Give the CRS that its x and y are in.")
         return
     if known is not None and unit:
-        raise RoadExtractionError(
-            f"{label} has the CRS {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
-            f"(about {np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
+        raise RoadExtractionError(f"{label} has the CRS {horizontal_part(known).name}, but its coordinates look like longitude and latitude (about "
+                                  f"{np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
     if not unit and geographic_unit(y, x, time) == "degrees" and _farthest(y) > 90.0:
         raise RoadExtractionError(f"{label} has x and y that look like latitude and longitude (about {np.nanmedian(x):.4f}, "
                                   f"{np.nanmedian(y):.4f}), in this order. Name the columns latitude and longitude.")
@@ -314,9 +310,8 @@ def _read_sbet(path, crs):
         notes.append(f"{path.name} ends within a record; the last, incomplete one was left out.")
     parsed = parse_crs(crs)
     if parsed is not None and not horizontal_part(parsed).is_geographic:
-        raise RoadExtractionError(
-            f"{path} is an Applanix SBET file: its positions are geographic, but {horizontal_part(parsed).name} was given as their CRS. "
-            "Leave the CRS of the input empty or geographic, and give the projected CRS as the target.")
+        raise RoadExtractionError(f"{path} is an Applanix SBET file: its positions are geographic, but {horizontal_part(parsed).name} was given as "
+                                  "their CRS. Leave the CRS of the input empty or geographic, and give the projected CRS as the target.")
     true_heading = rows[:, 9] - rows[:, 10]
     columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],
                    roll=rows[:, 7], pitch=rows[:, 8], heading=true_heading)

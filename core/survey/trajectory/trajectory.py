@@ -47,8 +47,7 @@ class Trajectory:
 
     def rows(self, which: Any) -> Trajectory:
         """The positions of a mask, slice or index array."""
-        return replace(self, **{name: getattr(self, name)[which]
-                                for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
+        return replace(self, **{name: getattr(self, name)[which] for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
 
     def attitude(self) -> np.ndarray | None:
         """(3, N) roll, pitch and heading in radians, the heading unwrapped, unknown roll and pitch as 0; None where a heading is unknown."""
@@ -107,9 +106,8 @@ def refuse_standstill(trajectory: Trajectory) -> None:
     x, y = trajectory.x[usable], trajectory.y[usable]
     length = float(np.hypot(np.diff(x), np.diff(y)).sum())
     if len(x) < 2 or length < 1.0:
-        raise RoadExtractionError(
-            f"The trajectory has {len(x)} usable position(s) over {length:.1f} m. At least two positions and "
-            "1 m of driving are needed; check the time and coordinate columns of the file.")
+        raise RoadExtractionError(f"The trajectory has {len(x)} usable position(s) over {length:.1f} m. At least two positions and 1 m of driving "
+                                  "are needed; check the time and coordinate columns of the file.")
 
 
 def _refuse_two_drives(trajectory, rows):
@@ -156,9 +154,8 @@ def _refuse_degrees(trajectory):
 
     crs = parse_crs(trajectory.crs)
     if crs is not None and horizontal_part(crs).is_geographic:
-        raise RoadExtractionError(
-            f"The trajectory is in {horizontal_part(crs).name} (degrees) and the CRS to convert it to is unknown: the point cloud "
-            "carries no CRS. Give the projected CRS of the survey, or run Import trajectory with it as the target.")
+        raise RoadExtractionError(f"The trajectory is in {horizontal_part(crs).name} (degrees) and the CRS to convert it to is unknown: the point "
+                                  "cloud carries no CRS. Give the projected CRS of the survey, or run Import trajectory with it as the target.")
 
 
 # A trajectory in another coordinate reference system.

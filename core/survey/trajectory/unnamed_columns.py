@@ -24,9 +24,8 @@ def columns_from_numbers(values: np.ndarray, path: str | os.PathLike[str]) -> di
     plane, heading = _plane(sample, time, candidates)
     z = None if plane is None else _height_column(sample, time, candidates, plane[:2], heading)
     if plane is None or z is None:
-        raise RoadExtractionError(
-            f"{path} has {count} columns without names, and time, x, y and z cannot be recognised from their numbers. "
-            "Put a line of names above them, such as time,x,y,z,roll,pitch,heading.")
+        raise RoadExtractionError(f"{path} has {count} columns without names, and time, x, y and z cannot be recognised from their numbers. Put a "
+                                  "line of names above them, such as time,x,y,z,roll,pitch,heading.")
     roles = {**dict(zip(("x", "y") if plane[2] == "metres" else ("lon", "lat"), plane[:2])), "z": z}
     roles.update({} if time is None else {"time": time})
     return {**roles, **_attitude_columns(sample, set(roles.values()), max(plane[:2]), z, heading)}

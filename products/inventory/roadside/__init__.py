@@ -5,6 +5,4 @@ In: an open `Survey` and the layers that say where the carriageway ends. Out: `R
 
 from ....core.lazy import public
 
-__getattr__, __all__ = public(__name__, {
-    "find": ("Roadside", "find_roadside", "roadside_to_features"),
-})
+__getattr__, __all__ = public(__name__, {"find": ("Roadside", "find_roadside", "roadside_to_features")})

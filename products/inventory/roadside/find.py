@@ -85,9 +85,8 @@ def _report(found: Roadside, progress: Progress) -> None:
     text = ", ".join(f"{length:.0f} m of {kind.replace('_', ' ')}" for kind, length in sorted(lengths.items())) or "no lines"
     progress.info(f"Beside the road: {text}; {sum(map(len, found.poles.values()))} poles, signs and trunks.")
     if not any(edges.known for edges in found.edges.values()):
-        found.notes.append("Without road edges, marking lines, driving lines or lanes everything more than "
-                           f"{BEYOND_TRACK:.0f} m from the track counts as beside the road, parked cars "
-                           "too, and gutters are not looked for. Give the road edges.")
+        found.notes.append(f"Without road edges, marking lines, driving lines or lanes everything more than {BEYOND_TRACK:.0f} m from the track "
+                           "counts as beside the road, parked cars too, and gutters are not looked for. Give the road edges.")
     for note in found.notes:
         progress.warn(note)
 

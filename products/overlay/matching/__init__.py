@@ -5,6 +5,4 @@ In: an image that lies roughly, and the intensity image. Out: pairs of places, e
 
 from ....core.lazy import public
 
-__getattr__, __all__ = public(__name__, {
-    "propose": ("Proposal", "ProposalSettings", "propose_control_points"),
-})
+__getattr__, __all__ = public(__name__, {"propose": ("Proposal", "ProposalSettings", "propose_control_points")})

@@ -206,16 +206,14 @@ def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace
     """
     ground = max(image.width, image.height) * rough.size
     if ground > MOST_GROUND:
-        raise RoadExtractionError(
-            f"{image.path} covers {ground:.0f} m by its pixel size of {rough.size:.3g} m; images of up to {MOST_GROUND:.0f} m are "
-            "matched. Give the single photo or a part of the mosaic, or the right pixel size.")
+        raise RoadExtractionError(f"{image.path} covers {ground:.0f} m by its pixel size of {rough.size:.3g} m; images of up to {MOST_GROUND:.0f} m "
+                                  "are matched. Give the single photo or a part of the mosaic, or the right pixel size.")
     placed = bool(np.isfinite(rough.reach))
     far = 0.5 * float(np.hypot(image.width, image.height)) * rough.size * (1.0 + rough.size_range) + (rough.reach if placed else 0.0)
     sides = intensity.width * intensity.cell_size, intensity.height * intensity.cell_size
     if not placed and max(sides) > MOST_SEARCHED:
-        raise RoadExtractionError(
-            f"The intensity image is {max(sides):.0f} m long; without any position an image is looked for within {MOST_SEARCHED:.0f} m. Give two "
-            "points or a world file, or cut the intensity image.")
+        raise RoadExtractionError(f"The intensity image is {max(sides):.0f} m long; without any position an image is looked for within "
+                                  f"{MOST_SEARCHED:.0f} m. Give two points or a world file, or cut the intensity image.")
     paint = read_paint(intensity, (rough.x - far, rough.y - far, rough.x + far, rough.y + far) if placed else None)
     if not paint.known.any():
         raise RoadExtractionError(_no_overlap(image, intensity, rough, sides))

@@ -47,9 +47,8 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     progress.report(0.1)
     x, y = _paint_corners(paint.contrast, paint.known, paint.cell, _CORNERS)
     if len(x) < LEAST_PAIRS:
-        raise RoadExtractionError(
-            f"The intensity image shows {len(x)} corners of paint where {image.path} may lie; {LEAST_PAIRS} are needed. Measure the control "
-            "points by hand there, at manholes and curbs for example.")
+        raise RoadExtractionError(f"The intensity image shows {len(x)} corners of paint where {image.path} may lie; {LEAST_PAIRS} are needed. "
+                                  "Measure the control points by hand there, at manholes and curbs for example.")
     for sign, part in ((1, progress.part(0.1, 0.5)), (-1, progress.part(0.5, 0.9))):
         tried = _followed(image, photo, paint, bounds, sign, x, y, part)
         for chosen in tried:
@@ -61,10 +60,9 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
                 near = _nearby_rival(pairs.placement, paint, photo, x, y)
                 rival = min([*rivals, *([near] if near else [])], key=lambda one: one.margin, default=None)
                 return _proposal(image, intensity, rough, settings, pairs, rival, paint)
-    raise RoadExtractionError(
-        f"The paint of {image.path} and that of the intensity image do not fit each other, though it was looked for {_range(rough, bounds)}. "
-        "Is it another stretch of road, another scale, or a photo from before or after the road was painted anew? Give a closer position, "
-        "two points or the pixel size, or measure the control points by hand.")
+    raise RoadExtractionError(f"The paint of {image.path} and that of the intensity image do not fit each other, though it was looked for "
+                              f"{_range(rough, bounds)}. Is it another stretch of road, another scale, or a photo from before or after the road was "
+                              "painted anew? Give a closer position, two points or the pixel size, or measure the control points by hand.")
 
 
 def _followed(image, photo, paint, bounds, sign, x, y, progress):
@@ -102,10 +100,9 @@ def _proposal(image, intensity, rough, settings, pairs, rival, paint):
     why = pairs.why[shown]
     if rival is not None and rival.margin < 1.0:
         why = np.where(why == "", AMBIGUOUS, why)
-        notes.append(
-            f"The paint repeats: {rival.votes_for:.0f} corners speak for this place and {rival.votes_against:.0f} for one "
-            f"{np.hypot(rival.dx, rival.dy):.1f} m away, so no pair is accepted. Give two points or a smaller search distance, or accept the "
-            "pairs by hand if the place is right.")
+        notes.append(f"The paint repeats: {rival.votes_for:.0f} corners speak for this place and {rival.votes_against:.0f} for one "
+                     f"{np.hypot(rival.dx, rival.dy):.1f} m away, so no pair is accepted. Give two points or a smaller search distance, or accept "
+                     "the pairs by hand if the place is right.")
     slope = pairs.placement.polynomial.jacobian(pairs.x.mean(keepdims=True), pairs.y.mean(keepdims=True))[0]
     east = np.linalg.solve(slope, [1.0, 0.0])   # along a row of the image, m
     size = 1.0 / float(np.sqrt(abs(np.linalg.det(slope))))
@@ -368,8 +365,7 @@ def _corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: 
 def _nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
     """The shift by some metres that the corners allow best, besides none at all.
 
-    as of `_corner_scores`
-    Returns _Rival, None where no corner lies in the photo
+    as of `_corner_scores` Returns _Rival, None where no corner lies in the photo
     """
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
     maps = [cv2.dilate(match, near) for match in _maps(placement, paint, photo, x, y, _AROUND) if match is not None]

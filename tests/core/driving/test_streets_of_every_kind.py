@@ -214,24 +214,6 @@ def test_a_lane_is_no_less_sure_for_the_ways_to_read_what_lies_beside_the_road()
     assert said[1] > 0.93 and said[-1] > 0.93
 
 
-def beside_a_bay(dash, gap, mirror):
-    """Two lanes, and on the right dashes before a strip as wide as a lane, up to the curb."""
-    street = Street(vehicle=-1.6 * mirror).paint(3.25 * mirror, kind="").paint(0.0, pattern="dashed", kind="")
-    street.paint(-3.25 * mirror, pattern="dashed", kind="")
-    layer = Features("PolygonZ", MARKINGS)
-    for offset, length, period in ((0.0, 3.0, 9.0), (-3.25 * mirror, dash, dash + gap)):
-        for s in np.arange(6.0, 112.0, period):
-            shape, row = area(street, s, s + length, offset - 0.06, offset + 0.06, "lane")
-            layer.add(shape, **{**row, "use": "keep"})
-    return {offset * mirror: way for offset, way in lanes_of(street, markings=layer, edges=curbs(street, 3.7 * mirror, -6.2 * mirror)).items()}
-
-
-@pytest.mark.parametrize("mirror", [1, -1])
-def test_dashes_shorter_than_those_between_lanes_are_the_edge_before_a_bay(mirror):
-    assert beside_a_bay(1.0, 1.0, mirror) == {1.62: -1, -1.62: 1}
-    assert len(beside_a_bay(3.0, 6.0, mirror)) == 3
-
-
 @pytest.mark.parametrize("half, vehicle, lanes", [(2.25, 0.0, {0.0: 1}), (1.6, 0.0, {0.0: 1}), (3.2, -1.6, {-1.6: 1, 1.6: -1})])
 def test_a_street_that_was_driven_between_two_curbs_has_lanes_without_any_paint(half, vehicle, lanes):
     street = Street(vehicle=vehicle)
@@ -252,3 +234,10 @@ def test_lanes_go_on_between_the_curbs_where_the_paint_stops():
 def test_paint_that_stops_some_metres_before_the_curbs_do_gives_no_lane_of_its_own():
     street = Street(vehicle=-1.75).paint(0.0, 5.0, 100.0, pattern="dashed")
     assert max(line.bounds[2] for line, _ in street.lanes(edges=curbs(street, 3.5, -3.5))[0]) - EAST < 103.0
+
+
+def test_two_double_lines_with_room_between_them_are_a_painted_median_and_no_lane():
+    street = Street(vehicle=-3.4).paint(5.15, kind="edge").paint(-5.15, kind="edge")
+    for offset in (1.77, 1.53, -1.53, -1.77):
+        street.paint(offset, kind="", pattern="double-solid")
+    assert lanes_of(street) == {-3.46: 1, 3.46: -1}

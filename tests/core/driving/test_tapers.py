@@ -59,22 +59,6 @@ def test_a_lane_keeps_its_width_where_it_was_taken_to_reach_over_the_beginning_o
     np.testing.assert_allclose(kept.width, 3.2)
 
 
-@pytest.mark.parametrize("head", [True, False])
-@pytest.mark.parametrize("narrows, kept", [(True, 0.0), (False, 1.2)], ids=["a taper that goes on", "a lane that divides into two"])
-def test_a_lane_keeps_its_width_beside_a_taper_that_goes_on_beyond_the_survey(narrows, kept, head):
-    """30 m from the beginning of the survey a lane opens, along a taper of 33 m; or a broad lane divides into two."""
-    count = 260
-    at = np.arange(count)
-    widening = np.where(at < 60, 1.2 * (1.0 - 0.015 * (60 - at) * narrows), 0.0)
-    through, opening = track(0, -1.6 - widening / 2, 3.2 + widening), track(58, np.full(count - 58, -4.8), np.full(count - 58, 3.2))
-    if not head:
-        through = track(0, through.d[::-1], through.width[::-1])
-        opening = track(0, opening.d[::-1], opening.width[::-1])
-    found, _ = laid_out([through, opening])
-    width = found.width if head else found.width[::-1]
-    np.testing.assert_allclose(width[:55], 3.2 + kept)
-
-
 @pytest.mark.parametrize("again, end", [((), 86.0), ((1.75,), 114.5)])
 def test_a_lane_that_nobody_drove_goes_no_farther_than_lanes_are_built_wide(again, end):
     street = Street(length=120.0, vehicle=-1.75, again=again).paint(-3.5, kind="edge").paint(0.0, kind="centre")

@@ -209,15 +209,6 @@ def test_the_map_does_not_depend_on_how_the_street_lies_or_is_driven(street, roa
     assert [after["left"], after["right"]] == pytest.approx([before["right"], before["left"]], abs=4.0)
 
 
-def test_without_intensity_there_are_edges_and_a_reason(sample, cloud, tmp_path):
-    dark = laspy.read(cloud)
-    dark.intensity = np.zeros(len(dark.points), np.uint16)
-    dark.write(tmp_path / "dark.las")
-    found = make_road_map([tmp_path / "dark.las"], sample.trajectory, tmp_path / "intensity.tif")
-    assert len(found.edges) and len(found.surface)
-    assert "intensity" in found.without_paint and found.markings is None
-
-
 def test_a_run_that_is_broken_off_gives_back_the_disk_of_its_points(sample, cloud, tmp_path, monkeypatch):
     opened = []
 

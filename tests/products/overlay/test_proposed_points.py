@@ -70,11 +70,10 @@ def test_an_image_without_position_is_found_by_its_pixel_size(tmp_path, surveyed
 
 
 @pytest.mark.parametrize("paint", [
-    [bar(1.0 * k, -15, 4.0, 0.5, 90) for k in range(80)],
     [bar(40, -11, 80, 0.15), bar(40, -19, 80, 0.15), *dashes(-15, 0, 80)],
     [b for y in (-13, -17) for b in dashes(y, 0, 80)],
     zebra(40, -19.5, 10),
-], ids=["one long zebra crossing", "a dashed line between edge lines", "two dashed lines", "a zebra crossing"])
+], ids=["a dashed line between edge lines", "two dashed lines", "a zebra crossing"])
 def test_paint_that_repeats_gives_no_accepted_pair_that_is_false(tmp_path, paint):
     """The photo shows less than the survey: a period farther on it would look the same."""
     ground, camera = Ground(paint), Overhead(width=700, height=400)
@@ -97,11 +96,11 @@ def test_a_long_zebra_crossing_is_said_to_repeat(tmp_path):
 def test_other_paint_of_another_year_gives_no_pair(tmp_path, surveyed):
     anew = [bar(40, -11, 78, 0.15), bar(40, -19, 78, 0.15), *dashes(-13.5, 5, 78, 6, 12), *dashes(-16.5, 8, 78, 6, 12), *arrow(20, -12)]
     with pytest.raises(RoadExtractionError, match="painted anew"):
-        proposal(tmp_path, surveyed, Overhead(), Ground(anew))
+        proposal(tmp_path, surveyed, Overhead(width=1200, height=500), Ground(anew))
 
 
 def test_a_wrong_scale_and_a_bare_road_are_told(tmp_path, surveyed):
-    camera = Overhead(width=1200, height=500)
+    camera = Overhead(width=800, height=400)
     with pytest.raises(RoadExtractionError, match="another scale"):
         proposal(tmp_path, surveyed, camera, rough=about(camera, size=1.6))
     with pytest.raises(RoadExtractionError, match="do not fit each other"):

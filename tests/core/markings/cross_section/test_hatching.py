@@ -47,32 +47,3 @@ def test_without_a_line_the_ends_of_the_bars_are_the_border():
 def test_a_lane_line_farther_away_is_no_border():
     left, _ = borders(*bars(-1.0, 1.0), (35.0, 85.0, 1.9, 2.02, "lane"))
     assert np.nanmax(left) < 1.0
-
-
-def wedge(first, last, right, left, station):
-    """Parts of a line, 30 cm broad and half a metre long, that leads from an offset at one station to another at another one."""
-    middle = np.interp(np.arange(first, last, 0.5) + 0.25, station, [right, left])
-    return [(s, s + 0.5, d - 0.15, d + 0.15, "edge") for s, d in zip(np.arange(first, last, 0.5), middle)]
-
-
-def exit_ahead(unseen=0.0):
-    """An area between an edge line and one that leaves it at 30 m and is 2 m beside it at 70 m; bars from 50 m on, `unseen` m before them no line."""
-    s = np.arange(50.0, 70.0, 2.0)
-    sloped = [(a, a + 0.5, np.interp(a, [30.0, 70.0], [0.0, -2.0]), 0.0, "hatch") for a in s]
-    return borders(*sloped, (10.0, 100.0, -0.15, 0.15, "edge"), *wedge(30.5, 49.0 - unseen, 0.0, -2.0, [30.0, 70.0]),
-                   *wedge(49.0, 70.0, 0.0, -2.0, [30.0, 70.0]))
-
-
-@pytest.mark.parametrize("unseen", [0.0, 1.5])
-def test_borders_go_on_to_the_tip_where_the_area_is_too_narrow_for_bars(unseen):
-    left, right = exit_ahead(unseen)
-    at = (S > 35.0) & (S < 49.0)
-    np.testing.assert_allclose(left[at], 0.0, atol=0.05)
-    np.testing.assert_allclose(right[at], np.interp(S[at], [30.0, 70.0], [0.0, -2.0]), atol=0.1)
-    assert np.isnan(right[S < 29.0]).all()
-
-
-def test_borders_end_with_the_bars_where_the_lines_beside_them_part_or_are_not_seen_for_long():
-    left, right = exit_ahead(unseen=6.0)
-    assert np.isnan(left[S < 48.0]).all() and np.isnan(right[S < 48.0]).all()
-    assert np.isnan(left[S > 72.0]).all() and np.isnan(right[S > 72.0]).all()

@@ -110,14 +110,6 @@ def test_a_zebra_crossing_neither_cuts_a_line_nor_makes_one():
     assert street.distance(shapely.union_all(lines.geometries), 0.0).max() < 0.015
 
 
-def test_two_pieces_on_either_side_of_a_zebra_crossing_are_no_dashes():
-    """The borders of a traffic island end before the crossing and go on behind it: nothing says that they go on by a gap."""
-    street = zebra(ClusteredStreet().paint(0, 120, 4.0, kind="edge").paint(45, 51.5, 0.0).paint(64.0, 70.5, 0.0), 56.0)
-    inner = [(row["pattern"], row["status"], row["length_m"]) for row in street.lines().rows if row["length_m"] < 100.0]
-    assert [piece[:2] for piece in inner] == [("solid", "measured"), ("solid", "bridged"), ("solid", "measured")]
-    assert [piece[2] for piece in inner] == pytest.approx([6.5, 12.5, 6.5], abs=0.6)
-
-
 def test_the_frame_of_a_hatched_area_is_no_line_and_an_edge_line_beside_one_is():
     street = ClusteredStreet().paint(0, 120, -4.0, kind="edge")
     street.paint(40, 62, 1.0).paint(40, 62, 2.6, kind="centre")
@@ -127,24 +119,6 @@ def test_the_frame_of_a_hatched_area_is_no_line_and_an_edge_line_beside_one_is()
     lines = street.lines()
     assert told(lines, "kind", "status") == [("edge", "measured")]
     assert street.distance(lines.geometries[0], -4.0).max() < 0.02
-
-
-def test_a_double_line_that_leads_up_to_a_hatched_area_keeps_both_its_lines_and_goes_on_behind_the_area():
-    street = ClusteredStreet(130.0).paint(0, 130, 4.0, kind="edge")
-    for left in (0.0, 0.31):
-        street.paint(10, 20, left, width=0.12, kind="centre").paint(46, 110, left, width=0.12, kind="centre")
-    for s in np.arange(22.0, 43.5, 0.5):
-        wide = 0.8 * np.sin(np.pi * (s - 20.5) / 25.0)
-        street.paint(s, s + 0.52, 0.31 + wide, width=0.12, kind="centre").paint(s, s + 0.52, -wide, width=0.12, kind="centre")
-    for s in np.arange(22.3, 43.5, 1.5):
-        wide = 0.8 * np.sin(np.pi * (s - 20.5) / 25.0)
-        street.paint(s, s + 0.4, 0.05 - wide, across=0.26 + wide, kind="hatch", use="other")
-    lines = street.lines()
-    centre = [(geometry, row) for geometry, row in lines if row["kind"] == "centre"]
-    assert sorted((row["status"], round(row["station_m"], -1)) for _, row in centre) == [
-        ("bridged", 20.0), ("bridged", 20.0), ("measured", 10.0), ("measured", 10.0), ("measured", 50.0), ("measured", 50.0)]
-    for geometry, _ in centre:
-        assert min(street.distance(geometry, left).max() for left in (0.0, 0.31)) < 0.05
 
 
 def test_the_stop_line_that_touches_an_edge_line_leaves_the_edge_line_straight():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from counted_calls import calls
 from lanewright.core.markings.lines.linking import CommonTrend, StretchLookup, link_lines, link_over_long_gaps
-from lanewright.core.markings.lines.selection import hatching_borders, same_dash_pattern, select_lines
+from lanewright.core.markings.lines.selection import same_dash_pattern, select_lines
 from lanewright.core.markings.lines.strands import EdgesBeside, LinkedLine, Strand
 
 BLOCK = 100.0   # m from one junction to the next
@@ -39,15 +39,12 @@ def found_in(blocks):
     trend = CommonTrend(strands)
     lines = link_over_long_gaps(link_lines([LinkedLine([one]) for one in strands], trend, edges, 13.0), trend, edges, 13.0, 30.0, same_dash_pattern)
     bars = extents(blocks, *((s, s + 1.0, -3.4, -2.1) for s in np.arange(60.0, 78.0, 2.0)))
-    borders = hatching_borders(lines, bars, [])
-    selected = select_lines(lines, trend, extents(blocks, (83.0, 86.0, -4.0, 4.0)), 4.0, bars)
-    return lines, borders, selected
+    return select_lines(lines, trend, 4.0, bars)
 
 
 def test_two_streets_end_to_end_give_the_lines_of_each():
     def stretches(blocks):
-        _, _, selected = found_in(blocks)
-        return np.array(sorted((*one.span, one.line.middle, one.double) for one in selected))
+        return np.array(sorted((*one.span, one.line.middle, one.double) for one in found_in(blocks)))
 
     one, two = stretches(1), stretches(2)
     assert len(one) == 5 and one[:, 3].sum() == 2   # without the border of the hatched area and the single dash

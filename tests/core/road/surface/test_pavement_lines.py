@@ -167,6 +167,18 @@ def test_between_scan_lines_far_apart_the_edge_lies_in_the_middle_and_is_less_ce
     assert edges.sigma.min() > 1.5 * dense.sigma.max() and edges.sigma.max() < apart
 
 
+def test_an_edge_does_not_depend_on_what_lies_far_along_it(plain):
+    """The street becomes wider 30 m farther on."""
+    def places(edges, survey):
+        return np.concatenate([line for _, line in on_map(edges, survey)])
+
+    wider = street(half=lambda s: HALF + np.where(s > 48.0, 0.35, 0.0))
+    (x, y), (there, across) = places(found(wider), wider).T, places(*plain[::-1]).T
+    near = x < 18.0
+    np.testing.assert_array_equal(x[near], there[there < 18.0])
+    np.testing.assert_allclose(y[near], across[there < 18.0], atol=0.001)
+
+
 def test_asphalt_as_far_as_one_sees_has_no_edge():
     survey = street(verge=False)
     assert len(found(survey)) == 0
