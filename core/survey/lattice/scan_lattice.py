@@ -137,7 +137,7 @@ def _sample_windows(survey, road):
         places += [(p.number, middle) for middle in first + (np.arange(count) + 0.5) * (last - first) / count]
 
     samples: dict[tuple[int, int], list[_RotationWindow]] = {}
-    phase = Phase(windows_at, survey, (road,), lambda place: survey.stretch(road, place[1], place[1]))
+    phase = Phase(_windows_at, survey, (road,), lambda place: survey.stretch(road, place[1], place[1]))
     for windows in survey.executor.passing().run(phase, places):
         for key, window in windows.items():
             samples.setdefault(key, []).append(window)
@@ -153,7 +153,7 @@ def _runs_about(survey, road, number, middle, pieces=range(LATTICE.rotation_samp
                 yield piece, key, records
 
 
-def windows_at(survey: Any, place: tuple[int, float], road: int) -> dict[tuple[int, int], _RotationWindow]:
+def _windows_at(survey: Any, place: tuple[int, float], road: int) -> dict[tuple[int, int], _RotationWindow]:
     """The phase that looks at half a second of a pass, by its number, about a station: {(pass number, scanner): its points} of those that measured
     enough then."""
     number, middle = place
@@ -256,7 +256,7 @@ def _mirror_phases(survey, road, rotations, samples, progress):
     first, last = survey.store.span(road)
     # A length of its own, so that the points that are used do not depend on the length of sections.
     stretches = range(int(first // LATTICE.phase_stretch), int(last // LATTICE.phase_stretch) + 1)
-    phase = Phase(phasors_of_stretches, survey, (road, stride, rotations, mounts), lambda numbers: survey.stretch(
+    phase = Phase(_phasors_of_stretches, survey, (road, stride, rotations, mounts), lambda numbers: survey.stretch(
         road, numbers[0] * LATTICE.phase_stretch, (numbers[-1] + 1) * LATTICE.phase_stretch))
     for gathered in survey.executor.passing().run_together(phase, list(stretches), LATTICE.stretches_together, progress):
         for key, sums in gathered:
@@ -274,7 +274,7 @@ def _bins_of(survey, rotations):
     return {key: _PhasorBins(survey.frame.passes[key[0]], LATTICE.turns_per_bin / abs(frequency)) for key, (frequency, _, _) in rotations.items()}
 
 
-def phasors_of_stretches(survey: Any, numbers: Sequence[int], road: int, stride: int, rotations: dict[tuple[int, int], tuple[float, float, str]],
+def _phasors_of_stretches(survey: Any, numbers: Sequence[int], road: int, stride: int, rotations: dict[tuple[int, int], tuple[float, float, str]],
                          mounts: dict[tuple[int, int], np.ndarray]) -> list[list[tuple[tuple[int, int], tuple[Any, ...]]]]:
     """The phase that sums phasors over time: of each stretch of `phase_stretch`, by its number, those of each scanner, as of `_PhasorBins`."""
     bins, result = _bins_of(survey, rotations), []
