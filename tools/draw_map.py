@@ -1,6 +1,6 @@
 """Draws the maps of the demo: draw_map.py PACKAGE IMAGE PICTURE [UAV_PACKAGE ORTHOIMAGE UAV_PICTURE].
 
-The first has the intensity image below, edges, markings and driving lines above; the second the UAV image with the
+The first has the road plan over the intensity image; the second the UAV image with the
 driving lines by outcome and the residuals of its control points. Both have a title, a legend and a scale
 bar, and every layer is drawn in the style it carries.
 """

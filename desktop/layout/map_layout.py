@@ -377,6 +377,7 @@ def add_legend(layout: QgsPrintLayout, layers: list[QgsMapLayer], room: QRectF) 
         _print_as_it_stands(legend, node, layer)
     legend.setSplitLayer(False)
     legend.setEqualColumnWidth(False)
+    legend.setBackgroundColor(QColor(186, 191, 196))  # white paint is seen on it, and letters can be read
     legend.setColumnSpace(3)
     for sizes in SIZES:
         _set_sizes(legend, *sizes)

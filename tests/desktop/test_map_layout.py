@@ -157,6 +157,12 @@ def test_the_legend_lists_what_is_drawn_as_lines_and_areas(project):
     assert [node.name() for node in item(layout, QgsLayoutItemLegend).model().rootGroup().findLayers()] == ["Road edges"]
 
 
+def test_white_paint_is_seen_in_the_legend(project):
+    layout = road_map_layout(project, [street(project)], "A street")
+    legend = item(layout, QgsLayoutItemLegend)
+    assert legend.hasBackground() and legend.backgroundColor().lightness() < 220
+
+
 def test_a_second_layout_gets_a_name_of_its_own(project):
     for expected in ("Lanewright – B12", "Lanewright – B12 2", "Lanewright – B12 3"):
         name = unused_name(project, "Lanewright – B12")
