@@ -129,6 +129,7 @@ class _CurbWeights:
     weak_scatter_factor: float = 2.0   # times the scatter at which a faint step is still a curb where it continues one
     low_curb_share: float = 0.5   # share of the least curb height from which a lower curb that continues a full one is used
     min_sloped_length: float = 10.0   # m of a sloped curb: the edge of worn cobbles or of a track is straight over a few metres
+    max_wander: float = 0.008   # m of a sloped curb about its own straight line
     faint_gain: float = 0.7   # value of a metre of low or sloped curb, where another may be chosen
     min_curb_length: float = 4.0   # m of chains in one line that make a curb
     max_chain_gap: float = 8.0   # m between chains of one line
@@ -290,6 +291,8 @@ class _ReturnWeights:
     max_straight_deviation: float = 0.05   # m off its chord within which a curb that left the road is straight
     min_straight_length: float = 2.0   # m of straight curb that make a side street
     min_island_share: float = 0.6   # share of an island's steps behind which the ground comes down again
+    min_island_length: float = 2.0   # m of lines about one island
+    max_island_gap: float = 3.0   # m between them
     outline_margin: float = 0.3   # m from either side of an island within which a line is that side
     min_isolated_length: float = 5.0   # m of a line that belongs to a side street although nothing joins it to the main curb
     max_behind_share: float = 0.25   # share of such a line that may lie behind the main curb, which ends beside its corner

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from scipy.spatial import cKDTree
 
 from ...common.arrays import mask_runs
@@ -141,7 +142,7 @@ def _free_and_islands(apart, found, runs, elsewhere):
     own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in found]
     before, confirming = CurbLines(own_curbs), CurbLines([*own_curbs, *elsewhere])
     islands = [curb for curb in apart if curb.kind == "island" and not lies_behind(curb.steps, before)]
-    return [curb for curb in apart if curb.kind == "corner" and is_free_corner(curb.steps, confirming)] + islands
+    return [curb for curb in apart if curb.kind == "corner" and is_free_corner(curb.steps, confirming)] + _long_islands(islands)
 
 
 def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
@@ -248,6 +249,22 @@ def _where_straight(own, order, along):
         if off.max() <= RETURN.max_straight_deviation and np.median(along[order[k:]]) < RETURN.min_road_cosine:
             return k
     return len(x)
+
+
+def _long_islands(lines):
+    """Lines about islands that are long enough, together with those nearby."""
+    if not lines:
+        return []
+    trees = [cKDTree(np.c_[line.steps.x, line.steps.y]) for line in lines]
+    length = np.array([_length(line.steps.x, line.steps.y) for line in lines])
+    box = np.array([(*tree.mins, *tree.maxes) for tree in trees])
+    boxes, around = shapely.STRtree(shapely.box(*box.T)), shapely.box(*(box + np.array([-1, -1, 1, 1]) * RETURN.max_island_gap).T)
+    long = []
+    for k, line in enumerate(lines):
+        near = [j for j in np.sort(boxes.query(around[k])).tolist() if j == k or trees[k].count_neighbors(trees[j], RETURN.max_island_gap)]
+        if length[near].sum() >= RETURN.min_island_length:
+            long.append(line)
+    return long
 
 
 # What lies behind a curb is no island: a sidewalk between two ramps is raised on both sides as an island is.
