@@ -85,8 +85,8 @@ class RoadMap(Algorithm):
             if stage == "image":
                 self.add_settings((MARKING_METHOD,), advanced=True)
                 self.add_input("flag", "REMOVE_OUTLIERS", tr("Remove outliers from paint"),
-                               tr("Markings need a least size, so single stray points rarely matter. Switch it on where much dust or wet asphalt "
-                                  "gives bright specks about the paint."), default=False, advanced=True)
+                               tr("Bright points that lie apart go before markings are made of the paint. Switch it off to keep every point: faint paint "
+                                  "then stays longer, and pieces that lie near each other grow together sooner."), default=True, advanced=True)
         self.add_settings(SURVEY_SETTINGS)
         add_corrections(self)
         add_execution(self)

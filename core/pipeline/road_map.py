@@ -79,7 +79,7 @@ class RoadMapSettings:
     intensity: IntensitySettings = IntensitySettings()
     image: ImageSettings = ImageSettings()
     markings: MarkingSettings = MarkingSettings()
-    outliers: OutlierSettings | None = None   # None: clusters of too few points go anyway
+    outliers: OutlierSettings | None = OutlierSettings()   # None: none are removed
     clusters: ClusterSettings = ClusterSettings()
     lines: MarkingLineSettings = MarkingLineSettings()
     driving: DrivingSettings = DrivingSettings()
