@@ -61,7 +61,7 @@ def stages(folder):
     driving = made["drivinglines"] = run("drivinglines", MARKING_LINES=lines["MARKING_LINES"], MARKINGS=clusters["MARKINGS"], ROAD_EDGES=edges,
                                          ROAD_POINTS=even, **drive, DRIVING_LINES=at("driving.gpkg"), CURVE_ELEMENTS=at("elements.gpkg"))
     made["roadmap"] = dict(MARKING_LINES=lines["MARKING_LINES"], ROAD_EDGES=edges, DRIVING_LINES=driving["DRIVING_LINES"],
-                           MARKINGS=clusters["MARKINGS"])
+                           MARKINGS=clusters["MARKINGS"], ROAD_SURFACE=surface["ROAD_SURFACE"])
     made["crosssections"] = run("crosssections", **survey, ROAD_EDGES=edges, MARKING_LINES=lines["MARKING_LINES"], INTERVAL=5, MAX_CROSSFALL=2.6,
                                 DRIVING_LINES=driving["DRIVING_LINES"], OUTPUT=at("sections.gpkg"))
     made["roadside"] = run("roadside", **survey, ROAD_EDGES=edges, OUTPUT=at("roadside.gpkg"), OBJECTS=at("objects.gpkg"))
@@ -83,7 +83,8 @@ def clusters_of(results):
 
 
 # algorithm -> (outputs from above, with the style's output name where it is another; whether the image lies below; a detail?)
-ON_WHITE = ("samplesurvey", "normalizedscanlines", "extractroadsurface", "inspectsurvey")
+PLANS = ("extractroadsurface", "roadmap")  # drawn as a road plan; over the image the colours by class are seen better
+ON_WHITE = ("samplesurvey", "normalizedscanlines", "inspectsurvey", *PLANS)
 DRAWN = {
     "samplesurvey": (["TRUTH_DRIVING_LINES", "TRUTH_BOUNDARIES", "TRUTH_MARKINGS"], False, False),
     "importtrajectory": ([("OUTPUT", "TRAJECTORY")], True, False),
@@ -102,7 +103,7 @@ DRAWN = {
     "clustermarkings": (["MARKINGS"], True, True),
     "fitmarkinglines": (["MARKING_LINES"], True, False),
     "drivinglines": (["DRIVING_LINES"], True, False),
-    "roadmap": (["DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES", "MARKINGS"], True, False),
+    "roadmap": (["DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES", "MARKINGS", "ROAD_SURFACE"], False, False),
     "crosssections": ([("OUTPUT", "CROSS_SECTIONS")], True, False),
     "roadside": ([("OBJECTS", "ROADSIDE_OBJECTS"), ("OUTPUT", "ROADSIDE")], True, False),
     "assessboundaries": ([("OUTPUT", "ASSESSED_LINES")], True, False),
@@ -113,8 +114,8 @@ DRAWN = {
 }
 
 
-def layer(path, look):
-    """A result as a styled layer."""
+def layer(path, look, plan=True):
+    """A result as a styled layer, as a road plan or by class."""
     from lanewright.processing_provider.styling import LOOKS, STYLES, apply_style
     from qgis.core import QgsContrastEnhancement, QgsRasterLayer, QgsVectorLayer
 
@@ -131,7 +132,8 @@ def layer(path, look):
         return made
     name, _ = LOOKS[look]
     if name:
-        apply_style(made, STYLES / f"{name}.qml")
+        by_class = STYLES / "by_class" / f"{name}.qml"
+        apply_style(made, by_class if by_class.exists() and not plan else STYLES / f"{name}.qml")
     return made
 
 
@@ -215,7 +217,7 @@ def main():
         surface, image = layer(made["extractroadsurface"]["ROAD_SURFACE"], "ROAD_SURFACE"), layer(made["image"], "INTENSITY_IMAGE")
         for name, (outputs, on_image, detail) in DRAWN.items():
             pairs = [output if isinstance(output, tuple) else (output, output) for output in outputs]
-            layers = [layer(made[name][output], look) for output, look in pairs]
+            layers = [layer(made[name][output], look, name in PLANS) for output, look in pairs]
             draw(layers + [image] * on_image, PICTURES / f"{name}.png", surface, detail, "#fafafa" if name in ON_WHITE else "#1c1c1e")
             print(name, flush=True)
     missing = {algorithm.name() for algorithm in plugin.provider.algorithms()} - set(DRAWN)
