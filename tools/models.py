@@ -38,7 +38,8 @@ ROAD_MAP = Recipe(
         "intensityimage": ({"ROAD_POINTS": "correctintensity.OUTPUT"}, ("INTENSITY_IMAGE",)),
         "extractmarkings": (
             {"ROAD_POINTS": "correctintensity.OUTPUT", "INTENSITY_IMAGE": "intensityimage.INTENSITY_IMAGE", **DRIVE}, ()),
-        "clustermarkings": ({"MARKING_POINTS": "extractmarkings.MARKING_POINTS", **DRIVE}, ()),
+        "removeoutliers": ({"INPUT": "extractmarkings.MARKING_POINTS"}, ()),
+        "clustermarkings": ({"MARKING_POINTS": "removeoutliers.OUTPUT", **DRIVE}, ()),
         "fitmarkinglines": (
             {"CLUSTERED_POINTS": "clustermarkings.CLUSTERED_POINTS", "MARKINGS": "clustermarkings.MARKINGS",
              "ROAD_EDGES": "detectboundaries.ROAD_EDGES", "ROAD_POINTS": "correctintensity.OUTPUT", **DRIVE},

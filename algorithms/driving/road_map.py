@@ -85,8 +85,8 @@ class RoadMap(Algorithm):
             if stage == "image":
                 self.add_settings((MARKING_METHOD,), advanced=True)
                 self.add_input("flag", "REMOVE_OUTLIERS", tr("Remove outliers from paint"),
-                               tr("Bright points that lie apart go before markings are made of the paint. Switch it off to keep every point: faint paint "
-                                  "then stays longer, and pieces that lie near each other grow together sooner."), default=True, advanced=True)
+                               tr("Bright points that lie apart go before markings are made of the paint. Switch it off to keep every point: faint "
+                                  "paint then stays longer, and pieces that lie near each other grow together sooner."), default=True, advanced=True)
         self.add_settings(SURVEY_SETTINGS)
         add_corrections(self)
         add_execution(self)

@@ -157,7 +157,7 @@ def test_nothing_is_fetched_or_sent():
     assert [path.name for path in shipped() if network.search(path.read_text(encoding="utf-8"))] == ["cluster.py"]
 
 
-WORKERS = [ROOT / "core" / "execution" / name for name in ("tasks.py", "processes.py", "worker.py", "cluster.py")]
+WORKERS = [ROOT / "core" / "execution" / name for name in ("tasks.py", "folder_executor.py", "processes.py", "worker.py", "cluster.py")]
 # Which remove folders that a run made for itself: its work folder, its shared points, and the hidden ones of results that are not finished
 FOLDERS_OF_RUNS = [ROOT / name for name in ("core/execution/work_folder.py", "core/survey/open_survey.py", "core/io/local_files.py",
                                             "algorithms/destinations.py")]
