@@ -113,7 +113,7 @@ def test_the_code_is_written_for_qt_5_and_qt_6_alike():
 
 def test_no_program_is_started_but_a_python_that_runs_the_worker():
     commands = [re.findall(r"subprocess\.(\w+)\([^\n]*\n\s*(\w+\()", path.read_text(encoding="utf-8")) for path in WORKERS]
-    assert commands == [[("run", "command_of(")], [("Popen", "command_of(")], [], []]
+    assert commands == [[("run", "command_of(")], [], [("Popen", "command_of(")], [], []]
     from lanewright.core.execution.tasks import WORKER, command_of
 
     command = command_of("/usr/bin/python3", "--try")
