@@ -113,7 +113,7 @@ def test_the_code_is_written_for_qt_5_and_qt_6_alike():
 
 def test_no_program_is_started_but_a_python_that_runs_the_worker():
     commands = [re.findall(r"subprocess\.(\w+)\([^\n]*\n\s*(\w+\()", path.read_text(encoding="utf-8")) for path in WORKERS]
-    assert commands == [[("run", "command_of(")], [], [("Popen", "command_of(")], [], []]
+    assert commands == [[("run", "command_of(")], [("Popen", "command_of(")], [], [], []]
     from lanewright.core.execution.tasks import WORKER, command_of
 
     command = command_of("/usr/bin/python3", "--try")
@@ -157,7 +157,7 @@ def test_nothing_is_fetched_or_sent():
     assert [path.name for path in shipped() if network.search(path.read_text(encoding="utf-8"))] == ["cluster.py"]
 
 
-WORKERS = [ROOT / "core" / "execution" / name for name in ("tasks.py", "folder_executor.py", "processes.py", "worker.py", "cluster.py")]
+WORKERS = [ROOT / "core" / "execution" / name for name in ("tasks.py", "processes.py", "worker.py", "cluster.py", "folder_executor.py")]
 # Which remove folders that a run made for itself: its work folder, its shared points, and the hidden ones of results that are not finished
 FOLDERS_OF_RUNS = [ROOT / name for name in ("core/execution/work_folder.py", "core/survey/open_survey.py", "core/io/local_files.py",
                                             "algorithms/destinations.py")]
