@@ -60,9 +60,12 @@ def asked(streets, tmp_path_factory):
 
 
 def test_no_stretch_without_a_question_grows_with_the_road(asked):
-    """Three times the road is asked about far more often in every stage, though some look at as many samples of any road."""
+    """Three times the road is asked about far more often in every stage, though some look at as many samples of any road.
+
+    Edges are fitted in threads, which ask by themselves whether anybody still waits for them; those questions are not counted here.
+    """
     short, long = asked
-    few = {stage: (short[stage], long[stage]) for stage in long if stage != "survey" and long[stage] < 1.5 * short[stage]}
+    few = {stage: (short[stage], long[stage]) for stage in long if stage not in ("survey", "edges") and long[stage] < 1.5 * short[stage]}
     assert not few
     assert set(long) == set(STAGE_NAMES)
 
