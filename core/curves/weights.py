@@ -30,7 +30,7 @@ class _FitWeights:
     bic_margin: float = 6.0   # a simpler curve is selected if its BIC is within this of the best
     soft_l1_scale: float = 0.03   # m; the weight of larger residuals falls off (soft L1)
     coarse_points: int = 128   # points of a line to which it is fitted first
-    fit_tolerance: float = 1e-8   # of the unknowns, or of the squares of the distances: a smaller gain of a step ends a fit,
+    fit_tolerance: float = 1e-12   # of the unknowns, or of the squares of the distances: a smaller gain of a step ends a fit,
     coarse_fit_tolerance: float = 1e-4   # and one that only begins another
     max_misfit_share: float = 0.05   # share of the points beyond `max_misfit` above which a fit is not refined
     robust_rounds: int = 5   # of reweighting the smoothed values, after which outliers have no weight any more
