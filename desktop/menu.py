@@ -227,7 +227,7 @@ class Menu(QObject):
     def print_layout(self, project, road_map, **chosen):
         """The layout of one road map's layers that are switched on (of all where none is), added to the project and shown."""
         layers = shown_layers(road_map, project) or shown_layers(road_map, project, hidden=True)
-        layout = road_map_layout(project, layers, unused_name(project, road_map.name), **chosen)
+        layout = road_map_layout(project, layers, unused_name(project, road_map.title), **chosen)
         project.layoutManager().addLayout(layout)
         designer = self.iface.openLayoutDesigner(layout)
         window = designer.window() if designer is not None else None

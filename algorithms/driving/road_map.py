@@ -21,6 +21,7 @@ from ..markings.extract_markings import METHOD as MARKING_METHOD
 from ..markings.extract_markings import marking_settings
 from ..markings.fit_marking_lines import LINE_SETTINGS
 from ..markings.intensity_image import IMAGE_SETTINGS
+from ..markings.remove_outliers import OUTLIER_SETTINGS
 from ..road.detect_boundaries import METHOD_SETTING, SCANLINE_METHOD_SETTINGS
 from ..road.detect_curbs import CURB_SETTINGS
 from ..road.extract_road_surface import SURFACE_SETTINGS
@@ -38,6 +39,7 @@ STAGES = {
     "surface": SURFACE_SETTINGS,
     "intensity": INTENSITY_SETTINGS,
     "image": IMAGE_SETTINGS,
+    "outliers": OUTLIER_SETTINGS,
     "clusters": CLUSTER_SETTINGS,
     "lines": LINE_SETTINGS,
     "driving": DRIVING_SETTINGS,
@@ -84,9 +86,6 @@ class RoadMap(Algorithm):
             self.add_settings(specs, only=OFFERED, advanced=True)
             if stage == "image":
                 self.add_settings((MARKING_METHOD,), advanced=True)
-                self.add_input("flag", "REMOVE_OUTLIERS", tr("Remove outliers from paint"),
-                               tr("Bright points that lie apart go before markings are made of the paint. Switch it off to keep every point: faint "
-                                  "paint then stays longer, and pieces that lie near each other grow together sooner."), default=True, advanced=True)
         self.add_settings(SURVEY_SETTINGS)
         add_corrections(self)
         add_execution(self)
@@ -101,7 +100,6 @@ class RoadMap(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.markings.outliers import OutlierSettings
         from ...core.pipeline.road_map import RoadMapSettings, make_road_map
         from ...core.survey.road_points_las import write_road_points
 
@@ -111,7 +109,6 @@ class RoadMap(Algorithm):
             survey=call.settings(SURVEY_SETTINGS, crs=call.crs()),
             execution=execution_of(call),
             markings=marking_settings(call),
-            outliers=OutlierSettings() if call.value("REMOVE_OUTLIERS") else None,
             **{field: call.settings(specs) for field, specs in STAGES.items()})
         if not any(call.wants(output.name) for output in self.outputs()):
             raise RoadExtractionError(tr(

@@ -33,5 +33,6 @@ class RemoveOutliers(Algorithm):
         from ...core.survey.road_points_las import write_road_points
 
         points = paint_of(call, "INPUT", progress.part(0.0, 0.3))
-        kept = remove_outliers(points, call.settings(OUTLIER_SETTINGS), progress.part(0.3, 0.8))
+        settings = call.settings(OUTLIER_SETTINGS)
+        kept = remove_outliers(points, settings, progress.part(0.3, 0.8)) if len(points) else points
         write_road_points(kept, call.new_file("OUTPUT"), progress.part(0.8, 1.0))

@@ -111,7 +111,6 @@ def _least_soft_l1(problem, unknown, scale, along, tolerance=FITS.fit_tolerance)
 # Robust smoothing of evenly spaced values, with gaps.
 
 
-
 def robustly_smoothed(values: np.ndarray, weight: np.ndarray, stiffness: float) -> np.ndarray:
     """Smooth columns of values by a penalty on their second differences (Whittaker's smoother), outliers weighted down.
 

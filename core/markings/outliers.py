@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -12,11 +14,21 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
+from ..execution.phase import THREADS, Executor, NoSource, Phase
+from ..lazy import cv2
+from ..survey.store.columns import Columns
 from ..survey.store.records import COORDINATE_SCALE, take_rows
 from ..survey.store.road_points import RoadPoints
 from .weights import OUTLIERS
 
 OUTLIER_SCOPES = ("all", "windows")
+NEIGHBOUR_HALO = 2.0      # cost: m of station beyond a window where neighbours are still looked for
+MAX_LIMIT_SAMPLE = 1500   # cost: points of a band from which its limit is taken; where there are twice as many, of an evenly spaced sample
+COLUMNS = "s", "d", "x", "y", "z"   # that outliers are told by
+TASK_WINDOWS = 5       # cost: windows of 20 m that are looked at together
+WINDOWS_AT_ONCE = 100      # cost: windows whose columns are held at a time
+TREE_LEAF_POINTS = 20      # cost: points in a leaf of the tree
+MAX_FLOAT32_UNITS = 1 << 24       # derived: units (1.6 km): up to here float32 holds every integer
 QUERIES_PER_BLOCK = 1 << 16       # cost: points asked for at a time: bounds the table of their neighbours
 
 
@@ -41,8 +53,13 @@ class OutlierSettings:
             raise RoadExtractionError(f"The scope {self.scope!r} is not known; use one of {', '.join(OUTLIER_SCOPES)}.")
 
 
-def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSettings(), progress: Progress = Progress()) -> RoadPoints:
+def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSettings(), progress: Progress = Progress(),
+                    executor: Executor = THREADS) -> RoadPoints:
     """Leave out points that lie apart from the others.
+
+    Parameters
+    ----------
+    executor : who looks at windows
 
     Returns
     -------
@@ -50,61 +67,128 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
 
     Notes
     -----
-    d_i is the mean distance to the k nearest neighbours besides the point itself; the point goes if d_i > mu + m * sigma [1]_, sigma with n - 1.
-    In windows with fewer than 30 points nothing is removed: their deviation is not reliable, and they are the worn and the far paint.
+    d_i is the mean distance to the k nearest neighbours besides the point
+    itself; the point goes if d_i > mu + m * sigma [1]_. In windows with fewer
+    than 30 points nothing is removed: their deviation is not reliable, and they are
+    the worn and the far paint. In windows with thousands of points mu and sigma are those of
+    an evenly spaced sample.
 
     References
     ----------
     .. [1] PCL 1.13, filters/impl/statistical_outlier_removal.hpp.
     """
-    if not len(points):
-        return points
-    keys = list(points.all_sections())
-    sections = [points.section(*key).records for key in keys]
-    units = np.concatenate([np.stack([records[name] for name in "xyz"], axis=1) for records in sections])
-    neighbours = Neighbours(units, settings.neighbours)
-    distance = neighbours.distances(progress)
-    windows = settings.scope == "windows"
-    group, least = (_windows(keys, sections), OUTLIERS.min_points_per_band) if windows else (np.zeros(len(units), np.intp), 2)
-    count = np.maximum(np.bincount(group), least)
-    mean = np.bincount(group, distance) / count
-    sigma = np.sqrt(np.bincount(group, (distance - mean[group]) ** 2) / (count - 1))
-    apart = (distance > (mean + settings.std_ratio * sigma)[group]) & (np.bincount(group) >= least)[group]
-    rows = np.flatnonzero(apart)
-    if windows and len(rows):  # what stands as far apart as its neighbours do is worn or far paint
-        apart[rows] = distance[rows] > OUTLIERS.sparseness_factor * np.median(distance[neighbours.of(rows)[1]], axis=1)
-    kept, first = RoadPoints.empty_like(points), 0
-    for key, records in zip(keys, sections):
-        kept.store.put(*key, take_rows(records, ~apart[first:first + len(records)]))
-        first += len(records)
+    kept = RoadPoints.empty_like(points)
+    if settings.scope == "all":
+        _put(kept, points, _kept_of_all(points, settings))
+    else:
+        windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
+        phase = Phase(kept_of_windows, NoSource(), (settings,), lambda item: f"markings {item[0][0] * OUTLIERS.window:.0f} m along a road")
+        keep = [np.empty(0, bool)]
+        for first in range(0, len(windows), WINDOWS_AT_ONCE):
+            batch = windows[first:first + WINDOWS_AT_ONCE]
+            items = [_columns_of(points, *window) for window in batch]
+            part = progress.part(first / len(windows), min(first + WINDOWS_AT_ONCE, len(windows)) / len(windows))
+            keep += executor.run_together(phase, items, TASK_WINDOWS, part)
+        _put(kept, points, np.concatenate(keep))
     progress.info(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept
 
 
-def _windows(keys, sections):
-    """(N,) number of the window of each point: 20 m of station and 3 m of offset of a road."""
-    number = np.repeat([key[0] for key in keys], [len(records) for records in sections])
-    for name, size in (("s", OUTLIERS.window), ("d", OUTLIERS.band)):
-        part = np.concatenate([records[name] for records in sections]) // round(size / COORDINATE_SCALE)
-        number = number * (np.ptp(part) + 1) + part - part.min()
-    return np.unique(number, return_inverse=True)[1]
+def _windows(start, end):
+    return range(int(np.floor(start / OUTLIERS.window)), int(np.ceil(end / OUTLIERS.window)))
+
+
+def _put(kept, points, keep):
+    """The points of a mask, which goes through them road by road and by station."""
+    first = 0
+    for road, number in points.all_sections():
+        records = points.section(road, number).records
+        kept.store.put(road, number, take_rows(records, keep[first:first + len(records)]))
+        first += len(records)
+
+
+def _columns_of(points, road, number):
+    """Number of a window, and the columns s, d, x, y, z of its points and those about it."""
+    records = points.window(road, number * OUTLIERS.window - NEIGHBOUR_HALO, (number + 1) * OUTLIERS.window + NEIGHBOUR_HALO).records
+    return number, [np.asarray(records[name]) for name in COLUMNS]
+
+
+def kept_of_windows(source: NoSource, windows: Sequence[tuple[int, Sequence[np.ndarray]]], settings: OutlierSettings) -> list[np.ndarray]:
+    """The phase that finds outliers.
+
+    Parameters
+    ----------
+    windows : number of each and the columns s, d, x, y, z (0.1 mm) of its points and those about it
+
+    Returns
+    -------
+    (N,) bool of each window, its own points that are kept
+    """
+    return [_kept_of_window(number, Columns(dict(zip(COLUMNS, columns)), [(name, column.dtype) for name, column in zip(COLUMNS, columns)]), settings)
+            for number, columns in windows]
+
+
+def _kept_of_window(number, records, settings):
+    """(N,) bool of the points of a window, without those about it."""
+    s = records["s"] * COORDINATE_SCALE
+    inner = np.flatnonzero((s >= number * OUTLIERS.window) & (s < (number + 1) * OUTLIERS.window))
+    neighbours = Neighbours(_units(records), settings.neighbours)
+    distance = neighbours.distances()
+    band = np.floor(records["d"].take(inner) * COORDINATE_SCALE / OUTLIERS.band)
+    outliers = [np.empty(0, np.intp)]
+    for value in np.unique(band):
+        rows = inner[band == value]
+        if len(rows) >= OUTLIERS.min_points_per_band:
+            sample = distance[rows[::max(len(rows) // MAX_LIMIT_SAMPLE, 1)]]
+            outliers.append(rows[distance[rows] > sample.mean() + settings.std_ratio * sample.std(ddof=1)])
+    outliers = np.concatenate(outliers)
+    if len(outliers):  # what stands as far apart as its neighbours do is worn or far paint
+        outliers = outliers[distance[outliers] > OUTLIERS.sparseness_factor * np.median(distance[neighbours.of(outliers)[1]], axis=1)]
+    keep = np.ones(len(inner), bool)
+    keep[np.searchsorted(inner, outliers)] = False
+    return keep
+
+
+def _kept_of_all(points, settings):
+    """(N,) bool of all points: mean distance at most mu + m * sigma, sigma with n - 1 as in PCL."""
+    sections = [points.section(*key).records for key in points.all_sections()]
+    distance = Neighbours(np.concatenate([np.empty((0, 3), np.int32), *map(_units, sections)]), settings.neighbours).distances()
+    if len(distance) < 2:
+        return np.ones(len(distance), bool)
+    return ~(distance > distance.mean() + settings.std_ratio * distance.std(ddof=1))
+
+
+def _units(records):
+    return np.stack([records["x"], records["y"], records["z"]], axis=1)
 
 
 class Neighbours:
-    """The k nearest others of points, exactly; of points at the very same place the tree holds no more than can be among the k nearest.
-
-    A search would otherwise look at all of them, for each of them.
+    """The k nearest others of points, exactly.
 
     Parameters
     ----------
     units : (N, 3) int32 of 0.1 mm
     k : neighbours; fewer where there are no more
+
+    Notes
+    -----
+    The tree is OpenCV's exact one, which works in float32. Points are integers of 0.1 mm counted from their
+    least, so up to 1.6 km nothing is rounded, and beyond it a slower tree in float64 is taken. Of points at the very same place
+    the tree holds no more than can be among the k nearest: a search would otherwise look at all of them, for each of them.
     """
 
     def __init__(self, units: np.ndarray, k: int) -> None:
-        self._k, self._units = max(min(k, len(units) - 1), 0), units
-        self._rows = _in_tree(units, self._k)
-        self._tree = cKDTree(units.take(self._rows, axis=0), balanced_tree=False) if self._k else None
+        self._k = max(min(k, len(units) - 1), 0)
+        self._units = units - (units.min(axis=0) if len(units) else 0)
+        self._rows = _in_tree(self._units, self._k)
+        self._tree: Any = None
+        if self._k:
+            coordinates = self._units.take(self._rows, axis=0)
+            if self._units.max() < MAX_FLOAT32_UNITS:
+                self._places = coordinates.astype(np.float32)  # the tree does not keep it alive
+                self._tree = cv2.flann_Index(self._places, dict(algorithm=4, leaf_max_size=TREE_LEAF_POINTS))  # 4: one exact kd-tree
+            else:
+                self._tree = cKDTree(coordinates)
 
     def of(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Mean distance of some points to their nearest others, and which these are.
@@ -115,20 +199,24 @@ class Neighbours:
             itself is left out, a second point at the very same place is not (as in PCL).
         nearest : (M, k) indices
         """
-        if self._tree is None or not len(rows):
+        if not self._k or not len(rows):
             return np.full(len(rows), np.inf), np.empty((len(rows), self._k), np.intp)
-        distances, nearest = self._tree.query(self._units.take(rows, axis=0), self._k + 1, workers=-1)
+        queries = self._units.take(rows, axis=0)
+        if isinstance(self._tree, cKDTree):
+            distances, nearest = self._tree.query(queries, self._k + 1)
+        else:
+            nearest, squares = self._tree.knnSearch(queries.astype(np.float32), self._k + 1, params={})
+            distances = np.sqrt(squares)
         # each point is the first or, beside another at its place, one of the first of its own neighbours
-        return distances.sum(axis=1) * (COORDINATE_SCALE / self._k), self._rows.take(nearest[:, 1:])
+        return distances.sum(axis=1, dtype=np.float64) * (COORDINATE_SCALE / self._k), self._rows.take(nearest[:, 1:])
 
-    def distances(self, progress: Progress = Progress()) -> np.ndarray:
+    def distances(self) -> np.ndarray:
         """(N,) m, the mean distance of every point to its nearest others."""
         means = np.empty(len(self._units))
         for first in range(0, len(means), QUERIES_PER_BLOCK):
             check_cancelled()
             rows = np.arange(first, min(first + QUERIES_PER_BLOCK, len(means)))
             means[rows] = self.of(rows)[0]
-            progress.report(rows[-1] / len(means))
         return means
 
 

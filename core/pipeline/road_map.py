@@ -79,7 +79,7 @@ class RoadMapSettings:
     intensity: IntensitySettings = IntensitySettings()
     image: ImageSettings = ImageSettings()
     markings: MarkingSettings = MarkingSettings()
-    outliers: OutlierSettings | None = OutlierSettings()   # None: none are removed
+    outliers: OutlierSettings = OutlierSettings()
     clusters: ClusterSettings = ClusterSettings()
     lines: MarkingLineSettings = MarkingLineSettings()
     driving: DrivingSettings = DrivingSettings()
@@ -145,7 +145,7 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
         gives the reason why markings are missing.
     """
     stages = Stages(progress, Extent.expected(paths, trajectory, settings.survey.crs), settings.boundary_method,
-                    [*([] if settings.correct else ["intensity"]), *([] if settings.outliers else ["outliers"])])
+                    () if settings.correct else ("intensity",))
     if kept.wanted and _may_be_kept(paths, settings.execution) and kept.take():
         stages.kept = kept
     survey, ground = None, None
@@ -255,8 +255,10 @@ def _paint(result, image_path, settings, stages, executor):
         image.close()
     result.image = IntensityImage.open(image_path)
     result.counts["marking_points"] = len(points)
-    if settings.outliers is not None:
-        points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers, depends=settings.outliers)
+    if len(points):
+        points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers,
+                            executor=passing, depends=settings.outliers)
+    result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters,
                                      executor=passing, depends=settings.clusters)
     executor.forget()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
@@ -43,6 +44,11 @@ class RoadMap:
         if self.group is not None:
             return self.group.name()
         return f"{self.survey or self.provenance.algorithm}, {self.provenance.ended.astimezone():%Y-%m-%d %H:%M:%S}"
+
+    @property
+    def title(self) -> str:
+        """What it is called in print: its name without the time that a new group begins with."""
+        return re.sub(r"^\d\d-\d\d \d\d:\d\d:\d\d ", "", self.name)
 
     @property
     def values(self) -> dict[str, Any]:

@@ -13,10 +13,12 @@ from lanewright.core.execution.work_folder import KeptResults
 from lanewright.core.intensity import image as imaging
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import make_intensity_image
+from lanewright.core.markings import outliers
 from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.objects import cluster as phases
 from lanewright.core.markings.objects import grouping as linking
 from lanewright.core.markings.objects.cluster import cluster_markings
+from lanewright.core.markings.outliers import remove_outliers
 from lanewright.core.markings.paint import extract as extraction
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
@@ -26,7 +28,7 @@ from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey.store import section_store
 
 PHASES = ["ground_of_windows", "surface_points", "levels_of_stretch", "corrected_of_stretch", "windows_of_image",
-          "sums_of_pieces", "scatter_of_windows", "paint_of_window", "links_of_windows",
+          "sums_of_pieces", "scatter_of_windows", "paint_of_window", "kept_of_windows", "links_of_windows",
           "combs_of_windows", "shapes_of_clusters", "outlines_of_markings", "seen_in_stretch", "heights_of_windows"]
 
 
@@ -40,6 +42,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, pieces_per_task=3))
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
+        patch.setattr(outliers, "TASK_WINDOWS", 1)
         patch.setattr(heights, "HEIGHT_POINTS", 1)
         patch.setattr(linking, "LINKING_WINDOW_CELLS", 250)
         patch.setattr(linking, "LINKED_POINTS", 300)
@@ -57,6 +60,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
             pixels = image.read_pixels(0, 0, image.width, image.height).tobytes()
             paint = extract_markings(road_points, image, survey.frame, progress=progress)
             image.close()
+            paint = remove_outliers(paint, progress=progress, executor=survey.executor.passing())
             markings, clustered = cluster_markings(paint, survey.frame, progress=progress, executor=survey.executor.passing())
             edges = edges.densified(survey.frame)
             lines = fit_marking_lines(clustered, markings, survey.frame, progress=progress, edges=edges, road_points=road_points)

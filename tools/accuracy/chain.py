@@ -58,7 +58,7 @@ def _markings(w, settings):
 
 
 def _outliers(w, settings):
-    w.kept = w.points if settings.outliers is None else remove_outliers(w.points, settings.outliers)
+    w.kept = remove_outliers(w.points, settings.outliers) if len(w.points) else w.points
 
 
 def _clusters(w, settings):

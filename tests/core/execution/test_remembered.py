@@ -3,8 +3,7 @@
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution.phase import NoSource, Phase, Threads
 from lanewright.core.execution.remembered import RememberedResults
-from lanewright.core.markings.objects.grouping import links_of_windows
-from lanewright.core.markings.outliers import OutlierSettings
+from lanewright.core.markings.outliers import OutlierSettings, kept_of_windows
 from lanewright.core.survey.las.samples import TimeSlots
 
 
@@ -24,7 +23,7 @@ def doubled(source, item, *arguments):
     return 2 * item
 
 
-doubled.__module__, doubled.__qualname__ = links_of_windows.__module__, links_of_windows.__qualname__   # only a named function has a name
+doubled.__module__, doubled.__qualname__ = kept_of_windows.__module__, kept_of_windows.__qualname__   # only a named function has a name
 
 
 def results(remembered, items, source=None, arguments=(OutlierSettings(),)):

@@ -6,6 +6,7 @@ from datetime import datetime, timezone
 import pytest
 from lanewright.algorithms.provenance import Provenance
 from lanewright.processing_provider.results.layer_tree import REPLACES_LAST_RUN, place_layer
+from lanewright.processing_provider.results.road_maps import runs_of
 from lanewright.processing_provider.results.runs import Run, run_of, survey_name
 from qgis.core import QgsFeature, QgsGeometry, QgsProcessingContext, QgsVectorLayer
 
@@ -57,6 +58,12 @@ def test_a_survey_is_called_by_its_folder_and_its_files(clouds, name):
 def test_a_map_made_in_one_call_has_a_group_named_by_time_and_survey(qgis_app):
     group = run_of(run_in("").provenance, ["/data/B12/cloud.laz"], True, QgsProcessingContext()).group
     assert re.fullmatch(r"\d\d-\d\d \d\d:\d\d:\d\d B12/cloud", group)
+
+
+@pytest.mark.parametrize("name, title", [("11-28 15:21:19 B12/survey", "B12/survey"), ("Bypass, south", "Bypass, south")])
+def test_in_print_a_map_is_called_by_its_survey_or_as_the_user_named_its_group(project, name, title):
+    added(project, run_in(name), "ROAD_EDGES")
+    assert [road_map.title for road_map in runs_of(project)] == [title]
 
 
 def test_stages_of_a_survey_share_a_group_and_those_of_a_model_know_the_survey(qgis_app):
