@@ -80,7 +80,8 @@ class DoubtDock(QDockWidget):
         self.move_button = self._button(tr("Move…"), tr("Draw where it belongs, within 2 m of where it is"), self.begin_move, "M")
         self.other_button = self._button(tr("Other reading"), tr("Take the second reading of the program, which is almost as likely"),
                                          lambda: self.decide("take"), "O")
-        self.pick_button = self._button(tr("Find…"), tr("Click near a curb or painted line that is missing: it is found in the points"), self.begin_pick, "F")
+        self.pick_button = self._button(tr("Find…"), tr("Click near a curb or painted line that is missing: it is found in the points"),
+                                        self.begin_pick, "F")
         self.draw_button = self._button(tr("Draw"), tr("Draw what is missing"), lambda: None)
         menu = QMenu(self)
         for target, title in (("edge", tr("Road edge…")), ("marking", tr("Marking line…")), ("lane", tr("Lane, in the direction of travel…"))):
