@@ -147,7 +147,7 @@ def _piece(s, d, z, kind, pattern, seen, width):
 def _on_grid(pieces: dict[int, list[_PieceOfLine]]) -> CrossSections:
     """CrossSections of the lines of one road, which go on over short gaps."""
     grid, leads = joined(_lines_on_grid(pieces))
-    lead_over(grid, leads)
+    _lead_over(grid, leads)
     lengthen_dashed(grid)
     return _sections(grid)
 
@@ -323,7 +323,7 @@ def _chained(rows):
     return _GridRow(head.kind, head.pattern, head.begin, result.columns)
 
 
-def lead_over(lines: _GridLines, leads: list[tuple[int, int, int]]) -> None:
+def _lead_over(lines: _GridLines, leads: list[tuple[int, int, int]]) -> None:
     """Where a double line goes on as a single one, as `joined` says, both of its lines lead over to it: lanes on either side end at that one."""
     for double_end, k, begin in leads:
         step = 1 if begin > double_end else -1
