@@ -74,8 +74,9 @@ def text_width(text: str, size: float) -> float:
 
 def station_text(station: float) -> str:
     """0+125 for 125 m, as on plans."""
-    whole, rest = divmod(round(station, 3), 1000)
-    return f"{int(whole)}+{rest:03.0f}" if abs(rest - round(rest)) < 0.005 else f"{int(whole)}+{rest:06.2f}"
+    whole, rest = divmod(round(abs(station), 2), 1000)
+    sign = "-" if station < 0 else ""
+    return f"{sign}{int(whole)}+{rest:03.0f}" if rest == round(rest) else f"{sign}{int(whole)}+{rest:06.2f}"
 
 
 def round_step(least: float) -> float:
