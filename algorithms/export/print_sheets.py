@@ -57,7 +57,7 @@ SHEET_SETTINGS = (
     SettingSpec("HEIGHT_SYSTEM", SETTINGS, "heights", tr("Height system"),
                 tr("What the heights refer to, for the title block, such as DHHN2016. Empty takes the vertical part of the CRS."), advanced=True),
     SettingSpec("CREDIT", SETTINGS, "credit", tr("Credit on the map"),
-                tr("Whose data lie below, as their licence wants it said; stands in the lower left corner of every map."), advanced=True),
+                tr("Whose data lie below, as their licence wants it said; stands in the lower left corner of the map"), advanced=True),
 )
 
 
@@ -80,7 +80,7 @@ class PrintSheets(Algorithm):
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr(
             "With it cross-sections show the ground as it was measured; without it straight lines between edges, paint and driving lines."),
             optional=True)
-        self.add_input("painted", "BELOW", tr("Layer below (orthoimage, web map, plan)"), tr(
+        self.add_input("painted", "BELOW", tr("Layer below (orthoimage, web map)"), tr(
             "Drawn below all others and left out of the legend. Lanes and Road surface cover it where they are given."),
                        optional=True)
         self.add_settings(SHEET_SETTINGS)
