@@ -7,12 +7,14 @@ import math
 from html import escape
 
 import numpy as np
+import shapely
 from qgis.PyQt.QtCore import QRectF
 from qgis.PyQt.QtGui import QFont, QFontMetricsF
 
 from .legend import FONT
 
 LETTER = 0.353   # mm of a point
+FINEST = 0.01    # mm by which a line may be drawn beside its places
 GREY, DARK = "#8a8a8a", "#202020"
 
 
@@ -31,6 +33,8 @@ class Drawing:
         for part in np.split(places, np.flatnonzero(~np.isfinite(places).all(axis=1))):
             part = part[np.isfinite(part).all(axis=1)]
             if len(part) > 1:
+                if not closed:
+                    part = shapely.get_coordinates(shapely.simplify(shapely.linestrings(part), FINEST))
                 path = "M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in part) + "Z" * closed
                 dashed = f' stroke-dasharray="{dash}"' if dash else ""
                 faint = f' fill-opacity="{int(fill[7:], 16) / 255:.2f}"' if len(fill) == 9 else ""

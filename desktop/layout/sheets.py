@@ -36,7 +36,7 @@ from ...core.common.progress import Progress
 from ...processing_provider.texts import tr
 from .axes import Axis, axes_of
 from .charts import COLOURS, profile_pages, section_pages
-from .drawing import DARK, GREY, Drawing, round_step, station_text, text_width
+from .drawing import DARK, GREY, LETTER, Drawing, round_step, station_text, text_width
 from .legend import add_legend, as_it_stands, legend_height, text_format
 from .map_lines import MapLine, accuracy_of, lines_of, road_lines
 from .pages import Sheet, sheets_along
@@ -201,11 +201,13 @@ class _Pages:
         """The whole road with the sheets on it, and the legend."""
         page, base = self._new_page(), self.frame.band
         tall, aside = min(legend_height(self.layers), MOST_LEGEND * self.frame.height), True
-        for band, aside in ((base, True), (max(base, tall), True), (max(base + ABOVE, tall), False)):
+        for band, aside in ((base, True), (max(base, tall), True), (max(base + ABOVE, tall), False), (base + tall, True)):
             frame = Frame(self.frame.width, self.frame.height, band)
             room = self._legend_room(frame, base)
             if not aside:   # scale and arrow stand above the title block
                 room.setRight(frame.title_block(base).left() - 1)
+            if band == base + tall:   # all of it stands there
+                room = QRectF(room.x(), room.y(), frame.strip.width() - 2, tall - 2)
             if add_legend(self.layout, self.layers, room, page) is not None:
                 break
         outlines = shapely.union_all([sheet.outline() for sheet in self.sheets])
@@ -281,7 +283,6 @@ class _Pages:
         picture = QgsLayoutItemPicture(self.layout)
         picture.setPicturePath(drawing.path())
         self._place(picture, page, x, y, drawing.width, drawing.height)
-        picture.setLocked(True)
 
     def _add_map(self, sheet, page, frame, scale):
         chart = QgsLayoutItemMap(self.layout)
@@ -366,8 +367,8 @@ class _Pages:
                 if x > block.left():
                     paper.line([(x, y), (x, y + height)])
                 paper.text(x + 1, y + 1.7, caption, 5.0, "start", colour=GREY)
-                room = max(1, int((height - 3.2) // 3.0))   # lines of small letters
-                size = max(min(size, size * (width - 2) * room * 0.9 / max(text_width(text, size), 1e-6)), 5.0)
+                while size > 5.0 and text_width(text, size) > 0.9 * (width - 2) * max(int((height - 2.8) / (1.3 * LETTER * size)), 1):
+                    size -= 0.5
                 self._place(self._label(text, size), page, x + 1, y + 2.6, width - 2, height - 2.8)
                 x += width
             y += height
