@@ -11,14 +11,10 @@ from typing import Any
 
 
 class KeptRun:
-    """The results of the stages of one run, in their order, from when `begin` is called until `end`; used by one run at a time.
-
-    remembered : RememberedResults of phases within its stages, which a run gives it
-    """
+    """The results of the stages of one run, in their order, from when `begin` is called until `end`; used by one run at a time."""
 
     def __init__(self) -> None:
         self._wanted, self._in_use = False, threading.Lock()
-        self.remembered: Any = None
         self._results: dict[str, tuple[str, Any, Callable[[], None]]] = {}   # {stage: (digest, result, what frees its disk space)}
 
     def begin(self) -> None:
@@ -60,8 +56,6 @@ class KeptRun:
 
     def drop_from(self, stage: str) -> None:
         """Let the results of a stage and of those after it go, the last ones first; of all for "" """
-        if not stage:
-            self.remembered = None
         for name in reversed(list(self._results)):
             self._results.pop(name)[2]()
             if name == stage:

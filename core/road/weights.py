@@ -535,6 +535,9 @@ class _EdgeWeights:
     min_edge_length: float = 2.0   # m of a piece with curb points
     gap_sigma: float = 0.0005   # m per m of the longest bridged gap, least noise of the points of a curve across it
     min_point_sigma: float = 0.001   # m, least noise of a curb point
+    max_stretch: float = 1.2   # length of a curve between two points over that of their chord, above which it swings, looked at in
+    swing_places: int = 8   # places; and
+    max_refits: int = 8   # fits of such a curve, each with four times the smoothing
     # uncertainty
     scatter_reach: float = 10.0   # m along the line, either way, over which the scatter of curb points is taken
     points_power: float = 1.3   # more than 1: where points are few, they also lie less regularly on the curb

@@ -30,7 +30,7 @@ def dms(values, form="{0:4d} {1:02d} {2:09.6f}", hemispheres=""):
     for value in values:
         seconds = round(abs(value) * 3600, 6)
         parts = int(seconds // 3600), int(seconds % 3600 // 60), seconds % 60
-        found.append(form.format(*parts) + (hemispheres[value < 0] if hemispheres else ""))
+        found.append(form.format(*parts) + (hemispheres[int(value < 0)] if hemispheres else ""))
     return found
 
 

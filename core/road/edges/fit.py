@@ -217,8 +217,14 @@ class EdgeCurve:
         rows = np.arange(len(x)) if measured is None else measured
         across, up = (max(_noise(self.t[rows], points[name][rows]), EDGE.gap_sigma * longest_gap) for name in ("d", "z"))
         # the noise across divides between x and y: N points have the sum N sigma²
-        self.plan, _ = splprep([x, y], u=self.t, k=order, s=len(x) * across**2)
-        self.height = splrep(self.t, z, k=order, s=len(x) * up**2)
+        # where points that lie close together disagree, a fit may swing far out between its points: with more smoothing it does not
+        fine = np.linspace(self.t[:-1], self.t[1:], EDGE.swing_places, axis=1)
+        for factor in 4.0 ** np.arange(EDGE.max_refits):
+            self.plan, _ = splprep([x, y], u=self.t, k=order, s=factor * len(x) * across**2)
+            self.height = splrep(self.t, z, k=order, s=factor * len(x) * up**2)
+            curve = self.at(fine.ravel()).reshape(*fine.shape, 3)
+            if (np.linalg.norm(np.diff(curve, axis=1), axis=2).sum(1) <= EDGE.max_stretch * np.diff(self.t)).all():
+                break
         fx, fy = splev(self.t, self.plan)
         self.residual = np.hypot(fx - x, fy - y)
 

@@ -60,6 +60,12 @@ def test_a_single_stray_point_does_not_bend_the_edge():
     np.testing.assert_allclose(places(edges)[:, 1], 3.5, atol=0.01)
 
 
+def test_the_edge_stays_at_the_curb_where_the_ends_of_two_chains_disagree():
+    points = curb_points(np.sort(np.r_[np.arange(0, 40, 2.0), 11.95]), lambda s: 3.5 + 0.002 * (s // 2 % 2) + 0.1 * (s == 11.95))
+    points.rows[6]["chain"] = 1
+    np.testing.assert_allclose(places(fit_road_edges(points, straight_frame()))[:, 1], 3.5, atol=0.5)
+
+
 def test_a_corner_that_turns_away_is_followed():
     def corner(s):
         return 3.5 if s < 40 else 3.5 + 8.0 - np.sqrt(64.0 - (s - 40.0) ** 2)
