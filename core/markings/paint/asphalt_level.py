@@ -45,14 +45,14 @@ def dark_cells(brightness: np.ndarray, usual: float) -> np.ndarray:
     return cv2.dilate(dark, np.ones((2 * ASPHALT.dark_rim + 1, 2 * ASPHALT.dark_rim + 1), np.uint8)).astype(bool)
 
 
-def asphalt_profile(bins: list[AsphaltBin], offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def asphalt_profile(bins: list[_AsphaltBin], offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Median and spread of asphalt, (N,) float32 each, at `offsets`, (N,) m, between the middles of one window's `bins`, at least one."""
     middles = [b.middle for b in bins]
     return (np.interp(offsets, middles, [b.median for b in bins]).astype(np.float32),
             np.interp(offsets, middles, [b.spread for b in bins]).astype(np.float32))
 
 
-def threshold_profile(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[AsphaltBin],
+def threshold_profile(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[_AsphaltBin],
                       settings: MarkingSettings) -> tuple[np.ndarray, np.ndarray]:
     """Scale and threshold, (columns,) float32 each, at `offsets`: a cell is bright beyond threshold * scale; arguments as in `split_bins`.
 
@@ -143,7 +143,7 @@ OTSU_LEVELS = 256   # derived: of the histogram
 
 
 @dataclass(frozen=True)
-class AsphaltBin:
+class _AsphaltBin:
     """One bin across the road in one window: offset of its middle, m, cells of asphalt with data, and median and spread of their brightness."""
 
     middle: float
@@ -153,7 +153,7 @@ class AsphaltBin:
 
 
 @dataclass(frozen=True)
-class OtsuSplit:
+class _OtsuSplit:
     """Otsu's two classes of one bin in robust z."""
 
     middle: float   # m, offset of the bin
@@ -204,7 +204,7 @@ def otsu(values: np.ndarray) -> tuple[float, float, float, float]:
     return float(edges[k + 1]), float(below), float(above), float(1 - weight[k])
 
 
-def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, edges: np.ndarray, usual: float = np.inf) -> list[AsphaltBin]:
+def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, edges: np.ndarray, usual: float = np.inf) -> list[_AsphaltBin]:
     """Asphalt in the bins of one window, from right to left; a bin with fewer than 500 cells is joined to its neighbour.
 
     Half of a zebra crossing is stripes, and of the cells of a bin that lies on one most may be. Where the median of a bin tells that, what is so
@@ -226,7 +226,7 @@ def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, e
 
 
 def _bins(values, counted, offsets, edges):
-    """[AsphaltBin] of the cells that are counted."""
+    """[_AsphaltBin] of the cells that are counted."""
     number = np.clip(np.searchsorted(edges, offsets, side="right") - 1, 0, len(edges) - 2)
     bounds = np.searchsorted(number, np.arange(len(edges)))
     cells = np.count_nonzero(counted, axis=0)
@@ -236,7 +236,7 @@ def _bins(values, counted, offsets, edges):
         span = slice(bounds[first], bounds[last])
         count = int(cells[span].sum())
         if count:
-            bins.append(AsphaltBin(float(offsets[span] @ cells[span]) / count, count, *asphalt_statistics(values[:, span][counted[:, span]])))
+            bins.append(_AsphaltBin(float(offsets[span] @ cells[span]) / count, count, *asphalt_statistics(values[:, span][counted[:, span]])))
     return bins
 
 
@@ -253,8 +253,8 @@ def _joined(counts):
     return runs
 
 
-def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[AsphaltBin], separation: float,
-               highest: float = np.inf) -> list[OtsuSplit]:
+def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[_AsphaltBin], separation: float,
+               highest: float = np.inf) -> list[_OtsuSplit]:
     """Otsu's split of each of the `bins` of one window.
 
     Parameters
@@ -272,10 +272,10 @@ def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: li
 
 def _split(z, middle, separation, highest):
     if len(z) < ASPHALT.min_bin_cells:
-        return OtsuSplit(middle, 1.0, 0.0, 0.0, 0.0, 0.0, False)
+        return _OtsuSplit(middle, 1.0, 0.0, 0.0, 0.0, 0.0, False)
     dim = z[z <= highest]
     median, spread = asphalt_statistics(dim if len(dim) >= ASPHALT.min_asphalt_share * len(z) else z)
     z = np.clip((z - median) / spread, *ASPHALT.histogram_limits)
     threshold, below, above, share = otsu(z)
     accepted = above - below > separation and threshold > 1.0 and share <= 0.5
-    return OtsuSplit(middle, spread, threshold, below, above, share, accepted)
+    return _OtsuSplit(middle, spread, threshold, below, above, share, accepted)
