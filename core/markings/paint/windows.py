@@ -17,12 +17,14 @@ import numpy as np
 
 from ...curves.robust import median
 from ...execution.phase import Recipe
+from ...intensity.image import state_about
 from ...io.geotiff import IntensityImage, new_geotiff
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
 from ...survey.store.road_points import RoadPoints
+from ...survey.store.section_store import SectionStore, StoreIndex
 from ..objects.shape import painted_cells
 from ..road_grid import CELL_SIZE, CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
 from ..weights import ASPHALT, SHAPES
@@ -37,7 +39,7 @@ WINDOWS_KEPT = 8   # derived: windows on either side whose data are kept: more t
 MAX_HEIGHTS = 30_000   # derived: points of a piece of 5 m whose heights are compared; of twice as many an evenly spread share
 MAX_OFFSET_POINTS = 300_000   # derived: points of a window whose offsets are kept; of twice as many an evenly spread share
 
-Paint = tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]   # columns of points on paint; local x, y of the mask's pixels, if it is asked for
+Paint = tuple[Columns, np.ndarray, np.ndarray]   # points on paint; local x, y of the mask's pixels, if it is asked for
 Bins = list[tuple[AsphaltBin, OtsuSplit]]   # of one window; none where there are no data
 Windows = tuple[int, int, int]   # number of a road, first and last + 1 number of its windows
 
@@ -61,16 +63,29 @@ def place_of(road_points: RoadPoints, windows: Windows) -> str:
 
 
 class PaintSource:
-    """What paint is extracted from in one phase: road points, their image in memory or on disk, and the frame, by default that of the survey."""
+    """What paint is extracted from in one phase, and where it goes.
 
-    def __init__(self, road_points: RoadPoints, image: Any, frame: RoadFrame | None = None):
+    road_points, image : RoadPoints, and their image in memory or on disk
+    frame : RoadFrame, None for that of the survey
+    folder : of the store of paint, see SectionStore
+    """
+
+    def __init__(self, road_points: RoadPoints, image: Any, frame: RoadFrame | None = None, folder: str | Path | None = None):
         self.road_points, self.image, self.frame = road_points, image, frame or road_points.survey.frame
+        self.paint = SectionStore(road_points.store.dtype, road_points.store.section_length, Path(folder) if folder else None)
         self._extractors: dict[int, WindowExtractor] = {}
         self._lock = threading.Lock()
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open points and image."""
-        return Recipe("core.markings.paint.windows:PaintSource", dict(road_points=self.road_points.recipe(folder), image=self.image.recipe(folder)))
+        return Recipe("core.markings.paint.windows:PaintSource", dict(
+            road_points=self.road_points.recipe(folder), image=self.image.recipe(folder), folder=str(folder)))
+
+    def state(self, item: tuple[int, int]) -> list[Any]:
+        """What paint in a window depends on: the road and its image in the windows that its levels may be taken from, with their halos."""
+        road, window = item
+        rows = (window - ASPHALT.level_reach) * THRESHOLD_WINDOW - WINDOW_HALO, (window + 1 + ASPHALT.level_reach) * THRESHOLD_WINDOW + WINDOW_HALO
+        return state_about(self.image, self.frame, road, *(row * CELL_UNITS * COORDINATE_SCALE for row in rows))
 
     def extractor(self, road: int, *others: Any) -> WindowExtractor:
         """The one WindowExtractor of a road, whose windows share what they compute; `others` : its further arguments, always the same."""
@@ -80,13 +95,17 @@ class PaintSource:
             return self._extractors[road]
 
 
-def paint_of_window(source: PaintSource, item: tuple[int, int], settings: MarkingSettings, noisy: dict[int, list[int]], masked: bool) -> Paint:
-    """The phase that extracts paint.
+def paint_of_window(source: PaintSource, item: tuple[int, int], settings: MarkingSettings, noisy: dict[int, list[int]],
+                    masked: bool) -> tuple[StoreIndex, np.ndarray, np.ndarray]:
+    """The phase that extracts paint; returns where its points lie in a part of the store of paint, and x, y of the mask.
 
     `item` : number of a road and of a window; `noisy` : {road: windows with noisy points}; `masked` : whether the mask's pixels are asked for.
     """
     road, window = item
-    return source.extractor(road, settings, noisy.get(road, ()), masked).extract(window)
+    records, x, y = source.extractor(road, settings, noisy.get(road, ()), masked).extract(window)
+    with source.paint.part() as part:
+        part.append(road, records)
+    return part.index(), x, y
 
 
 class WindowExtractor:
@@ -176,11 +195,10 @@ class WindowExtractor:
         """AsphaltLevels of the windows around one; their bins are computed if they were not yet."""
         self.bins(min(window + 2, self.last))  # a different window for each thread
         bins = {window: self.bins(window)} if self.bins(window) else {}
-        for step, end in ((-1, self.first), (1, self.last)):
-            neighbour = next((w for w in range(window + step, end + step, step) if self.bins(w)), None)
-            if neighbour is not None:
-                # the thresholds of a window depend on its neighbours
-                bins.update((w, self.bins(w)) for w in (neighbour, neighbour + step) if self.first <= w <= self.last and self.bins(w))
+        for step in (-1, 1):
+            # the thresholds of a window depend on its neighbours
+            bins.update((w, self.bins(w)) for w in range(window + step, window + (ASPHALT.level_reach + 1) * step, step)
+                        if self.first <= w <= self.last and self.bins(w))
         return AsphaltLevels(bins, THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE, self.settings)
 
     def _pixels(self, mask, grid):
@@ -228,7 +246,7 @@ class WindowExtractor:
         return self._paint_in([part for part in parts if part.grid.first >= first and part.grid.last <= last], cells.grid, cells.occupied, mask)
 
     def _nothing(self) -> Paint:
-        return _arrays(join_columns([], self.road_points.store.dtype)), np.empty(0), np.empty(0)
+        return join_columns([], self.road_points.store.dtype), np.empty(0), np.empty(0)
 
     def _paint_in(self, parts: list[PieceOfRoad], grid: RoadGrid, occupied: np.ndarray, mask: np.ndarray,
                   least: np.ndarray | None = None) -> Paint:
@@ -250,18 +268,14 @@ class WindowExtractor:
         spacing = np.rint(track_spacing(occupied).ravel().take(cell) * 1e3).astype(np.uint16)
         records = records.with_columns(spacing=spacing)
         if not self.masked:
-            return _arrays(records), np.empty(0), np.empty(0)
+            return records, np.empty(0), np.empty(0)
         with_points = np.zeros(grid.shape, bool)
         with_points.ravel()[cell] = True
         # the image spreads a point over neighbouring cells: a cell whose own points are dark is no marking
         for part in parts:
             box = part.within(grid)
             mask[box][part.occupied] = with_points[box][part.occupied]
-        return _arrays(records), *self._pixels(mask, grid)
-
-
-def _arrays(records: Columns) -> dict[str, np.ndarray]:
-    return {name: records[name] for name in records.names}
+        return records, *self._pixels(mask, grid)
 
 
 @dataclass(frozen=True)
