@@ -16,12 +16,14 @@ import numpy as np
 
 from ...curves.robust import median
 from ...execution.phase import Recipe
+from ...intensity.image import state_about
 from ...io.geotiff import IntensityImage, new_geotiff
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
 from ...survey.store.road_points import RoadPoints
+from ...survey.store.section_store import SectionStore, StoreIndex
 from ..objects.shape import painted_cells
 from ..road_grid import CELL_SIZE, CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
 from ..weights import ASPHALT, SHAPES
@@ -35,7 +37,7 @@ WINDOW_HALO = 100   # derived: cells: 4 m around a window that are read too, for
 MAX_HEIGHTS = 30_000   # derived: points of a piece of 5 m whose heights are compared; of twice as many an evenly spread share
 MAX_OFFSET_POINTS = 300_000   # derived: points of a window whose offsets are kept; of twice as many an evenly spread share
 
-Paint = tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]   # columns of points on paint; local x, y of the mask's pixels, if it is asked for
+Paint = tuple[Columns, np.ndarray, np.ndarray]   # points on paint; local x, y of the mask's pixels, if it is asked for
 Windows = tuple[int, int, int]   # number of a road, first and last + 1 number of its windows
 
 
@@ -58,24 +60,41 @@ def place_of(road_points: RoadPoints, windows: Windows) -> str:
 
 
 class PaintSource:
-    """What paint is extracted from: road points, their image in memory or on disk, and the frame, by default that of the survey."""
+    """What paint is extracted from in one phase, and where it goes.
 
-    def __init__(self, road_points: RoadPoints, image: Any, frame: RoadFrame | None = None):
+    road_points, image : RoadPoints, and their image in memory or on disk
+    frame : RoadFrame, None for that of the survey
+    folder : of the store of paint, see SectionStore
+    """
+
+    def __init__(self, road_points: RoadPoints, image: Any, frame: RoadFrame | None = None, folder: str | Path | None = None):
         self.road_points, self.image, self.frame = road_points, image, frame or road_points.survey.frame
+        self.paint = SectionStore(road_points.store.dtype, road_points.store.section_length, Path(folder) if folder else None)
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open points and image."""
-        return Recipe("core.markings.paint.windows:PaintSource", dict(road_points=self.road_points.recipe(folder), image=self.image.recipe(folder)))
+        return Recipe("core.markings.paint.windows:PaintSource", dict(
+            road_points=self.road_points.recipe(folder), image=self.image.recipe(folder), folder=str(folder)))
+
+    def state(self, item: tuple[int, int]) -> list[Any]:
+        """What paint in a window depends on: the road and its image there, and in the halo."""
+        road, window = item
+        rows = window * THRESHOLD_WINDOW - WINDOW_HALO, (window + 1) * THRESHOLD_WINDOW + WINDOW_HALO
+        return state_about(self.image, self.frame, road, *(row * CELL_UNITS * COORDINATE_SCALE for row in rows))
 
 
-def paint_of_window(source: PaintSource, item: tuple[int, int], settings: MarkingSettings, noisy: dict[int, list[int]], masked: bool) -> Paint:
-    """The phase that extracts paint.
+def paint_of_window(source: PaintSource, item: tuple[int, int], settings: MarkingSettings, noisy: dict[int, list[int]],
+                    masked: bool) -> tuple[StoreIndex, np.ndarray, np.ndarray]:
+    """The phase that extracts paint; returns where its points lie in a part of the store of paint, and x, y of the mask.
 
     `item` : number of a road and of a window; `noisy` : {road: windows with noisy points}, in which paint is searched for in averages;
     `masked` : whether the mask's pixels are asked for.
     """
     road, window = item
-    return _Window(source, road, window).extract(settings, window in noisy.get(road, ()), masked)
+    records, x, y = _Window(source, road, window).extract(settings, window in noisy.get(road, ()), masked)
+    with source.paint.part() as part:
+        part.append(road, records)
+    return part.index(), x, y
 
 
 class _Window:
@@ -91,7 +110,7 @@ class _Window:
 
     def extract(self, settings: MarkingSettings, noisy: bool, masked: bool) -> Paint:
         """Paint of the window itself."""
-        nothing = _arrays(join_columns([], self.source.road_points.store.dtype)), np.empty(0), np.empty(0)
+        nothing = join_columns([], self.source.road_points.store.dtype), np.empty(0), np.empty(0)
         if not len(self._points(self.begin, self.end)):
             return nothing
         step = max(len(self._points(self.first, self.last)) // MAX_OFFSET_POINTS, 1)
@@ -161,7 +180,7 @@ class _Window:
         spacing = np.rint(track_spacing(cells.occupied).ravel().take(cell) * 1e3).astype(np.uint16)
         records = records.with_columns(spacing=spacing)
         if not masked:
-            return _arrays(records), np.empty(0), np.empty(0)
+            return records, np.empty(0), np.empty(0)
         with_points = np.zeros(grid.shape, bool)
         with_points.ravel()[cell] = True
         # the image spreads a point over neighbouring cells: a cell whose own points are dark is no marking
@@ -170,11 +189,7 @@ class _Window:
             mask[box][part.occupied] = with_points[box][part.occupied]
         inner = mask[WINDOW_HALO:WINDOW_HALO + THRESHOLD_WINDOW]
         frame = self.source.frame
-        return _arrays(records), *_painted_pixels(inner, (grid.first + WINDOW_HALO, grid.low), self.source.image, frame.origin, frame.road(self.road))
-
-
-def _arrays(records: Columns) -> dict[str, np.ndarray]:
-    return {name: records[name] for name in records.names}
+        return records, *_painted_pixels(inner, (grid.first + WINDOW_HALO, grid.low), self.source.image, frame.origin, frame.road(self.road))
 
 
 # The mask of markings as a raster, in the pixels of the intensity image.

@@ -7,6 +7,8 @@ import pytest
 from lanewright.core.common import parallel
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
+from lanewright.core.execution.phase import THREADS, Threads
+from lanewright.core.execution.remembered import RememberedResults
 from lanewright.core.intensity.image import make_intensity_image, write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint import windows
@@ -15,7 +17,7 @@ from lanewright.core.markings.paint.settings import MarkingSettings
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
-from lanewright.core.survey.store.section_store import SectionStore
+from lanewright.core.survey.store.section_store import SectionStore, StoreIndex
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 from lanewright.products.published_markings import METHODS
 from painted_streets import ASPHALT, DENSITY, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
@@ -41,6 +43,41 @@ def test_paint_and_mask_are_the_same_whether_the_image_is_read_from_its_file_or_
     assert_same_points(found.records, usual.records)
     masks = [IntensityImage.open(tmp_path / name) for name in ("a.tif", "b.tif")]
     np.testing.assert_array_equal(*(mask.read_pixels(0, 0, mask.width, mask.height) for mask in masks))
+
+
+def test_where_a_road_changed_tiles_and_paint_nearby_are_made_anew_and_the_map_is_as_if_all_were(monkeypatch):
+    """Tiles of 20 m that are touched, and the windows of 20 m that take their levels from there."""
+    frame = drive(length=320.0, radius=150.0)
+    records = street(frame, [strip(10, 290, 1.0, 1.15)], length=300.0, density=200)
+    before = road_points(records, frame, 5.0)
+    for key in before.all_sections():
+        before.section(*key)
+    after = replace(before, store=SectionStore(ROAD_POINT, 5.0))
+    after.store.adopt(StoreIndex.of((key, part) for key, part in before.store._sections.items() if key != (0, 21)))
+    darker = np.array(before.section(0, 21).records)
+    darker["intensity"] //= 2
+    after.store.put(0, 21, darker)
+    asked, run = {}, Threads.run
+
+    def noting(self, phase, items, *others):
+        asked[phase.function.__name__] = len(items)
+        return run(self, phase, items, *others)
+
+    def made(points, before=None):
+        """The image, its pixels, and what is paint."""
+        image = make_intensity_image(points, before=before)
+        return image, image.read_pixels(0, 0, image.width, image.height), extract_markings(points, image, frame).all_points().records
+
+    alone = made(after)
+    monkeypatch.setattr(RoadPoints, "executor", RememberedResults(THREADS))
+    first = made(before)
+    monkeypatch.setattr(Threads, "run", noting)
+    again = made(after, first[0])
+    np.testing.assert_array_equal(again[1], alone[1])
+    assert_same_points(again[2], alone[2])
+    assert not np.array_equal(again[1], first[1], equal_nan=True)
+    # of 15 windows; a bend shows some more of the road
+    assert 5 <= asked["paint_of_window"] <= 9
 
 
 @pytest.mark.parametrize("radius", [np.inf, 80.0])
