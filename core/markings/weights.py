@@ -45,7 +45,6 @@ class _AsphaltWeights:
     histogram_limits: tuple[float, float] = -6.0, 60.0   # z: the range of Otsu's histogram; a few specular reflections must not stretch it
     rim_width: float = 0.60   # m from the rim of the road: gutters; asphalt is taken from the cells inside
     # When a scanner is noisy.
-    level_reach: int = 2   # windows on either side that levels are taken from: a neighbour, and the one whose thresholds tell the neighbour's
     noisy_scatter: float = 0.40   # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
     scatter_square: float = 1.0   # m
     min_square_points: int = 30   # points of one scanner

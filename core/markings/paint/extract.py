@@ -24,7 +24,7 @@ from ..weights import ASPHALT
 from .settings import MarkingSettings, PaintMethod
 from .windows import THRESHOLD_WINDOW, Burn, PaintSource, burn_points, marking_mask, paint_of_window, place_of, points_of_rows, windows_of
 
-WINDOWS_PER_TASK = 12   # derived: windows of 20 m that a worker process is best given together: it looks at two more on either side
+WINDOWS_PER_TASK = 12   # derived: windows of 20 m that a worker process is given together: at everyday density half a second of its time
 
 
 def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
