@@ -289,7 +289,7 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
-        markings=markings, edges=edges, road_points=result.road_points, taken=readings)
+        markings=markings, edges=edges, road_points=result.road_points, taken=readings, depends=settings.driving)
     executor.release()
     driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
                                              settings.driving.lane_width or country(settings.driving.country).usual_lane, edge_places)
