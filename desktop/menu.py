@@ -47,7 +47,8 @@ class Menu(QObject):
         self._add(tr("Cross-section"), self.open_section, tr("Points and lines of the road where you click in the map"),
                   theme("/mActionElevationProfile.svg"))
         self._add(tr("Road map in 3D"), self.open_3d,
-                  tr("QGIS's 3D view over the middle of the map, with curbs, paint and driving lines at their heights"), theme("/mActionNew3DMap.svg"))
+                  tr("QGIS's 3D view over the middle of the map, with curbs, paint and driving lines at their heights"),
+                  theme("/mActionNew3DMap.svg"))
         self._add(tr("Control points from paint"), self.open_pairs, tr("Places UAV images on the map: the same paint in each and in the intensity "
                   "image, side by side to accept or refuse"), QIcon(str(ICON.parent / "icons" / "proposecontrolpoints.svg")))
         self._add(tr("Open the last report"), self.open_report, tr("The report of the run that ended last"), theme("/mIconHtml.svg"))
