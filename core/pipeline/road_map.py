@@ -255,8 +255,8 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     # without what they keep of the intensities they take a quarter less memory for the image
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
-                       result.road_points, settings.image, path=image_path, depends=(settings.correct, settings.image), free=TiledImage.close,
-                       again=lambda image: image.write(image_path))
+                       result.road_points, settings.image, path=image_path, depends=(settings.correct, settings.image),
+                       free=TiledImage.close, renewed=True, again=lambda image: image.write(image_path))
     executor.forget()
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
@@ -289,7 +289,7 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
-        markings=markings, edges=edges, road_points=result.road_points, taken=readings)
+        markings=markings, edges=edges, road_points=result.road_points, taken=readings, depends=settings.driving)
     executor.release()
     driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
                                              settings.driving.lane_width or country(settings.driving.country).usual_lane, edge_places)
@@ -374,11 +374,13 @@ class Stages:
         self.shares = {name: (1.0 - self.done) * cost / max(sum(costs.values()), 1e-9) for name, cost in costs.items()}
 
     def run(self, name: str, title: str, function: Callable[..., Any], *arguments: Any, depends: Any = None,
-            free: Callable[[Any], None] = lambda result: None, again: Callable[[Any], None] = lambda result: None, **options: Any) -> Any:
+            free: Callable[[Any], None] = lambda result: None, again: Callable[[Any], None] = lambda result: None, renewed: bool = False,
+            **options: Any) -> Any:
         """Run a stage: log its title, if any, call the function with its part of the progress, and return its result, or that of the last run.
 
         depends : plain values that the result depends on beside the stages before, or a function that gives them; None for a result that is not kept
         free, again : what frees the disk space of a result that is kept, and what is done with one that is used again
+        renewed : whether the function takes what the last run gave as `before`, where that is another
         """
         share = self.shares[name]
         if title:
@@ -391,9 +393,11 @@ class Stages:
             result = self.kept.result(name)
             again(result)
         else:
+            if renewed and self.kept is not None:
+                options["before"] = self.kept.before(name)
             result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
             if self.kept is not None and depends is not None:
-                self.kept.keep(name, self._digest, result, partial(free, result))
+                self.kept.keep(name, self._digest, result, partial(free, result), renewed)
         trim_heap()
         self.seconds[name] = time.perf_counter() - began
         self.done += share

@@ -82,6 +82,11 @@ class RoadPoints:
         store = self.store if self.survey is None else self.survey.store
         return store.stretches([number for number in self.roads() if road in (None, number)])
 
+    def state(self, road: int, start: float, end: float) -> list[Any]:
+        """Plain values that differ where the points of a road between two stations (m) are others."""
+        length = self.store.section_length
+        return self.store.state((road, int(np.floor(start / length)), int(np.ceil(end / length))))
+
     def window(self, road: int, start: float, end: float) -> Points:
         return self.store.window(road, start, end)
 

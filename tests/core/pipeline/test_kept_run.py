@@ -85,7 +85,7 @@ def test_a_corrected_edge_or_lane_takes_the_stages_after_it_alone_and_gives_the_
     found, road_map = made(street, tmp_path, kept)
     assert found == alone[0]
     with monkeypatch.context() as patch:
-        without(patch, SURFACE)
+        without(patch, (*SURFACE, "fit_marking_lines", "make_driving_lines"))
         assert made(street, tmp_path, kept, without_lane(road_map))[0] == alone[2]
         assert made(street, tmp_path, kept)[0] == alone[0]
     with monkeypatch.context() as patch:
