@@ -288,8 +288,8 @@ def _place_shares(estimate, lanes, chosen, part):
               estimate.once[lanes.interval, lanes.section] - best)]
     if other is not None:
         more = _lanes_of(other, _strips_of(other, part))
-        nothing = np.zeros(len(more.d))
-        parts.append((more.interval, more.d, more.way, nothing, nothing, other.once[more.interval, more.section] - other.once_total + estimate.behind))
+        behind = other.once[more.interval, more.section] - other.once_total + estimate.behind
+        parts.append((more.interval, more.d, more.way, *np.zeros((2, len(more.d))), behind))
     joined = [np.concatenate(values) for values in zip(*parts)]
     order = np.argsort(joined[0], kind="stable")
     interval, d, way, posterior, sureness, nats = (values[order] for values in joined)
