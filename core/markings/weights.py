@@ -514,11 +514,10 @@ CLASSES = _ClassWeights()
 class _RowWeights:
     """What stands in rows: first dashes."""
 
-    max_dash_spacing: float = 3.0   # m between the middles of neighbours in a row
     min_dash_spacing: float = 0.25   # m between them at least
     max_dash_breadth: float = 0.45   # m that a dash may reach across its row
     max_dash_offset: float = 0.12   # m off the line through its neighbours
-    max_gap_per_dash: float = 3.0   # times the length of the longer dash: no gap of a row is longer
+    max_gap_per_dash: float = 3.5   # times the length of the longer dash: no gap of a row is longer (3 ft and 9 ft: MUTCD 3A.06), seen to 20 cm
     max_step_ratio: float = 2.5   # times: how much one step of a row may be longer than the next, a dash worn away between them
     min_step_cosine: float = np.cos(np.radians(12.0))   # by which a row may turn from dash to dash
     min_dashes_in_row: int = 4   # of a row

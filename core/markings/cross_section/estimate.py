@@ -56,8 +56,7 @@ class RoadEstimate:
     first_direction: int   # of the lanes met first from the left
     evidence: Evidence   # that it is made from
     weights: EstimateWeights
-    unnamed: np.ndarray   # (I,) which cross-sections would have been chosen without the names of the lines; -1 where these decide
-    unnamed_total: float   # nats of them
+    unnamed_total: float   # nats of the best sequence without the names of the lines
     once: np.ndarray
     second: np.ndarray
     other: RoadEstimate | None = None
@@ -86,7 +85,7 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     lined, total, unnamed_total = np.flatnonzero(paint.any(1) | evidence.bare), 0.0, 0.0
     # what named the lines is the same evidence
     cost = sections.cost - _by_stretch(lambda part: misnamed_costs(candidates.take(part), sections.take(part), weights), len(sections.cost))
-    unnamed, (once, second) = np.argmin(cost, axis=1), np.full((2, *cost.shape), np.inf)
+    once, second = np.full((2, *cost.shape), np.inf)
     if len(lined):
         hidden = np.r_[0.0, np.cumsum(candidates.length)]
         unseen = candidates.length * (1 - shown)
@@ -95,12 +94,12 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
         transition = transitions(candidates, sections, lined, lane_width, left, weights)
         choice[lined], total = best_sequence(sections.cost[lined], transition)
         posterior[lined] = probabilities(sections.cost[lined], transition)
-        unnamed[lined], unnamed_total = best_sequence(cost[lined], transition)
+        unnamed_total = best_sequence(cost[lined], transition)[1]
         second[lined] = behind_best(cost[lined], transition, candidates.length[lined], weights.repeats)
         seen_once = _seen_once(candidates, sections, cost, weights)[lined]
         sureness[lined], once[lined] = probabilities(seen_once, transition), best_through(seen_once, transition)
-    return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, weights, unnamed,
-                        unnamed_total, once, second)
+    return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, weights, unnamed_total, once,
+                        second)
 
 
 def _stretches(count):
@@ -191,8 +190,7 @@ def _roads_of_many_lanes(c, sections, divided, weights):
 class LaneSpan:
     """One lane over one interval.
 
-    direction : 1 or -1, of the most probable sequence; where that is the less probable one of a lane there, the other, unless names of lines decided
-        that, or the drive
+    direction : 1 or -1, of the most probable sequence
     second : Reading, the most probable one of those without such a lane in that direction there; None where that is not known
     """
 
@@ -225,7 +223,7 @@ def _lane_spans(estimate, part):
     best = np.flatnonzero(strips.section == estimate.choice[strips.interval])
     lanes = _lanes_of(estimate, strips)
     lane_rows, shares = _place_shares(estimate, lanes, best, part)
-    way = np.where(shares[:, 3] > 0, -lanes.way[lane_rows], lanes.way[lane_rows])
+    way = lanes.way[lane_rows]
     seconds = [min((reading for reading in readings if reading is not None), key=lambda reading: reading.nats, default=None) for readings in zip(
         _second_readings(estimate, lanes, lane_rows, way, part), _second_places(estimate, lanes, strips, lane_rows, way))]
     k = 0
@@ -237,10 +235,10 @@ def _lane_spans(estimate, part):
         uses[0], uses[-1] = borders[i - part.start, [m, end]].tolist()
         for lane in range(number):
             direction = estimate.first_direction if lane < first else -estimate.first_direction
-            probability, confidence, directed, turned = shares[k].tolist()
+            probability, confidence, directed = shares[k].tolist()
             spans.append(LaneSpan(
-                i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - lane, number, beside[row], -direction if turned else direction,
-                probability, confidence, 1 - directed if turned else directed, uses[lane], uses[lane + 1], seconds[k]))
+                i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - lane, number, beside[row], direction, probability, confidence, directed,
+                uses[lane], uses[lane + 1], seconds[k]))
             k += 1
     return spans
 
@@ -279,7 +277,7 @@ def _lanes(c, lane_width, first_direction, strips):
 
 
 def _place_shares(estimate, lanes, chosen, part):
-    """The rows of the lanes of the chosen strips, from left to right, and (L, 4) of them: probability, confidence and directed of LaneSpan, turned.
+    """The rows of the lanes of the chosen strips, from left to right, and (L, 3) of them: probability, confidence and directed of LaneSpan.
 
     That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it. Of directions the most probable
     sequences are weighed against each other where the other side of traffic counts too: a road that is one way is the same reading on both.
@@ -287,15 +285,14 @@ def _place_shares(estimate, lanes, chosen, part):
     other = estimate.other
     best = estimate.once_total
     parts = [(lanes.interval, lanes.d, lanes.way, estimate.posterior[lanes.interval, lanes.section], estimate.sureness[lanes.interval, lanes.section],
-              estimate.once[lanes.interval, lanes.section] - best, estimate.unnamed[lanes.interval] == lanes.section)]
+              estimate.once[lanes.interval, lanes.section] - best)]
     if other is not None:
         more = _lanes_of(other, _strips_of(other, part))
-        nothing = np.zeros(len(more.d))
-        parts.append((more.interval, more.d, more.way, nothing, nothing, other.once[more.interval, more.section] - other.once_total + estimate.behind,
-                      nothing > 0))
+        behind = other.once[more.interval, more.section] - other.once_total + estimate.behind
+        parts.append((more.interval, more.d, more.way, *np.zeros((2, len(more.d))), behind))
     joined = [np.concatenate(values) for values in zip(*parts)]
     order = np.argsort(joined[0], kind="stable")
-    interval, d, way, posterior, sureness, nats, unnamed = (values[order] for values in joined)
+    interval, d, way, posterior, sureness, nats = (values[order] for values in joined)
     first, last = (np.searchsorted(interval, np.arange(part.stop), side=side) for side in ("left", "right"))
     chosen_lanes = np.flatnonzero(np.isin(lanes.strip, chosen))
     size = (last - first)[lanes.interval[chosen_lanes]]
@@ -303,16 +300,15 @@ def _place_shares(estimate, lanes, chosen, part):
     compared = np.arange(len(lane)) - np.repeat(np.cumsum(size) - size, size) + first[lanes.interval[lane]]
     same_place = np.abs(d[compared] - lanes.d[lane]) < SAME_LANE
     alike = same_place & (way[compared] == lanes.way[lane])
-    probability, sure, either, as_unnamed = (np.bincount(lane[rows], values[compared[rows]], minlength=len(lanes.d)) for values, rows in (
-        (posterior, same_place), (sureness, alike), (sureness, same_place), (unnamed, alike)))
+    probability, sure, either = (np.bincount(lane[rows], values[compared[rows]], minlength=len(lanes.d)) for values, rows in (
+        (posterior, same_place), (sureness, alike), (sureness, same_place)))
     directed = sure / np.where(either > 0, either, 1.0)
     if other is not None:
         least_nats = np.full((2, len(lanes.d)), FARTHEST_BEHIND)
         for values, rows in zip(least_nats, (alike, same_place & ~alike)):
             np.minimum.at(values, lane[rows], nats[compared[rows]])
         directed = 1 / (1 + np.exp(least_nats[0] - least_nats[1]))
-    turned = (either > 0) & (directed < 0.5) & (as_unnamed > 0) & ~_driven_along(estimate.evidence, lanes)
-    return chosen_lanes, np.stack([probability, either, directed, turned], axis=1)[chosen_lanes]
+    return chosen_lanes, np.stack([probability, either, directed], axis=1)[chosen_lanes]
 
 
 def _second_readings(estimate, lanes, own, way, part):
@@ -366,13 +362,6 @@ def _second_places(estimate, lanes, strips, own, way):
             lanes_there = tuple((middle, wide, estimate.first_direction * sign) for (middle, wide, _), sign in zip(lanes_there, (1, -1)))
         result[k] = Reading(estimate.weights.unpainted_divider, lanes_there)
     return result
-
-
-def _driven_along(evidence, lanes):
-    """(N,) bool, whether somebody drove in a lane the way it leads."""
-    with np.errstate(invalid="ignore"):
-        inside = np.abs(evidence.driven[:, lanes.interval] - lanes.d) < lanes.width / 2
-    return (inside & (evidence.directions[:, None] == lanes.way)).any(0)
 
 
 def boundary_uses(estimate: RoadEstimate) -> np.ndarray:

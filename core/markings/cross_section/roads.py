@@ -77,7 +77,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         progress.report(0.4 * (k + 1) / len(lines))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
     estimates = _estimates(evidence, sides, usual_width, weights, progress.part(0.4, 0.7))
-    best, named, behind, opposite = _best_side(estimates, usual_side(frame), weights)
+    best, behind, opposite = _best_side(estimates, usual_side(frame), weights)
     used = tuple(first for first in sides if first == best or behind < ROADS.sure_side or opposite < weights.doubt)
     width, shown = (usual_width, True) if width_asked else _usual_width(evidence, estimates[best], usual_width)
     # the road's own width tells lanes better than that of a country
@@ -85,9 +85,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         estimates = _estimates(evidence, used, width, weights, progress.part(0.7, 1.0), shown)
     roads = {}
     for number, estimate in estimates[best].items():
-        if named:
-            estimate = replace(estimate, unnamed=np.full(len(estimate.choice), -1))
-        elif len(used) > 1:
+        if len(used) > 1:
             other_side = estimates[-best][number]
             estimate = replace(estimate, other=other_side if behind < ROADS.sure_side else None, behind=behind, opposite=other_side,
                                opposite_behind=opposite)
@@ -160,12 +158,12 @@ def usual_side(frame: RoadFrame) -> str:
 
 
 def _best_side(estimates, usual, weights):
-    """The most probable side of traffic, whether names of lines decide it, and by how many nats the other is behind, once and as a second reading.
+    """The most probable side of traffic, and by how many nats the other is behind, once and as a second reading; inf where names of lines decide it.
 
     Names that decide the side are not made from the same evidence. What is seen again and again along a road was laid out and driven once.
     """
     if len(estimates) == 1:
-        return next(iter(estimates)), False, np.inf, np.inf
+        return next(iter(estimates)), np.inf, np.inf
     prior = {"left": -weights.foreign_side, "right": weights.foreign_side}.get(usual, weights.left_hand)
     # nats by which traffic on the left is behind
     total, unnamed, once = (prior + sum((getattr(left, name) - getattr(estimates[-1][number], name)) * min(
@@ -173,8 +171,8 @@ def _best_side(estimates, usual, weights):
             ("total", weights.repeats), ("unnamed_total", weights.repeats), ("once_total", np.inf)))
     best = 1 if total < 0 else -1
     if total * unnamed < 0:
-        return best, True, np.inf, np.inf
-    return best, False, max(-best * once, 0.0), abs(unnamed)
+        return best, np.inf, np.inf
+    return best, max(-best * once, 0.0), abs(unnamed)
 
 
 def _taken_on(taken, number, candidates, s):

@@ -18,7 +18,7 @@ from ...curves.robust import percentiles
 from ...lazy import cv2
 from ...survey.frame.placement import PlaceIndex
 from ..road_grid import CELL_SIZE
-from ..weights import ROWS, STRIPES
+from ..weights import CLASSES, ROWS, STRIPES
 from .shape import Shape
 
 # derived: the directions and pitches of stripes that are tried, from the steps between them
@@ -364,7 +364,7 @@ def rows_of_dashes(shapes: Sequence[Shape]) -> list[np.ndarray]:
         return []
     middle = np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes])
     length, width, turn = (np.array([getattr(shape, name) for shape in shapes]) for name in ("length", "width", "direction"))
-    pairs = cKDTree(middle).query_pairs(ROWS.max_dash_spacing, output_type="ndarray")
+    pairs = cKDTree(middle).query_pairs((1 + ROWS.max_gap_per_dash) * CLASSES.short_dash_length[1], output_type="ndarray")
     pairs = np.concatenate([pairs, pairs[:, ::-1]])
     pairs = pairs[np.lexsort(pairs.T[::-1])]
     step = middle[pairs[:, 1]] - middle[pairs[:, 0]]

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.countries.traffic_side import side_of_traffic
 from lanewright.core.markings.cross_section.roads import usual_side
-from lined_streets import EAST, NORTH, Street, middle
-from shapely.geometry import Point
+from lined_streets import EAST, HEIGHT, NORTH, Street, middle
+from shapely.geometry import Point, Polygon
 
 
 def two_lanes(**drive):
@@ -120,6 +121,23 @@ def test_two_lanes_towards_a_junction_and_one_back_reach_as_far_on_either_side_o
     assert {lane: set(way) for lane, way in found.items()} == {0.0: {1}, 3.6: {-1}, 6.8: {-1}}
     assert [max(line.bounds[2] for line, _ in lines if abs(np.median(street.offsets(line)) * mirror - lane) < 0.2) - EAST
             for lane in (0.0, 3.6, 6.8)] == pytest.approx([100.0] * 3, abs=1.0)
+
+
+@pytest.mark.parametrize("mirror", [1, -1])
+@pytest.mark.parametrize("pattern", ["solid", "double-solid"])
+def test_left_turn_lanes_that_face_each_other_across_a_junction_each_lead_up_to_it(pattern, mirror):
+    """In the middle of a street of four lanes: nobody drove in them, and stop lines alone tell which way they lead."""
+    street, stops = Street(length=200.0, vehicle=-3.35 * mirror, again=(3.35 * mirror,)), Features("PolygonZ", MARKINGS)
+    for first, last, way in ((5.0, 80.0, mirror), (120.0, 195.0, -mirror)):
+        for offset in (5.1, -5.1):
+            street.paint(offset, first, last, pattern="dashed", kind="").paint(1.7 * offset, first, last, kind="")
+        street.paint(1.6 * way, first, last, pattern=pattern, kind="").paint(-1.6 * way, first, last, kind="")
+        at = 79.0 if first < 80.0 else 120.5
+        corners = street.places([at, at + 0.5, at + 0.5, at], np.array([-8.6, -8.6, 1.6, 1.6]) * way)
+        stops.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": "stop", "use": "other"})
+    lines, _ = street.lanes(markings=stops)
+    found = {(row["lane"], street.offsets(line)[0].round(), line.bounds[2] < EAST + 100.0): row["direction"] for line, row in lines}
+    assert sorted((before, way) for (_, offset, before), way in found.items() if abs(offset) < 1.0) == [(False, -1), (True, 1)]
 
 
 def beside_a_bus_lane(centre, beyond, pattern="solid", width=0.12, mirror=1, vehicle=-1.6):

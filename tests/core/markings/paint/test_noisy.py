@@ -144,6 +144,13 @@ def test_four_dashes_in_line_are_a_row_and_three_are_none():
     assert rows_of_dashes(shapes[:3]) == []
 
 
+@pytest.mark.parametrize("dash, gap", [(1.0, 2.0), (0.9, 2.7), (0.5, 1.0)])
+def test_dashes_are_a_row_at_any_gap_that_is_up_to_three_times_as_long_as_they(dash, gap):
+    """A metre with gaps of two, as along bus stops; three feet with gaps of nine, as lines are extended in the United States."""
+    uneven = np.array([0.0, 0.05, -0.04, 0.03, 0.05])
+    assert [len(row) for row in rows_of_dashes([shape_of(s, 0.0, dash) for s in (dash + gap) * np.arange(5) + uneven])] == [5]
+
+
 def test_a_dash_worn_away_does_not_end_a_row_and_dashes_beside_each_other_are_none():
     assert [len(row) for row in rows_of_dashes([shape_of(s, 0.0) for s in (0.0, 0.9, 2.7, 3.6, 4.5)])] == [5]
     assert rows_of_dashes([shape_of(0.0, d) for d in (0.0, 1.0, 2.0, 3.0)]) == []
