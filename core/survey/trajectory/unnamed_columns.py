@@ -38,7 +38,7 @@ def _attitude_columns(sample, used, plane_end, z, heading):
         ordered = heading - z == 3 or _after_roll_and_pitch(sample, heading) and not {heading - 1, heading - 2} & used
         return {"heading": heading, **({"roll": heading - 2, "pitch": heading - 1} if ordered else {})}
     following = range(z + 1, z + 4)
-    if not plane_end < z <= sample.shape[1] - 4 or used & set(following):
+    if not plane_end < z <= sample.shape[1] - 4 or used & set(following) or np.isnan(sample[:, following]).all(axis=0).any():
         return {}
     # a heading that disagrees with the course (driven backwards, another zero direction) still exceeds 45 degrees
     leans, turns = (np.nanmax(np.abs(sample[:, columns])) for columns in (following[:2], following[2:]))

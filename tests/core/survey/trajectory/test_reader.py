@@ -102,6 +102,12 @@ def test_without_names_the_numbers_tell_the_columns(tmp_path, columns):
     assert "recognised by the numbers" in " ".join(found.notes)
 
 
+def test_empty_columns_behind_the_heights_are_no_attitude(tmp_path):
+    path = write(tmp_path / "t.csv", street(), ("time", "x", "y", "z"), header="")
+    path.write_text("".join(f"{line},nan,nan,nan\n" for line in path.read_text().splitlines()))
+    assert_same(read_trajectory(path), street(), ("time", "x", "y", "z"))
+
+
 def lane_at(course, height, turn):
     """A drive that starts on a course (degrees) and turns by so many, at a height of about as many metres."""
     here = street()
