@@ -9,7 +9,6 @@ import numpy as np
 from qgis.core import (
     Qgis,
     QgsLayoutExporter,
-    QgsLayoutRenderContext,
     QgsMapLayer,
     QgsPrintLayout,
     QgsProcessingFeatureSourceDefinition,
@@ -111,7 +110,6 @@ def write_pdf(layout: QgsPrintLayout, path: str, progress: Progress, dpi: int = 
     Raises RoadExtractionError where the file cannot be written.
     """
     layout.renderContext().setDpi(dpi)
-    layout.renderContext().setFlag(QgsLayoutRenderContext.Flag.FlagAntialiasing, True)
     layout.renderContext().setTextRenderFormat(Qgis.TextRenderFormat.AlwaysText)
     exporter, pages = QgsLayoutExporter(layout), layout.pageCollection()
     writer = QPdfWriter(path)
