@@ -30,7 +30,7 @@ FILES = {
     "proposecontrolpoints.IMAGE": "uav_image.tif", "CONTROL_POINTS": "control_points.gpkg",
     "georeferenceimage.IMAGE": "uav_image.tif", "georeferenceimage.GCPS": "control_points.gpkg",
     "georeferenceimage.OUTPUT": "orthoimage.tif",
-    "exportlanelet2.OUTPUT": "map.osm", "exportopendrive.OUTPUT": "map.xodr", "exportcad.OUTPUT": "map.dxf",
+    "printsheets.OUTPUT": "sheets.pdf", "exportlanelet2.OUTPUT": "map.osm", "exportopendrive.OUTPUT": "map.xodr", "exportcad.OUTPUT": "map.dxf",
     "checkhdmap.INPUT": "map.xodr", "checkhdmap.OUTPUT": "map_findings.gpkg",
     "importopendrive.INPUT": "map.xodr", "importlanelet2.INPUT": "map.osm",
     **{f"{name}.{layer}": f"{name.removeprefix('import')}_{layer.lower()}.gpkg" for name in ("importopendrive", "importlanelet2")
@@ -47,7 +47,7 @@ FILES = {
 # Optional inputs that one would not do without.
 NAMED = {
     "importtrajectory": ("POINT_CLOUDS",), "inspectsurvey": ("TRAJECTORY",), "extractroadsurface": ("ROAD_EDGES",),
-    "drivinglines": ("MARKINGS", "ROAD_EDGES", "ROAD_POINTS"), "georeferenceimage": ("GCPS",),
+    "drivinglines": ("MARKINGS", "ROAD_EDGES", "ROAD_POINTS"), "printsheets": ("ROAD_EDGES", "DRIVING_LINES"), "georeferenceimage": ("GCPS",),
     "crosssections": ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES"),
     "roadmap": ("TRAJECTORY",),
     "roadside": ("ROAD_EDGES",),
