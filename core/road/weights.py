@@ -535,7 +535,8 @@ class _EdgeWeights:
     min_edge_length: float = 2.0   # m of a piece with curb points
     gap_sigma: float = 0.0005   # m per m of the longest bridged gap, least noise of the points of a curve across it
     min_point_sigma: float = 0.001   # m, least noise of a curb point
-    max_stretch: float = 1.2   # length of a curve between two points over that of their chord, above which it swings, looked at in
+    max_stretch: float = 1.2   # length of a curve between two points over that of their chord, and
+    max_swing: float = 0.3   # m more, above which it swings: the noise of points centimetres apart is none; looked at in
     swing_places: int = 8   # places; and
     max_refits: int = 8   # fits of such a curve, each with four times the smoothing
     # uncertainty

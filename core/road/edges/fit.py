@@ -223,7 +223,7 @@ class EdgeCurve:
             self.plan, _ = splprep([x, y], u=self.t, k=order, s=factor * len(x) * across**2)
             self.height = splrep(self.t, z, k=order, s=factor * len(x) * up**2)
             curve = self.at(fine.ravel()).reshape(*fine.shape, 3)
-            if (np.linalg.norm(np.diff(curve, axis=1), axis=2).sum(1) <= EDGE.max_stretch * np.diff(self.t)).all():
+            if (np.linalg.norm(np.diff(curve, axis=1), axis=2).sum(1) <= EDGE.max_stretch * np.diff(self.t) + EDGE.max_swing).all():
                 break
         fx, fy = splev(self.t, self.plan)
         self.residual = np.hypot(fx - x, fy - y)
