@@ -33,7 +33,7 @@ def styled_layers(package, tables, image, title):
 
 
 def draw(layers, picture, title, dpi=DPI):
-    """Lay the map out as the first page of its sheets, and save it; layers by the result that they are, and below them an image."""
+    """Lay the map out as one plan sheet, and save it; layers by the result that they are, and below them an image."""
     from lanewright.algorithms.export.print_sheets import SheetSettings
     from lanewright.desktop.layout.sheets import sheet_layout
     from qgis.core import QgsLayoutExporter, QgsProject
@@ -45,9 +45,9 @@ def draw(layers, picture, title, dpi=DPI):
     for layer in layers:
         project.addMapLayer(layer)
     layout, _ = sheet_layout(project, {layer.source().partition("layername=")[2].upper(): layer for layer in drawn},
-                             SheetSettings(title, paper="A4", profile=False, section_interval=0.0), image)
+                             SheetSettings(title, paper="A4", scale="1:500", profile=False, section_interval=0.0), image)
     QCoreApplication.processEvents()
-    if not QgsLayoutExporter(layout).renderPageToImage(0, dpi=dpi).save(str(picture)):
+    if not QgsLayoutExporter(layout).renderPageToImage(layout.pageCollection().pageCount() - 1, dpi=dpi).save(str(picture)):
         sys.exit(f"The map could not be written to {picture}.")
     project.clear()
 
