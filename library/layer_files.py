@@ -41,14 +41,20 @@ def file_and_table(value):
     return path, names[0] if names else ""
 
 
-def first_table(path):
-    """The table that is read where a file is named alone."""
+def _fiona_errors():
+    """What fiona raises where a file is not as it should be."""
+    from fiona._err import CPLE_BaseError  # what GDAL reports is raised as this since fiona 1.10, which has no public name for it
     from fiona.errors import FionaError, FionaValueError
 
+    return FionaError, FionaValueError, CPLE_BaseError, OSError
+
+
+def first_table(path):
+    """The table that is read where a file is named alone."""
     try:
         with _opened(str(path), None) as layer:
             return layer.name
-    except (FionaError, FionaValueError, OSError):
+    except _fiona_errors():
         return ""
 
 
@@ -65,8 +71,6 @@ class LayerFile(VectorSource):
     """A layer of a file; `value` names it, `label` is the parameter's."""
 
     def __init__(self, value, label):
-        from fiona.errors import FionaError, FionaValueError
-
         self.label, self.value = label, value
         self.path, table = file_and_table(value)
         if not Path(self.path).exists():
@@ -80,7 +84,7 @@ class LayerFile(VectorSource):
                 self.stored_crs = _crs_text(layer.crs_wkt)
                 if layer.driver == "GeoJSON":
                     self._check_crs()
-        except (FionaError, FionaValueError, ValueError, OSError) as problem:
+        except (*_fiona_errors(), ValueError) as problem:
             raise RoadExtractionError(f"{label}: {value} cannot be read as a vector layer ({problem}).") from problem
         plain = geometry.replace("3D ", "").replace("Multi", "")
         self.kind = KINDS.get(plain, UNKNOWN)
@@ -115,13 +119,12 @@ class LayerFile(VectorSource):
 
     def rows_where(self, condition):
         """Whether a condition of OGR's SQL holds, for every row."""
-        from fiona._err import CPLE_BaseError  # what GDAL reports is raised as this since fiona 1.10, which has no public name for it
         from fiona.errors import AttributeFilterError
 
         with _opened(self.path, self.table) as layer, _reported_errors() as problems:
             try:
                 ids = {record["id"] for record in layer.filter(where=condition)}
-            except (AttributeFilterError, CPLE_BaseError) as problem:
+            except (AttributeFilterError, *_fiona_errors()) as problem:
                 problems.append(str(problem))
         if problems:
             raise RoadExtractionError(f"{condition!r} is no condition on the fields {', '.join(self.names)} of {self.label} ({problems[0]}). "
@@ -171,7 +174,6 @@ def write_layer(path, table, features, check_cancelled):
         measured_lines.write(path, table, features, check_cancelled)
         return
     import fiona
-    from fiona.errors import FionaError, FionaValueError
 
     driver = DRIVERS[Path(path).suffix.lower().lstrip(".")]
     schema = {"geometry": GEOMETRIES[features.geometry_type],
@@ -182,7 +184,7 @@ def write_layer(path, table, features, check_cancelled):
     try:
         with fiona.open(path, "w", driver=driver, schema=schema, encoding="utf-8", **options) as layer:
             layer.writerecords(_records_of(features, check_cancelled))
-    except (FionaError, FionaValueError) as problem:
+    except _fiona_errors() as problem:
         raise RoadExtractionError(f"The result could not be written: {problem}. Is the disk full or the file open elsewhere?") from problem
 
 
