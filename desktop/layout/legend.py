@@ -86,6 +86,7 @@ def add_legend(layout: QgsPrintLayout, layers: list[QgsMapLayer], room: QRectF, 
         node = root.addLayer(layer)
         _leave_out_empty_classes(legend, node, layer)
         _print_as_it_stands(legend, node, layer)
+    legend.setResizeToContents(False)  # by its own measure the last letters would stand beside its ground
     legend.setSplitLayer(False)
     legend.setEqualColumnWidth(False)
     legend.setBackgroundColor(QColor(186, 191, 196))  # white paint is seen on it, and letters can be read

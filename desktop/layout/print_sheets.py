@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -30,6 +31,7 @@ from ...processing_provider.styling import LOOKS, STYLES, apply_style
 from ...processing_provider.texts import speak, tr
 from .sheets import sheet_layout
 
+PDF_END = b"%%EOF"   # the last line of a whole PDF
 DPI, DPI_OF_LARGE = 300, {"A1": 200, "A0": 150}   # of images on a sheet: an A0 of 300 dpi takes more than half a gigabyte
 
 
@@ -130,6 +132,11 @@ def write_pdf(layout: QgsPrintLayout, path: str, progress: Progress, dpi: int = 
     finally:
         if painter is not None:
             painter.end()
+    # Qt does not say where the disk was full
+    with open(path, "rb") as file:
+        file.seek(max(file.seek(0, os.SEEK_END) - 2 * len(PDF_END), 0))
+        if PDF_END not in file.read():
+            raise RoadExtractionError(failed)
 
 
 def unused_name(project: QgsProject, name: str) -> str:

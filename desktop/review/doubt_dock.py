@@ -328,9 +328,8 @@ class DoubtDock(QDockWidget):
         self._hint("")
 
     def _hint(self, text):
-        self.hint.setText(" ".join(filter(None, (text, tr(
+        self._say(" ".join(filter(None, (text, tr(
             "Click along the line where it belongs. The right button ends it, Backspace takes a click back, Esc stops.")))))
-        self.hint.show()
 
     def _line_drawn(self, line: QgsGeometry) -> None:
         action, target, piece = self._pending or ("", "", None)

@@ -4,6 +4,7 @@ import base64
 import html
 import math
 import re
+import resource
 
 import numpy as np
 import pytest
@@ -402,6 +403,17 @@ def test_a_pdf_that_cannot_be_written_is_one_sentence(project, tmp_path):
     layout, _ = made(project, street(project))
     with pytest.raises(RoadExtractionError, match="cannot be written"):
         write_pdf(layout, str(tmp_path / "nowhere" / "plan.pdf"), Progress())
+
+
+def test_a_pdf_for_which_the_disk_has_no_room_is_one_sentence(project, tmp_path):
+    layout, _ = made(project, street(project))
+    allowed = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, allowed[1]))
+    try:
+        with pytest.raises(RoadExtractionError, match="free some space"):
+            write_pdf(layout, str(tmp_path / "plan.pdf"), Progress())
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, allowed)
 
 
 def test_markup_in_a_field_is_shown_as_it_stands_in_a_map_tip(project):
