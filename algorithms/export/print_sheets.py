@@ -12,7 +12,8 @@ PAPERS = ("A4", "A3", "A2", "A1", "A0")
 SCALES = ("1:100", "1:200", "1:250", "1:500", "1:1000", "1:2000", "1:2500", "1:5000")
 # Results that are drawn, from above
 DRAWN = (("DRIVING_LINES", tr("Driving lines"), "LineStringZ"), ("ROAD_EDGES", tr("Road edges"), "LineStringZ"),
-         ("MARKING_LINES", tr("Marking lines"), "LineStringZ"), ("MARKINGS", tr("Markings"), "PolygonZ"), ("LANES", tr("Lanes"), "PolygonZ"),
+         ("MARKING_LINES", tr("Marking lines"), "LineStringZ"), ("CROSS_SECTIONS", tr("Cross-sections"), "LineStringZ"),
+         ("MARKINGS", tr("Markings"), "PolygonZ"), ("LANES", tr("Lanes"), "PolygonZ"),
          ("ROAD_SURFACE", tr("Road surface"), "PolygonZ"))
 
 
@@ -53,7 +54,8 @@ SHEET_SETTINGS = (
     SettingSpec("PROFILE", SETTINGS, "profile", tr("Longitudinal profile"),
                 tr("Further pages with the height of the ground along the axis, stations and gradients. The layers need heights.")),
     SettingSpec("SECTION_INTERVAL", SETTINGS, "section_interval", tr("Interval of the cross-sections, 0 = none (m)"),
-                tr("Further pages with a section at every such station of the axis. Lower shows more of the road on more pages; 0 leaves them out.")),
+                tr("Further pages with a section at every such station of the axis. Lower shows more of the road on more pages; 0 leaves them out. "
+                   "Where a layer of sections is given, those in which a limit is not kept are shown in any case.")),
     SettingSpec("HEIGHT_SYSTEM", SETTINGS, "heights", tr("Height system"),
                 tr("What the heights refer to, for the title block, such as DHHN2016. Empty takes the vertical part of the CRS."), advanced=True),
     SettingSpec("CREDIT", SETTINGS, "credit", tr("Credit on the map"),
@@ -76,6 +78,8 @@ class PrintSheets(Algorithm):
     def declare(self):
         for name, label, geometry in DRAWN:
             text = tr("Drawn on the sheets, if given.") if geometry == "PolygonZ" else tr("Drawn on the sheets, and leads the axis if given.")
+            if name == "CROSS_SECTIONS":
+                text = tr("Of the algorithm Cross-sections: drawn on the sheets, and the pages of sections show these, with the limits that are not kept.")
             self.add_input("layer", name, label, text, geometry, optional=True)
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr(
             "With it cross-sections show the ground as it was measured; without it straight lines between edges, paint and driving lines."),

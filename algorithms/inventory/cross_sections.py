@@ -16,8 +16,8 @@ SECTION_SETTINGS = (
                 tr("Smaller shows where a rut or a change of crossfall begins, but takes longer; below 10 m grade and ruts are measured over that "
                    "length only.")),
     SettingSpec("COUNTRY", SECTIONS, "country", tr("Country"),
-                tr("Whose rules give the limits that are left at 0, and whose usual lane is measured about the track where no layer of the road map "
-                   "is given. It is never guessed."), choices=tuple(COUNTRIES)),
+                tr("Whose rules give the limits that are left at 0; neutral has none, and nothing is judged. Also whose usual lane is measured about the "
+                   "track where no layer of the road map is given. It is never guessed."), choices=tuple(COUNTRIES)),
     SettingSpec("MAX_RUT", SECTIONS, "max_rut", tr("Rut depth at most, 0 = of the country (mm)"),
                 tr("Deeper ruts under a straight edge of 2 m are marked. Lower finds shallow ones, down to what noise leaves, about 2 mm.")),
     SettingSpec("MIN_CROSSFALL", SECTIONS, "min_crossfall", tr("Crossfall at least, 0 = of the country (%)"),
@@ -42,7 +42,9 @@ class CrossSections(Algorithm):
             "Lanes are those of the layer Lanes, else of the driving lines between the marking lines, else of the marking lines alone; the "
             "carriageway ends at the road edges, else at the outermost line. Rut depths are measured under a straight edge of 2 m laid over profiles "
             "averaged over 1 m of road (over more where points are few), less what noise adds. Something that stands on the road does not "
-            "count as hanging above it.")
+            "count as hanging above it.\n\n"
+            "Judged is what the rules of the country chosen say, and what you set a limit for. Field why gives value, limit and rule. A "
+            "crossfall is marked where twice its sigma does not explain it.")
     TAGS = ("profile", "rutting", "crossfall", "superelevation", "clearance", "road condition", "width")
     LOOKS = {"OUTPUT": "CROSS_SECTIONS"}
     NUMBERS = (("SECTIONS", tr("Sections")),
@@ -63,6 +65,9 @@ class CrossSections(Algorithm):
                       geometry="LineStringZ")
         self.add_sink("TABLE", tr("Table of the cross-sections"), tr("The same rows without lines, for spreadsheets."), fields=CROSS_SECTIONS,
                       geometry="None", optional=True, by_default=False)
+        self.add_output("file", "DRAWING", tr("Drawing of the sections"), tr(
+            "Every section true to scale, one below the other, with stations, heights and slopes, for CAD; lengths are metres."),
+                        suffixes=(".dxf",), file_filter="DXF (*.dxf)", optional=True, by_default=False)
         self.add_report()
 
     def work(self, call, progress):
@@ -75,6 +80,10 @@ class CrossSections(Algorithm):
         lines, table = sections_to_features(sections)
         call.layer("OUTPUT", lines)
         call.layer("TABLE", table)
+        if call.wants("DRAWING"):
+            from ...products.cad import section_drawing, write_dxf
+
+            write_dxf(section_drawing(sections), call.new_file("DRAWING"))
         call.text("REPORT", cross_section_report(sections, table))
         return _numbers(table, len(sections.sections))
 
