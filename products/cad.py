@@ -25,12 +25,12 @@ from .inventory.cross_sections import RoadSections, exceeded
 COLOURS = {"LANE_BORDER": "#808080", "DRIVING_LINE": "#00a0ff", "MARKING_EDGE": "#ffffff", "MARKING_LANE": "#e0e0e0", "MARKING_CENTRE": "#ffd040",
            "ROAD_EDGE": "#ff8000", "MARKING_AREA": "#ffff00", "SECTION_EXCEEDED": "#ff0000", "SECTION_GROUND": "#ffffff"}
 LETTER = 0.25         # source: m of a text in a drawing of sections, 2.5 mm at 1 : 100 (ISO 3098)
-SECTIONS_IN_COLUMN = 10   # source: our choice, so that a column fits on a sheet
+SECTIONS_IN_COLUMN = 10   # cost: a column of sections more or less
 
 
 @dataclass(frozen=True)
 class _DxfLine:
-    """layer : name; places : (N, 3); closed : whether the last place is joined with the first; text : written at the only place, `turned` by degrees."""
+    """layer : name; places : (N, 3); closed : whether the last place is joined with the first; text : written at the place, `turned` by degrees."""
 
     layer: str
     places: np.ndarray

@@ -79,7 +79,7 @@ class PrintSheets(Algorithm):
         for name, label, geometry in DRAWN:
             text = tr("Drawn on the sheets, if given.") if geometry == "PolygonZ" else tr("Drawn on the sheets, and leads the axis if given.")
             if name == "CROSS_SECTIONS":
-                text = tr("Of the algorithm Cross-sections: drawn on the sheets, and the pages of sections show these, with the limits that are not kept.")
+                text = tr("Of the algorithm Cross-sections: drawn on the sheets, and the pages of sections show them with the limits not kept.")
             self.add_input("layer", name, label, text, geometry, optional=True)
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr(
             "With it cross-sections show the ground as it was measured; without it straight lines between edges, paint and driving lines."),

@@ -16,8 +16,8 @@ SECTION_SETTINGS = (
                 tr("Smaller shows where a rut or a change of crossfall begins, but takes longer; below 10 m grade and ruts are measured over that "
                    "length only.")),
     SettingSpec("COUNTRY", SECTIONS, "country", tr("Country"),
-                tr("Whose rules give the limits that are left at 0; neutral has none, and nothing is judged. Also whose usual lane is measured about the "
-                   "track where no layer of the road map is given. It is never guessed."), choices=tuple(COUNTRIES)),
+                tr("Whose rules give the limits that are left at 0; neutral has none, and nothing is judged. Also whose usual lane is measured about "
+                   "the track where no layer of the road map is given. It is never guessed."), choices=tuple(COUNTRIES)),
     SettingSpec("MAX_RUT", SECTIONS, "max_rut", tr("Rut depth at most, 0 = of the country (mm)"),
                 tr("Deeper ruts under a straight edge of 2 m are marked. Lower finds shallow ones, down to what noise leaves, about 2 mm.")),
     SettingSpec("MIN_CROSSFALL", SECTIONS, "min_crossfall", tr("Crossfall at least, 0 = of the country (%)"),
