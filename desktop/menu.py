@@ -32,7 +32,7 @@ class Menu(QObject):
         self.iface = iface
         self.actions = []
         self.dialog = self.designer = None  # kept, or Python would collect the open windows
-        self.section = self.doubts = self.pairs = None
+        self.section = self.doubts = self.pairs = self.swipe = None
         WINDOW.begin()
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
@@ -49,6 +49,11 @@ class Menu(QObject):
         self._add(tr("Road map in 3D"), self.open_3d,
                   tr("QGIS's 3D view over the middle of the map, with curbs, paint and driving lines at their heights"),
                   theme("/mActionNew3DMap.svg"))
+        self._add(tr("Compare two images"), self.compare, tr("Orthoimage or web map left of the mouse, intensity image right of it, lines on both"),
+                  theme("/mActionSplitFeatures.svg"))
+        self._add(tr("Photos along the road…"), lambda: self.open_algorithm("native:importphotos", {}), tr(
+            "A layer of the places of photos, by their EXIF data; the doubtful places show the photo that looks at them. "
+            "A CSV layer with a column of file names does as well"), theme("/mActionAddImage.svg"))
         self._add(tr("Control points from paint"), self.open_pairs, tr("Places UAV images on the map: the same paint in each and in the intensity "
                   "image, side by side to accept or refuse"), QIcon(str(ICON.parent / "icons" / "proposecontrolpoints.svg")))
         self._add(tr("Open the last report"), self.open_report, tr("The report of the run that ended last"), theme("/mIconHtml.svg"))
@@ -128,6 +133,19 @@ class Menu(QObject):
         self.pairs.show()
         self.pairs.raise_()
 
+    def compare(self):
+        """Two images of the project, divided by a line under the mouse, until another tool of the map is taken."""
+        from .overlay.swipe import Swipe, images_to_compare
+
+        images = images_to_compare(QgsProject.instance(), self.iface.activeLayer())
+        if len(images) < 2:
+            say(self.iface, tr("Two images are needed: the intensity image of a road map, and an orthoimage or web map. Add one to the project."))
+            return
+        self.swipe = self.swipe or Swipe(self.iface.mapCanvas())
+        self.swipe.begin(images)
+        say(self.iface, tr("Left of the mouse: {left}; right of it: {right}. Esc or another tool ends it.").format(
+            left=images[0].name(), right=images[1].name()))
+
     def next_doubt(self):
         """Pan to the next doubtful place of the road map of the active layer, else of the newest, and say what is doubtful there."""
         maps = self._road_maps()
@@ -200,6 +218,8 @@ class Menu(QObject):
             self.pairs.close()
             self.pairs.deleteLater()
             self.pairs = None
+        if self.swipe is not None:
+            self.swipe.end()
         self.manual.forget()
         WINDOW.end()
 

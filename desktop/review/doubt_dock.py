@@ -19,6 +19,7 @@ from ...processing_provider.texts import tr
 from ..widgets import button, choices, row, say, show_extent, wrapped
 from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
+from .photos import PhotoButton, photo_of
 from .smart_pick import evidence, pick, snap
 
 LEAST_VIEW = 30.0   # m of ground shown about a place
@@ -73,6 +74,7 @@ class DoubtDock(QDockWidget):
         self.list.setWordWrap(True)
         self.list.setToolTip(tr("What is doubtful here. The buttons are about what is selected."))
         self.list.itemSelectionChanged.connect(self._selected)
+        self.photo = PhotoButton()
         self.note = QLineEdit()
         self.note.setPlaceholderText(tr("Note, kept with the correction"))
         self.accept_button = self._button(tr("Accept"), tr("It is right as it is"), lambda: self.decide("accept"), "A")
@@ -102,6 +104,7 @@ class DoubtDock(QDockWidget):
         column.addLayout(row(self.kinds, self.order))
         column.addWidget(self.undecided)
         column.addWidget(self.list, 1)
+        column.addWidget(self.photo)
         column.addLayout(row(self.accept_button, self.delete_button, self.move_button, self.other_button))
         column.addLayout(row(self.pick_button, self.draw_button, self.snap))
         column.addWidget(self.note)
@@ -135,6 +138,7 @@ class DoubtDock(QDockWidget):
             self._stop_drawing()
             self._stop_looking()
             self.road_map, self._of, self.places, self.at = None, None, [], -1
+            self.photo.show_photo(None)
             self._fill()
             self.where.clear()
 
@@ -163,6 +167,7 @@ class DoubtDock(QDockWidget):
             self._stop_drawing()  # a piece of the place before was to be moved
         self._fill()
         self.list.setFocus()  # for the keys
+        self.photo.show_photo(None if self.place is None else photo_of(QgsProject.instance(), self.place.middle, self.place.crs))
         if self.place is not None:
             self._zoom(self.place)
             self.shown.emit(self.place)
