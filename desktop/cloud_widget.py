@@ -11,7 +11,7 @@ from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QDragEnterEvent, QDropEvent
 from qgis.PyQt.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QMenu, QToolButton, QVBoxLayout, QWidget
 
-from ..algorithms.cloud_files import SUFFIXES, cloud_files
+from ..algorithms.survey_files import SUFFIXES, cloud_files
 from ..core.common.errors import RoadExtractionError
 from ..processing_provider.texts import tr
 from .dialog_wrapper import DialogWrapper

@@ -21,7 +21,7 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ..algorithms.choice_words import choice_word
+from ..algorithms.texts import choice_word
 from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON
 
 # fileFilter is enforced and case-sensitive, and `extension=` accepts one suffix only

@@ -124,7 +124,7 @@ def kind(d):
 def choices(d):
     if d.type() != "enum":
         return ""
-    from lanewright.algorithms.choice_words import choice_word
+    from lanewright.algorithms.texts import choice_word
 
     words = [f"`{option}`" + (f" ({choice_word(option)})" if choice_word(option) != option else "") for option in d.options()]
     return " " + tr("One of: {choices}.").format(choices=", ".join(words))

@@ -10,7 +10,7 @@ from qgis import utils
 from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QInputDialog, QMenu, QTextBrowser, QWidget
 
-from ...algorithms.cloud_files import cloud_files, survey_name
+from ...algorithms.survey_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.run_table import last_run
 from ...processing_provider.texts import tr

@@ -11,7 +11,7 @@ from processing.gui import BatchPanel as qgis_batch_panel
 from qgis.core import Qgis, QgsProcessing, QgsProcessingAlgorithm, QgsProcessingOutputHtml, QgsProcessingUtils, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QWidget
 
-from ...algorithms.cloud_files import SUFFIXES, cloud_files, survey_name
+from ...algorithms.survey_files import SUFFIXES, cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.texts import tr
 from ..trajectory_widget import trajectory_beside

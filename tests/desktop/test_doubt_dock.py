@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from lanewright.algorithms.corrections import read_corrections
+from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.desktop.review import points_task, smart_pick
 from lanewright.desktop.review.corrections_layer import corrections_layers

@@ -9,7 +9,7 @@ import resource
 import numpy as np
 import pytest
 import shapely
-from lanewright.algorithms.export.print_sheets import SheetSettings
+from lanewright.algorithms.export import SheetSettings
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import CROSS_SECTIONS, DRIVING_LINES, ROAD_EDGES
 from lanewright.core.common.progress import Progress

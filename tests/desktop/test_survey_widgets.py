@@ -1,7 +1,7 @@
 """The widgets by which a survey is chosen: point clouds and trajectory."""
 
 import pytest
-from lanewright.algorithms.cloud_files import cloud_files
+from lanewright.algorithms.survey_files import cloud_files
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.desktop.cloud_widget import PointCloudsWidget, PointCloudsWrapper, described, dropped_clouds
 from lanewright.desktop.trajectory_widget import TrajectoryWrapper
