@@ -137,7 +137,8 @@ def _run_with(algorithm, parameters, as_json):
 
 def overview(known):
     """What `lanewright --help` prints."""
-    lines = ["usage: lanewright ALGORITHM --PARAMETER=VALUE ...", "       lanewright ALGORITHM --help", "       lanewright demo [FOLDER]", "       lanewright list | --version", "",
+    lines = ["usage: lanewright ALGORITHM --PARAMETER=VALUE ...", "       lanewright ALGORITHM --help",
+             "       lanewright demo [FOLDER] | list | --version", "",
              tr("Road maps from mobile laser scanning: the algorithms of Lanewright in QGIS, on files."), about_layers()]
     for group in GROUPS:
         lines += ["", tr(group)] + [f"  {algorithm.ID:24}{algorithm.title()}" for algorithm in known.values() if algorithm.GROUP == group]
