@@ -44,6 +44,8 @@ class Menu(QObject):
                   theme("/mActionNewLayout.svg"))
         self._add(tr("Next doubtful place"), self.next_doubt, tr("Goes along the road map through pieces that were not measured, that are uncertain, "
                   "or where the boundary methods differ, and keeps what you decide there"), theme("/mActionZoomNext.svg"))
+        self._add(tr("Steps of the road map"), lambda: self.next_doubt(steps=True), tr(
+            "The stages of the road map in their order, whether each still holds, its settings, and running it again"), theme("/mActionRefresh.svg"))
         self._add(tr("Cross-section"), self.open_section, tr("Points and lines of the road where you click in the map"),
                   theme("/mActionElevationProfile.svg"))
         self._add(tr("Road map in 3D"), self.open_3d,
@@ -146,8 +148,8 @@ class Menu(QObject):
         say(self.iface, tr("Left of the mouse: {left}; right of it: {right}. Esc or another tool ends it.").format(
             left=images[0].name(), right=images[1].name()))
 
-    def next_doubt(self):
-        """Pan to the next doubtful place of the road map of the active layer, else of the newest, and say what is doubtful there."""
+    def next_doubt(self, steps=False):
+        """The next doubtful place of the road map of the active layer, else of the newest, or the list of its steps."""
         maps = self._road_maps()
         if not maps or not all_is_there(self.iface):
             return
@@ -157,7 +159,8 @@ class Menu(QObject):
             self.doubts = DoubtDock(self.iface)
             self.doubts.shown.connect(self._show_section)
             self.doubts.run_wanted.connect(self.run_again)
-        self.doubts.go(maps[0])
+            self.doubts.stage_wanted.connect(self.open_algorithm)
+        (self.doubts.show_steps if steps else self.doubts.go)(maps[0])
 
     def _road_maps(self):
         """The road maps of the project; where there are none, a word on that."""
@@ -172,9 +175,12 @@ class Menu(QObject):
             self.section.show_at(place.middle, place.crs)
 
     def run_again(self, road_map, corrections):
-        """Road map with all that a road map was made from, and the corrections made in it."""
+        """Road map with all that a road map was made from, and the corrections made in it, if any."""
+        from .review.steps import values_again
+
         clouds, missing = clouds_of(road_map, QgsProject.instance())
-        self.open_road_map(**{**road_map.values, **({} if missing else {"POINT_CLOUDS": clouds}), "CORRECTIONS": corrections.id()})
+        self.open_road_map(**{**values_again(road_map), **({} if missing else {"POINT_CLOUDS": clouds}),
+                              "CORRECTIONS": None if corrections is None else corrections.id()})
 
     def _fill_layer_menu(self, menu):
         """"Run this stage again" for a layer of ours."""
