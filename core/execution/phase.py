@@ -162,7 +162,6 @@ def named(name: str) -> Any:
 FORMAT = b"LWplain3"   # at the beginning of a file; then the CRC-32 of all that follows, and the pickle
 CHECKSUM = struct.Struct("<I")
 CHECKED_AT_ONCE = 1 << 20   # cost: bytes, which fit the processor's cache
-PROTOCOL = 4   # source: pickle's first for arrays beyond 4 GiB; those of later ones may not be written to when they come back
 
 
 def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> None:
@@ -237,7 +236,8 @@ def digest(value: Any, without: str = "") -> str:
 def _pickled(value, writer, fast=False):
     """The bytes of a value; if `fast`, they do not depend on which of its parts are one object, only on what these are equal to."""
     file = io.BytesIO()
-    pickler = writer(file, PROTOCOL)
+    # the first protocol for arrays beyond 4 GiB; the next one leaves arrays that may not be written to
+    pickler = writer(file, 4)
     pickler.fast = fast
     pickler.dump(value)
     return file.getbuffer()
@@ -292,7 +292,8 @@ def restored(name: str, state: dict[str, Any]) -> Any:
 
 
 # what a file of a plain value may name: numpy's parts of arrays and numbers are called otherwise in other versions
-PARTS = {part.__name__: part for part in (np.ndarray, np.dtype, np.empty(0).__reduce__()[0], np.float64().__reduce__()[0], restored)}
+PARTS: dict[str, Any] = {"ndarray": np.ndarray, "dtype": np.dtype, "_reconstruct": np.array(()).__reduce__()[0],
+                         "scalar": np.float64().__reduce__()[0], "restored": restored}
 
 
 # Phases run by threads of this process: for small surveys, and wherever nothing else works.
