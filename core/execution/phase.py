@@ -292,8 +292,8 @@ def restored(name: str, state: dict[str, Any]) -> Any:
 
 
 # what a file of a plain value may name: numpy's parts of arrays and numbers are called otherwise in other versions
-PARTS: dict[str, Any] = {"ndarray": np.ndarray, "dtype": np.dtype, "_reconstruct": np.array(()).__reduce__()[0],
-                         "scalar": np.float64().__reduce__()[0], "restored": restored}
+PARTS: dict[str, Any] = {"ndarray": np.ndarray, "dtype": np.dtype, "_reconstruct": next(iter(np.array(()).__reduce__())),
+                         "scalar": next(iter(np.float64().__reduce__())), "restored": restored}
 
 
 # Phases run by threads of this process: for small surveys, and wherever nothing else works.
