@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import io
+import json
 import os
-import pickle  # nosec B403
 import struct
 import zlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
-from functools import cache, partial
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -156,11 +155,13 @@ def named(name: str) -> Any:
 
 # Plain values in a file: numbers, texts, arrays, their lists and dictionaries, and objects of the package that consist of these.
 #
-# They are pickled, but for objects of the package, which are named with the values of their attributes. Reading such a file calls nothing but what
-# puts arrays and these objects together: it runs nothing else that the file names.
+# Reading such a file runs nothing that it holds: it names classes of the package and the values of their attributes.
 
-FORMAT = b"LWplain3"   # at the beginning of a file; then the CRC-32 of all that follows, and the pickle
-CHECKSUM = struct.Struct("<I")
+# A file: FORMAT, the CRC-32 of all that follows, the length of a JSON text, that text (how the arrays belong together; kind, shape and order
+# of each), the bytes of the arrays. An .npz, whose arrays have headers and checksums of their own, takes nine times as long to write
+# and read
+FORMAT = b"LWplain2"
+CHECKSUM, TEXT_LENGTH = struct.Struct("<I"), struct.Struct("<q")
 CHECKED_AT_ONCE = 1 << 20   # cost: bytes, which fit the processor's cache
 
 
@@ -172,14 +173,17 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
         the package whose attributes are such values. A class may leave attributes out by `__getstate__`
     unfinished_in : folder on the same disk that has the unfinished file; by default that of the file
 
-    Raises TypeError if it holds an object of anything else. OSError with a file name, if it cannot be written.
+    Raises TypeError if it holds anything else. OSError with a file name, if it cannot be written.
     """
-    content = _pickled(value, _Writer)
+    contents, check = _contents(value), 0
+    for part in contents:
+        check = zlib.crc32(part, check)
     # processes of several machines may write the same file
     unfinished = (unfinished_in or path.parent) / f"{path.stem}.{uuid4().hex}.part{path.suffix}"
     try:
         with open(unfinished, "wb") as file:
-            file.writelines((FORMAT, CHECKSUM.pack(zlib.crc32(content)), content))
+            file.write(FORMAT + CHECKSUM.pack(check))
+            file.writelines(contents)
         os.replace(unfinished, path)
     except OSError as error:
         if error.filename is None:   # of a full disk
@@ -189,32 +193,41 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
         unfinished.unlink(missing_ok=True)
 
 
+def _contents(value):
+    """What follows the checksum in the file of a value: bytes, and arrays of bytes."""
+    arrays: list[np.ndarray] = []
+    tree = _tree(value, arrays)
+    # as they lie in memory, so that whoever reads them computes with the same order of numbers
+    turned = [array.ndim > 1 and array.flags.f_contiguous and not array.flags.c_contiguous for array in arrays]
+    text = json.dumps([tree, [[np.lib.format.dtype_to_descr(array.dtype), array.shape, last] for array, last in zip(arrays, turned)]]).encode()
+    return [TEXT_LENGTH.pack(len(text)) + text, *(_bytes_of(np.ascontiguousarray(array.T if last else array)) for array, last in zip(arrays, turned))]
+
+
 def read_plain(path: Path) -> Any:
     """The value that `write_plain` wrote.
 
-    Raises OSError if the file cannot be read, is none of these, or not as it was written; ImportError if it names anything but values.
+    Raises OSError if the file cannot be read, is none of these, or ends early.
     """
-    return _Reader(io.BytesIO(_content(path))).load()
+    with open(path, "rb") as file:
+        if file.read(len(FORMAT)) != FORMAT:
+            raise OSError(f"{path} is no file of ours")
+        _read_bytes(file, CHECKSUM.size)
+        (length,) = TEXT_LENGTH.unpack(_read_bytes(file, TEXT_LENGTH.size))
+        tree, layouts = json.loads(_read_bytes(file, length))
+        arrays = {f"a{k}": _read_array(file, *layout) for k, layout in enumerate(layouts)}
+    return _value(tree, arrays)
 
 
 def is_whole(path: Path) -> bool:
     """Whether a file is there as `write_plain` wrote it, which it may not be after the power failed."""
     try:
-        _content(path)
+        with open(path, "rb") as file:
+            if file.read(len(FORMAT)) != FORMAT:
+                return False
+            (check,) = CHECKSUM.unpack(_read_bytes(file, CHECKSUM.size))
+            return checksum(file) == check
     except OSError:
         return False
-    return True
-
-
-def _content(path):
-    """The pickle in a file."""
-    with open(path, "rb") as file:
-        if file.read(len(FORMAT)) != FORMAT:
-            raise OSError(f"{path} is no file of ours")
-        check, content = file.read(CHECKSUM.size), file.read()
-    if check != CHECKSUM.pack(zlib.crc32(content)):
-        raise OSError(f"{path} ends early, or was changed")
-    return content
 
 
 def checksum(file: BinaryIO, count: int = -1) -> int:
@@ -225,49 +238,65 @@ def checksum(file: BinaryIO, count: int = -1) -> int:
     return check
 
 
+def _read_bytes(file, count):
+    content = file.read(count) if 0 <= count <= os.fstat(file.fileno()).st_size else b""
+    if len(content) != count:
+        raise OSError(f"{file.name} ends early")
+    return content
+
+
+def _bytes_of(array):
+    """(B,) uint8, a view of a contiguous array."""
+    return array.reshape(-1).view(np.uint8)
+
+
+def _read_array(file: BinaryIO, kind: Any, shape: list[int], last: bool) -> np.ndarray:
+    """The next array; `last` tells that its last index runs slowest."""
+    dtype = np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
+    if dtype.hasobject:
+        raise TypeError("An array of objects is no plain value.")
+    array = np.empty(shape[::-1] if last else shape, dtype)
+    if array.nbytes and file.readinto(_bytes_of(array)) != array.nbytes:   # type: ignore[attr-defined]
+        raise OSError(f"{file.name} ends early")
+    return array.T if last else array
+
+
 def digest(value: Any, without: str = "") -> str:
     """32 hexadecimal digits that two values of `write_plain` share only if they are equal.
 
     The text `without` does not count: the path of a folder that may be moved.
     """
-    return hashlib.sha256(_pickled(value, partial(_Named, without) if without else _Writer, fast=True)).hexdigest()[:32]
+    arrays: list[np.ndarray] = []
+    text = json.dumps(_tree(value, arrays))
+    sha = hashlib.sha256((text.replace(json.dumps(without)[1:-1], "") if without else text).encode())
+    for array in arrays:
+        sha.update(f"{array.dtype.str}{array.shape}".encode())
+        sha.update(np.ascontiguousarray(array).tobytes())
+    return sha.hexdigest()[:32]
 
 
-def _pickled(value, writer, fast=False):
-    """The bytes of a value; if `fast`, they do not depend on which of its parts are one object, only on what these are equal to."""
-    file = io.BytesIO()
-    # the first protocol for arrays beyond 4 GiB; the next one leaves arrays that may not be written to
-    pickler = writer(file, 4)
-    pickler.fast = fast
-    pickler.dump(value)
-    return file.getbuffer()
+def _tree(value, arrays):
+    """The value as JSON, in which numbers of arrays stand for these."""
+    if isinstance(value, (type(None), bool, str)) or type(value) in (int, float):
+        return value
+    if isinstance(value, (np.ndarray, np.generic)):
+        return _tree_of_array(value, arrays)
+    if isinstance(value, dict):
+        return {"dict": [[_tree(key, arrays), _tree(item, arrays)] for key, item in value.items()]}
+    if type(value) in (list, tuple):
+        return {type(value).__name__: [_tree(item, arrays) for item in value]}
+    return {"object": name_of(type(value)), "state": [[name, _tree(item, arrays)] for name, item in _state(value).items()]}
 
 
-class _Writer(pickle.Pickler):
-    def reducer_override(self, value):
-        if isinstance(value, np.ndarray) and type(value) is not np.ndarray:   # of a file, say
-            return np.asarray(value).__reduce__()
-        if isinstance(value, (np.ndarray, np.generic, np.dtype)) or any(value is part for part in PARTS.values()):
-            return NotImplemented
-        return restored, (name_of(type(value)), _state(value))
-
-
-class _Named(_Writer):
-    """A writer of values in which a text does not count."""
-
-    def __init__(self, without, *arguments):
-        super().__init__(*arguments)
-        self.without = without
-
-    def persistent_id(self, value):
-        return value.replace(self.without, "") if type(value) is str and self.without in value else None
-
-
-class _Reader(pickle.Unpickler):
-    def find_class(self, module, name):
-        if name not in PARTS:
-            raise ImportError(f"{module}.{name} is no part of a plain value")
-        return PARTS[name]
+def _tree_of_array(value, arrays):
+    if isinstance(value, np.generic) and value.dtype.kind in "biuf" and value.dtype.itemsize <= 8:
+        return {"number": [value.dtype.str, value.item()]}
+    if value.dtype.hasobject:
+        if value.ndim != 1 or any(type(text) is not str for text in value):
+            raise TypeError("An array of objects is no plain value.")
+        return {"texts": value.tolist()}
+    arrays.append(np.asarray(value))
+    return {"array" if isinstance(value, np.ndarray) else "scalar": f"a{len(arrays) - 1}"}
 
 
 def _state(value):
@@ -278,22 +307,36 @@ def _state(value):
     return {attribute.name: getattr(value, attribute.name) for attribute in fields(value)} if is_dataclass(value) else vars(value)
 
 
-def restored(name: str, state: dict[str, Any]) -> Any:
-    """An object of a class of the package with the attributes of `_state`; called where a file is read."""
-    kind = named(name)
+def _value(tree, arrays):
+    if not isinstance(tree, dict):
+        return tree
+    kind, content = next(iter(tree.items()))
+    if kind == "number":
+        return np.dtype(content[0]).type(content[1])
+    if kind == "texts":
+        return np.array(content, object)
+    if kind == "array":
+        return arrays[content]
+    if kind == "scalar":
+        return arrays[content][()]
+    if kind == "dict":
+        return {_value(key, arrays): _value(item, arrays) for key, item in content}
+    if kind in ("list", "tuple"):
+        items = [_value(item, arrays) for item in content]
+        return items if kind == "list" else tuple(items)
+    return _object(named(content), {name: _value(item, arrays) for name, item in tree["state"]})
+
+
+def _object(kind, state):
+    """An object of a class of core with the attributes of `_state`."""
     value = object.__new__(kind)
     restore = kind.__dict__.get("__setstate__")
     if restore is not None:
         restore(value, state)
     else:
-        for attribute, content in state.items():
-            object.__setattr__(value, attribute, content)   # of frozen classes, too
+        for name, attribute in state.items():
+            object.__setattr__(value, name, attribute)   # of frozen classes, too
     return value
-
-
-# what a file of a plain value may name: numpy's parts of arrays and numbers are called otherwise in other versions
-PARTS: dict[str, Any] = {"ndarray": np.ndarray, "dtype": np.dtype, "_reconstruct": next(iter(np.array(()).__reduce__())),
-                         "scalar": next(iter(np.float64().__reduce__())), "restored": restored}
 
 
 # Phases run by threads of this process: for small surveys, and wherever nothing else works.
