@@ -412,6 +412,7 @@ class _NoisyWeights:
     least_area: float = 0.03   # m2
     usual_percentile: int = 75   # % of a piece's cells: its contrast
     top_percentile: int = 90   # % of them: its brightness
+    dashes: float = 1 / 3   # of the cells of a stroke: where dashes of a row are more, it is no stroke but these
     fading_ring: tuple[float, int] = 1.5, 3   # cells from a piece: where its fading is measured
     view_ring: tuple[int, int] = 3, 8   # cells from a piece: asphalt that it is compared with in each view
     view_length: float = 0.5   # m of the vehicle's way: points measured from farther apart are different views
