@@ -464,6 +464,10 @@ class _RimWeights:
     gutter_brightness: float = 1.5   # spreads above asphalt
     paint_to_gutter: float = 1.8   # times as bright as the cells between it and the rim: paint beside the gutter
     road_gap_along: int = 15   # cells: smaller gaps between points belong to the road
+    # Rims of what is bright and broad.
+    beside: tuple[int, int] = 5, 2   # cells from a piece: what lies beside it, less what the image blurs
+    sides: tuple[float, float] = 0.25, 0.75   # shares of these cells that are no brighter than its dark side and its bright side
+    least_share: float = 0.65   # of its contrast with the dark side that is left with the bright one
     # Bright things that stand above the asphalt.
     plane_squares: int = 9   # squares, either way, that a plane is fitted to: 1.8 m
     min_plane_squares: int = 12   # of them with asphalt, for the plane to be known
