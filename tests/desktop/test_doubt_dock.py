@@ -62,6 +62,21 @@ def test_it_says_where_it_is_and_what_is_doubtful_there_and_shows_it(at_first):
     assert at_first.iface.mapCanvas().extent().contains(QgsPointXY(EAST + 15, NORTH))
 
 
+def test_of_a_long_place_the_map_and_the_section_show_the_piece_that_is_selected(window):
+    piece = lambda at, length, **row: (f"LINESTRING Z ({at} 0 100, {at + length} 0 100)", dict(  # noqa: E731
+        road=0, station_m=float(at), length_m=float(length), side="left", **row))
+    added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, piece(0, 200, status="bridged"), piece(4, 8, status="bridged"), run=run_at(9))
+    shown = []
+    window.shown.connect(shown.append)
+    window.go(road_maps(QgsProject.instance())[0])
+    row = next(row for row, piece in enumerate(window.place.pieces) if piece.line.length() < 10)
+    window.list.setCurrentRow(row)
+    window.list.itemClicked.emit(window.list.item(row))
+    extent = window.iface.mapCanvas().extent()
+    assert extent.width() < 80 and extent.contains(QgsPointXY(EAST + 8, NORTH))
+    assert shown[-1].middle.x() == pytest.approx(EAST + 8), "the section is that of the piece"
+
+
 def test_it_goes_forward_and_back_and_begins_again_after_the_last(at_first):
     at_first.go(at_first.road_map)
     assert at_first.place.station == 80
