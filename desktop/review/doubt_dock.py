@@ -28,7 +28,7 @@ from ...core.corrections.corrections import taken_reading
 from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
 from ...processing_provider.texts import tr
-from ..widgets import button, choices, row, say, show_extent, wrapped
+from ..widgets import button, choices, give_map_back, row, say, show_extent, take_map, wrapped
 from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .photos import PhotoButton, photo_of
@@ -405,7 +405,7 @@ class DoubtDock(QDockWidget):
         if self._pending != (action, target, piece):
             self.tool.clear()
         self._pending = action, target, piece
-        self.iface.mapCanvas().setMapTool(self.tool)
+        take_map(self.iface.mapCanvas(), self.tool)
         self.iface.mapCanvas().setFocus()  # for Backspace and Esc
         self._hint("")
 
@@ -443,7 +443,7 @@ class DoubtDock(QDockWidget):
     def begin_pick(self) -> None:
         """Wait for clicks near what is missing."""
         if self._layer_to_write() is not None:
-            self.iface.mapCanvas().setMapTool(self.pick_tool)
+            take_map(self.iface.mapCanvas(), self.pick_tool)
             self._say(tr("Click near a curb or a painted line that the map lacks."))
 
     def pick_at(self, point: QgsPointXY) -> None:
@@ -476,7 +476,7 @@ class DoubtDock(QDockWidget):
         for task in self.looks:
             task.cancel()
         self.looks = []
-        self.iface.mapCanvas().unsetMapTool(self.pick_tool)
+        give_map_back(self.iface.mapCanvas(), self.pick_tool)
 
     def _say(self, text):
         self.hint.setText(text)
@@ -486,7 +486,7 @@ class DoubtDock(QDockWidget):
         self._pending = None
         self.hint.hide()
         self.tool.clear()
-        self.iface.mapCanvas().unsetMapTool(self.tool)
+        give_map_back(self.iface.mapCanvas(), self.tool)
         self.list.setFocus()  # for the keys
 
     def undo(self) -> None:

@@ -119,6 +119,9 @@ def test_who_decides_otherwise_has_one_correction_not_two(at_first):
 
 
 def test_a_drawn_line_is_kept_with_its_target_and_can_be_taken_back(at_first):
+    hand = QgsMapToolPan(at_first.iface.mapCanvas())
+    at_first.iface.mapCanvas().setMapTool(hand)
+    at_first.begin_pick()
     at_first.begin_draw("edge")
     assert at_first.iface.mapCanvas().mapTool() is at_first.tool
     for x in (20.0, 25.0, 31.0):
@@ -126,7 +129,7 @@ def test_a_drawn_line_is_kept_with_its_target_and_can_be_taken_back(at_first):
     at_first.tool.finish()
     (action, target, *_, length), = corrections()
     assert (action, target, length) == ("draw", "edge", pytest.approx(11.0))
-    assert at_first.iface.mapCanvas().mapTool() is not at_first.tool
+    assert at_first.iface.mapCanvas().mapTool() is hand, "the map can be moved again"
     at_first.undo_button.click()
     assert corrections() == [] and not at_first.undo_button.isEnabled()
 
