@@ -34,7 +34,6 @@ class Algorithm:
     RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
     WHOLE_MAP = False  # a run makes a map of its own, not one layer of one
     DRAWS = False  # it draws pages by QGIS, which does that in the thread of its window alone
-    NEEDS_GDAL = False  # it cannot run without GDAL's Python module, whatever is asked of it
 
     def __init__(self):
         self.parameters = []
@@ -97,8 +96,8 @@ class Algorithm:
 
     def add_point_clouds(self):
         self.add_input("clouds", "POINT_CLOUDS", tr("Point clouds"), tr(
-            "LAS, LAZ or COPC files of one survey, or a folder that holds them, or names with wildcards (/data/B12/tile_*.laz). Files may overlap "
-            "and come in any order. Withheld points and noise (classes 7 and 18) are left out."))
+            "LAS, LAZ or COPC files of one survey, or a folder that holds them, a virtual point cloud (VPC) that names them, or names with wildcards "
+            "(/data/B12/tile_*.laz). Files may overlap and come in any order. Withheld points and noise (classes 7 and 18) are left out."))
 
     def add_trajectory(self, optional=False, without=""):
         text = tr("Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or the path of a CSV, TXT or "

@@ -130,8 +130,11 @@ class Call:
 
     def cloud(self, name):
         """The path of one point cloud; "" where the optional parameter is empty."""
-        path = self.file(name)
-        return existing_file(path, self.label(name)) if path else ""
+        paths = cloud_files([self.file(name)], self.label(name))
+        if len(paths) > 1:
+            raise RoadExtractionError(tr("{label}: {path} names {count} point clouds, and one is needed. Choose one of them.").format(
+                label=self.label(name), path=self.file(name), count=len(paths)))
+        return existing_file(paths[0], self.label(name)) if paths else ""
 
     def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True, columns=""):
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` and the `columns` of a file overrule what it says."""

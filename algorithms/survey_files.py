@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable
 from dataclasses import replace
@@ -13,7 +14,7 @@ from .texts import tr
 from .vector_source import LINE, POINT, vertices_of
 
 SUFFIXES = (".las", ".laz")
-COPC = ".copc.laz"
+COPC, VIRTUAL = ".copc.laz", ".vpc"
 
 
 def cloud_files(given: Iterable[str], label: str) -> list[str]:
@@ -21,19 +22,21 @@ def cloud_files(given: Iterable[str], label: str) -> list[str]:
 
     Parameters
     ----------
-    given : files, folders (their LAS and LAZ files, without those of folders inside) and names with the wildcards * ? [ ]
+    given : files, virtual point clouds (for the files that they name), folders (their LAS and LAZ files, without those of folders inside; the
+        virtual point clouds where there are none) and names with the wildcards * ? [ ]
     label : what messages call the parameter
 
     Returns list of paths, each once, those of a folder or wildcard by name. A file that is named is not looked for. Of a folder or wildcard,
-    `a.copc.laz` is left out where `a.laz` or `a.las` is among it: QGIS makes such a copy of a cloud that it shows, and no point shall count twice.
+    `a.copc.laz` is left out where `a.laz` or `a.las` is among it, and `a-overview.copc.laz` where `a.vpc` is: QGIS makes such copies of clouds
+    that it shows, and no point shall count twice.
 
-    Raises RoadExtractionError if a folder or wildcard holds no point cloud.
+    Raises RoadExtractionError if a folder or wildcard holds no point cloud, or a virtual point cloud cannot be used.
     """
     files: list[str] = []
     for name in filter(None, given):
         path = Path(name)
         if path.is_file():
-            files.append(name)
+            files += _clouds([path], "") if path.suffix.lower() == VIRTUAL else [name]
         elif path.is_dir():
             files += _clouds(path.iterdir(), tr("{label}: the folder {name} holds no LAS or LAZ file.").format(label=label, name=name))
         elif has_magic(name):
@@ -54,12 +57,34 @@ def survey_name(clouds: list[str]) -> str:
 
 def _clouds(paths, none_found):
     """Point clouds among paths, by name; raises RoadExtractionError with `none_found` where there is none."""
-    clouds = {str(path) for path in paths if path.suffix.lower() in SUFFIXES and path.is_file()}
-    copies = {name for name in clouds if name.lower().endswith(COPC)
-              and any(name[:-len(COPC)] + suffix in clouds for suffix in SUFFIXES)}
-    if not clouds:
+    files = sorted(str(path) for path in paths if path.suffix.lower() in (*SUFFIXES, VIRTUAL) and path.is_file())
+    virtual = [name for name in files if name.lower().endswith(VIRTUAL)]
+    clouds = {name for name in files if name not in virtual}
+    copies = {name for name in clouds if name.lower().endswith(COPC) and (
+        any(name[:-len(COPC)] + suffix in clouds for suffix in SUFFIXES)
+        or any(name.startswith(f"{shown[:-len(VIRTUAL)]}-overview") for shown in virtual))}
+    if not files:
         raise RoadExtractionError(none_found)
-    return sorted(clouds - copies)
+    return sorted(clouds - copies) if clouds else [name for shown in virtual for name in _named_by(shown)]
+
+
+def _named_by(path):
+    """The files of a virtual point cloud, a table of contents in JSON: https://github.com/PDAL/wrench/blob/main/vpc-spec.md
+
+    Names without folder are beside it; one made on Windows has strokes that lean left. What it says about points and CRS, the files say too.
+    """
+    try:
+        assets = [asset for feature in json.loads(Path(path).read_text(encoding="utf-8-sig"))["features"] for asset in feature["assets"].values()]
+        names = [asset["href"].replace("\\", "/") for asset in assets if "overview" not in (asset.get("roles") or ())]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        names = []
+    if not names:
+        raise RoadExtractionError(tr("{path} names no point clouds as a virtual point cloud does. Make it again in QGIS, or choose the LAS and LAZ "
+                                     "files themselves.").format(path=path))
+    if remote := [name for name in names if "://" in name or name.lower().startswith("/vsi")]:
+        raise RoadExtractionError(tr("{path} names {name} on a server, and nothing is fetched. Download the files and choose them.").format(
+            path=path, name=remote[0]))
+    return [os.path.normpath(os.path.join(os.path.dirname(path), name)) for name in names]
 
 
 # The trajectory from whatever the user has: a layer, a table, or the file itself.

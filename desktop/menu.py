@@ -8,10 +8,9 @@ from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
 
 from ..core.pipeline.kept_run import WINDOW
-from ..processing_provider.reports import last_report
 from ..processing_provider.results.layer_tree import NAMES_ONLY, REPLACES_LAST_RUN
 from ..processing_provider.results.road_maps import clouds_of, road_maps
-from ..processing_provider.results.run_table import last_run
+from ..processing_provider.results.run_table import last_report, last_run
 from ..processing_provider.texts import tr
 from .layout.shown import sheet_values
 from .manual import ManualWindow

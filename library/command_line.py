@@ -8,8 +8,9 @@ import os
 import signal
 import sys
 import warnings
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.util import find_spec
+from pathlib import Path
 
 from ..algorithms.algorithm import GROUPS
 from ..algorithms.call import run, time_left
@@ -23,7 +24,7 @@ from .run import algorithm_named, algorithms, speak
 # What a value looks like in the help
 METAVARS = {"layer": "LAYER", "folder": "FOLDER", "crs": "EPSG:NUMBER", "flag": "true|false", "expression": "CONDITION", "text": "TEXT",
             "columns": "TEXT", "whole": "NUMBER", "number": "NUMBER"}
-JSON, LANG = "--json", "--lang"
+DEMO = {"LENGTH": 100}  # m, of the simulated street
 
 
 def about_layers():
@@ -39,44 +40,31 @@ class Parser(argparse.ArgumentParser):
 
 def main(arguments=None):
     """Run the program; its exit code: 0, 1 after one sentence on stderr (with --json on stdout too), 130 after Ctrl-C."""
-    arguments = sys.argv[1:] if arguments is None else list(arguments)
+    common = Parser(prog="lanewright", add_help=False, allow_abbrev=False)
+    common.add_argument("--json", action="store_true")
+    common.add_argument("--lang", nargs="?", default="", const="")
+    asked = argparse.Namespace(json=False, lang="")
     # CRSs are compared by their projections' words, which leave out names that do not matter
     warnings.filterwarnings("ignore", "You will likely lose important projection information", UserWarning)
-    as_json = JSON in arguments
-    arguments = [argument for argument in arguments if argument != JSON]
-    language, arguments = asked_language(arguments)
     try:
-        if language:
-            speak(language)
+        _, arguments = common.parse_known_args(sys.argv[1:] if arguments is None else list(arguments), asked)
+        if asked.lang:
+            speak(asked.lang)
         missing = [name for name in ("numpy", "scipy", "laspy", "lazrs", "shapely", "pyproj", "fiona", "cv2", "jinja2") if find_spec(name) is None]
         if missing:
             raise RoadExtractionError(f"These Python packages are missing: {', '.join(missing)}. pip install lanewright brings them.")
-        return _main(arguments, as_json)
+        return _main(arguments, asked.json)
     except RoadExtractionError as error:
-        _tell_failure(told(str(error)), as_json)
+        _tell_failure(told(str(error)), asked.json)
     except (Cancelled, KeyboardInterrupt):
-        _tell_failure(tr("Cancelled"), as_json)
+        _tell_failure(tr("Cancelled"), asked.json)
         return 128 + signal.SIGINT
     except BrokenPipeError:  # whoever read the output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     finally:
-        if language:
+        if asked.lang:
             speak("en")
     return 1
-
-
-def asked_language(arguments):
-    """(language of --lang de or --lang=de, "" without; the other arguments)."""
-    rest, language = [], ""
-    words = iter(arguments)
-    for word in words:
-        if word == LANG:
-            language = next(words, "")
-        elif word.startswith(f"{LANG}="):
-            language = word.partition("=")[2]
-        else:
-            rest.append(word)
-    return language, rest
 
 
 def _tell_failure(sentence, as_json):
@@ -91,6 +79,8 @@ def _main(arguments, as_json):
         print(overview(algorithms()))
     elif first == "--version":
         print(f"lanewright {own_version()}")
+    elif first == "demo":
+        demo(options, as_json)
     elif first == "list":
         print("\n".join(f"{algorithm.ID:24}{algorithm.summary()}" for algorithm in algorithms().values()))
     else:
@@ -99,7 +89,29 @@ def _main(arguments, as_json):
 
 
 def _run(algorithm, options, as_json):
-    parameters = {name: value for name, value in vars(parser_of(algorithm).parse_args(options)).items() if value is not None}
+    _run_with(algorithm, {name: value for name, value in vars(parser_of(algorithm).parse_args(options)).items() if value is not None}, as_json)
+
+
+def demo(options, as_json):
+    """`lanewright demo FOLDER`: a simulated street, its road map, and how far the driving lines are from the true ones."""
+    parser = Parser(prog="lanewright demo", description=tr("A simulated street, its road map with a report, and how far the driving lines are from "
+                                                           "the true ones: files in a folder to look at and to try things on."))
+    parser.add_argument("folder", metavar="FOLDER", nargs="?", default="lanewright_demo", help=tr("default {value}").format(value="lanewright_demo"))
+    folder = Path(parser.parse_args(options).folder)
+    with suppress(OSError):  # the first run says why nothing can be written
+        folder.mkdir(parents=True, exist_ok=True)
+    cloud, drive, truth = (str(folder / name) for name in ("street.laz", "trajectory.gpkg", "truth.gpkg|layername=driving_lines"))
+    layers = {spec.name: f"{folder / 'road_map.gpkg'}|layername={spec.name.lower()}"
+              for spec in algorithm_named("roadmap").outputs() if spec.kind == "layer" and spec.by_default}
+    for name, parameters in (
+            ("samplesurvey", {**DEMO, "POINT_CLOUD": cloud, "TRAJECTORY": drive, "TRUTH_DRIVING_LINES": truth}),
+            ("roadmap", {"POINT_CLOUDS": [cloud], "TRAJECTORY": drive, **layers, "REPORT": str(folder / "report.html")}),
+            ("assessdrivinglines", {"INPUT": layers["DRIVING_LINES"], "REFERENCE": truth, "OUTPUT": str(folder / "accuracy.gpkg"),
+                                    "REPORT": str(folder / "accuracy.html")})):
+        _run_with(algorithm_named(name), parameters, as_json)
+
+
+def _run_with(algorithm, parameters, as_json):
     progress = TextProgress()
     with cancelled_by_signals(progress):
         results = run(FileCall(algorithm, parameters, progress), progress)
@@ -111,7 +123,8 @@ def _run(algorithm, options, as_json):
 
 def overview(known):
     """What `lanewright --help` prints."""
-    lines = ["usage: lanewright ALGORITHM --PARAMETER=VALUE ...", "       lanewright ALGORITHM --help", "       lanewright list | --version", "",
+    lines = ["usage: lanewright ALGORITHM --PARAMETER=VALUE ...", "       lanewright ALGORITHM --help",
+             "       lanewright demo [FOLDER] | list | --version", "",
              tr("Road maps from mobile laser scanning: the algorithms of Lanewright in QGIS, on files."), about_layers()]
     for group in GROUPS:
         lines += ["", tr(group)] + [f"  {algorithm.ID:24}{algorithm.title()}" for algorithm in known.values() if algorithm.GROUP == group]
