@@ -113,8 +113,8 @@ class Menu(QObject):
             return
         self._section_dock().show()
         self.section.pick.click()
-        if self.doubts is not None and self.doubts.isVisible() and self.doubts.place is not None:
-            self._show_section(self.doubts.place)
+        if self.doubts is not None and self.doubts.isVisible() and self.doubts.seen is not None:
+            self._show_section(self.doubts.seen)
 
     def _section_dock(self):
         if self.section is None:
