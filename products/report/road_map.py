@@ -10,9 +10,7 @@ import shapely
 
 from ...core.common.texts import tr, word
 from ...core.countries.catalogue import country
-from .figures import Chart
-from .map_figure import draw_map, grey_background
-from .page import html_page
+from .page import Chart, draw_map, grey_background, html_page
 
 MAX_DIAGRAMS = 16         # of curvature; further driving lines are not drawn
 CURVATURE_STEP = 1.0      # m between the values of a curvature diagram
@@ -39,7 +37,7 @@ def road_map_report(road_map: Any, image_path: str | None = None) -> str:
 
 
 def _overview(road_map, image_path):
-    background = grey_background(image_path) if image_path and road_map.image is not None else None
+    background = grey_background(image_path) if image_path and road_map.markings is not None else None
     names = ("boundary_differences", "markings", "edges", "marking_lines", "driving_lines")
     return draw_map({name.removeprefix("boundary_"): road_map.layer(name) for name in names}, background)
 
