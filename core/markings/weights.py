@@ -235,7 +235,7 @@ class _StrandWeights:
     place_step_units: int = 2500   # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
     run_gap_units: int = 600   # 6 cm across without paint separate two runs ...
     max_worn_line_width_units: int = 3300   # ... unless together they are no wider than one worn line
-    max_line_width_units: int = 3600   # 36 cm: wider is no line, or it is a double line whose middle is hazy
+    max_line_width_units: int = 3600   # 36 cm: wider is no line
     max_mixed_width_units: int = 6000   # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
     min_mixed_strand: float = 2.0   # m of paint in a strand of a mixed marking
     min_mixed_marking: float = 9.0   # m: no arrow or letter is this long; a longer mixed marking has a line in it
@@ -313,7 +313,6 @@ class _SelectionWeights:
     min_shared_paint: float = 0.6   # of a line's paint that must have its twin beside it in a double line
     min_twin_paint: float = 4.0   # m of paint: a shorter line beside another is its ragged edge, however short the other is there
     max_ragged_share: float = 0.35   # of a line's length: less paint beside a line than this is no second line but its ragged edge
-    min_bounding_paint: float = 15.0   # m of paint: enough to bound a road by
     max_neighbour_offset: float = 8.0   # m across: a line this near starts and ends where this one does
     max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it
     max_bar_end_offset: float = 0.35   # m between the end of a bar and the outline
@@ -412,7 +411,6 @@ class _NoisyWeights:
     least_area: float = 0.03   # m2
     usual_percentile: int = 75   # % of a piece's cells: its contrast
     top_percentile: int = 90   # % of them: its brightness
-    dashes: float = 1 / 3   # of the cells of a stroke: where dashes of a row are more, it is no stroke but these
     fading_ring: tuple[float, int] = 1.5, 3   # cells from a piece: where its fading is measured
     view_ring: tuple[int, int] = 3, 8   # cells from a piece: asphalt that it is compared with in each view
     view_length: float = 0.5   # m of the vehicle's way: points measured from farther apart are different views
@@ -464,10 +462,6 @@ class _RimWeights:
     gutter_brightness: float = 1.5   # spreads above asphalt
     paint_to_gutter: float = 1.8   # times as bright as the cells between it and the rim: paint beside the gutter
     road_gap_along: int = 15   # cells: smaller gaps between points belong to the road
-    # Rims of what is bright and broad.
-    beside: tuple[int, int] = 5, 2   # cells from a piece: what lies beside it, less what the image blurs
-    sides: tuple[float, float] = 0.25, 0.75   # shares of these cells that are no brighter than its dark side and its bright side
-    least_share: float = 0.65   # of its contrast with the dark side that is left with the bright one
     # Bright things that stand above the asphalt.
     plane_squares: int = 9   # squares, either way, that a plane is fitted to: 1.8 m
     min_plane_squares: int = 12   # of them with asphalt, for the plane to be known

@@ -7,9 +7,8 @@ import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.countries.catalogue import COUNTRIES
 from lanewright.products.cad import section_drawing, write_dxf
-from lanewright.products.inventory.borders import BorderLayers
+from lanewright.products.inventory.borders import BorderLayers, CrossSectionSettings
 from lanewright.products.inventory.cross_sections import measure_cross_sections, sections_to_features
-from lanewright.products.inventory.settings import CrossSectionSettings
 from lanewright.products.report.inventory import cross_section_report
 from measured_streets import GROUND, HALF, Drive, edges_of, lanes_of, markings_of, measured_road
 
