@@ -532,7 +532,7 @@ class _EdgeWeights:
     max_edge_jump: float = 0.25   # m across that two joined points may differ in any case
     bridge_spacing: float = 3.0   # m, about, between places on a line across a gap
     edge_vertex_spacing: float = 0.5   # m between vertices
-    min_edge_length: float = 2.0   # m of a piece with curb points
+    min_edge_length: float = 1.5   # m of a piece with curb points; the first and the last are means over a quarter of a metre inside its ends
     gap_sigma: float = 0.0005   # m per m of the longest bridged gap, least noise of the points of a curve across it
     min_point_sigma: float = 0.001   # m, least noise of a curb point
     max_stretch: float = 1.2   # length of a curve between two points over that of their chord, above which it swings, looked at in

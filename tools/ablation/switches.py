@@ -150,6 +150,7 @@ ROWS = (
         ("pieces in line", "common.in_line:pieces_between", gives([]), "residential street, parked cars, half the points",
          "common.in_line:with_pieces_in_line common.in_line:pieces_between"),
         ("weak chains that continue", "common.tracking:_continuing", gives([]), "residential street, parked cars, stations moved"),
+        ("chains that go on unselected", "common.tracking:_continued", Around(gives(nth(0))), "residential street"),
         ("short curbs dropped", "common.tracking:drop_short_curbs", as_list),
         ("wander of sloped chains", "common.tracking:_wander", gives(0.0), "curbs in bends"),
         ("densely seen stretch", "common.tracking:seen_stretch", gives(slice(None)), "residential street, stations moved"),

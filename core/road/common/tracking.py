@@ -202,7 +202,7 @@ def _wander(steps, members):
 
 def select_along_road(chains: Sequence[StepChain], steps: CurbSteps, near: Callable[..., np.ndarray],
                       look: SideLook | None = None) -> list[tuple[int, float, float]]:
-    """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming.
+    """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming, and what continues it.
 
     chains : list of StepChain of one side
     steps : CurbSteps to which they refer
@@ -221,7 +221,7 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps, near: Calla
     while last:
         selected.append(last[:3])
         last = last[3]
-    return _merged(selected[::-1])
+    return _continued(_merged(selected[::-1]), chains, steps)
 
 
 class _Paths:
@@ -302,6 +302,33 @@ class _Paths:
         above, end_above = h - self.look.road_height(s, u - foot), end_h - self.look.road_height(np.array(end_s), end_u - foot)
         climb = np.maximum(np.abs(end_above - above) - 0.03 - 0.003 * gap, 0.0)
         return np.where(level, CURBS.level_jump_cost * jump + CURBS.climb_cost * climb, np.inf)
+
+
+def _continued(selected, chains, steps):
+    """The selection with the chains that go on from a selected one where nothing else was selected.
+
+    To the selection a long gap allows a larger jump: that a curb goes on before the jump must not speak against the curb.
+    """
+    free = sorted({*range(len(chains))} - {chain for chain, _, _ in selected}, key=lambda k: (chains[k].start, k))
+    for sign in (1, -1):
+        for number in free[::sign]:
+            chain = chains[number]
+            position = bisect_left(selected, chain.start, key=lambda part: part[1])
+            if any(a < chain.end and b > chain.start for _, a, b in selected[max(position - 1, 0):position + 1]):
+                continue
+            parts = selected[position - 1:position] if sign > 0 else selected[position:position + 1]
+            if parts and _goes_on(steps, chains, parts[0], chain, sign):
+                selected.insert(position, (number, chain.start, chain.end))
+    return selected
+
+
+def _goes_on(steps, chains, part, chain, sign):
+    """Does a chain continue a selected interval, along the road (1) or against it (-1), and keep to its offset?"""
+    number, a, b = part
+    members = _between(steps, chains[number].steps, a, b)
+    if not len(members) or np.abs(steps.u[chain.steps] - steps.u[members[::sign][-1]]).max() > CURBS.max_steady_jump:
+        return False
+    return any(_in_line(steps, *(members, chain.steps)[::sign]))
 
 
 def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Sequence[StepChain],
@@ -403,8 +430,8 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
     pieces = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
     if not pieces:
         return []
-    chosen = StepsByStation(steps[np.concatenate(pieces)])
-    of_methods = [(begin, StepsByStation(steps[begin:end])) for begin, end in zip([0, *first], [*first, len(steps)])]
+    chosen = _StepsByStation(steps[np.concatenate(pieces)])
+    of_methods = [(begin, _StepsByStation(steps[begin:end])) for begin, end in zip([0, *first], [*first, len(steps)])]
     for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]):
         if not CURBS.max_link_length < b - a <= CURBS.max_line_gap:
             continue
@@ -424,7 +451,7 @@ def _between(steps, members, start, end):
     return members[(steps.s[members] >= start) & (steps.s[members] <= end)]
 
 
-class StepsByStation:
+class _StepsByStation:
     """CurbSteps of one side, of which those between two stations are looked up."""
 
     def __init__(self, steps: CurbSteps):
@@ -452,7 +479,7 @@ class PieceInLine:
     end: float
 
 
-def pieces_between(before: CurbSteps, after: CurbSteps, others: StepsByStation,
+def pieces_between(before: CurbSteps, after: CurbSteps, others: _StepsByStation,
                    to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[PieceInLine]:
     """The pieces of curb on the line between two runs of curb.
 
