@@ -186,6 +186,10 @@ class Call:
 
     # -- out --------------------------------------------------------------------------------
 
+    def print_sheets(self, settings, progress):
+        """Draw sheets along the road into OUTPUT; returns the numbers."""
+        raise RoadExtractionError(tr("Sheets are drawn by QGIS. Run Sheets along the road there, or qgis_process run lanewright:printsheets."))
+
     def check_destinations(self):
         """Prove every output writable before the work, so that a read-only disk is reported now."""
         label_by_target = {}

@@ -10,7 +10,7 @@ FILES = {
     "road": ("normalized_scanlines", "boundaries_from_scanlines", "detect_curbs", "fit_road_edges", "detect_boundaries", "extract_road_surface"),
     "markings": ("correct_intensity", "intensity_image", "extract_markings", "remove_outliers", "cluster_markings", "fit_marking_lines"),
     "driving": ("driving_lines", "road_map"),
-    "export": ("export_opendrive", "export_lanelet2", "export_cad", "import_opendrive", "import_lanelet2", "check_map"),
+    "export": ("export_opendrive", "export_lanelet2", "export_cad", "print_sheets", "import_opendrive", "import_lanelet2", "check_map"),
     "inventory": ("cross_sections", "roadside"),
     "assess": ("assess_boundaries", "assess_markings", "assess_driving_lines"),
     "overlay": ("propose_control_points", "georeference_image"),

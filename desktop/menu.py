@@ -13,8 +13,7 @@ from ..processing_provider.results.layer_tree import NAMES_ONLY, REPLACES_LAST_R
 from ..processing_provider.results.road_maps import clouds_of, road_maps
 from ..processing_provider.results.run_table import last_run
 from ..processing_provider.texts import tr
-from .layout.layout_dialog import LayoutDialog, shown_layers
-from .layout.map_layout import road_map_layout
+from .layout.shown import sheet_values
 from .manual import ManualWindow
 from .messages import all_is_there
 from .runs_window import RunsWindow
@@ -22,7 +21,6 @@ from .sample_run import SampleRun
 from .widgets import say
 
 PROVIDER = "lanewright"
-LAYOUT_WINDOW = (1300, 850)  # px
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
 
 
@@ -33,7 +31,7 @@ class Menu(QObject):
         super().__init__()
         self.iface = iface
         self.actions = []
-        self.dialog = self.layout_dialog = self.designer = None  # kept, or Python would collect the open windows
+        self.dialog = self.designer = None  # kept, or Python would collect the open windows
         self.section = self.doubts = self.pairs = None
         WINDOW.begin()
         self.sample = SampleRun(iface)
@@ -42,7 +40,7 @@ class Menu(QObject):
         self._add(tr("Road map…"), self.open_road_map, tr("From a survey to driving lines in one call"), QIcon(str(ICON)))
         self._add(tr("Run the sample survey"), self.sample.start, tr("A simulated street through the whole chain, into this project"),
                   theme("/mActionStart.svg"))
-        self._add(tr("Print layout of the road map"), self.open_layout, tr("A map of the layers that Lanewright made"),
+        self._add(tr("Sheets along the road…"), self.open_layout, tr("The road map on paper: plan sheets, profile and cross-sections as one PDF"),
                   theme("/mActionNewLayout.svg"))
         self._add(tr("Next doubtful place"), self.next_doubt, tr("Goes along the road map through pieces that were not measured, that are uncertain, "
                   "or where the boundary methods differ, and keeps what you decide there"), theme("/mActionZoomNext.svg"))
@@ -215,29 +213,7 @@ class Menu(QObject):
             self.dialog.show()
 
     def open_layout(self):
-        """A layout of a road map of the project, opened in QGIS's designer."""
-        project = QgsProject.instance()
+        """The dialog of Sheets along the road, for the road map of the active layer, else the newest."""
         maps = self._road_maps()
-        if not maps:
-            return
-        self.layout_dialog = LayoutDialog(project, maps, self.iface.mainWindow())
-        self.layout_dialog.accepted.connect(lambda: self.print_layout(project, **self.layout_dialog.choice))
-        self.layout_dialog.open()
-
-    def print_layout(self, project, road_map, **chosen):
-        """The layout of one road map's layers that are switched on (of all where none is), added to the project and shown."""
-        layers = shown_layers(road_map, project) or shown_layers(road_map, project, hidden=True)
-        layout = road_map_layout(project, layers, unused_name(project, road_map.title), **chosen)
-        project.layoutManager().addLayout(layout)
-        designer = self.iface.openLayoutDesigner(layout)
-        window = designer.window() if designer is not None else None
-        if window is not None and window.width() < LAYOUT_WINDOW[0] / 2:  # the first one of a profile is as small as a palette
-            window.resize(*LAYOUT_WINDOW)
-            designer.view().zoomFull()
-
-
-def unused_name(project, name):
-    """The name, numbered where the project has a layout of that name."""
-    used = {layout.name() for layout in project.layoutManager().printLayouts()}
-    names = (name if number == 1 else f"{name} {number}" for number in range(1, len(used) + 2))
-    return next(free for free in names if free not in used)
+        if maps:
+            self.open_algorithm("lanewright:printsheets", sheet_values(maps[0], maps, QgsProject.instance()))

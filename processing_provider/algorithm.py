@@ -6,6 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 from qgis.core import (
+    Qgis,
     QgsMapLayer,
     QgsProcessingAlgorithm,
     QgsProcessingException,
@@ -53,6 +54,9 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
             self.addParameter(retired_parameter(name))
         for number in self.declaration.numbers:
             self.addOutput(QgsProcessingOutputNumber(number.name, number.label))
+
+    def flags(self):
+        return super().flags() | Qgis.ProcessingAlgorithmFlag.NoThreading if self.declaration.DRAWS else super().flags()
 
     def name(self):
         return self.declaration.ID

@@ -127,6 +127,11 @@ class QgisCall(Call):
 
     # -- out --------------------------------------------------------------------------------
 
+    def print_sheets(self, settings, progress):
+        from ..desktop.layout.print_sheets import print_sheets
+
+        return print_sheets(self, settings, progress)
+
     def destination(self, name):
         value = self.parameters.get(name)
         if isinstance(value, QgsProcessingOutputLayerDefinition):

@@ -1,7 +1,7 @@
 """Draws the maps of the demo: draw_map.py PACKAGE IMAGE PICTURE [UAV_PACKAGE ORTHOIMAGE UAV_PICTURE].
 
 The first has the road plan over the intensity image; the second the UAV image with the
-driving lines by outcome and the residuals of its control points. Both have a title, a legend and a scale
+driving lines by outcome and the residuals of its control points. Both are sheets with title block, legend and scale
 bar, and every layer is drawn in the style it carries.
 """
 
@@ -32,42 +32,24 @@ def styled_layers(package, tables, image, title):
     return [*layers, QgsRasterLayer(str(image), title)]
 
 
-def clear_map(layout):
-    """Move the scale bar from the map to the right of the legend."""
-    from qgis.core import QgsLayoutItemMap, QgsLayoutItemScaleBar, QgsLayoutPoint
-
-    paper = layout.pageCollection().page(0).pageSize()
-    bottom = next(item.pos().y() + item.rect().height() for item in layout.items() if isinstance(item, QgsLayoutItemMap))
-    for item in layout.items():
-        if isinstance(item, QgsLayoutItemScaleBar):
-            item.attemptMove(QgsLayoutPoint(paper.width() - item.rect().width() - 4, bottom + 4, paper.units()))
-
-
-def draw(layers, picture, title, dpi=DPI, bare=False):
-    """Lay the map out and save it; `bare` keeps the scale bar off the map."""
-    from lanewright.desktop.layout.map_layout import road_map_layout
-    from osgeo import gdal
+def draw(layers, picture, title, dpi=DPI):
+    """Lay the map out as the first page of its sheets, and save it; layers by the result that they are, and below them an image."""
+    from lanewright.algorithms.export.print_sheets import SheetSettings
+    from lanewright.desktop.layout.sheets import sheet_layout
     from qgis.core import QgsLayoutExporter, QgsProject
     from qgis.PyQt.QtCore import QCoreApplication
 
+    *drawn, image = layers
     project = QgsProject.instance()
-    project.setCrs(layers[0].crs())
+    project.setCrs(image.crs())
     for layer in layers:
         project.addMapLayer(layer)
-    layout = road_map_layout(project, layers, title)
-    if bare:
-        clear_map(layout)
+    layout, _ = sheet_layout(project, {layer.source().partition("layername=")[2].upper(): layer for layer in drawn},
+                             SheetSettings(title, paper="A4", profile=False, section_interval=0.0), image)
     QCoreApplication.processEvents()
-    # QGIS tries to write the map's place into the picture, which a PNG cannot hold
-    gdal.PushErrorHandler("CPLQuietErrorHandler")
-    settings = QgsLayoutExporter.ImageExportSettings()
-    settings.dpi = dpi
-    settings.generateWorldFile = False
-    result = QgsLayoutExporter(layout).exportToImage(str(picture), settings)
-    gdal.PopErrorHandler()
-    project.clear()
-    if result != QgsLayoutExporter.ExportResult.Success:
+    if not QgsLayoutExporter(layout).renderPageToImage(0, dpi=dpi).save(str(picture)):
         sys.exit(f"The map could not be written to {picture}.")
+    project.clear()
 
 
 def fewer_colours(picture, colours=96):
@@ -104,7 +86,7 @@ def main():
         if uav:
             package, image, picture = uav
             draw(styled_layers(package, UAV_LAYERS, image, "UAV image"), picture,
-                 "Lanewright: driving lines over the georeferenced UAV image (simulated)", UAV_DPI, bare=True)
+                 "Lanewright: driving lines over the georeferenced UAV image (simulated)", UAV_DPI)
             fewer_colours(picture)
     finally:
         from qgis.core import QgsProject

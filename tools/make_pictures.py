@@ -170,12 +170,15 @@ def cloud_layer(path):
 
 def draw(layers, path, surface, detail, ground):
     """Render the layers along the road of the surface layer."""
-    from lanewright.desktop.layout.map_layout import lie_of_the_road
-    from qgis.core import QgsMapRendererParallelJob, QgsMapSettings, QgsRectangle
+    from qgis.core import QgsGeometry, QgsMapRendererParallelJob, QgsMapSettings, QgsRectangle
     from qgis.PyQt.QtCore import QSize
     from qgis.PyQt.QtGui import QColor, QImage
 
-    centre, angle, length, width = lie_of_the_road([surface])
+    whole = QgsGeometry.collectGeometry([feature.geometry().convexHull() for feature in surface.getFeatures()])
+    box, _, angle, length, width = whole.orientedMinimumBoundingBox()
+    if width > length:
+        length, width, angle = width, length, angle - 90.0
+    centre, angle = box.centroid().asPoint(), (angle + 90.0) % 180.0 - 90.0  # the road along the picture
     span = NEAR if detail else length + 4
     settings = QgsMapSettings()
     settings.setLayers(layers)

@@ -143,12 +143,15 @@ def own_survey():
 
 def layout():
     """The road map on paper, over the web map."""
-    action_of(tr("Print layout of the road map")).trigger()
-    wait(1)
-    ours = plugins["lanewright"].menu
-    say(f"below: {ours.layout_dialog.below.currentText()}, credit: {ours.layout_dialog.credit.text()}")
-    keep(ours.layout_dialog, "window_layout_dialog")
-    ours.layout_dialog.accept()
+    action_of(tr("Sheets along the road…")).trigger()
+    window = plugins["lanewright"].menu.dialog
+    window.resize(1000, 820)
+    window.setParameters({"OFFICE": "Musterstadt", "OUTPUT": str(survey().parent / "results" / "sheets.pdf")})
+    say(f"sheets: {window.createProcessingParameters()}")
+    keep(window, "window_layout_dialog")
+    run(window, 120)
+    window.close()
+    iface.openLayoutDesigner(QgsProject.instance().layoutManager().printLayouts()[0])
     wait(3)
     designers = iface.openLayoutDesigners()
     needed(designers, "no layout was opened")

@@ -38,7 +38,8 @@ def _road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: lis
             places.append([(k, a - tracks[k].first) for k, a, _ in inside])
     points = sum(road_points.store.size(road, number) for number in road_points.sections(road))
     together = max(HEIGHT_POINTS * len(windows) // max(points, 1), 1)
-    phase = Phase(heights_of_windows, road_points, (road,), lambda item: road_points.survey.stretch(road, item[0][1][0], item[-1][1][-1]))
+    phase = Phase(heights_of_windows, road_points, (road,), lambda item: road_points.survey.stretch(road, item[0][1][0], item[-1][1][-1]),
+                  state=lambda item: road_points.store.state((road, item[0][0][0], item[-1][0][-1] + 1)))
     for lanes_of_window, heights in zip(places, road_points.executor.run_together(phase, windows, together, progress)):
         for (k, first), z in zip(lanes_of_window, heights):
             result[k][first:first + len(z)] = z

@@ -66,6 +66,7 @@ class Phase:
         there, and gives the Recipe
     together : so many items, one after the other along the road, are best given to one worker, which keeps what they share
     join : the result of an item from those of the two halves of its range of numbers; None where an item cannot be halved
+    state : plain value that changes with what an item reads from the source, by which a later run knows its result again; None where none may
     """
 
     function: Callable[..., Any]
@@ -74,6 +75,7 @@ class Phase:
     place: Callable[[Any], str] = field(default=str, compare=False)   # names the stretch of road that an item is, for messages
     join: Callable[[list[Any]], Any] | None = field(default=None, compare=False)
     together: int = field(default=1, compare=False)
+    state: Callable[[Any], Any] | None = field(default=None, compare=False)
 
     def result(self, item: Any) -> Any:
         """The result of one item, computed here."""

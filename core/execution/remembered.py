@@ -1,4 +1,4 @@
-"""Results of one run, remembered for the next one, which may ask much the same."""
+"""Results of one run, remembered for the next ones over the same survey, which may ask much the same."""
 
 from __future__ import annotations
 
@@ -6,35 +6,50 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..common.parallel import free_memory
 from ..common.progress import Progress
 from .phase import THREADS, Executor, NoSource, Phase, digest, name_of
+from .weights import EXECUTION
 
 
 class RememberedResults(Executor):
-    """Executor that remembers, from one run to the next, the results of phases whose items hold all that they need."""
+    """Executor that remembers the results of phases whose items hold all that they need, or that say in which state they read the rest.
 
-    def __init__(self) -> None:
-        self.executor: Executor = THREADS
-        self._before: dict[str, Any] = {}   # results of the run before and of this one, by digests of what they depend on
-        self._results: dict[str, Any] = {}
+    A few that are missing are computed by threads: workers take longer to start.
+    """
 
-    def of_next_run(self, executor: Executor) -> RememberedResults:
-        """The same for the next run, whose work another executor does."""
+    def __init__(self, executor: Executor):
         self.executor, self.folder = executor, executor.folder
-        self._before, self._results = self._results or self._before, {}
-        return self
+        self._results: dict[str, Any] = {}   # by digests of what they depend on
+        self._first = 0   # how many there were after the first run
+        # all but the work itself is that of the executor
+        self.sees, self.disk_error, self.forget, self.release, self.close = (  # type: ignore[method-assign]
+            executor.sees, executor.disk_error, executor.forget, executor.release, executor.close)
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
-        if not isinstance(phase.source, NoSource):
+        if phase.state is None and not isinstance(phase.source, NoSource):
             yield from self.executor.run(phase, items, progress, keep)
             return
-        names = [digest((name_of(phase.function), phase.arguments, item)) for item in items]
-        self._results.update((name, self._before[name]) for name in names if name in self._before)
+        names = [digest((name_of(phase.function), phase.arguments, item, phase.state and phase.state(item))) for item in items]
         missing = {name: item for name, item in zip(names, items) if name not in self._results}
-        results = self.executor.run(phase, list(missing.values()), progress)
+        few = 2 * len(missing) < len(names)
+        results = (THREADS if few else self.executor).run(phase, list(missing.values()), progress)
         for name in names:
             if name in missing:
                 del missing[name]   # a later item may be the same
                 self._results[name] = next(results)
             yield self._results[name]
         progress.report(1.0)
+
+    @property
+    def full(self) -> bool:
+        """Whether so much is remembered that the next run had better begin anew; asked between two runs."""
+        self._first = self._first or len(self._results)
+        return len(self._results) > EXECUTION.runs_remembered * self._first
+
+    def clear(self) -> None:
+        """Remember nothing any more, and remove the files of the folder, which nobody reads."""
+        self._results, self._first = {}, 0
+        free_memory()   # Windows removes no file that is held open
+        for path in self.folder.glob("points-*.bin") if self.folder is not None else ():
+            path.unlink(missing_ok=True)

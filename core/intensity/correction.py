@@ -149,8 +149,46 @@ class IntensityReport:
         return texts
 
 
+@dataclass(frozen=True)
+class AsphaltLook:
+    """What road points show of asphalt, by which these and others of the same survey are corrected."""
+
+    table: AsphaltTable | None   # AsphaltTable, None where nothing can be corrected
+    reason: str   # why not, "" where it can
+    beams: Beams | None = None   # Beams whose brightness is made equal
+    step: int = 1   # points in every step-th centimetre of the road are counted
+    points_by_scanner: np.ndarray = field(default_factory=lambda: np.zeros(SCANNER_NUMBERS, np.int64))   # (256,) points of each scanner
+    counts: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))   # of the IntensityHistograms of raw intensities
+    highest: int = 0   # intensity
+
+    @classmethod
+    def of(cls, road_points: RoadPoints, frame: RoadFrame, settings: IntensitySettings = IntensitySettings(),
+           progress: Progress = Progress()) -> AsphaltLook:
+        """What `correct_intensity` does in its first round."""
+        reason = _reason_against(road_points, frame)
+        if reason:
+            return cls(None, reason)
+        points_by_scanner = sum(ordered_map(lambda key: _points_by_scanner(road_points.section(*key)), road_points.all_sections()))
+        scanners = int(np.flatnonzero(points_by_scanner)[-1]) + 1
+        beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.4))
+        step, before = _sampling_step(road_points), IntensityHistograms(scanners)
+        modelled = IntensityHistograms(scanners) if beams else before
+        # points without a position of the vehicle, and all points
+        without_vehicle, highest = np.zeros(2, np.int64), 0
+        arguments = list(frame.passes), beams, scanners, step
+        for raw, equal, brightest, lost in _run(levels_of_stretch, road_points, arguments, progress.part(0.4, 1.0)):
+            before.add(raw, step)
+            modelled.add(equal, step)
+            without_vehicle += lost
+            highest = max(highest, brightest)
+        table = AsphaltTable.from_counts(modelled.counts)
+        if table is not None and settings.scale != "automatic":
+            table.logarithmic = settings.scale == "logarithmic"
+        return cls(table, _reason_of_counts(table, *without_vehicle.tolist()), beams, step, points_by_scanner, before.counts, highest)
+
+
 def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: IntensitySettings = IntensitySettings(),
-                      progress: Progress = Progress()) -> tuple[RoadPoints, IntensityReport]:
+                      progress: Progress = Progress(), asphalt: AsphaltLook | None = None) -> tuple[RoadPoints, IntensityReport]:
     """Bring asphalt to one intensity at every distance and for every scanner.
 
     The beams of a spinning scanner are equalised first, where they differ. In a first round the
@@ -166,6 +204,7 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     Parameters
     ----------
     frame : RoadFrame of the same trajectory
+    asphalt : AsphaltLook of these points or of others of the survey, None to look at these
 
     Returns
     -------
@@ -174,36 +213,14 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
         know its asphalt. Where nothing can be corrected, the points are returned as they were.
     IntensityReport; its `reason` says why nothing was corrected
     """
-    reason = _reason_against(road_points, frame)
-    if reason:
-        progress.warn(reason)
-        return road_points, IntensityReport(reason=reason)
-    sections = road_points.all_sections()
-    points_by_scanner = sum(ordered_map(lambda key: _points_by_scanner(road_points.section(*key)), sections))
-    scanners = int(np.flatnonzero(points_by_scanner)[-1]) + 1
-    beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.2))
-    step = _sampling_step(road_points)
-    before, after = IntensityHistograms(scanners), IntensityHistograms(scanners)
-    modelled = IntensityHistograms(scanners) if beams else before
-    # points without a position of the vehicle, and all points
-    without_vehicle, highest = np.zeros(2, np.int64), 0
-    arguments = list(frame.passes), beams, scanners, step
-    for raw, equal, brightest, lost in _run(levels_of_stretch, road_points, arguments, progress.part(0.2, 0.5)):
-        before.add(raw, step)
-        modelled.add(equal, step)
-        without_vehicle += lost
-        highest = max(highest, brightest)
-    table = AsphaltTable.from_counts(modelled.counts)
-    reason = _reason_of_counts(table, *without_vehicle.tolist())
-    if reason or table is None:
-        progress.warn(reason)
-        return road_points, IntensityReport(reason=reason)
-    if settings.scale != "automatic":
-        table.logarithmic = settings.scale == "logarithmic"
-    store = _corrected_store(road_points, table, (list(frame.passes), beams), points_by_scanner, step, after, progress.part(0.5, 1.0))
-    report = _report(before.counts, after.counts, table, points_by_scanner)
-    report.beams = beams.count if beams else 0
-    report.saturation = Saturation.from_levels(before.counts[ACROSS_TRACK].sum(axis=1), highest)
+    asphalt = asphalt or AsphaltLook.of(road_points, frame, settings, progress.part(0.0, 0.5))
+    if asphalt.reason or asphalt.table is None:
+        progress.warn(asphalt.reason)
+        return road_points, IntensityReport(reason=asphalt.reason)
+    store, after = _corrected_store(road_points, frame, asphalt, progress.part(0.5, 1.0))
+    report = _report(asphalt.counts, after, asphalt.table, asphalt.points_by_scanner)
+    report.beams = asphalt.beams.count if asphalt.beams else 0
+    report.saturation = Saturation.from_levels(asphalt.counts[ACROSS_TRACK].sum(axis=1), asphalt.highest)
     if report.saturation_warning:
         progress.warn(report.saturation_warning)
     for line in report.lines()[:1]:
@@ -214,8 +231,9 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
 def _run(function, road_points, arguments, progress, source=None):
     """Yield the results of a phase, a function of stretches of the road points, that reads from these or from a `source`."""
     length, source = road_points.store.section_length, road_points if source is None else source
-    phase = Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length))
-    return road_points.executor.run(phase, road_points.store.stretches(), progress)
+    phase = Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length),
+                  state=road_points.store.state)
+    return road_points.executor.run(phase, road_points.stretches(), progress)
 
 
 def _reason_of_counts(table, lost, points):
@@ -227,15 +245,16 @@ def _reason_of_counts(table, lost, points):
     return ""
 
 
-def _corrected_store(road_points, table, passes_and_beams, points_by_scanner, step, after, progress):
-    """The points with `corrected`, whose levels are added to the histograms `after`."""
-    kinds = np.unique(table.distance_kind[points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
+def _corrected_store(road_points, frame, asphalt, progress):
+    """The points with `corrected`, and the counts of their IntensityHistograms."""
+    table, after = asphalt.table, IntensityHistograms(asphalt.counts.shape[1])
+    kinds = np.unique(table.distance_kind[asphalt.points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
     store = road_points.store.with_column("corrected", road_points.store.folder)
-    arguments = *passes_and_beams, table, table.lookup(), kinds, step
+    arguments = list(frame.passes), asphalt.beams, table, table.lookup(), kinds, asphalt.step
     for index, counts in _run(corrected_of_stretch, road_points, arguments, progress, replace(road_points, store=store)):
         store.adopt(index, store.folder)
-        after.add(counts, step)
-    return store
+        after.add(counts, asphalt.step)
+    return store, after.counts
 
 
 def levels_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequence[Pass], beams: Beams | None, scanners: int,

@@ -17,10 +17,11 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import ScratchBuffers
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..execution.phase import Phase
+from ..execution.phase import THREADS, Executor, Phase, digest
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage, new_geotiff
 from ..lazy import cv2
 from ..survey.consistency import sample_road_points
+from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import COORDINATE_SCALE, Points
 from ..survey.store.road_points import RoadPoints
 from .tiled_image import TiledImage
@@ -217,17 +218,31 @@ class _Piece:
     road: int   # road, number: of the road, and of the piece along it
     number: int
     extent: Extent   # Extent of the cells that its points reach
+    across: tuple[int, int]   # least and greatest offset of its points, units of 0.1 mm
     step: int   # one of so many points weighs on farther cells
     limits: tuple[float, float]   # 1 % and 99 % of the intensities about it
 
 
 def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = ImageSettings(), progress: Progress = Progress(),
-                         path: str | PathLike | None = None) -> TiledImage:
-    """The image of `write_intensity_image`, to be read at once like an IntensityImage, and in a GeoTIFF too where a path is given."""
-    grid, tiles = _interpolate(road_points, settings, progress)
+                         path: str | PathLike | None = None, before: TiledImage | None = None) -> TiledImage:
+    """The image of `write_intensity_image`, to be read at once like an IntensityImage, and in a GeoTIFF too where a path is given.
+
+    before : image of other points of the survey, whose tiles are taken over where they are the same; it is of no use any more
+    """
+    grid, work = _looked(road_points, settings, progress)
     image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, road_points.executor.folder)
+    image.pieces = {piece: digest((settings, piece, road_points.state(piece.road, piece.number * PIECE_LENGTH, (piece.number + 1) * PIECE_LENGTH)))
+                    for _, pieces in work for piece in pieces}
+    image.states = {tile: digest((grid.shape_of(*tile), [image.pieces[piece] for piece in pieces])) for tile, pieces in work}
+    if before is not None:
+        image.take_over(before)
+    new = [(tile, pieces) for tile, pieces in work if before is None or before.states.get(tile) != image.states[tile]]
     with new_geotiff(path, grid.width, grid.height, grid.geotransform, road_points.crs) if path else nullcontext() as file:
-        for column, row, values in tiles:
+        if file is not None:
+            image.write_tiles(file)
+        # a few are made before workers would have started
+        executor = THREADS if 2 * len(new) < len(work) else road_points.executor
+        for column, row, values in _tiles(grid, new, road_points, settings, progress.part(0.3, 1.0), executor):
             image.put(column, row, values)
             if file is not None:
                 file.write(column, row, values)
@@ -266,9 +281,9 @@ def write_intensity_image(road_points: RoadPoints, path: str | PathLike, setting
     ----------
     .. [1] Guan et al. (2014), ISPRS J. Photogramm. Remote Sens. 87, 93-107: the two rules.
     """
-    grid, tiles = _interpolate(road_points, settings, progress)
+    grid, work = _looked(road_points, settings, progress)
     with new_geotiff(path, grid.width, grid.height, grid.geotransform, road_points.crs) as file:
-        for column, row, values in tiles:
+        for column, row, values in _tiles(grid, work, road_points, settings, progress.part(0.3, 1.0), road_points.executor):
             file.write(column, row, values)
             # compressed by another thread while the next tiles are made
             file.flush()
@@ -283,28 +298,28 @@ def check_fits(width: float, height: float, settings: ImageSettings) -> None:
                                   f"{settings.cell_size} m cells. Use a larger cell size, or split the survey.")
 
 
-def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Progress) -> tuple[_Grid, Iterator[tuple[int, int, np.ndarray]]]:
-    """The grid of the image, and a generator of (column, row, (H, W) float32) of every tile with data, in the order of the road."""
+def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress) -> tuple[_Grid, list[tuple[Tile, list[_Piece]]]]:
+    """The grid of the image, and the pieces of road that touch each tile."""
     if not len(road_points):
         raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
     looked = _run(windows_of_image, road_points, windows, IMAGE.looked_windows, settings, progress.part(0.0, 0.3),
-                  lambda window: (*window, IMAGE.ranking_window))
+                  lambda window: (*window, IMAGE.ranking_window), road_points.executor)
     pieces = [piece for window in looked for piece in window]
     # the grid is fixed in the map: pixel column = column of the map's lattice minus the first one
     extents = np.array([piece.extent for piece in pieces], np.int64)
     (c0, r0), (c1, r1) = extents[:, ::2].min(axis=0).tolist(), (extents[:, 1::2].max(axis=0) + 1).tolist()
     check_fits((c1 - c0) * settings.cell_size, (r1 - r0) * settings.cell_size, settings)
     grid = _Grid(settings, c0, r1 - 1, c1 - c0, r1 - r0)
-    return grid, _tiles(grid, pieces, road_points, settings, progress.part(0.3, 1.0))
+    return grid, _pieces_by_tile(grid, pieces)
 
 
-def _tiles(grid: _Grid, pieces: Sequence[_Piece], road_points: RoadPoints, settings: ImageSettings,
-           progress: Progress) -> Iterator[tuple[int, int, np.ndarray]]:
-    work = _pieces_by_tile(grid, pieces)
+def _tiles(grid: _Grid, work: list[tuple[Tile, list[_Piece]]], road_points: RoadPoints, settings: ImageSettings,
+           progress: Progress, executor: Executor) -> Iterator[tuple[int, int, np.ndarray]]:
+    """Yield (column, row, (H, W) float32) of every tile with data, in the order of the road."""
     made, done = _lifetimes(work)
     sums = _run(sums_of_pieces, road_points, [piece for new in made for piece in new], IMAGE.pieces_per_task, settings, progress,
-                lambda piece: (piece.road, piece.number, PIECE_LENGTH))
+                lambda piece: (piece.road, piece.number, PIECE_LENGTH), executor)
     kept: dict[_Piece, _WeightedSums] = {}
     for ((column, row), parts), new, old in zip(work, made, done):
         kept.update((piece, next(sums)) for piece in new)
@@ -315,14 +330,17 @@ def _tiles(grid: _Grid, pieces: Sequence[_Piece], road_points: RoadPoints, setti
             del kept[piece]
 
 
-def _run(function, road_points, items, together, settings, progress, place):
+def _run(function, road_points, items, together, settings, progress, place, executor):
     """Yield the results of a phase of items, some of them together in a task; `place` gives road, number and length of one."""
 
-    def name(task):
-        road, number, length = place(task[0])
-        return road_points.survey.stretch(road, number * length, (number + 1) * length)
+    def span(item):
+        road, number, length = place(item)
+        return road, number * length, (number + 1) * length
 
-    return road_points.executor.run_together(Phase(function, road_points, (settings,), name), items, together, progress)
+    phase = Phase(function, road_points, (settings,), lambda task: road_points.survey.stretch(*span(task[0])),
+                  # of what weighs on cells, images keep the tiles
+                  state=None if function is sums_of_pieces else lambda task: [road_points.state(*span(item)) for item in task])
+    return executor.run_together(phase, items, together, progress)
 
 
 def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, list[_Piece]]]:
@@ -372,7 +390,8 @@ def _pieces_of_window(road_points, road, number, settings):
             step = _sampling_step(points, settings)
             (c0, c1), (r0, r1) = ([int(_lattice_cell(int(end), o, cell)) for end in (c.min(), c.max())]
                                   for c, o in ((points.records[name], o) for name, o in zip("xy", road_points.origin)))
-            pieces.append((road, piece, (c0 - reach, c1 + reach, r0 - reach, r1 + reach), step))
+            d = points.records["d"]
+            pieces.append((road, piece, (c0 - reach, c1 + reach, r0 - reach, r1 + reach), (int(d.min()), int(d.max())), step))
             values.append(points[::max(step, len(points) // IMAGE.max_ranked_points)].value)
     limits = tuple(quantiles(np.concatenate(values), [0.01, 0.99]).tolist()) if values else ()
     return [_Piece(*piece, limits) for piece in pieces]
@@ -434,14 +453,33 @@ class _Grid:
         return [(column, row) for column in range((c0 - self.column) // GEOTIFF_TILE, (c1 - self.column) // GEOTIFF_TILE + 1)
                 for row in range((self.row - r1) // GEOTIFF_TILE, (self.row - r0) // GEOTIFF_TILE + 1)]
 
+    def shape_of(self, column: int, row: int) -> tuple[int, int]:
+        """Height and width of one tile."""
+        return min(GEOTIFF_TILE, self.height - row * GEOTIFF_TILE), min(GEOTIFF_TILE, self.width - column * GEOTIFF_TILE)
+
     def tile(self, column: int, row: int, parts: Iterable[_WeightedSums]) -> np.ndarray | None:
         """(height, width) float32 of one tile, from the sums that touch it; None where it has no data."""
-        shape = min(GEOTIFF_TILE, self.height - row * GEOTIFF_TILE), min(GEOTIFF_TILE, self.width - column * GEOTIFF_TILE)
+        shape = self.shape_of(column, row)
         whole = _WeightedSums(self.column + column * GEOTIFF_TILE, self.row - row * GEOTIFF_TILE, *np.zeros((2, *shape), np.float32))
         for part in parts:
             part.add_to(whole)
         filled = whole.weights > 0
         return np.divide(whole.total, whole.weights, out=np.full(shape, np.float32(NODATA)), where=filled) if filled.any() else None
+
+
+def state_about(image: TiledImage, frame: RoadFrame, road: int, start: float, end: float) -> list[Any]:
+    """Plain values that differ where the points of a road between two stations (m), or the image of `make_intensity_image` about them, are others."""
+    pieces, margin = list(image.pieces), int(np.ceil(IMAGE.state_margin / image.cell_size))
+    own = np.array([piece.road == road and start < (piece.number + 1) * PIECE_LENGTH and piece.number * PIECE_LENGTH < end for piece in pieces])
+    across = np.array([piece.across for piece, is_own in zip(pieces, own.tolist()) if is_own]).reshape(-1, 2) * COORDINATE_SCALE
+    if not len(across):
+        return []
+    s = np.arange(start, end + IMAGE.state_margin, IMAGE.state_margin)
+    sides = [frame.road(road).to_map(s, d) for d in (across.min(), across.max())]
+    (c0, c1), (r0, r1) = ([int(np.floor((end + o) / image.cell_size)) for end in (np.min(c), np.max(c))] for c, o in zip(zip(*sides), frame.origin))
+    extents = np.array([piece.extent for piece in pieces])
+    about = (extents[:, 0] <= c1 + margin) & (extents[:, 1] >= c0 - margin) & (extents[:, 2] <= r1 + margin) & (extents[:, 3] >= r0 - margin)
+    return [list(image.geotransform), *(image.pieces[pieces[k]] for k in np.flatnonzero(own | about).tolist())]
 
 
 # Whether an intensity image shows the road points it is used with.

@@ -34,6 +34,10 @@ class TiledImage(IntensityImage):
     Tiles are put by one thread; once all are there, several threads may read.
 
     folder : where the file lies, so that other processes can read it; None for a temporary one without a name
+
+    Attributes
+    ----------
+    pieces, states : {piece of road, or (column, row) of a tile: digest of all that its part of the image depends on}
     """
 
     def __init__(self, geotransform: tuple[float, ...], width: int, height: int, crs: str, folder: Path | None = None):
@@ -41,6 +45,17 @@ class TiledImage(IntensityImage):
         self._tiles: dict[tuple[int, int], _StoredTile] = {}
         self.folder = folder
         self._file: ArrayFile | Path | None = None
+        self.pieces: dict[Any, str] = {}
+        self.states: dict[tuple[int, int], str] = {}
+
+    def take_over(self, before: TiledImage) -> None:
+        """Take the tiles of another image that are the same, with its file."""
+        if before.geotransform == self.geotransform:
+            self._file, before._file = before._file, None
+            self._tiles = {tile: stored for tile, stored in before._tiles.items() if before.states[tile] == self.states.get(tile)}
+        else:
+            before.states = {}
+            before.close()
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the image, whose pixels lie in its folder."""
@@ -92,10 +107,14 @@ class TiledImage(IntensityImage):
     def write(self, path: str | PathLike) -> None:
         """Write the image to a GeoTIFF."""
         with new_geotiff(path, self.width, self.height, self.geotransform, self.crs) as file:
-            for column, row in self.tiles():
-                values = self.read_pixels(column, row, min(GEOTIFF_TILE, self.width - column), min(GEOTIFF_TILE, self.height - row))
-                file.write(column, row, np.where(np.isnan(values), np.float32(NODATA), values))
-                file.flush()
+            self.write_tiles(file)
+
+    def write_tiles(self, file: Any) -> None:
+        """Write the tiles to a GeoTIFF of `new_geotiff`."""
+        for column, row in self.tiles():
+            values = self.read_pixels(column, row, min(GEOTIFF_TILE, self.width - column), min(GEOTIFF_TILE, self.height - row))
+            file.write(column, row, np.where(np.isnan(values), np.float32(NODATA), values))
+            file.flush()
 
     def close(self) -> None:
         self._tiles = {}

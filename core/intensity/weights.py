@@ -63,6 +63,7 @@ class _ImageWeights:
     width_sample_step: int = 16   # the width of a piece is taken from every 16th point
     max_ranked_points: int = 50_000   # points of a piece whose intensities are ranked; of twice as many an evenly spread share
     tiles_ahead: int = 16   # the sums of a piece are kept while they are needed again within so many tiles
+    state_margin: float = 1.0   # m, more than the sagitta of a bend between two stations as far apart, and than a point reaches
     min_shown_share: float = 0.5   # of the sample_road_points points: must lie on a pixel with a value
 
 

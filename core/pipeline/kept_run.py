@@ -11,15 +11,13 @@ from typing import Any
 
 
 class KeptRun:
-    """The results of the stages of one run, in their order, from when `begin` is called until `end`; used by one run at a time.
-
-    remembered : RememberedResults of phases within its stages, which a run gives it
-    """
+    """The results of the stages of one run, in their order, from when `begin` is called until `end`; used by one run at a time."""
 
     def __init__(self) -> None:
         self._wanted, self._in_use = False, threading.Lock()
-        self.remembered: Any = None
-        self._results: dict[str, tuple[str, Any, Callable[[], None]]] = {}   # {stage: (digest, result, what frees its disk space)}
+        # {stage: (digest, result, what frees its disk space, whether the next one is made from it)}
+        self._results: dict[str, tuple[str, Any, Callable[[], None], bool]] = {}
+        self._renewed: dict[str, tuple[Any, Callable[[], None]]] = {}   # results that the next ones are made from
 
     def begin(self) -> None:
         """Keep runs from now on."""
@@ -51,21 +49,29 @@ class KeptRun:
             self.drop_from(stage)
         return stage in self._results
 
+    def before(self, stage: str) -> Any:
+        """The last result of a stage that is renewed, which goes into the next one; None where there is none."""
+        return self._renewed.pop(stage, (None,))[0]
+
     def result(self, stage: str) -> Any:
         return self._results[stage][1]
 
-    def keep(self, stage: str, digest: str, result: Any, free: Callable[[], None]) -> None:
-        """Keep the result of a stage. free : is called when it goes"""
-        self._results[stage] = digest, result, free
+    def keep(self, stage: str, digest: str, result: Any, free: Callable[[], None], renewed: bool = False) -> None:
+        """Keep the result of a stage. free : is called when it goes; renewed : it goes when the next one was made from it"""
+        self._results[stage] = digest, result, free, renewed
 
     def drop_from(self, stage: str) -> None:
         """Let the results of a stage and of those after it go, the last ones first; of all for "" """
-        if not stage:
-            self.remembered = None
         for name in reversed(list(self._results)):
-            self._results.pop(name)[2]()
+            _, result, free, renewed = self._results.pop(name)
+            if renewed:
+                self._renewed[name] = result, free
+            else:
+                free()
             if name == stage:
                 return
+        while not stage and self._renewed:
+            self._renewed.popitem()[1][1]()
 
 
 WINDOW = KeptRun()   # of the program's window, which calls its `begin`

@@ -31,7 +31,7 @@ from ..execution.choice import ExecutionSettings
 from ..execution.phase import digest
 from ..execution.remembered import RememberedResults
 from ..execution.work_folder import code_digest
-from ..intensity.correction import IntensitySettings, correct_intensity
+from ..intensity.correction import AsphaltLook, IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..intensity.tiled_image import TiledImage
 from ..io.crs import check_projected
@@ -145,14 +145,18 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
         gives the reason why markings are missing.
     """
     stages = Stages(progress, Extent.expected(paths, trajectory, settings.survey.crs), settings.boundary_method,
-                    () if settings.correct else ("intensity",))
+                    () if settings.correct else ("asphalt", "intensity"))
     if kept.wanted and _may_be_kept(paths, settings.execution) and kept.take():
         stages.kept = kept
     survey, ground = None, None
     try:
         survey, ground = stages.run("survey", "Reading the survey …", _open, paths, trajectory, settings.survey, settings.execution,
+                                    stages.kept is not None,
                                     depends=lambda: (code_digest(), _states(paths), trajectory, settings.survey, settings.execution),
                                     free=lambda opened: opened[0].store.close())
+        if stages.kept is not None and survey.executor.full:
+            stages.kept.drop_from("curbs")
+            survey.executor.clear()
         return _map_of(survey, ground, image_path, settings, stages, corrections)
     except BaseException:
         if stages.kept is not None:
@@ -164,9 +168,11 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
         raise
 
 
-def _open(paths, trajectory, settings, execution, progress):
-    """The survey, and its ground, which is measured where it is asked for."""
+def _open(paths, trajectory, settings, execution, remembers, progress):
+    """The survey, whose executor `remembers` results or not, and its ground, which is measured where it is asked for."""
     survey = open_survey(paths, trajectory, settings, progress, execution)
+    if remembers:
+        survey.executor = RememberedResults(survey.executor)
     return survey, MeasuredGround(survey)
 
 
@@ -193,11 +199,19 @@ def _map_of(survey, ground, image_path, settings, stages, corrections):
     survey.executor.forget()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, curbs, survey.frame, settings.edges,
                             survey=survey, ground=ground, depends=settings.edges)
+    surface_between = partial(extract_road_surface, settings=settings.surface, ground=ground, counted=True)
+    made = stages.run("surface", "Extracting the road surface …", surface_between, survey, boundaries.edges, depends=settings.surface)
+    asphalt = None
+    if survey.has_intensity and settings.correct:
+        # of the edges as detected, so that a corrected one changes no intensity elsewhere
+        asphalt = stages.run("asphalt", "Looking at the asphalt …", AsphaltLook.of, made[0], survey.frame, settings.intensity,
+                             depends=settings.intensity)
     edges = correct_edges(boundaries.edges, survey.frame, map_corrections)
-    road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface, survey, edges, settings.surface,
-                                      ground=ground, counted=True, depends=(map_corrections.asked("edge"), settings.surface),
-                                      free=lambda made: made[0].store.remove())
-    del ground
+    changed = edges is not boundaries.edges
+    road_points, surface = stages.run("corrected", "Extracting the road surface between corrected edges …" if changed else "",
+                                      partial(surface_between, survey, edges) if changed else lambda progress: made,
+                                      depends=map_corrections.asked("edge"))
+    del ground, surface_between
     facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
     result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, edges, surface, road_points,
@@ -206,7 +220,7 @@ def _map_of(survey, ground, image_path, settings, stages, corrections):
     result.free = stages.kept.give_back if stages.kept is not None else lambda: result.road_points.close()
     result.counts.update(curb_points=len(boundaries.curb_points), road_points=len(road_points))
     if survey.has_intensity:
-        _paint(result, image_path, settings, stages, survey.executor)
+        _paint(result, image_path, settings, stages, survey.executor, asphalt)
     else:
         result.without_paint = ("The point cloud has no intensity (all values are the same), so paint cannot be told from "
                                 "asphalt: no markings, marking lines or driving lines were made.")
@@ -231,21 +245,18 @@ def _span(survey):
     return tuple(float(np.ptp(np.concatenate(axis))) for axis in zip(*places))
 
 
-def _paint(result, image_path, settings, stages, executor):
+def _paint(result, image_path, settings, stages, executor, asphalt):
     """Intensity, markings and lines, added to the result."""
     frame = result.frame
     if settings.correct:
         result.road_points, result.intensity_report = stages.run(
-            "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity, depends=settings.intensity,
-            free=lambda made: made[1].reason or made[0].store.remove())
+            "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity, asphalt=asphalt, depends=())
     passing = executor.passing()
-    if stages.kept is not None:
-        stages.kept.remembered = passing = (stages.kept.remembered or RememberedResults()).of_next_run(passing)
     # without what they keep of the intensities they take a quarter less memory for the image
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
-                       result.road_points, settings.image, path=image_path, depends=(settings.correct, settings.image), free=TiledImage.close,
-                       again=lambda image: image.write(image_path))
+                       result.road_points, settings.image, path=image_path, depends=(settings.correct, settings.image),
+                       free=TiledImage.close, renewed=True, again=lambda image: image.write(image_path))
     executor.forget()
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
@@ -278,7 +289,7 @@ def _paint(result, image_path, settings, stages, executor):
     result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
-        markings=markings, edges=edges, road_points=result.road_points, taken=readings)
+        markings=markings, edges=edges, road_points=result.road_points, taken=readings, depends=settings.driving)
     executor.release()
     driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
                                              settings.driving.lane_width or country(settings.driving.country).usual_lane, edge_places)
@@ -293,8 +304,9 @@ def _paint(result, image_path, settings, stages, executor):
 # The stages of the road map, run one after the other: their shares of the progress bar and their run times.
 
 # source: `make bench`: relative run time of each stage (per million points, per kilometre of road)
-STAGE_COSTS = dict(survey=(0.31, 0.1), profiles=(0.105, 4.6), scanlines=(0.2, 8.0), edges=(0.0, 0.04), surface=(0.05, 1.5), intensity=(0.037, 0.7),
-             image=(0.047, 1.1), markings=(0.017, 2.4), outliers=(0.018, 0.26), clusters=(0.019, 1.1), lines=(0.007, 0.6), driving=(0.005, 0.85))
+STAGE_COSTS = dict(survey=(0.31, 0.1), profiles=(0.105, 4.6), scanlines=(0.2, 8.0), edges=(0.0, 0.04), surface=(0.05, 1.5), asphalt=(0.02, 0.35),
+                   corrected=(0.0, 0.0), intensity=(0.017, 0.35), image=(0.047, 1.1), markings=(0.017, 2.4), outliers=(0.018, 0.26),
+                   clusters=(0.019, 1.1), lines=(0.007, 0.6), driving=(0.005, 0.85))
 MIN_STAGE_COST = 0.01   # derived: of a stage without work
 LAZ_READ_COST, LAS_READ_COST = 1.0, 0.42   # source: relative run time of reading a point of a LAZ and of a LAS file
 
@@ -337,8 +349,8 @@ class Extent:
         return MIN_STAGE_COST + of_points * self.points + of_length * self.length
 
 
-INTENSITY_STAGES = ("intensity", "image", "markings", "outliers", "clusters", "lines", "driving")   # stages that need intensity
-STAGE_NAMES = ("survey", "curbs", "edges", "surface", *INTENSITY_STAGES)
+INTENSITY_STAGES = ("asphalt", "intensity", "image", "markings", "outliers", "clusters", "lines", "driving")   # stages that need intensity
+STAGE_NAMES = ("survey", "curbs", "edges", "surface", "corrected", *INTENSITY_STAGES)
 
 
 class Stages:
@@ -362,14 +374,17 @@ class Stages:
         self.shares = {name: (1.0 - self.done) * cost / max(sum(costs.values()), 1e-9) for name, cost in costs.items()}
 
     def run(self, name: str, title: str, function: Callable[..., Any], *arguments: Any, depends: Any = None,
-            free: Callable[[Any], None] = lambda result: None, again: Callable[[Any], None] = lambda result: None, **options: Any) -> Any:
-        """Run a stage: log its title, call the function with its part of the progress, and return its result, or that of the last run.
+            free: Callable[[Any], None] = lambda result: None, again: Callable[[Any], None] = lambda result: None, renewed: bool = False,
+            **options: Any) -> Any:
+        """Run a stage: log its title, if any, call the function with its part of the progress, and return its result, or that of the last run.
 
         depends : plain values that the result depends on beside the stages before, or a function that gives them; None for a result that is not kept
         free, again : what frees the disk space of a result that is kept, and what is done with one that is used again
+        renewed : whether the function takes what the last run gave as `before`, where that is another
         """
         share = self.shares[name]
-        self.progress.info(title)
+        if title:
+            self.progress.info(title)
         began = time.perf_counter()
         if self.kept is not None and depends is not None:
             self._digest = digest((self._digest, name, depends() if callable(depends) else depends))
@@ -378,9 +393,11 @@ class Stages:
             result = self.kept.result(name)
             again(result)
         else:
+            if renewed and self.kept is not None:
+                options["before"] = self.kept.before(name)
             result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
             if self.kept is not None and depends is not None:
-                self.kept.keep(name, self._digest, result, partial(free, result))
+                self.kept.keep(name, self._digest, result, partial(free, result), renewed)
         trim_heap()
         self.seconds[name] = time.perf_counter() - began
         self.done += share

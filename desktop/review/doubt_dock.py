@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
-from qgis.core import Qgis, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsVectorLayer
-from qgis.gui import QgsMapCanvas, QgsMapMouseEvent, QgsMapTool, QgsRubberBand
+from qgis.core import Qgis, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsTask, QgsVectorLayer
+from qgis.gui import QgsMapCanvas, QgsMapMouseEvent, QgsMapTool, QgsMapToolEmitPoint, QgsRubberBand
 from qgis.PyQt.QtCore import Qt, pyqtSignal
 from qgis.PyQt.QtGui import QAction, QColor, QKeyEvent, QKeySequence
 from qgis.PyQt.QtWidgets import QAbstractItemView, QCheckBox, QDockWidget, QFileDialog, QLineEdit, QListWidget, QMenu, QVBoxLayout, QWidget
@@ -18,6 +19,7 @@ from ...processing_provider.texts import tr
 from ..widgets import button, choices, row, say, show_extent, wrapped
 from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
+from .smart_pick import evidence, pick, snap
 
 LEAST_VIEW = 30.0   # m of ground shown about a place
 FILE = "corrections.gpkg"
@@ -42,11 +44,14 @@ class DoubtDock(QDockWidget):
         self.at = -1
         self.road_map: RoadMap | None = None
         self._of = self._pending = None
+        self.looks: list[QgsTask] = []  # under way; QGIS keeps no reference
         self.bands: list[QgsRubberBand] = []
         self.tool = LineTool(iface.mapCanvas())
         self.tool.drawn.connect(self._line_drawn)
         self.tool.given_up.connect(self._stop_drawing)
         self.tool.too_short.connect(lambda: self._hint(tr("A line takes two clicks at least.")))
+        self.pick_tool = QgsMapToolEmitPoint(iface.mapCanvas())
+        self.pick_tool.canvasClicked.connect(lambda point, button: self.pick_at(point))
         self._build()
         # beside the Results Viewer, which opens with the first report: below it the list had room for three lines
         iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self, [], True)
@@ -75,11 +80,15 @@ class DoubtDock(QDockWidget):
         self.move_button = self._button(tr("Move…"), tr("Draw where it belongs, within 2 m of where it is"), self.begin_move, "M")
         self.other_button = self._button(tr("Other reading"), tr("Take the second reading of the program, which is almost as likely"),
                                          lambda: self.decide("take"), "O")
+        self.pick_button = self._button(tr("Find…"), tr("Click near a curb or painted line that is missing: it is found in the points"),
+                                        self.begin_pick, "F")
         self.draw_button = self._button(tr("Draw"), tr("Draw what is missing"), lambda: None)
         menu = QMenu(self)
         for target, title in (("edge", tr("Road edge…")), ("marking", tr("Marking line…")), ("lane", tr("Lane, in the direction of travel…"))):
             menu.addAction(title, lambda target=target: self.begin_draw(target))
         self.draw_button.setMenu(menu)
+        self.snap = QCheckBox(tr("Lay drawn lines onto curbs and paint"))
+        self.snap.setChecked(True)
         self.hint = wrapped()  # in the message bar it would lie on the map, and clicks on it would be lost
         self.hint.setStyleSheet("background: #fff3c4; color: #222222; padding: 4px")
         self.hint.hide()
@@ -93,7 +102,8 @@ class DoubtDock(QDockWidget):
         column.addLayout(row(self.kinds, self.order))
         column.addWidget(self.undecided)
         column.addWidget(self.list, 1)
-        column.addLayout(row(self.accept_button, self.delete_button, self.move_button, self.other_button, self.draw_button))
+        column.addLayout(row(self.accept_button, self.delete_button, self.move_button, self.other_button))
+        column.addLayout(row(self.pick_button, self.draw_button, self.snap))
         column.addWidget(self.note)
         column.addWidget(self.hint)
         column.addWidget(self.kept)
@@ -116,12 +126,14 @@ class DoubtDock(QDockWidget):
         QgsProject.instance().layersWillBeRemoved.disconnect(self._forget)
         self._stop_drawing()
         self._unlight()
+        self._stop_looking()
         self.iface.removeDockWidget(self)
 
     def _forget(self, removed):
         """Forget a road map of which layers leave the project: nothing of them can be shown or corrected any more."""
         if self.road_map is not None and self.road_map.has_any(removed):
             self._stop_drawing()
+            self._stop_looking()
             self.road_map, self._of, self.places, self.at = None, None, [], -1
             self._fill()
             self.where.clear()
@@ -221,7 +233,8 @@ class DoubtDock(QDockWidget):
         self.delete_button.setEnabled(count > 0 and correctable)
         self.move_button.setEnabled(count == 1 and correctable)
         self.other_button.setEnabled(count == 1 and taken_reading({"other": self.chosen[0].other}, self.chosen[0].target) is not None)
-        self.draw_button.setEnabled(self.road_map is not None)
+        for missing_button in (self.pick_button, self.draw_button):
+            missing_button.setEnabled(self.road_map is not None)
         self._highlight()
 
     def _highlight(self):
@@ -321,17 +334,72 @@ class DoubtDock(QDockWidget):
 
     def _line_drawn(self, line: QgsGeometry) -> None:
         action, target, piece = self._pending or ("", "", None)
-        layer = self._layer_to_write() if action else None
+        crs = self.iface.mapCanvas().mapSettings().destinationCrs()
+        self._stop_drawing()
+        keep = partial(self._keep, action, target, piece)
+        if not action:
+            self._fill(max(self.list.currentRow(), 0))
+        elif target == "lane" or not self.snap.isChecked() or \
+                not self._look(lambda ready: snap(self.road_map, line, crs, target, ready), keep):
+            keep(line, crs)
+
+    def _keep(self, action, target, piece, line, crs, seen=None):
+        """Write what was drawn, moved or found, and go on."""
+        layer = self._layer_to_write()
         if layer is not None:
             location = {} if piece is None else dict(road=piece.road, station_m=piece.station, offset_m=piece.offset)
-            add_correction(layer, line, self.iface.mapCanvas().mapSettings().destinationCrs(), None if piece is None else self._former(piece),
-                           action=action, target=target, note=self.note.text() or None, **location)
+            pattern = {"pattern": "dashed" if seen.dashed else "solid"} if seen is not None and target == "marking" and action == "draw" else {}
+            add_correction(layer, line, crs, None if piece is None else self._former(piece), action=action, target=target,
+                           note=self.note.text() or (evidence(seen) if seen is not None else None), **location, **pattern)
             self.note.clear()
-        self._stop_drawing()
-        if piece is not None and layer is not None and piece in self.place.pieces:
+        if piece is not None and layer is not None and self.place is not None and piece in self.place.pieces:
             self._go_on(self.place.pieces.index(piece))
         else:
             self._fill(max(self.list.currentRow(), 0))
+
+    # -- what the points show ---------------------------------------------------------------------
+
+    def begin_pick(self) -> None:
+        """Wait for clicks near what is missing."""
+        if self._layer_to_write() is not None:
+            self.iface.mapCanvas().setMapTool(self.pick_tool)
+            self._say(tr("Click near a curb or a painted line that the map lacks."))
+
+    def pick_at(self, point: QgsPointXY) -> None:
+        """Find the curb or painted line at a click and add it as a correction."""
+        crs = self.iface.mapCanvas().mapSettings().destinationCrs()
+        if not self._look(lambda ready: pick(self.road_map, point, crs, ready),
+                          lambda line, crs, seen: self._keep("draw", seen.target, None, line, crs, seen)):
+            self._say(tr("The point clouds of this road map are not there: draw the line by hand."))
+
+    def _look(self, begin, keep):
+        """Begin a look at the points; False where they are not there. `keep` gets the line, its CRS and what was seen, None where a line stays."""
+        road_map, crs = self.road_map, self.road_map.vectors[0].crs()
+
+        def ready(task, seen, line, problem):
+            if task not in self.looks:
+                return
+            self.looks.remove(task)
+            if self.road_map is not None and self.road_map.layers == road_map.layers and not line.isEmpty():
+                keep(line, crs, seen)
+            self._say(problem or evidence(seen) + tr(". It is added as a correction; Take back the last removes it."))
+
+        task = begin(ready)
+        if task is None:
+            return False
+        self.looks.append(task)
+        self._say(tr("Looking at the points…"))
+        return True
+
+    def _stop_looking(self):
+        for task in self.looks:
+            task.cancel()
+        self.looks = []
+        self.iface.mapCanvas().unsetMapTool(self.pick_tool)
+
+    def _say(self, text):
+        self.hint.setText(text)
+        self.hint.show()
 
     def _stop_drawing(self):
         self._pending = None

@@ -5,20 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from qgis.core import Qgis, QgsApplication, QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsCsException, QgsPointXY, QgsProject, QgsTask
+from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsCsException, QgsPointXY, QgsProject
 from qgis.gui import QgsMapToolEmitPoint, QgsRubberBand
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QFileDialog, QLabel, QVBoxLayout, QWidget
 
-from ...core.common.errors import Cancelled, RoadExtractionError
-from ...core.common.parallel import cancellation_scope
-from ...core.common.progress import Progress
 from ...core.road.scanlines.section_planes import slice_lines
-from ...core.survey.las.samples import points_near
 from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clouds_of, road_maps
-from ...processing_provider.texts import told, tr
+from ...processing_provider.texts import tr
 from ..widgets import button, row
+from .points_task import with_points
 from .section import HALF_WIDTH, Section, corners, crossings, middle_of, section_at
 from .section_view import SectionView
 
@@ -140,24 +137,22 @@ class SectionDock(QDockWidget):
         """Read the points about the section in the background."""
         self.view.show_section(np.empty((0, 3)), [], tr("Reading points…"))
         key = (clouds, self.section.x, self.section.y)
-        task = QgsTask.fromFunction(tr("Points of a cross-section"), _points, clouds, key[1], key[2],
-                                    on_finished=lambda error, found=None: self._ready(task, key, error, found))
-        self.task = task  # QGIS keeps no reference
-        QgsApplication.taskManager().addTask(task)
+        self.task = with_points(tr("Points of a cross-section"), clouds, key[1:], AROUND, lambda points: points,
+                                lambda task, points, problem: self._ready(task, key, points, problem))
 
     def _stop_reading(self):
         if self.task is not None:
             self.task.cancel()
         self.task = None
 
-    def _ready(self, task, place, error, found):
+    def _ready(self, task, place, points, problem):
         if task is not self.task:
             return
         self.task = None
-        if error is not None or found is None:
-            self.view.show_section(np.empty((0, 3)), [], told(str(error)) if isinstance(error, RoadExtractionError) else tr("No points were read."))
+        if points is None:
+            self.view.show_section(np.empty((0, 3)), [], problem)
             return
-        self._kept, self._kept_at = found["points"], place
+        self._kept, self._kept_at = points, place
         self._draw()
 
     def _draw(self, message=""):
@@ -183,26 +178,3 @@ class SectionDock(QDockWidget):
     def _hide_line(self, visible):
         if self.band is not None:
             self.band.setVisible(bool(visible))
-
-
-class _TaskProgress(Progress):
-    def __init__(self, task):
-        self.task = task
-
-    def report(self, fraction):
-        self.check_cancelled()
-        self.task.setProgress(100.0 * fraction)
-
-    def check_cancelled(self):
-        if self.task.isCanceled():
-            raise Cancelled
-
-
-def _points(task, clouds, x, y):
-    """What the background does: the points, None where they are no longer wanted."""
-    progress = _TaskProgress(task)
-    try:
-        with cancellation_scope(progress):
-            return {"points": points_near(clouds, x, y, AROUND, progress)}  # QGIS asks whether it is empty, which an array refuses to say
-    except Cancelled:
-        return None

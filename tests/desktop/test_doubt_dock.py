@@ -2,16 +2,19 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from lanewright.algorithms.corrections import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
+from lanewright.desktop.review import points_task, smart_pick
 from lanewright.desktop.review.corrections_layer import corrections_layers
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.layers import QgisSource
 from lanewright.processing_provider.results.attributes import second_reading
-from lanewright.processing_provider.results.road_maps import road_maps
+from lanewright.processing_provider.results.road_maps import clouds_lie_in, road_maps
 from qgis.core import QgsPointXY, QgsProject, QgsRectangle
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
+from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
 from qgis.PyQt.QtWidgets import QMainWindow
 from road_map_layers import EAST, NORTH, added, run_at
 
@@ -256,3 +259,69 @@ def test_corrections_are_seen_on_a_map_that_was_made_again(at_first):
     at_first.go(road_maps(project, again)[0])
     at_first.accept_button.click()
     assert project.layerTreeRoot().layerOrder()[0] is corrections_layers(project)[0]
+
+
+# -- what the points show
+
+@pytest.fixture
+def over_points(at_first, tmp_path, monkeypatch):
+    """The window over a street with a curb of 12 cm at 5 m to the left, which the map has on its first 20 m alone."""
+    project, cloud = QgsProject.instance(), tmp_path / "street.laz"
+    cloud.touch()
+    clouds_lie_in(at_first.road_map, str(tmp_path), project)
+    monkeypatch.setattr(smart_pick, "clouds_of", lambda road_map, project: ([str(cloud)], []))
+    random = np.random.default_rng(1)
+    x, y = EAST + random.uniform(0, 60, 60_000), NORTH + random.uniform(0, 8, 60_000)
+    points = np.c_[x, y, 100 + np.where(y > NORTH + 5, 0.12, 0.0) + random.normal(0, 0.004, len(x)), np.full(len(x), 100.0)]
+    monkeypatch.setattr(points_task, "points_near", lambda clouds, x, y, radius, progress: points[
+        (np.abs(points[:, :2] - (x, y)) <= radius).all(axis=1)])
+    added(project, "ROAD_EDGES", ROAD_EDGES, ("LINESTRING Z (0 5 100, 20 5 100)", dict(road=0, side="left", status="measured", length_m=20.0)))
+    at_first.go(road_maps(project)[0])
+    return at_first
+
+
+def looked(window):
+    clock = QElapsedTimer()
+    clock.start()
+    while window.looks and clock.elapsed() < 60_000:
+        QCoreApplication.processEvents()
+
+
+def corrected_lines():
+    layer, = corrections_layers(QgsProject.instance())
+    return [(row["target"], row["note"], geometry) for geometry, row in read_corrections(QgisSource(layer, "Corrections"))]
+
+
+def test_one_click_beside_a_missed_curb_adds_what_the_map_lacks_of_it_with_the_evidence_and_undo_takes_it_back(over_points):
+    over_points.pick_button.click()
+    assert over_points.iface.mapCanvas().mapTool() is over_points.pick_tool
+    over_points.pick_tool.canvasClicked.emit(QgsPointXY(EAST + 35, NORTH + 5.4), Qt.MouseButton.LeftButton)
+    looked(over_points)
+    (target, note, line), = corrected_lines()
+    assert target == "edge" and "12 cm" in note and note in over_points.hint.text()
+    x, y = np.array(line.xy)
+    assert x.min() == pytest.approx(EAST + 20.3, abs=0.6) and x.max() > EAST + 55, "the first 20 m stand in the map already"
+    np.testing.assert_allclose(y, NORTH + 5, atol=0.05)
+    over_points.undo_button.click()
+    assert corrected_lines() == []
+
+
+def test_a_click_on_what_the_map_has_or_where_nothing_is_adds_nothing_and_says_so(over_points):
+    over_points.pick_button.click()
+    for place, words in ((QgsPointXY(EAST + 8, NORTH + 5.2), "has this line"), (QgsPointXY(EAST + 35, NORTH + 2), "No step")):
+        over_points.pick_at(place)
+        looked(over_points)
+        assert words in over_points.hint.text() and corrected_lines() == []
+
+
+def test_a_line_drawn_beside_the_curb_is_laid_onto_it_unless_that_is_switched_off(over_points):
+    for on, beside in ((True, 0.05), (False, 0.3)):
+        over_points.snap.setChecked(on)
+        over_points.begin_draw("edge")
+        for x in (30, 45):
+            over_points.tool.add(QgsPointXY(EAST + x, NORTH + 5.25))
+        over_points.tool.finish()
+        looked(over_points)
+        *_, (_, _, line) = corrected_lines()
+        assert np.abs(np.array(line.xy)[1] - NORTH - 5).max() == pytest.approx(0.25 if not on else 0.0, abs=beside)
+        over_points.undo()

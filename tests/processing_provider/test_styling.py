@@ -9,6 +9,7 @@ from lanewright.core.common.features import (
     LANES,
     MARKING_LINES,
     MARKINGS,
+    PASSES,
     PROPOSED_POINTS,
     RESIDUALS,
     ROAD_EDGES,
@@ -26,11 +27,15 @@ from osgeo import gdal
 from qgis.core import (
     QgsExpression,
     QgsExpressionContext,
+    QgsExpressionContextUtils,
     QgsFeature,
+    QgsGeometry,
+    QgsPointXY,
     QgsProcessingContext,
     QgsProject,
     QgsRasterLayer,
     QgsRasterMinMaxOrigin,
+    QgsRectangle,
     QgsRenderContext,
     QgsSymbol,
     QgsVectorLayer,
@@ -130,6 +135,61 @@ def test_a_road_plan_grows_with_the_scale(qgis_app):
         seen[name] = [scale for scale in (500, 1500, 5000) if layer.isInScaleRange(scale)]
     assert seen.pop("ROAD_SURFACE") == seen.pop("ROAD_EDGES") == [500, 1500, 5000]
     assert all(scales == [500, 1500] for scales in seen.values()), seen
+
+
+def drawn_by(layer, symbol, geometry, scale, **values):
+    """What the geometry generator of a symbol draws of a feature at a scale."""
+    feature = QgsFeature(layer.fields())
+    feature.setGeometry(geometry)
+    for name, value in values.items():
+        feature[name] = value
+    layer.dataProvider().addFeatures([feature])
+    context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+    context.setFeature(next(layer.getFeatures()))
+    context.lastScope().setVariable("map_scale", scale)
+    expression = QgsExpression(next(part for part in symbol.symbolLayers() if part.layerType() == "GeometryGenerator").geometryExpression())
+    result = expression.evaluate(context)
+    assert not expression.hasParserError() and not expression.hasEvalError(), expression.parserErrorString() + expression.evalErrorString()
+    return result
+
+
+@pytest.mark.parametrize("turned", [0, 70, 180, 290])
+@pytest.mark.parametrize("sign, left, right", [
+    ("POLYGON((-0.1 0, 0.1 0, 0.1 3, 0.4 3, 0 4.5, -0.4 3, -0.1 3, -0.1 0))", 0.4, 0.4),
+    ("POLYGON((-0.1 0, 0.1 0, 0.1 2.7, -0.4 3.5, 0 4.2, -1 4.5, -0.6 2.8, -0.5 3, -0.1 2.3, -0.1 0))", 1.0, 0.1)])
+def test_a_ragged_arrow_is_drawn_as_the_sign_it_is(qgis_app, sign, left, right, turned):
+    """It points where the paint points, and lies on it; the corners of the cells that the outline came from are gone."""
+    layer = layer_of("Polygon", MARKINGS)
+    apply_style(layer, STYLES / "markings.qml")
+    clean = QgsGeometry.fromWkt(sign)
+    ragged = QgsGeometry.unaryUnion([QgsGeometry.fromRect(QgsRectangle(x, y, x + 0.05, y + 0.05)) for x in np.arange(-1.2, 1.2, 0.05)
+                                     for y in np.arange(-0.2, 4.8, 0.05) if clean.contains(QgsPointXY(x + 0.025, y + 0.025))])
+    ragged.rotate(turned, QgsPointXY(0, 0))
+    arrow = next(drawn.symbol().clone() for drawn in layer.renderer().categories() if drawn.value() == "arrow")
+    shape = drawn_by(layer, arrow, ragged, 500, **{"class": "arrow"})
+    shape.rotate(-turned, QgsPointXY(0, 0))
+    assert shape.intersection(clean).area() > 0.6 * shape.combine(clean).area()
+    box = shape.boundingBox()
+    np.testing.assert_allclose((-box.xMinimum(), box.xMaximum(), box.yMinimum(), box.yMaximum()), (left, right, 0, 4.5), atol=0.15)
+    assert len(list(shape.vertices())) < 15 < len(list(ragged.vertices()))
+
+
+def test_paint_that_is_no_whole_arrow_keeps_its_outline(qgis_app):
+    layer = layer_of("Polygon", MARKINGS)
+    apply_style(layer, STYLES / "markings.qml")
+    rest = QgsGeometry.fromWkt("POLYGON((0 0, 0.1 0, 0.1 2, 1 2, 1 0, 1.1 0, 1.1 2.1, 0 2.1, 0 0))")
+    shapes = {drawn.value(): drawn_by(layer, drawn.symbol().clone(), rest, 500) for drawn in layer.renderer().categories()}
+    assert shapes["arrow"].equals(shapes["symbol"])
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_stations_stand_where_they_are_along_the_road(qgis_app, direction):
+    """At 1 : 250 every ten metres from the first round one on, across the pass that the stations were counted along."""
+    layer = layer_of("LineString", PASSES)
+    apply_style(layer, STYLES / "passes.qml")
+    line = QgsGeometry.fromWkt("LINESTRING(0 0, 0 64)" if direction == 1 else "LINESTRING(0 64, 0 0)")
+    ticks = drawn_by(layer, layer.renderer().symbol().clone(), line, 250, road=0, direction=direction, station_m=13.0, end_m=77.0)
+    assert sorted(round(tick.centroid().asPoint().y() + 13) for tick in ticks.asGeometryCollection()) == [20, 30, 40, 50, 60, 70]
 
 
 def test_by_class_every_type_of_lane_has_a_look_of_its_own(qgis_app):

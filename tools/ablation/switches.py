@@ -230,7 +230,7 @@ ROWS = (
         ("bright patches", "paint.asphalt_level:patch_level", gives(np.float32(0.0)), "pale repairs, parking places"),
         ("letters are no patch", "paint.asphalt_level:_letters", gives(False), "bus lane with bold letters"),
         ("dark cells", "paint.asphalt_level:dark_cells", none_of(), "asphalt beside water, tar, dark repairs"),
-        ("least runs", "paint.not_paint:morphology", nth(0)),
+        ("pieces too small or too faint", "paint.not_paint:clear_pieces", nth(1)),
         ("gaps between tracks", "paint.not_paint:_unseen_gaps", none_of(), "edge lines far from the vehicle"),
         ("specks between runs", "paint.not_paint:_between", none_of(), "worn lines"),
         ("raised things", "paint.not_paint:raised_cells", none_of(1), "ends of islands (roundabout)"),

@@ -122,9 +122,9 @@ def _surface_coverage(points, road, first, count):
     covered = np.zeros((count, BINS), bool)
     total, number = np.zeros((2, count, 2))
     length = points.store.section_length
-    phase = Phase(seen_in_stretch, points, (first, count), lambda item: points.survey.stretch(road, item[1] * length, item[2] * length))
-    numbers = [entry for entry in points.roads() if entry == road]
-    for begin, *sums in (entry for batch in points.executor.run(phase, points.store.stretches(numbers)) for entry in batch):
+    phase = Phase(seen_in_stretch, points, (first, count), lambda item: points.survey.stretch(road, item[1] * length, item[2] * length),
+                  state=points.store.state)
+    for begin, *sums in (entry for batch in points.executor.run(phase, points.stretches(road)) for entry in batch):
         window = slice(begin, begin + len(sums[0]))
         covered[window] |= sums[0]
         total[window] += sums[1]

@@ -146,7 +146,8 @@ def _piece(s, d, z, kind, pattern, seen, width):
 
 def _on_grid(pieces: dict[int, list[_PieceOfLine]]) -> CrossSections:
     """CrossSections of the lines of one road, which go on over short gaps."""
-    grid = joined(_lines_on_grid(pieces))
+    grid, leads = joined(_lines_on_grid(pieces))
+    _lead_over(grid, leads)
     lengthen_dashed(grid)
     return _sections(grid)
 
@@ -268,10 +269,14 @@ def _row_of(number, pieces, s, names, longest):
     return _GridRow(row.kind, row.pattern, first, row.columns)
 
 
-def joined(lines: _GridLines) -> _GridLines:
-    """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction."""
+def joined(lines: _GridLines) -> tuple[_GridLines, list[tuple[int, int, int]]]:
+    """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction.
+
+    Returns the lines, and where a double line goes on as a single one: the station where it ends, and the row and station where that one begins.
+    """
     rows = lines.rows
     present = [k for k, row in enumerate(rows) if row.end >= row.begin]
+    leads: list[tuple[int, int, int]] = []
     chains = {k: [k] for k in present}     # the lines that a row is made of, by the number of its first one
     ending = defaultdict(set)           # rows by the station that they end at
     for k in present:
@@ -286,11 +291,16 @@ def joined(lines: _GridLines) -> _GridLines:
             continue
         j = int(behind[np.argmin(steps)])
         before = rows[chains[j][-1]]
+        double = ["double" in row.pattern for row in (before, rows[k])]
+        if double[0] != double[1]:
+            leads.append((before.end, j, last) if double[0] else (last, j, before.end))
         ending[before.end].remove(j)
         ending[rows[k].end].remove(k)
         ending[rows[k].end].add(j)
         chains[j] += chains.pop(k)
-    return _GridLines(lines.s, [_chained([rows[k] for k in chains[j]]) for j in sorted(chains)], lines.names)
+    number = {j: k for k, j in enumerate(sorted(chains))}
+    return (_GridLines(lines.s, [_chained([rows[k] for k in chains[j]]) for j in sorted(chains)], lines.names),
+            [(end, number[j], begin) for end, j, begin in leads])
 
 
 def _chained(rows):
@@ -311,6 +321,23 @@ def _chained(rows):
             # a gap of a dashed line is no gap
             result.columns["seen"][gap] = head.pattern.startswith("dash") or row.pattern.startswith("dash")
     return _GridRow(head.kind, head.pattern, head.begin, result.columns)
+
+
+def _lead_over(lines: _GridLines, leads: list[tuple[int, int, int]]) -> None:
+    """Where a double line goes on as a single one, as `joined` says, both of its lines lead over to it: lanes on either side end at that one."""
+    for double_end, k, begin in leads:
+        step = 1 if begin > double_end else -1
+        for other in lines.near(double_end, GAP_REACH):
+            row = lines.rows[other]
+            end = row.end if step > 0 else row.begin
+            if other == k or "double" not in row.pattern or not 0 <= (double_end - end) * step <= GAP_REACH:
+                continue
+            gap, ends = np.arange(end + step, begin, step), np.array([end, begin])
+            values = {name: np.array([row.at(name, ends)[0], lines.rows[k].at(name, ends)[1]]) for name in ("d", "z")}
+            if abs(np.diff(values["d"])[0]) < SECTIONS.min_boundary_spacing:
+                for name in values:
+                    row.put(name, gap, np.interp(gap * step, ends * step, values[name]))
+                row.put("seen", gap, lines.rows[k].at("seen", gap))
 
 
 def _beside(lines, known, k, station):

@@ -114,7 +114,8 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, 
                 continue
             if abs(before.slope - after.slope) > TREND.max_line_slope and min(before.reach, after.reach) > 3.0:
                 continue
-            miss, limit = _miss(before, after, trend, edges, lines[a], lines[b]), allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6))
+            miss = _miss(before, after, trend, edges, lines[a], lines[b])
+            limit = allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6)) + lines[a].strands[-1].open + lines[b].strands[0].open
             if _between_twins(twin_ends[a], twin_starts[b], before, after):
                 continue
             if miss <= limit:

@@ -60,7 +60,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
     level = np.array([_level(line, trend) for line in lines])
     painted = min(line.first for line in lines), max(line.last for line in lines)
     ragged, double = _beside(lines, neighbours, trend, longest_dash)
-    outside = _beyond_the_edge(lines, neighbours, level)
+    outside = _beyond_the_edge(lines, neighbours)
     selected = []
     for k, line in enumerate(lines):
         check_cancelled()
@@ -136,20 +136,22 @@ def _painted_there(line, other):
     return sum(strand.length for strand in line.strands_between(other.first, other.last) if strand.last > other.first and strand.first < other.last)
 
 
-def _beyond_the_edge(lines, beside, level):
+def _beyond_the_edge(lines, beside):
     """(N,) whether a fragment lies farther out than a long line that bounds the road there: gutter, verge or yard.
 
-    With less than a lane's room between the two, what is much shorter than the edge line is no line of its own; farther out, what is short.
+    With less than a lane's room between the two all along, what is much shorter than the edge line is no line of its own; where it leaves the edge
+    line, as behind a gore, or lies farther out, what is short.
     """
     result = np.zeros(len(lines), bool)
     bounds = {j for j, line in enumerate(lines)
               if line.painted >= SELECTION.min_bounding_paint and _votes(line).get("edge", 0.0) > 0.3 * line.painted}
     for k, line in enumerate(lines):
+        s, d = line.by_station
         for j in beside.between(line.first, line.last).tolist():
             if j not in bounds:
                 continue
             # the vehicle drove between the edge lines
-            farther = np.sign(lines[j].middle) * (level[k] - level[j])
+            farther = (np.sign(lines[j].middle) * (d - np.interp(s, *lines[j].by_station))).max()
             shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
             min_paint = SELECTION.max_ragged_share * lines[j].painted if farther < CLASSES.lane_clearance else 0.0
             if j != k and farther > LINKS.double_line_spacing[0] and shared > 0.5 * (line.last - line.first) \

@@ -34,6 +34,7 @@ class Strand:
     weight: np.ndarray   # (K,) points in each place
     width: float   # metres
     classes: dict   # {class of marking: painted length, metres}
+    open: float = 0.0   # m across that its ends may be off by: each of few tracks shows a line at one place of its width, and crosses it obliquely
 
     @property
     def length(self) -> float:
@@ -400,4 +401,4 @@ def _strand_of_marking(along, across, height, spacing, kind):
     low, high = percentiles((across - np.interp(along, nodes, offsets)) * COORDINATE_SCALE, (2.5, 97.5))
     first, last = (float(along[k]) * COORDINATE_SCALE for k in (0, -1))
     return Strand(first, last, s * COORDINATE_SCALE, np.interp(s, nodes, offsets) * COORDINATE_SCALE, z * COORDINATE_SCALE, count.astype(float),
-                  (high - low) / 0.95, {kind: last - first})
+                  (high - low) / 0.95, {kind: last - first}, min(median(spacing) * 1e-3, STRANDS.max_line_width_units * COORDINATE_SCALE) / 2)

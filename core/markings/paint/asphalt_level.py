@@ -16,7 +16,6 @@ from ...common.arrays import quantiles
 from ...intensity.asphalt_model import asphalt_statistics
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
-from ..road_grid import RoadGrid
 from ..weights import ASPHALT, RIMS
 from .not_paint import RimBands, gutter_cells
 from .settings import MarkingSettings
@@ -46,56 +45,28 @@ def dark_cells(brightness: np.ndarray, usual: float) -> np.ndarray:
     return cv2.dilate(dark, np.ones((2 * ASPHALT.dark_rim + 1, 2 * ASPHALT.dark_rim + 1), np.uint8)).astype(bool)
 
 
-def asphalt_profile(bins: list[AsphaltBin], offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def asphalt_profile(bins: list[_AsphaltBin], offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Median and spread of asphalt, (N,) float32 each, at `offsets`, (N,) m, between the middles of one window's `bins`, at least one."""
     middles = [b.middle for b in bins]
     return (np.interp(offsets, middles, [b.median for b in bins]).astype(np.float32),
             np.interp(offsets, middles, [b.spread for b in bins]).astype(np.float32))
 
 
-class AsphaltLevels:
-    """Asphalt and threshold at any place, interpolated between the bins of several windows.
+def threshold_profile(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[_AsphaltBin],
+                      settings: MarkingSettings) -> tuple[np.ndarray, np.ndarray]:
+    """Scale and threshold, (columns,) float32 each, at `offsets`: a cell is bright beyond threshold * scale; arguments as in `split_bins`.
 
-    windows : list of (AsphaltBin, OtsuSplit) by window number
-    window_length : m; window k reaches from k to k + 1 times that
+    The threshold is Otsu's where a bin has paint, else that of the bins beside it, else the lowest.
     """
-
-    def __init__(self, windows: dict[int, list[tuple[AsphaltBin, OtsuSplit]]], window_length: float, settings: MarkingSettings):
-        self.windows, self.window_length = windows, window_length
-        self.settings = settings
-        self.numbers = np.array(sorted(windows))
-        self._limits = {w: self._thresholds(w) for w in windows}
-
-    def _thresholds(self, w):
-        """Threshold in z of each bin: Otsu's where there is paint, else the neighbours', else the highest."""
-        accepted = [split for n in (w - 1, w, w + 1) for _, split in self.windows.get(n, ()) if split.accepted]
-        limits = []
-        for _, split in self.windows[w]:
-            value = split.threshold
-            if not split.accepted:
-                thresholds = [neighbour.threshold for neighbour in accepted if abs(neighbour.middle - split.middle) < ASPHALT.max_bin_width]
-                value = float(np.median(thresholds)) if thresholds else self.settings.alone
-            limits.append(float(np.clip(value, self.settings.lowest, self.settings.highest)))
-        return limits
-
-    def at(self, grid: RoadGrid) -> list[np.ndarray]:
-        """median, spread, scale, threshold as (rows, columns) arrays: a cell is bright beyond threshold * scale."""
-        numbers = self.numbers
-        position = grid.stations() / self.window_length - 0.5
-        before = np.clip(np.searchsorted(numbers, np.floor(position), side="right") - 1, 0, len(numbers) - 1)
-        after = np.minimum(before + 1, len(numbers) - 1)
-        gap = np.maximum(numbers[after] - numbers[before], 1)
-        share = np.clip((position - numbers[before]) / gap, 0.0, 1.0)[:, None].astype(np.float32)
-        needed = np.unique(np.r_[before, after])
-        profiles = np.stack([self._profile(numbers[k], grid.offsets()) for k in needed])
-        a, b = np.searchsorted(needed, before), np.searchsorted(needed, after)
-        return [(1 - share) * profiles[a, q] + share * profiles[b, q] for q in range(4)]
-
-    def _profile(self, w, offsets):
-        pairs = self.windows[w]
-        middles = [b.middle for b, _ in pairs]
-        columns = ([b.median for b, _ in pairs], [b.spread for b, _ in pairs], [split.spread for _, split in pairs], self._limits[w])
-        return np.stack([np.interp(offsets, middles, column) for column in columns]).astype(np.float32)
+    splits = split_bins(z, counted, offsets, bins, settings.separation, settings.highest)
+    limits = []
+    for split in splits:
+        near = [other.threshold for other in splits if other.accepted and abs(other.middle - split.middle) < ASPHALT.max_bin_width]
+        value = split.threshold if split.accepted else np.median(near) if near else settings.lowest
+        limits.append(np.clip(value, settings.lowest, settings.highest))
+    middles = [split.middle for split in splits]
+    return (np.interp(offsets, middles, [split.spread for split in splits]).astype(np.float32),
+            np.interp(offsets, middles, limits).astype(np.float32))
 
 
 def background(z: np.ndarray, counted: np.ndarray) -> np.ndarray:
@@ -172,7 +143,7 @@ OTSU_LEVELS = 256   # derived: of the histogram
 
 
 @dataclass(frozen=True)
-class AsphaltBin:
+class _AsphaltBin:
     """One bin across the road in one window: offset of its middle, m, cells of asphalt with data, and median and spread of their brightness."""
 
     middle: float
@@ -182,7 +153,7 @@ class AsphaltBin:
 
 
 @dataclass(frozen=True)
-class OtsuSplit:
+class _OtsuSplit:
     """Otsu's two classes of one bin in robust z."""
 
     middle: float   # m, offset of the bin
@@ -233,7 +204,7 @@ def otsu(values: np.ndarray) -> tuple[float, float, float, float]:
     return float(edges[k + 1]), float(below), float(above), float(1 - weight[k])
 
 
-def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, edges: np.ndarray, usual: float = np.inf) -> list[AsphaltBin]:
+def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, edges: np.ndarray, usual: float = np.inf) -> list[_AsphaltBin]:
     """Asphalt in the bins of one window, from right to left; a bin with fewer than 500 cells is joined to its neighbour.
 
     Half of a zebra crossing is stripes, and of the cells of a bin that lies on one most may be. Where the median of a bin tells that, what is so
@@ -255,7 +226,7 @@ def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, e
 
 
 def _bins(values, counted, offsets, edges):
-    """[AsphaltBin] of the cells that are counted."""
+    """[_AsphaltBin] of the cells that are counted."""
     number = np.clip(np.searchsorted(edges, offsets, side="right") - 1, 0, len(edges) - 2)
     bounds = np.searchsorted(number, np.arange(len(edges)))
     cells = np.count_nonzero(counted, axis=0)
@@ -265,7 +236,7 @@ def _bins(values, counted, offsets, edges):
         span = slice(bounds[first], bounds[last])
         count = int(cells[span].sum())
         if count:
-            bins.append(AsphaltBin(float(offsets[span] @ cells[span]) / count, count, *asphalt_statistics(values[:, span][counted[:, span]])))
+            bins.append(_AsphaltBin(float(offsets[span] @ cells[span]) / count, count, *asphalt_statistics(values[:, span][counted[:, span]])))
     return bins
 
 
@@ -282,8 +253,8 @@ def _joined(counts):
     return runs
 
 
-def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[AsphaltBin], separation: float,
-               highest: float = np.inf) -> list[OtsuSplit]:
+def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[_AsphaltBin], separation: float,
+               highest: float = np.inf) -> list[_OtsuSplit]:
     """Otsu's split of each of the `bins` of one window.
 
     Parameters
@@ -301,10 +272,10 @@ def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: li
 
 def _split(z, middle, separation, highest):
     if len(z) < ASPHALT.min_bin_cells:
-        return OtsuSplit(middle, 1.0, 0.0, 0.0, 0.0, 0.0, False)
+        return _OtsuSplit(middle, 1.0, 0.0, 0.0, 0.0, 0.0, False)
     dim = z[z <= highest]
     median, spread = asphalt_statistics(dim if len(dim) >= ASPHALT.min_asphalt_share * len(z) else z)
     z = np.clip((z - median) / spread, *ASPHALT.histogram_limits)
     threshold, below, above, share = otsu(z)
     accepted = above - below > separation and threshold > 1.0 and share <= 0.5
-    return OtsuSplit(middle, spread, threshold, below, above, share, accepted)
+    return _OtsuSplit(middle, spread, threshold, below, above, share, accepted)

@@ -17,7 +17,6 @@ from ...intensity.correction import saturation_of
 from ...intensity.tiled_image import TiledImage
 from ...io.geotiff import IntensityImage
 from ...survey.frame.road_frame import RoadFrame
-from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.store.road_points import RoadPoints
 from ..road_grid import CELL_UNITS
@@ -25,7 +24,7 @@ from ..weights import ASPHALT
 from .settings import MarkingSettings, PaintMethod
 from .windows import THRESHOLD_WINDOW, Burn, PaintSource, burn_points, marking_mask, paint_of_window, place_of, points_of_rows, windows_of
 
-WINDOWS_PER_TASK = 12   # derived: windows of 20 m that a worker process is best given together: it looks at two more on either side
+WINDOWS_PER_TASK = 12   # derived: windows of 20 m that a worker process is given together: at everyday density half a second of its time
 
 
 def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
@@ -69,18 +68,18 @@ def _extract_from_points(road_points: RoadPoints, method: PaintMethod, progress:
 def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings, progress: Progress,
                         burn: Burn | None) -> RoadPoints:
     """Paint by multi-thresholds on the image, and from averages where points are noisy."""
-    source = PaintSource(road_points, image, frame)
-    executor: Executor = road_points.executor if isinstance(image, TiledImage) and image.folder is not None else THREADS
-    paint = replace(RoadPoints.empty_like(road_points), has_spacing=True)
+    executor: Executor = road_points.executor if isinstance(image, TiledImage) else THREADS
+    source = PaintSource(road_points, image, frame, executor.folder)
+    paint = replace(RoadPoints.empty_like(road_points), store=source.paint, has_spacing=True)
     windows = [(road, windows_of(road_points, road)) for road in road_points.roads()]
     scatter = ScannerScatter.of(road_points, [(road, window) for road, numbers in windows for window in numbers], executor, progress.part(0.0, 0.1))
     progress.info(scatter.summary(THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE))
     noisy = {road: sorted(scatter.noisy_windows(road)) for road, _ in windows}
     items = [(road, window) for road, numbers in windows for window in numbers]
     phase = Phase(paint_of_window, source, (settings, noisy, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
-                  together=WINDOWS_PER_TASK)
-    for (road, _), (columns, x, y) in zip(items, executor.run(phase, items, progress.part(0.1, 1.0))):
-        paint.store.append(road, Columns(columns, paint.store.dtype))
+                  together=WINDOWS_PER_TASK, state=source.state)
+    for index, x, y in executor.run(phase, items, progress.part(0.1, 1.0)):
+        paint.store.adopt(index, executor.folder)
         if burn is not None:
             burn(x, y)
     return paint
@@ -112,7 +111,9 @@ class ScannerScatter:
         sampled = {key for key in windows if key[1] % SAMPLED_WINDOW_STEP == 0}
         roads = {road for road, _ in sampled}
         sampled |= {key for key in windows if key[0] not in roads}
-        phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)))
+        length = THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE
+        phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)),
+                      state=lambda item: [road_points.state(road, window * length, (window + 1) * length) for road, window, _ in item])
 
         def run(items, part):
             return list(executor.run_together(phase, items, WINDOWS_PER_TASK, part))

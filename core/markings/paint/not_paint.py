@@ -34,18 +34,26 @@ def track_spacing(occupied: np.ndarray) -> np.ndarray:
     return cv2.dilate(gap.astype(np.float32), np.ones((1, 2 * TRACKS.across_reach + 1), np.uint8), borderValue=0) * np.float32(CELL_SIZE)
 
 
-def morphology(mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings) -> np.ndarray:
-    """Gaps along the road closed, then runs removed that are short both along and across it: (rows, columns) bool, a subset of `mask`.
+def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings) -> np.ndarray:
+    """(rows, columns) bool, the bright cells of a mask in pieces that are too large and too bright to be noise, and what wear left between two.
 
-    A stop line is short along the road and a lane line across it: a cell stays where either run through it is long enough. The remains of a worn
-    line between two such runs stay, too. Where points lie far apart, cells between two bright ones that no point was near are no gap.
-    `mask`, `seen` : (rows, columns) bool, bright cells and those whose brightness is known. Of the settings `close` and `shortest` are used.
+    A piece is what hangs together once gaps of `close` along the road are closed, and where points lie far apart those that no point was near. The
+    brightness of its cells must sum up to the `evidence` of the settings: a faint line of some length is as sure as a bright speck.
+
+    Parameters
+    ----------
+    z : (rows, columns) float32 spreads above asphalt, no more than the highest threshold of each cell counts
+    mask, seen : (rows, columns) bool, bright cells and those whose brightness is known
     """
-    length = int(round(settings.shortest / CELL_SIZE))
-    closed = fill_gaps(mask, int(round(settings.close / CELL_SIZE)), 0)
-    along, across = (closed | _unseen_gaps(mask, seen, limit, axis) for axis, limit in enumerate((TRACKS.max_gap_on_track, TRACKS.max_track_gap)))
-    long = mask & (_long_runs(along, length, 0) | _long_runs(across, length, 1))
-    return mask & (long | _between(long, mask)) if long.any() else long
+    joined = fill_gaps(mask, int(round(settings.close / CELL_SIZE)), 0)
+    for axis, limit in enumerate((TRACKS.max_gap_on_track, TRACKS.max_track_gap)):
+        joined |= _unseen_gaps(mask, seen, limit, axis)
+    count, labels = cv2.connectedComponents(joined.view(np.uint8), connectivity=8)
+    labels = labels[mask]
+    sums = np.bincount(labels, np.minimum(z[mask], settings.highest), count)
+    clear = np.zeros(mask.shape, bool)
+    clear[mask] = (sums >= settings.evidence)[labels]
+    return mask & (clear | _between(clear, mask)) if clear.any() else clear
 
 
 def _unseen_gaps(mask, seen, limit, axis):
@@ -78,17 +86,6 @@ def _met_since(ends, breaks):
     last_met = np.maximum.accumulate(last_met, axis=0, out=last_met)
     last_met &= np.int16(1)
     return last_met.astype(bool)
-
-
-def _long_runs(mask: np.ndarray, length: int, axis: int) -> np.ndarray:
-    """The cells of a mask that lie in runs of a minimum length, cells, along an axis: 0 along the road, 1 across it."""
-    if length < 2:
-        return mask.copy()
-    size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
-    kernel = np.ones(size[::-1], np.uint8)
-    # outside the window all cells are off
-    begun = cv2.erode(mask.astype(np.uint8), kernel, anchor=(0, 0), borderType=cv2.BORDER_CONSTANT, borderValue=0)
-    return cv2.dilate(begun, kernel, anchor=behind, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool)
 
 
 # Concrete gutters begin at the very rim of the road and are two decimetres wide or more over metres of rim. An edge line stands off the rim, is

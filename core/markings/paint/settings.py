@@ -31,12 +31,11 @@ class MarkingSettings:
     """
 
     separation: float = setting(4.0, 0.5, 20.0, "The distance of paint from asphalt", "spreads")
-    lowest: float = 3.0   # lowest, highest: limits of the threshold in spreads above the median of asphalt
+    lowest: float = 3.0   # lowest, highest: limits of the threshold in spreads above the median of asphalt; the lowest where no bin shows paint
     highest: float = 8.0
-    alone: float = 5.0   # spreads, the threshold where neither a bin nor its neighbours have two materials
+    evidence: float = 120.0   # spreads, summed over the cells of a piece: noise of asphalt reaches it once or twice on 1,000 m2
     faint: float = 3.0   # spreads, the threshold on averages of noisy points, where the shape must be that of paint, too
-    close: float = setting(0.20, 0.0, 2.0, "The gap that is closed along the road", "m")   # m, gaps along the road that are closed
-    shortest: float = setting(0.20, 0.0, 2.0, "The shortest run of paint", "m")   # m, shorter runs are removed
+    close: float = 0.20   # m, gaps along the road that are closed
     method: PaintMethod | None = None
 
     def __post_init__(self) -> None:

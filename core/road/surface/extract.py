@@ -156,7 +156,8 @@ def _take_points(survey, road, carriageway, road_points, counted, cubes, progres
     """Put the surface points of one road into `road_points`, and what is counted of its sections into `cubes`; the points in each row of cells."""
     per_row = np.zeros(len(carriageway.height), np.int64)
     executor, length = survey.executor.passing(), survey.store.section_length
-    phase = Phase(surface_points, road_points, (counted,), lambda item: survey.stretch(road, item[0][1] * length, item[0][2] * length))
+    phase = Phase(surface_points, road_points, (counted,), lambda item: survey.stretch(road, item[0][1] * length, item[0][2] * length),
+                  state=lambda item: None)   # what is asked of a survey stays as it is
     items = [(stretch, surface_about(carriageway, stretch, length)) for stretch in survey.store.stretches([road])]
     for index, first_row, rows, of_sections in executor.run(phase, items, progress):
         road_points.store.adopt(index, executor.folder)

@@ -31,12 +31,14 @@ ALIGNMENT = 8   # derived: bytes: the longest number of an array begins at a mul
 class ArrayFile:
     """Arrays one after the other in a file, which several threads may write and read; `end` is its length in bytes.
 
+    name : no other file has it
     path : of the file; None for a temporary one without a name, which a killed run does not leave behind (on Windows it is deleted when it is closed)
     mode : "w+b" for a new file, "rb" for one that others finished
     """
 
     def __init__(self, path: Path | None = None, mode: str = "w+b") -> None:
         self.path, self._lock = path, threading.Lock()
+        self.name = uuid4().hex if path is None else path.name
         self._file: Any = tempfile.TemporaryFile(prefix="lanewright-", buffering=0) if path is None else open(path, mode, buffering=0)
         # closed with this object; otherwise Python warns of an unclosed file
         weakref.finalize(self, self._file.close)

@@ -12,7 +12,7 @@ import numpy as np
 from ...execution.phase import THREADS, Executor, Recipe
 from .columns import Columns
 from .records import ROAD_POINT, Points, join_columns, point_dtype
-from .section_store import SectionStore, opened_store
+from .section_store import SectionStore, Stretch, opened_store
 
 if TYPE_CHECKING:
     from ..frame.row_table import SigmaAlong
@@ -76,6 +76,16 @@ class RoadPoints:
 
     def section(self, road: int, number: int) -> Points:
         return Points(self.store.section(road, number))
+
+    def stretches(self, road: int | None = None) -> list[Stretch]:
+        """Stretches of a road or of all roads, which those of a survey share with all its points: they stay where others are chosen of these."""
+        store = self.store if self.survey is None else self.survey.store
+        return store.stretches([number for number in self.roads() if road in (None, number)])
+
+    def state(self, road: int, start: float, end: float) -> list[Any]:
+        """Plain values that differ where the points of a road between two stations (m) are others."""
+        length = self.store.section_length
+        return self.store.state((road, int(np.floor(start / length)), int(np.ceil(end / length))))
 
     def window(self, road: int, start: float, end: float) -> Points:
         return self.store.window(road, start, end)

@@ -195,6 +195,11 @@ class SectionStore:
         road, first, end = stretch
         return [(road, number) for number in range(first, end) if (road, number) in self._sections]
 
+    def state(self, stretch: Stretch) -> list[Any]:
+        """Plain values that differ where the points of a stretch are others: in which files they lie, and where there."""
+        parts = [[*key, part.file.name, part.place, part.first, part.size] for key in self.in_stretch(stretch) for part in self._sections[key].parts]
+        return parts + (self.base.state(stretch) if self.base is not None else [])
+
     def section(self, road: int, section: int) -> Columns:
         """The Columns of one section in canonical order, read-only; empty where there are no points."""
         check_cancelled()
@@ -333,14 +338,6 @@ class SectionStore:
         self.folder = folder
         self.adopt(index, folder)
         self._count = count
-
-    def remove(self) -> None:
-        """Let the own columns go, and their files of a folder; the store that lies below stays."""
-        paths = {part.file for section in self._sections.values() for part in section.parts if isinstance(part.file, Path)}
-        self._release()
-        close_files()
-        for path in paths:
-            path.unlink(missing_ok=True)
 
     def close(self) -> None:
         self._release()

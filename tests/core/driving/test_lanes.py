@@ -41,6 +41,29 @@ def test_a_lane_ends_at_the_nearer_line_of_a_double_line():
     assert middle(street, lines) == [pytest.approx(-1.9, abs=0.005), pytest.approx(1.9, abs=0.005)]
 
 
+@pytest.mark.parametrize("worn", [0.0, 3.0])
+@pytest.mark.parametrize("onward", [True, False])
+def test_where_a_double_line_goes_on_as_one_behind_a_crossing_the_lane_leads_from_its_nearer_line_to_that_one(onward, worn):
+    street = Street(vehicle=-1.9)
+    ends = (5.0, 50.0), (58.5, 115.0)
+    double, single = ends if onward else ends[::-1]
+    for side in (0.2, -0.2):
+        # the nearer of the two is worn away before the crossing
+        short = worn if side > 0 else 0.0
+        first, last = (double[0], double[1] - short) if onward else (double[0] + short, double[1])
+        street.paint(side, first, last, kind="centre", pattern="double-solid")
+    street.paint(0.0, *single, kind="lane", pattern="dashed")
+    for side in (3.6, -3.6):
+        for first, last, status in ((5.0, 50.0, "measured"), (50.0, 58.5, "bridged"), (58.5, 115.0, "measured")):
+            street.paint(side, first, last, kind="edge", status=status, line=10 + (side > 0))
+    driving, _ = street.lanes()
+    lane = np.concatenate([np.c_[np.asarray(line.coords)[:, 0] - EAST, street.offsets(line)] for line, _ in driving])
+    lane = lane[lane[:, 1] > 0]
+    share = np.clip((lane[:, 0] - 50.0) / 8.5, 0.0, 1.0)
+    true = np.where(onward, 1.9 - 0.1 * share, 1.8 + 0.1 * share)
+    assert np.abs(lane[:, 1] - true).max() < 0.03
+
+
 def test_a_driving_line_says_which_lines_one_may_not_cross_on_its_left_and_right():
     """Left and right of travel: the lane that is driven the other way has the same dashes on its left."""
     street = Street(vehicle=-1.75, again=(1.75,)).paint(3.5, kind="edge").paint(0.0, pattern="dashed").paint(-3.5, kind="edge")

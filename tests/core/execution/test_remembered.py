@@ -1,5 +1,6 @@
 """What a run asks again, the next one is not computed again."""
 
+import pytest
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution.phase import NoSource, Phase, Threads
 from lanewright.core.execution.remembered import RememberedResults
@@ -26,29 +27,43 @@ def doubled(source, item, *arguments):
 doubled.__module__, doubled.__qualname__ = kept_of_windows.__module__, kept_of_windows.__qualname__   # only a named function has a name
 
 
-def results(remembered, items, source=None, arguments=(OutlierSettings(),)):
-    return list(remembered.run(Phase(doubled, source or NoSource(), arguments), items))
+def results(remembered, items, source=None, arguments=(OutlierSettings(),), state=None):
+    return list(remembered.run(Phase(doubled, source or NoSource(), arguments, state=state), items))
 
 
-def test_the_next_run_computes_what_is_new_in_it_and_the_one_after_it_knows_both():
-    asked, remembered = Asked(), RememberedResults()
-    assert results(remembered.of_next_run(asked), [3, 1, 3, 2]) == [6, 2, 6, 4]
-    assert results(remembered.of_next_run(asked), [1, 5, 3]) == [2, 10, 6]
-    assert results(remembered.of_next_run(asked), [5, 1, 2]) == [10, 2, 4]
-    assert asked.items == [[3, 1, 2], [5], [2]], "each item once, and no longer than the next run"
+def test_the_next_runs_compute_what_is_new_in_them():
+    asked = Asked()
+    remembered = RememberedResults(asked)
+    assert results(remembered, [3, 1, 3, 2]) == [6, 2, 6, 4]
+    assert results(remembered, [4, 5, 3]) == [8, 10, 6]
+    assert results(remembered, [5, 1, 2]) == [10, 2, 4]
+    assert asked.items == [[3, 1, 2], [4, 5]], "each item once"
 
 
-def test_a_run_that_asks_nothing_forgets_nothing_and_other_arguments_are_another_question():
-    asked, remembered = Asked(), RememberedResults()
-    results(remembered.of_next_run(asked), [7])
-    remembered.of_next_run(asked)
-    assert results(remembered.of_next_run(asked), [7]) == [14]
-    assert results(remembered, [7], arguments=(OutlierSettings(neighbours=9),)) == [14]
-    assert asked.items == [[7], [], [7]]
-
-
-def test_phases_that_read_from_files_are_always_run():
-    asked, remembered = Asked(), RememberedResults()
-    for _ in range(2):
-        assert results(remembered.of_next_run(asked), [7], source=TimeSlots(1)) == [14]
+def test_other_arguments_are_another_question():
+    asked = Asked()
+    remembered = RememberedResults(asked)
+    assert results(remembered, [7]) == results(remembered, [7], arguments=(OutlierSettings(neighbours=9),)) == [14]
     assert asked.items == [[7], [7]]
+
+
+@pytest.mark.parametrize("state, asked_again", [(None, [[7], [7]]), (lambda item: "as before", [[7]])])
+def test_phases_that_read_from_files_are_run_again_unless_they_say_that_these_are_as_before(state, asked_again):
+    asked = Asked()
+    remembered = RememberedResults(asked)
+    for _ in range(2):
+        assert results(remembered, [7], source=TimeSlots(1), state=state) == [14]
+    assert [items for items in asked.items if items] == asked_again
+
+
+def test_what_many_runs_asked_is_forgotten_together_with_the_files_of_it(tmp_path):
+    asked = Asked()
+    asked.folder = tmp_path
+    (tmp_path / "points-1.bin").touch()
+    remembered = RememberedResults(asked)
+    results(remembered, [1, 2])
+    assert not remembered.full
+    results(remembered, [3, 4, 5])
+    assert remembered.full
+    remembered.clear()
+    assert not any(tmp_path.iterdir()) and results(remembered, [1]) == [2] and asked.items[-1] == [1]

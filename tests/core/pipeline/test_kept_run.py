@@ -1,16 +1,21 @@
 """A run in the window goes on from where it differs from the last one, and gives what it would have given alone."""
 
+import gc
+
 import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.execution.phase import Threads
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.pipeline import road_map as chain
 from lanewright.core.pipeline.kept_run import KeptRun
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.open_survey import SurveySettings
+from lanewright.core.survey.store.array_file import ArrayFile
+from shapely.ops import substring
 
 pytestmark = pytest.mark.slow
 
@@ -52,11 +57,11 @@ def without(monkeypatch, stages):
         monkeypatch.setattr(chain, stage, refused)
 
 
-def moved_edge(road_map):
-    """The correction of an edge that lies 20 cm farther out."""
+def moved_edge(road_map, length=np.inf):
+    """The correction of an edge that lies 20 cm farther out, along so many metres of it."""
     layer = Features("any", CORRECTIONS, crs=road_map.crs)
     line = next(line for line, row in road_map.layer("edges") if row["side"] == "left" and row["status"] == "measured")
-    farther = shapely.transform(line, lambda places: places + [0.0, 0.2, 0.0], include_z=True)
+    farther = shapely.transform(substring(line, 0.0, length), lambda places: places + [0.0, 0.2, 0.0], include_z=True)
     layer.add(farther, action="move", target="edge", note="seen in the image")
     return layer
 
@@ -80,7 +85,7 @@ def test_a_corrected_edge_or_lane_takes_the_stages_after_it_alone_and_gives_the_
     found, road_map = made(street, tmp_path, kept)
     assert found == alone[0]
     with monkeypatch.context() as patch:
-        without(patch, SURFACE)
+        without(patch, (*SURFACE, "fit_marking_lines", "make_driving_lines"))
         assert made(street, tmp_path, kept, without_lane(road_map))[0] == alone[2]
         assert made(street, tmp_path, kept)[0] == alone[0]
     with monkeypatch.context() as patch:
@@ -88,6 +93,22 @@ def test_a_corrected_edge_or_lane_takes_the_stages_after_it_alone_and_gives_the_
         corrections = moved_edge(road_map)
         assert made(street, tmp_path, kept, corrections)[0] == alone[1]
         assert made(street, tmp_path, kept)[0] == alone[0]
+
+
+def test_a_corrected_edge_changes_the_stretches_beside_it_alone(street, tmp_path, monkeypatch, kept):
+    asked, run, settings = {}, Threads.run, RoadMapSettings(survey=SurveySettings(section_length=1.0))
+
+    def noting(self, phase, items, *others):
+        asked.setdefault(phase.function.__name__, []).append(len(items))
+        return run(self, phase, items, *others)
+
+    _, road_map = made(street, tmp_path, kept, settings=settings)
+    monkeypatch.setattr(Threads, "run", noting)
+    made(street, tmp_path, kept, moved_edge(road_map, 2.0), settings)
+    _, again = made(street, tmp_path, kept, settings=settings)
+    stretches = len(again.road_points.stretches())
+    for name in ("surface_points", "corrected_of_stretch"):
+        assert stretches > 10 and 1 <= sum(asked[name]) <= stretches / 2, name
 
 
 def test_a_run_that_was_cancelled_goes_on_where_it_was(street, alone, tmp_path, monkeypatch, kept):
@@ -103,23 +124,30 @@ def test_a_run_that_was_cancelled_goes_on_where_it_was(street, alone, tmp_path, 
 
 
 def test_of_one_run_alone_points_stay_on_the_disk(street, tmp_path, kept):
-    _, first = made(street, tmp_path, kept)
-    assert first.road_points.store.roads()
-    _, second = made(street, tmp_path, kept, settings=RoadMapSettings(survey=SurveySettings(section_length=7.0)))
-    assert not first.road_points.store.roads() and second.road_points.store.roads()
+    def on_the_disk():
+        gc.collect()
+        return [thing for thing in gc.get_objects() if isinstance(thing, ArrayFile) and thing.end]
+
+    before = len(on_the_disk())
+    made(street, tmp_path, kept)
+    first = len(on_the_disk())
+    made(street, tmp_path, kept, settings=RoadMapSettings(survey=SurveySettings(section_length=7.0)))
+    assert len(on_the_disk()) == first > before
     kept.end()
-    assert not second.road_points.store.roads()
+    assert len(on_the_disk()) == before
 
 
-def test_worker_processes_start_again_for_a_correction_and_files_of_what_it_replaces_go(street, alone, tmp_path, monkeypatch, kept):
+def test_worker_processes_leave_files_that_serve_again_until_the_window_ends(street, alone, tmp_path, monkeypatch, kept):
     settings = RoadMapSettings(execution=ExecutionSettings(workers=2))
     found, road_map = made(street, tmp_path, kept, settings=settings)
     folder = road_map.road_points.survey.executor.folder
     files = {path.name for path in folder.glob("*.bin")}
     without(monkeypatch, READING)
     assert found == alone[0] and made(street, tmp_path, kept, moved_edge(road_map), settings)[0] == alone[1]
-    again = {path.name for path in folder.glob("*.bin")}
-    assert files and len(again) == len(files) and not files & again
+    corrected = {path.name for path in folder.glob("points-*.bin")}
+    assert len(corrected) > len(corrected & files) > 0
+    assert made(street, tmp_path, kept, settings=settings)[0] == alone[0]
+    assert {path.name for path in folder.glob("points-*.bin")} == corrected
     kept.end()
     assert not folder.exists()
 

@@ -52,7 +52,7 @@ def test_stages_that_are_left_out_take_no_share():
     stages = Stages(bar, DENSE, "profiles")
     stages.run("survey", "", nothing)
     stages.plan(DENSE, INTENSITY_STAGES)
-    for name in ("curbs", "edges", "surface"):
+    for name in ("curbs", "edges", "surface", "corrected"):
         stages.run(name, "", nothing)
     assert bar.places[-1] == pytest.approx(1.0)
 

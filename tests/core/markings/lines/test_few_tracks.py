@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.lines.strands import painted_strands
+from lanewright.core.markings.lines.fit import MarkingLineSettings
+from lanewright.core.markings.lines.linking import CommonTrend, link_lines
+from lanewright.core.markings.lines.strands import EdgesBeside, LinkedLine, painted_strands
 from lanewright.core.survey.store.columns import Columns
 from lanewright.core.survey.store.records import ROAD_POINT
 
@@ -34,6 +36,13 @@ def test_a_slanting_line_far_off_is_one_strand_along_its_middle(spacing):
     inner = (strand.s > 3.0) & (strand.s < 37.0)
     assert np.abs(strand.d - course(strand.s))[inner].max() < 0.10
     assert np.polyfit(strand.s, strand.d, 1)[0] == pytest.approx(-0.03, abs=0.004)
+
+
+def test_a_slanting_line_that_shows_on_one_track_after_the_other_is_one_line():
+    """The edge line of an exit: each track enters it at one border and leaves it at the other."""
+    strands = strands_of(scanned(lambda s: -8.0 - 0.065 * s, 0.0, 40.0, 0.4, width=0.27))
+    assert len(strands) > 4
+    assert len(link_lines([LinkedLine([strand]) for strand in strands], CommonTrend(strands), EdgesBeside([]), MarkingLineSettings().max_gap)) == 1
 
 
 def test_a_worn_line_far_off_is_parted_where_a_stretch_is_gone():

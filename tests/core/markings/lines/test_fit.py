@@ -144,6 +144,13 @@ def test_a_bright_strip_of_verge_beside_the_edge_line_is_no_second_line():
     assert told(street.lines(), "kind", "pattern", "line") == [("edge", "solid", 1)]
 
 
+def test_the_line_of_an_exit_lane_that_leaves_the_edge_line_behind_the_gore_is_a_line():
+    street = ClusteredStreet(half_width=9.0).paint(0, 120, 4.0, kind="edge").paint(40, 90, 7.6, kind="edge")
+    for k in range(40):
+        street.paint(60 + k / 2, 60.5 + k / 2, 4.4 + 0.06 * k, kind="edge")
+    assert set(told(street.lines(), "line", "status")) == {(1, "measured"), (2, "measured"), (3, "measured")}
+
+
 def test_the_outer_line_of_a_lay_by_is_a_line():
     street = ClusteredStreet().paint(0, 120, 2.0, kind="edge").paint(40, 80, 4.7, kind="edge")
     assert sorted(told(street.lines(), "line", "status")) == [(1, "measured"), (2, "measured")]

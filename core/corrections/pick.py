@@ -1,0 +1,255 @@
+"""A curb or a painted line that the map lacks, found in the points about a click, or along a line that was drawn by hand.
+
+At a place and across a direction, a curb is a step between two straight pieces of ground, and paint is a stripe that is brighter than what lies on
+both sides of it. From the click the line is followed both ways, place by place, for as long as it is seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..countries import country
+from ..survey.frame.placement import PlaceIndex
+from .weights import PICK
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A line in the points, and the evidence for it.
+
+    target : "edge" or "marking"
+    places : (K, 2) map coordinates along it; of an edge the foot of its face
+    step : m, median height of the face; NaN of paint
+    brightness : times as bright as beside it, median; NaN of an edge
+    width : m of the paint; NaN of an edge
+    scatter : m, one sigma of a place about its neighbours
+    points : that the places were measured from
+    seen : m of its length on which it was seen; the rest was bridged
+    dashed : whether paint breaks off again and again
+    """
+
+    target: str
+    places: np.ndarray
+    step: float
+    brightness: float
+    width: float
+    scatter: float
+    points: int
+    seen: float
+    dashed: bool
+
+    @property
+    def length(self) -> float:
+        """m along it."""
+        return float(np.hypot(*np.diff(self.places, axis=0).T).sum())
+
+
+@dataclass(frozen=True)
+class _Mark:
+    """What is seen across one place: m left of it, strength in sigma, step (m) or brightness with a sign, width (m), and points."""
+
+    offset: float
+    strength: float
+    size: float
+    width: float
+    points: int
+
+
+def pick_line(points: np.ndarray, x: float, y: float, azimuth: float, targets: Sequence[str] = ("edge", "marking")) -> Seen | None:
+    """The curb or painted line at a click, followed both ways for as long as it is seen; None where there is none within a metre.
+
+    Parameters
+    ----------
+    points : (N, 4) x, y, z and intensity about the click, m
+    x, y : of the click
+    azimuth : of the road there, degrees clockwise from north; the line may run otherwise
+    targets : what is sought, "edge", "marking" or both, of which the nearer and clearer one is taken
+    """
+    cloud = _Cloud(points)
+    starts = []
+    for target in targets:
+        for turn in np.arange(0.0, 180.0, PICK.turn):
+            mark = cloud.mark(target, x, y, azimuth + turn, PICK.click_reach)
+            if mark is not None:
+                starts.append((mark.strength * np.exp(-(mark.offset / PICK.near) ** 2), azimuth + turn, target, mark))
+    # the direction of a low curb is told by how far it can be followed, not by one place of it
+    for _, direction, target, mark in sorted(starts, key=lambda start: -start[0])[:PICK.starts]:
+        seen = _measured(target, *cloud.followed(target, _beside((x, y), direction, mark.offset), direction, mark))
+        if seen.seen >= PICK.shortest:
+            return seen
+    return None
+
+
+def snap_line(points: np.ndarray, places: np.ndarray, target: str) -> Seen | None:
+    """A line that was drawn by hand, laid onto the faces or paint beside it; None where nothing is seen along half of it.
+
+    Its ends stay the places of its ends along the road; between places where something is seen it runs straight.
+
+    points : (N, 4) x, y, z and intensity about the line, m
+    places : (K, 2) of the line as it was drawn
+    target : "edge" or "marking"
+    """
+    cloud = _Cloud(points)
+    along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(places, axis=0).T))]
+    at = np.linspace(0.0, along[-1], max(int(np.ceil(along[-1] / PICK.step)), 1) + 1)
+    drawn = np.column_stack([np.interp(at, along, column) for column in places.T])
+    ahead = np.gradient(drawn, axis=0)
+    directions = np.degrees(np.arctan2(ahead[:, 0], ahead[:, 1]))
+    marks = [cloud.mark(target, x, y, direction, PICK.near) for (x, y), direction in zip(drawn, directions)]
+    rows = np.flatnonzero([mark is not None for mark in marks])
+    if len(rows) * 2 <= len(marks) or len(rows) < 3:
+        return None
+    offset = np.interp(np.arange(len(marks)), rows, [marks[k].offset for k in rows])
+    usual = np.array([np.median(offset[max(k - 3, 0):k + 4]) for k in range(len(offset))])
+    offset = np.where(np.abs(offset - usual) > PICK.face, usual, offset)   # another line beside it, seen at a few places
+    snapped = np.array([_beside(*row) for row in zip(drawn, directions, offset)])
+    return _measured(target, snapped[rows[0]:rows[-1] + 1], [marks[k] for k in rows], rows * PICK.step)
+
+
+def _measured(target, places, marks, along):
+    """Seen from the marks of a line, which lie at increasing m `along` it."""
+    size = float(np.median([abs(mark.size) for mark in marks]))
+    bend = np.hypot(*(places[1:-1] - (places[:-2] + places[2:]) / 2).T)
+    scatter = float(1.4826 * np.median(bend) / np.sqrt(1.5)) if len(bend) else np.nan
+    stands_out = np.r_[False, (bend > PICK.face / 4) & (bend > 4 * scatter), False]   # as where a wheel stands at the curb
+    places = places[~stands_out] if len(bend) else places
+    gaps = np.diff(along)
+    edge = target == "edge"
+    return Seen(target, places, size if edge else np.nan, np.nan if edge else size,
+                np.nan if edge else float(np.median([mark.width for mark in marks])),
+                scatter, sum(mark.points for mark in marks) // 2,
+                float(np.minimum(gaps, PICK.step).sum()), not edge and int((gaps > PICK.dash_gap).sum()) >= 2)
+
+
+def _beside(place, direction, offset):
+    """The place so many m left of one, seen in a direction (degrees clockwise from north)."""
+    angle = np.radians(direction)
+    return np.array([place[0] - offset * np.cos(angle), place[1] + offset * np.sin(angle)])
+
+
+class _Cloud:
+    """Points by place."""
+
+    def __init__(self, points):
+        points = points[::len(points) // PICK.most_points + 1]
+        self.origin = points[:, :3].mean(axis=0) if len(points) else np.zeros(3)
+        self.points = points - np.r_[self.origin, 0.0]
+        self.index = PlaceIndex(self.points[:, :2], 1.0)
+
+    def mark(self, target, x, y, direction, reach):
+        """The clearest _Mark across a place, at most `reach` m beside it; None where there is none."""
+        most = reach + PICK.face + PICK.flank + PICK.face
+        place = np.array([x, y]) - self.origin[:2]
+        near = self.points[self.index.within(place - np.hypot(most, PICK.step), place + np.hypot(most, PICK.step))]
+        angle = np.radians(direction)
+        dx, dy = (near[:, :2] - place).T
+        across = dy * np.sin(angle) - dx * np.cos(angle)
+        inside = (np.abs(dx * np.sin(angle) + dy * np.cos(angle)) <= PICK.step) & (np.abs(across) <= most)
+        if inside.sum() < 2 * PICK.fewest:
+            return None
+        near, across = near[inside], across[inside]
+        ground = near[:, 2] <= np.quantile(near[:, 2], 0.02) + PICK.tallest
+        across, z, intensity = across[ground], near[ground, 2], near[ground, 3]
+        return _step(across, z, reach) if target == "edge" else _stripe(across, intensity, reach)
+
+    def followed(self, target, place, direction, first):
+        """(K, 2) places of a line both ways from one of them, the marks seen, and m along it at which they were."""
+        ways = []
+        for way in (1.0, -1.0):
+            seen, marks, along = [place], [first], [0.0]
+            gap = PICK.curb_gap if target == "edge" else PICK.paint_gap
+            course, ahead = direction, PICK.step
+            while ahead <= gap + PICK.step:
+                angle = np.radians(course)
+                next_place = seen[-1] + way * ahead * np.array([np.sin(angle), np.cos(angle)])
+                mark = self.mark(target, *next_place, course, PICK.reach)
+                if mark is None or not 1.0 / PICK.same < mark.size / first.size < PICK.same:
+                    ahead += PICK.step
+                    continue
+                seen.append(_beside(next_place, course, mark.offset))
+                marks.append(mark)
+                along.append(along[-1] + ahead)
+                ahead = PICK.step
+                behind = seen[np.searchsorted(along, along[-1] - PICK.course)]
+                step = way * (seen[-1] - behind)
+                course = np.degrees(np.arctan2(step[0], step[1])) if np.hypot(*step) >= PICK.course / 2 else course
+            ways.append((seen, marks, along))
+        (ahead_seen, ahead_marks, ahead_along), (back_seen, back_marks, back_along) = ways
+        return (np.array([*back_seen[:0:-1], *ahead_seen]), [*back_marks[:0:-1], *ahead_marks],
+                np.r_[-np.array(back_along[:0:-1]), ahead_along])
+
+
+class _Sums:
+    """Sums of values over ranges of their places across."""
+
+    def __init__(self, across, values):
+        self.order = np.argsort(across, kind="stable")
+        self.across = across[self.order]
+        v, y = self.across, values[self.order]
+        self.total = np.vstack([np.zeros(6), np.cumsum(np.column_stack([np.ones(len(v)), v, y, v * v, v * y, y * y]), axis=0)])
+
+    def line(self, low, high, at):
+        """Of the values between (M,) places: count; value at `at`, slope and variance of the line through them; mean and variance about it."""
+        ends = np.searchsorted(self.across, low), np.searchsorted(self.across, high)
+        n, v, y, vv, vy, yy = (self.total[ends[1]] - self.total[ends[0]]).T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            v, y = v / n, y / n
+            sxx, sxy, syy = np.maximum(vv / n - v * v, 1e-6), vy / n - v * y, np.maximum(yy / n - y * y, 0.0)
+            slope = sxy / sxx
+            rest = np.maximum(syy - slope * sxy, 0.0) * n / (n - 2)
+            return n, y + slope * (at - v), slope, rest / n * (1.0 + (at - v) ** 2 / sxx), y, syy
+
+
+def _step(across, z, reach):
+    """The clearest step of heights within `reach` m of 0."""
+    at = np.arange(-reach, reach + 1e-9, PICK.face / 4)
+    sums = _Sums(across, z)
+    n_left, left, left_slope, left_variance, _, _ = sums.line(at + PICK.face, at + PICK.face + PICK.flank, at)
+    n_right, right, right_slope, right_variance, _, _ = sums.line(at - PICK.face - PICK.flank, at - PICK.face, at)
+    step = left - right
+    with np.errstate(invalid="ignore"):
+        strength = np.abs(step) / np.sqrt(left_variance + right_variance + PICK.noise ** 2)
+        possible = (np.minimum(n_left, n_right) >= PICK.fewest) & (np.abs(step) >= PICK.lowest_step) & (np.abs(step) <= PICK.highest_step) & \
+            (strength >= PICK.certain) & (np.abs(step) >= PICK.knee * np.abs(left_slope - right_slope))
+    if not possible.any():
+        return None
+    k = int(np.argmax(np.where(possible, strength, 0.0)))
+    # the share of the step that each point about the face lies above the low side; the face parts those below half of it from those above
+    low, slope = (right[k], right_slope[k]) if step[k] > 0 else (left[k], left_slope[k])
+    near = np.argsort(across, kind="stable")
+    near = near[np.abs(across[near] - at[k]) <= 2 * PICK.face]
+    v, share = across[near], (z[near] - low - slope * (across[near] - at[k])) / abs(step[k])
+    above = np.where(share > 0.5, 1, -1) * np.sign(step[k])
+    wrong = np.cumsum(above)
+    foot = float(v[wrong == wrong.min()].mean())
+    face = (share > 0.15) & (share < 0.85) & (np.abs(v - foot) <= PICK.face + PICK.face / 4)
+    # of a mountable curb its foot is meant; in a lower step noise looks like a lean
+    if face.sum() >= PICK.fewest and np.ptp(share[face]) > 0.5 and abs(step[k]) >= 2 * PICK.lowest_step:
+        foot -= 0.5 * float(np.clip(np.polyfit(share[face], v[face], 1)[0], -2 * PICK.face, 2 * PICK.face))
+    return _Mark(foot, float(strength[k]), float(step[k]), np.nan, int(n_left[k] + n_right[k] + face.sum()))
+
+
+def _stripe(across, intensity, reach):
+    """The clearest stripe of paint within `reach` m of 0."""
+    at = np.arange(-reach, reach + 1e-9, PICK.face / 4)
+    sums = _Sums(across, intensity)
+    best = None
+    for width in country("neutral").line_widths:
+        inner, outer = 0.4 * width, width / 2 + PICK.face / 2
+        n, _, _, _, bright, spread = sums.line(at - inner, at + inner, at)
+        sides = [sums.line(at + sign * outer + min(sign, 0) * PICK.flank, at + sign * outer + max(sign, 0) * PICK.flank, at) for sign in (1, -1)]
+        worst = np.full(len(at), np.inf)
+        for n_side, _, _, _, dark, dark_spread in sides:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                strength = (bright - dark) / np.sqrt(spread / n + dark_spread / n_side)
+                strength = np.where((np.minimum(n, n_side) >= PICK.fewest) & (bright >= PICK.brighter * dark), strength, 0.0)
+            worst = np.minimum(worst, np.nan_to_num(strength))
+        k = int(np.argmax(worst))
+        if worst[k] >= PICK.certain and (best is None or worst[k] > best.strength):
+            middle = float(np.average(at, weights=np.where(np.abs(at - at[k]) <= width / 2, worst, 0.0)))
+            dark = max(side[4][k] for side in sides)
+            best = _Mark(middle, float(worst[k]), float(bright[k] / dark), width, int(n[k]))
+    return best

@@ -1,0 +1,168 @@
+"""The axes of the roads of a map, from its lines alone: smooth, with stations and heights of the ground, whatever way the vehicle took."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+STEP = 1.0             # m of station between places of an axis
+SMOOTHED = 3.0         # m, sigma of the smoothing along the axis, which moves it by SMOOTHED² / 2 radius
+CENTRED = 40.0         # m, sigma of the smoothing by which it comes back to the middle of its lines: a lane that begins turns it by a degree
+LONGEST_GAP = 60.0     # m without any line that an axis bridges
+SHORTEST_LINE = 5.0    # m
+STRETCH = (0.8, 1.25)  # length of a line per length of its stations: others run across the road, as at a corner
+USUAL = 75.0           # %: the half width of a road is that of so many of its stations; others are wider, as at a junction
+ON_AXIS = 1.0          # m within which a line to one side alone tells the height on the axis
+BESIDE = 25.0          # m from the axis to lines that tell the height of the ground
+
+
+@dataclass(frozen=True)
+class RoadLine:
+    """A line along a road.
+
+    road : number of the road; rank : 0 for lines that lead the axis, higher for those asked where there are none
+    stations : (N,) m along the road, rising; places : (N, 3) metres in the CRS of the map, z may be NaN
+    """
+
+    road: int
+    rank: int
+    stations: np.ndarray
+    places: np.ndarray
+
+
+@dataclass(frozen=True)
+class Axis:
+    """stations : (N,) m, rising; places : (N, 3) metres, z of the ground or NaN; half_width : m to either side that belongs to the road."""
+
+    road: int
+    stations: np.ndarray
+    places: np.ndarray
+    half_width: float
+
+    def at(self, stations: np.ndarray) -> np.ndarray:
+        """(K, 3) places at stations."""
+        return np.stack([np.interp(stations, self.stations, column) for column in self.places.T], axis=-1)
+
+    def with_heights(self) -> Axis | None:
+        """The stretch along which the height is known; None where it is shorter than a line."""
+        known = np.isfinite(self.places[:, 2])
+        return replace(self, stations=self.stations[known], places=self.places[known]) if known.sum() * STEP > SHORTEST_LINE else None
+
+    def heading(self, station: float) -> float:
+        """Radians from east, anticlockwise, in which the stations rise."""
+        low, high = np.clip([station - STEP, station + STEP], self.stations[0], self.stations[-1])
+        (x, y, _), (x2, y2, _) = self.at(np.array([low, high]))
+        return float(np.arctan2(y2 - y, x2 - x))
+
+    @property
+    def length(self) -> float:
+        return float(self.stations[-1] - self.stations[0])
+
+
+def road_line(road: int, rank: int, places: np.ndarray, first: float, last: float) -> RoadLine | None:
+    """A line whose ends lie at stations `first` and `last`; None where it is short or runs across the road."""
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(places[:, :2], axis=0).T)))
+    reach = last - first
+    if reach < SHORTEST_LINE or not STRETCH[0] < along[-1] / reach < STRETCH[1]:
+        return None
+    return RoadLine(road, rank, first + along * reach / along[-1], places)
+
+
+def axes_of(lines: Iterable[RoadLine]) -> list[Axis]:
+    """One axis for every stretch of road that has lines, the longest first.
+
+    The axis keeps its distance from every line that goes on, so that a lane which begins or ends does not move it at once; it comes back to the
+    middle of its lines over some hundred metres.
+    """
+    lines = list(lines)
+    axes = [axis for road in sorted({line.road for line in lines}) for axis in _axes_of_road(road, [one for one in lines if one.road == road])]
+    return sorted(axes, key=lambda axis: -axis.length)
+
+
+def _axes_of_road(road, lines):
+    first = np.floor(min(line.stations[0] for line in lines) / STEP) * STEP
+    count = int((max(line.stations[-1] for line in lines) - first) / STEP) + 2
+    stations = first + STEP * np.arange(count)
+    places = np.full((len(lines), count, 3), np.nan)
+    for row, line in enumerate(lines):
+        inside = (stations >= line.stations[0] - STEP / 2) & (stations <= line.stations[-1] + STEP / 2)
+        for column in range(3):
+            places[row, inside, column] = np.interp(stations[inside], line.stations, line.places[:, column])
+    axis = _led(places[:, :, :2], np.array([line.rank for line in lines]))
+    known = np.flatnonzero(np.isfinite(axis[:, 0]))
+    for part in np.split(known, np.flatnonzero(np.diff(known) * STEP > LONGEST_GAP) + 1):
+        if len(part) * STEP < SHORTEST_LINE:
+            continue
+        part = np.arange(part[0], part[-1] + 1)
+        course = np.stack([_smooth(np.interp(part, known, axis[known, column]), SMOOTHED) for column in (0, 1)], axis=-1)
+        heights, half_width = _across(places[:, part], course)
+        yield Axis(road, stations[part], np.c_[course, heights], half_width)
+
+
+def _led(places, ranks):
+    """(S, 2) the axis before it is smoothed, from (L, S, 2) places of lines; NaN where there is none."""
+    goes_on = np.isfinite(places[:, :-1, 0]) & np.isfinite(places[:, 1:, 0])
+    free, led = np.ones(places.shape[1] - 1, bool), np.zeros_like(goes_on)
+    for rank in np.unique(ranks):   # where better lines break off for no longer than a junction, worse ones would lead around its corners
+        led |= goes_on & (ranks[:, None] == rank) & free
+        there = np.flatnonzero(led.any(axis=0))
+        for first, last in zip(there[:-1], there[1:]):
+            if (last - first) * STEP <= LONGEST_GAP:
+                free[first:last + 1] = False
+        free[there] = False
+    axis, middles, lefts = (np.full(places.shape[1:], np.nan) for _ in range(3))
+    for s in range(places.shape[1] - 1):
+        rows = np.flatnonzero(led[:, s])
+        if not len(rows):
+            continue
+        steps = places[rows, s + 1] - places[rows, s]
+        ahead = (steps / np.maximum(np.hypot(*steps.T), 1e-9)[:, None]).sum(0)
+        if not ahead.any():
+            continue
+        left = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
+        if np.isnan(axis[s, 0]):
+            axis[s] = places[rows, s].mean(0)
+        offsets = (places[rows, s] - axis[s]) @ left
+        axis[s + 1] = np.mean(places[rows, s + 1] - np.outer(offsets, left), axis=0)
+        middles[s:s + 2], lefts[s:s + 2] = (offsets.min() + offsets.max()) / 2, left
+    known = np.flatnonzero(np.isfinite(axis[:, 0]))
+    for part in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1) if len(known) else ():
+        usual = median_filter(middles[part, 0], int(2 * CENTRED / STEP) + 1, mode="mirror")   # not of the lanes left at a stop line
+        axis[part] += _smooth(usual, CENTRED)[:, None] * lefts[part]
+    return axis
+
+
+def _smooth(values, sigma):
+    """Smoothed along by so many metres; beyond an end a course (`SMOOTHED`) goes on turned about it, an offset (`CENTRED`) mirrored."""
+    reach = min(int(3 * sigma / STEP), len(values) - 1)
+    if reach < 1:
+        return values
+    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) * STEP / sigma) ** 2)
+    before, after = values[reach:0:-1], values[-2:-reach - 2:-1]
+    if sigma == SMOOTHED:
+        before, after = 2 * values[0] - before, 2 * values[-1] - after
+    return np.convolve(np.r_[before, values, after], weights / weights.sum(), "valid")
+
+
+def _across(places, course):
+    """(S,) height of the ground on the course between the lines to its left and right, and m to its sides within which the lines lie."""
+    ahead = np.gradient(course, axis=0)
+    ahead /= np.maximum(np.hypot(*ahead.T), 1e-9)[:, None]
+    offsets = (places[:, :, :2] - course) @ np.array([[0, 1], [-1, 0]])  # (L, S, 2) turned by a quarter
+    offsets = -(offsets * ahead).sum(-1)
+    offsets[~(np.abs(offsets) < BESIDE)] = np.nan
+    heights = np.full(len(course), np.nan)
+    for s in range(len(course)):
+        rows = np.flatnonzero(np.isfinite(offsets[:, s]) & np.isfinite(places[:, s, 2]))
+        if len(rows) and (np.abs(offsets[rows, s]).min() < ON_AXIS or np.ptp(np.sign(offsets[rows, s]))):
+            rows = rows[np.argsort(offsets[rows, s])]
+            heights[s] = np.interp(0.0, offsets[rows, s], places[rows, s, 2])
+    known = np.isfinite(heights)
+    if known.any():
+        first, last = np.flatnonzero(known)[[0, -1]]
+        heights[first:last + 1] = _smooth(np.interp(np.arange(first, last + 1), np.flatnonzero(known), heights[known]), SMOOTHED)
+    sides = np.nanmax(np.abs(np.where(np.isfinite(offsets).any(axis=0), offsets, 0.0)), axis=0)
+    return heights, float(np.percentile(sides, USUAL))

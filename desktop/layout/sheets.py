@@ -1,0 +1,524 @@
+"""Sheets along a road as one print layout: overview, plan sheets with match lines and title block, longitudinal profile, cross-sections."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from datetime import date
+
+import numpy as np
+import shapely
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsLayoutItemLabel,
+    QgsLayoutItemMap,
+    QgsLayoutItemPage,
+    QgsLayoutItemPicture,
+    QgsLayoutItemScaleBar,
+    QgsLayoutPoint,
+    QgsLayoutSize,
+    QgsMapLayer,
+    QgsPointXY,
+    QgsPrintLayout,
+    QgsProject,
+    QgsRectangle,
+    QgsUnitTypes,
+)
+from qgis.PyQt.QtCore import QRectF, Qt
+from qgis.PyQt.QtGui import QColor
+
+from ...algorithms.export.print_sheets import SheetSettings
+from ...algorithms.provenance import own_version
+from ...core.common.errors import RoadExtractionError
+from ...processing_provider.texts import tr
+from .axes import Axis, axes_of
+from .charts import COLOURS, profile_pages, section_pages
+from .drawing import DARK, GREY, Drawing, round_step, station_text, text_width
+from .legend import add_legend, as_it_stands, legend_height, text_format
+from .map_lines import MapLine, accuracy_of, lines_of, road_lines
+from .pages import Sheet, sheets_along
+
+PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1": (841.0, 594.0), "A0": (1189.0, 841.0)}  # mm, ISO 216
+SCALES = (100, 200, 250, 500, 1000, 2000, 2500, 5000, 10_000, 20_000, 25_000, 50_000, 100_000)
+BY_ITSELF = (250, 500, 1000, 2000, 5000)   # the scales that are chosen where none is given
+MOST_BY_ITSELF = 20   # sheets at such a scale
+MOST_SHEETS = 500     # more would take hours to draw
+RIM, RING = 8.0, 5.0  # mm: from the paper's edge to the frame, and from there to the map, where coordinates stand
+BAND = {"A4": 46.0}   # mm of the strip below the map; of larger paper LARGER_BAND
+LARGER_BAND = 60.0
+TITLE_BLOCK = 180.0   # mm at most (ISO 7200), TITLE_SHARE of the width on small paper
+TITLE_SHARE = 0.55
+MOST_LEGEND = 0.4     # of the overview's height
+AROUND = 2.0          # m of ground around the road
+ARROW = 14.0          # mm
+NOTES = 9.0           # mm for the notes below profiles and sections
+ABOVE = 18.0          # mm above the title block for scale and arrow, where the legend takes their place
+GRID = 60.0           # mm between lines of the grid at least
+TICKS, LABELS = 5.0, 25.0   # mm between ticks and labels of stations at least
+ROWS = (0.28, 0.18, 0.18, 0.18, 0.18)   # of the title block's height
+NORTH_ARROW = ":/images/north_arrows/layout_default_north_arrow.svg"  # of QGIS itself
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The page and the rectangles on it, mm."""
+
+    width: float
+    height: float
+    band: float
+
+    @property
+    def map(self) -> QRectF:
+        edge = RIM + RING
+        return QRectF(edge, edge, self.width - 2 * edge, self.height - 2 * edge - self.band)
+
+    @property
+    def strip(self) -> QRectF:
+        return QRectF(RIM, self.height - RIM - self.band, self.width - 2 * RIM, self.band)
+
+    def title_block(self, band: float) -> QRectF:
+        width = min(TITLE_BLOCK, TITLE_SHARE * self.strip.width())
+        return QRectF(self.strip.right() - width, self.strip.bottom() - band, width, band)
+
+
+def frame_of(choice: SheetSettings) -> Frame:
+    """The frame of the plan sheets."""
+    long, short = PAPERS[choice.paper]
+    return Frame(*((short, long) if choice.orientation == "portrait" else (long, short)), BAND.get(choice.paper, LARGER_BAND))
+
+
+def map_crs(layers: list[QgsMapLayer], project: QgsProject) -> QgsCoordinateReferenceSystem:
+    """The CRS that the map is drawn in: that of the first layer with a projected one, whatever the project shows."""
+    all_crs = [layer.crs() for layer in layers if layer.isSpatial() and layer.crs().isValid()]
+    return next((crs for crs in all_crs if not crs.isGeographic()), all_crs[0] if all_crs else project.crs())
+
+
+def sheet_layout(project: QgsProject, layers: dict[str, QgsMapLayer], choice: SheetSettings, below: QgsMapLayer | None = None,
+                 ground: Iterable[np.ndarray] = ()) -> tuple[QgsPrintLayout, dict[str, float]]:
+    """All pages in one layout, which is not yet added to the project's layouts; and SHEETS, PAGES and SCALE_NUMBER.
+
+    Parameters
+    ----------
+    project : QgsProject that will own the layout
+    layers : result (such as ROAD_EDGES) -> its layer, from above
+    below : layer drawn below these and left out of the legend: an orthoimage, a web map
+    ground : blocks of (N, 3) points of the road, metres, which the cross-sections show
+
+    Raises RoadExtractionError where no line runs along a road, or it would take too many sheets.
+    """
+    made = _Pages(project, layers, choice, below, ground)
+    return made.layout, {"SHEETS": float(len(made.sheets)), "PAGES": float(made.pages), "SCALE_NUMBER": float(made.scale)}
+
+
+class _Pages:
+    def __init__(self, project, layers, choice, below, ground):
+        self.choice, self.layers = choice, list(layers.values())
+        self.drawn = [*self.layers, *([below] if below is not None else [])]
+        self.crs = map_crs(self.layers, project)
+        self.unit = QgsUnitTypes.fromUnitToUnitFactor(self.crs.mapUnits(), Qgis.DistanceUnit.Meters)   # m
+        self.lines: list[MapLine] = lines_of(layers, self.crs, project, self.unit)
+        self.axes = axes_of(road_lines(self.lines))
+        if not self.axes:
+            raise RoadExtractionError(tr("No line of the layers runs along a road for 5 m or more, so sheets have no direction. Give the driving "
+                                         "lines, road edges or marking lines of a road map."))
+        self.frame = frame_of(choice)
+        self.scale, self.sheets = self._sheets()
+        self.accuracy = accuracy_of(layers)
+        self.layout = QgsPrintLayout(project)
+        self.layout.initializeDefaults()
+        self.layout.setName(choice.title)
+        self.pages = 0
+        self._add_pages(ground)
+
+    def _sheets(self):
+        """(scale, sheets) as chosen; by itself the largest scale that shows the road's width, on no more than MOST_BY_ITSELF sheets."""
+        chosen = 0 if self.choice.scale == "automatic" else int(self.choice.scale.partition(":")[2])
+        for scale in (chosen,) if chosen else BY_ITSELF:
+            width, height = self.frame.map.width() / 1000 * scale, self.frame.map.height() / 1000 * scale
+            expected = sum(axis.length for axis in self.axes) / width
+            if expected > MOST_SHEETS:
+                continue
+            if not chosen and scale != BY_ITSELF[-1] and (
+                    expected > MOST_BY_ITSELF or 2 * (self.axes[0].half_width + AROUND) > height):
+                continue
+            sheets = sheets_along(self.axes, width, height)
+            if chosen or len(sheets) <= MOST_BY_ITSELF or scale == BY_ITSELF[-1]:
+                return scale, sheets
+        raise RoadExtractionError(tr("The road would take more than {count} sheets. Choose a smaller scale or larger paper.").format(
+            count=MOST_SHEETS))
+
+    # -- pages ------------------------------------------------------------------------------
+
+    def _add_pages(self, ground):
+        room = self._legend_room(self.frame)
+        probe = add_legend(self.layout, self.layers, room)
+        self.legend_on_sheets = probe is not None
+        if probe is not None:
+            self.layout.removeLayoutItem(probe)
+        if len(self.sheets) > 1 or not self.legend_on_sheets:
+            self._add_overview()
+        for sheet in self.sheets:
+            self._add_sheet(sheet)
+        heights = tr("Heights in m: height system as stated")
+        drawings = [(tr("Longitudinal profile"), self._profiles(), [(tr("Ground along the axis"), "#b00020"), (heights, "")]),
+                    (tr("Cross-sections"), self._sections(ground),
+                     [(tr("Road edge, height of its curb"), COLOURS["ROAD_EDGES"]), (tr("Marking line"), COLOURS["MARKING_LINES"]),
+                      (tr("Driving line"), COLOURS["DRIVING_LINES"]), (tr("Ground"), DARK),
+                      (tr("Offsets in m from the axis, left positive"), ""), (heights, "")])]
+        for contents, pages, notes in drawings:
+            for number, (drawing, scale) in enumerate(pages, 1):
+                page = self._new_page()
+                paper = self._paper(self.frame)
+                self._add_title_block(paper, page, self.frame, contents, f"{number} / {len(pages)}", scale)
+                self._add_key_map(paper, page, None)
+                self._add_notes(paper, notes)
+                self._add_drawing(paper, page)
+                self._add_drawing(drawing, page, self.frame.map.x(), self.frame.map.y())
+
+    def _profiles(self):
+        return profile_pages(self.axes, self.frame.map.width(), self.frame.map.height() - NOTES, self.scale,
+                             len(self.sheets)) if self.choice.profile else []
+
+    def _sections(self, ground):
+        interval = self.choice.section_interval
+        return section_pages(self.axes, self.lines, ground, interval, self.frame.map.width(), self.frame.map.height() - NOTES) if interval else []
+
+    def _new_page(self):
+        if self.pages:
+            self.layout.pageCollection().addPage(QgsLayoutItemPage(self.layout))
+        self.layout.pageCollection().page(self.pages).setPageSize(
+            QgsLayoutSize(self.frame.width, self.frame.height, Qgis.LayoutUnit.Millimeters))
+        self.pages += 1
+        return self.pages - 1
+
+    def _add_overview(self):
+        """The whole road with the sheets on it, and the legend."""
+        page, base = self._new_page(), self.frame.band
+        tall, aside = min(legend_height(self.layers), MOST_LEGEND * self.frame.height), True
+        for band, aside in ((base, True), (max(base, tall), True), (max(base + ABOVE, tall), False)):
+            frame = Frame(self.frame.width, self.frame.height, band)
+            room = self._legend_room(frame, base)
+            if not aside:   # scale and arrow stand above the title block
+                room.setRight(frame.title_block(base).left() - 1)
+            if add_legend(self.layout, self.layers, room, page) is not None:
+                break
+        outlines = shapely.union_all([sheet.outline() for sheet in self.sheets])
+        box = outlines.minimum_rotated_rectangle
+        corners = np.array(box.exterior.coords[:4]) if box.geom_type == "Polygon" else np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+        sides = np.diff(corners[:3], axis=0)
+        along = sides[np.argmax(np.hypot(*sides.T))]
+        heading = math.atan2(along[1], along[0])
+        if frame.map.width() < frame.map.height():
+            heading += math.pi / 2
+        heading = (heading + math.pi / 2) % math.pi - math.pi / 2   # north in the upper half
+        centre = box.centroid
+        view = Sheet(0, centre.x, centre.y, heading, 1.0, 1.0)
+        spread = np.abs(view.on_page(shapely.get_coordinates(outlines)) - 0.5).max(0) * 2 + 2 * AROUND
+        needed = max(spread[0] / frame.map.width(), spread[1] / frame.map.height()) * 1000
+        scale = next((scale for scale in SCALES if scale >= needed), int(needed) + 1)
+        view = Sheet(0, centre.x, centre.y, heading, frame.map.width() / 1000 * scale, frame.map.height() / 1000 * scale)
+        chart = self._add_map(view, page, frame, scale)
+        paper = self._paper(frame)
+        over = Drawing(frame.map.width(), frame.map.height())
+        if len(self.sheets) > 1:
+            self._draw_sheets(over, view, scale, None, 11.0)
+        self._add_title_block(paper, page, frame, tr("Overview"), f"1 – {len(self.sheets)}" if len(self.sheets) > 1 else "1", f"1 : {scale}", base)
+        self._add_scale_and_north(chart, page, frame, scale, base, aside)
+        self._draw_grid(paper, view, frame, scale)
+        self._add_drawing(over, page, frame.map.x(), frame.map.y())
+        self._add_drawing(paper, page)
+
+    def _add_sheet(self, sheet):
+        page, frame = self._new_page(), self.frame
+        chart = self._add_map(sheet, page, frame, self.scale)
+        paper = self._paper(frame)
+        over = Drawing(frame.map.width(), frame.map.height())
+        self._draw_matches(over, sheet)
+        self._draw_stations(over, sheet)
+        self._draw_grid(paper, sheet, frame, self.scale)
+        self._add_title_block(paper, page, frame, tr("Road plan"), tr("{number} of {count}").format(number=sheet.number, count=len(self.sheets)),
+                              f"1 : {self.scale}")
+        self._add_key_map(paper, page, sheet)
+        if self.legend_on_sheets:
+            add_legend(self.layout, self.layers, self._legend_room(frame), page)
+        self._add_scale_and_north(chart, page, frame, self.scale, frame.band)
+        self._add_drawing(over, page, frame.map.x(), frame.map.y())
+        self._add_drawing(paper, page)
+
+    def _legend_room(self, frame, base=None):
+        """Between the key map, where there is one, and the scale."""
+        strip, block = frame.strip, frame.title_block(frame.band)
+        left = strip.x() + 1 + (self._key_width() if base is None and len(self.sheets) > 1 else 0.0)
+        return QRectF(left, strip.y() + 1, block.left() - 45 - left, strip.height() - 2)
+
+    def _key_width(self):
+        return min(1.3 * self.frame.band, self.frame.title_block(self.frame.band).left() - 45 - RIM)
+
+    # -- what stands on a page --------------------------------------------------------------
+
+    def _paper(self, frame):
+        """A drawing over the whole page, with its frame."""
+        paper = Drawing(frame.width, frame.height)
+        edge = QRectF(RIM, RIM, frame.width - 2 * RIM, frame.height - 2 * RIM)
+        for rectangle, width in ((edge, 0.5), (frame.map, 0.25)):
+            paper.line(_corners(rectangle), width=width, closed=True)
+        paper.line([(frame.strip.left(), frame.strip.top()), (frame.strip.right(), frame.strip.top())], width=0.5)
+        return paper
+
+    def _place(self, item, page, x, y, width=0.0, height=0.0):
+        self.layout.addLayoutItem(item)
+        if width:
+            item.attemptResize(QgsLayoutSize(width, height, Qgis.LayoutUnit.Millimeters))
+        item.attemptMove(QgsLayoutPoint(x, y, Qgis.LayoutUnit.Millimeters), page=page)
+
+    def _add_drawing(self, drawing, page, x=0.0, y=0.0):
+        picture = QgsLayoutItemPicture(self.layout)
+        picture.setPicturePath(drawing.path())
+        self._place(picture, page, x, y, drawing.width, drawing.height)
+        picture.setLocked(True)
+
+    def _add_map(self, sheet, page, frame, scale):
+        chart = QgsLayoutItemMap(self.layout)
+        chart.setId("Map" if not page else f"Map {page + 1}")
+        self._place(chart, page, frame.map.x(), frame.map.y(), frame.map.width(), frame.map.height())
+        chart.setCrs(self.crs)
+        chart.setLayers(self.drawn)
+        chart.setKeepLayerSet(True)
+        chart.zoomToExtent(QgsRectangle.fromCenterAndSize(QgsPointXY(sheet.x / self.unit, sheet.y / self.unit), sheet.width / self.unit,
+                                                          sheet.height / self.unit))
+        chart.setScale(scale)
+        chart.setMapRotation(math.degrees(sheet.heading))
+        chart.setBackgroundColor(QColor(255, 255, 255))
+        if self.choice.credit:
+            self._add_credit(page, frame)
+        return chart
+
+    def _add_credit(self, page, frame):
+        """In the lower left corner of the map."""
+        label = self._label(self.choice.credit, 6.0)
+        label.setId("Credit")
+        label.setBackgroundEnabled(True)
+        label.setBackgroundColor(QColor(255, 255, 255, 200))
+        label.setMarginX(1.0)
+        wide, widest = text_width(self.choice.credit, 6.0) + 4.0, 0.5 * frame.map.width()
+        height = 3.2 * math.ceil(wide / (widest - 5.0)) + 0.8
+        self._place(label, page, frame.map.x() + 0.5, frame.map.bottom() - height - 0.5, min(wide, widest), height)
+
+    def _label(self, text, size):
+        label = QgsLayoutItemLabel(self.layout)
+        label.setText(as_it_stands(text))
+        label.setTextFormat(text_format(size))
+        label.setVAlign(Qt.AlignmentFlag.AlignVCenter)
+        label.setMarginX(0.0)
+        label.setMarginY(0.0)
+        return label
+
+    def _add_scale_and_north(self, chart, page, frame, scale, band, aside=True):
+        """Beside the title block, else above it, where they cover no road; the arrow is turned with the map."""
+        block = frame.title_block(band)
+        x, top = (block.left() - 44, block.top()) if aside else (block.left() + 15, frame.strip.top())
+        arrow = QgsLayoutItemPicture(self.layout)
+        arrow.setId("North")
+        arrow.setPicturePath(NORTH_ARROW)
+        arrow.setSvgFillColor(QColor(40, 40, 40))
+        arrow.setSvgStrokeColor(QColor(40, 40, 40))
+        self._place(arrow, page, x + 21 - ARROW / 2, top + 4 if aside else top + 2, ARROW, ARROW)
+        arrow.setLinkedMap(chart)
+        arrow.setNorthMode(QgsLayoutItemPicture.NorthMode.GridNorth)
+        bar = QgsLayoutItemScaleBar(self.layout)
+        bar.setStyle("Single Box")
+        bar.setLinkedMap(chart)
+        bar.setUnits(Qgis.DistanceUnit.Meters)
+        bar.setUnitLabel("m")
+        segment = round_step(0.0065 * scale)
+        bar.setNumberOfSegments(int(0.034 * scale / segment))
+        bar.setNumberOfSegmentsLeft(0)
+        bar.setUnitsPerSegment(segment)
+        bar.setTextFormat(text_format(7))
+        bar.setHeight(1.8)
+        bar.update()
+        width, height = bar.rect().width(), bar.rect().height()
+        self._place(bar, page, *((x + 21 - width / 2, top + band - height - 3) if aside else (x + 45, top + 4)))
+
+    def _add_title_block(self, paper, page, frame, contents, number, scale, band=None):
+        """Who made what, when, where and how well; captions are drawn, what was chosen stands in labels that can be changed."""
+        block, choice = frame.title_block(band or frame.band), self.choice
+        heights = choice.heights or (self.crs.verticalCrs().userFriendlyIdentifier() if self.crs.verticalCrs().isValid()
+                                     else tr("as in the point clouds"))
+        rows = ([(tr("Project"), choice.title, 0.76, 12.0), (tr("Sheet"), number, 0.24, 12.0)],
+                [(tr("Office"), choice.office, 0.42, 8.0), (tr("Author"), choice.author, 0.34, 8.0), (tr("Date"), str(date.today()), 0.24, 8.0)],
+                [(tr("Contents"), contents, 0.42, 8.0), (tr("Scale"), scale, 0.34, 8.0), (tr("Paper"), choice.paper, 0.24, 8.0)],
+                [(tr("CRS"), self.crs.userFriendlyIdentifier(), 0.6, 8.0), (tr("Height system"), heights, 0.4, 8.0)],
+                [(tr("Accuracy, one sigma across"), self.accuracy, 0.76, 7.0), (tr("Software"), f"Lanewright {own_version()}", 0.24, 7.0)])
+        paper.line(_corners(block), width=0.5, closed=True)
+        y = block.top()
+        for share, row in zip(ROWS, rows):
+            height, x = share * block.height(), block.left()
+            paper.line([(block.left(), y), (block.right(), y)])
+            for caption, text, part, size in row:
+                width = part * block.width()
+                if x > block.left():
+                    paper.line([(x, y), (x, y + height)])
+                paper.text(x + 1, y + 1.7, caption, 5.0, "start", colour=GREY)
+                room = max(1, int((height - 3.2) // 3.0))   # lines of small letters
+                size = max(min(size, size * (width - 2) * room * 0.9 / max(text_width(text, size), 1e-6)), 5.0)
+                self._place(self._label(text, size), page, x + 1, y + 2.6, width - 2, height - 2.8)
+                x += width
+            y += height
+
+    # -- what is drawn over the map ---------------------------------------------------------
+
+    def _draw_sheets(self, drawing, view, scale, current, size=7.0):
+        """Outlines of the sheets with their numbers; the current one filled."""
+        per_mm = scale / 1000
+        for sheet in self.sheets:
+            corners = view.on_page(np.array(sheet.outline().exterior.coords[:4])) / per_mm
+            chosen = current is not None and sheet.number == current.number
+            drawing.line(corners, "#b00020" if chosen else DARK, 0.4 if chosen else 0.2, fill="#b0002030" if chosen else "none", closed=True)
+        for sheet in sorted(self.sheets, key=lambda one: current is not None and one.number != current.number):
+            x, y = view.on_page(np.array([[sheet.x, sheet.y]]))[0] / per_mm
+            drawing.text(x, y, str(sheet.number), size, boxed=True, yields=True)
+
+    def _add_notes(self, paper, notes):
+        """What the colours of a page mean, along the lower side of the frame."""
+        box, x, row = self.frame.map, self.frame.map.x() + 3, 0
+        for text, colour in notes:
+            width = text_width(text, 6.0) + (9 if colour else 0) + 6
+            if x + width > box.right():
+                x, row = box.x() + 3, row + 1
+            y = box.bottom() - NOTES + 2.5 + 4 * row
+            if colour:
+                paper.line([(x, y), (x + 7, y)], colour, 0.8)
+            paper.text(x + (9 if colour else 0), y, text, 6.0, "start")
+            x += width
+
+    def _add_key_map(self, paper, page, current):
+        """All sheets over the road, north up, where there are several."""
+        if len(self.sheets) < 2:
+            return
+        strip = self.frame.strip
+        drawing = Drawing(self._key_width(), self.frame.band)
+        bounds = np.array(shapely.union_all([sheet.outline() for sheet in self.sheets]).bounds)
+        scale = 1000 * max((bounds[2] - bounds[0]) / (drawing.width - 3), (bounds[3] - bounds[1]) / (drawing.height - 8))
+        middle = (bounds[:2] + bounds[2:]) / 2
+        view = Sheet(0, middle[0], middle[1] + 0.0025 * scale, 0.0, drawing.width / 1000 * scale, drawing.height / 1000 * scale)
+        for axis in self.axes:
+            drawing.line(view.on_page(axis.places) / scale * 1000, GREY, 0.5)
+        self._draw_sheets(drawing, view, scale, current)
+        drawing.text(1, 2.2, tr("Key map, north up"), 5.0, "start", colour=GREY)
+        self._add_drawing(drawing, page, strip.x(), strip.y())
+        paper.line([(strip.x() + drawing.width, strip.top()), (strip.x() + drawing.width, strip.bottom())])
+
+    def _draw_matches(self, drawing, sheet):
+        per_mm = self.scale / 1000
+        for match in sheet.matches:
+            across = np.array([-math.sin(match.heading), math.cos(match.heading)])
+            ends = sheet.on_page(np.array([match.x, match.y]) + np.outer(self._reaches(match, across, sheet), across)) / per_mm
+            line = shapely.clip_by_rect(shapely.LineString(ends), 0, 0, drawing.width, drawing.height)
+            if line.is_empty:
+                continue
+            places = shapely.get_coordinates(line)
+            drawing.line(places, width=0.4, dash="6 1.5 1 1.5")
+            top, bottom = places[np.argsort(places[:, 1])]
+            way = bottom - top
+            outwards = np.sign((sheet.on_page(np.array([[match.x, match.y]]))[0] / per_mm - (drawing.width / 2, drawing.height / 2))[0]) or 1.0
+            normal = np.array([way[1], -way[0]]) / max(np.hypot(*way), 1e-9)
+            normal *= outwards * (1.0 if normal[0] >= 0 else -1.0)
+            turned = math.degrees(math.atan2(way[1], way[0])) - 90
+            turned = turned - 90 if abs(turned) < 60 else turned + 90
+            text = tr("Match line, sheet {number}").format(number=match.neighbour)
+            room = text_width(text, 8.0) / 2 + 3
+            for end, ahead in ((top, 1), (bottom, -1)):
+                place = end + ahead * way / max(np.hypot(*way), 1e-9) * room + normal * 2.2
+                drawing.text(*place, text, 8.0, turned=turned, boxed=True, yields=True)
+
+    def _reaches(self, match, across, sheet):
+        """m to the right (negative) and left that a match line reaches: over the sheet, but not to another leg of its own road."""
+        most, place = sheet.width + sheet.height, np.array([match.x, match.y])
+        axis = min(self.axes, key=lambda one: np.hypot(*(one.places[:, :2] - place).T).min())
+        met = shapely.intersection(shapely.LineString(axis.places[:, :2]), shapely.LineString(place + np.outer([-most, most], across)))
+        offsets = (shapely.get_coordinates(met) - place) @ across
+        gap = 2 * axis.half_width
+        return [max([-most, *(offsets[offsets < -gap] + gap)]), min([most, *(offsets[offsets > gap] - gap)])]
+
+    def _draw_stations(self, drawing, sheet):
+        """The axis with a tick every 10 m (more at small scales) and stations beside the road."""
+        per_mm = self.scale / 1000
+        ticks = next(step for step in (10, 20, 50, 100, 200, 500, 1000) if step >= TICKS * per_mm)
+        labels = next(ticks * times for times in (1, 5, 10, 50) if ticks * times >= LABELS * per_mm)
+        for axis in self.axes:
+            course = shapely.clip_by_rect(shapely.LineString(sheet.on_page(axis.places) / per_mm), 0, 0, drawing.width, drawing.height)
+            for part in shapely.get_parts(course):
+                drawing.line(shapely.get_coordinates(part), "#b00020", 0.15, "5 1 0.6 1")
+            for station in np.arange(math.ceil(axis.stations[0] / ticks) * ticks, axis.stations[-1] + 1e-6, ticks):
+                self._draw_station(drawing, sheet, axis, float(station), abs(station / labels - round(station / labels)) < 1e-6)
+
+    def _draw_station(self, drawing, sheet, axis, station, labelled):
+        per_mm, heading = self.scale / 1000, axis.heading(station)
+        left = np.array([-math.sin(heading), math.cos(heading)])
+        place = axis.at(np.array([station]))[0, :2]
+        x, y = sheet.on_page(place[None])[0] / per_mm
+        if not (0 < x < drawing.width and 0 < y < drawing.height):
+            return
+        reach = (1.6 if labelled else 0.8) * per_mm
+        drawing.line(sheet.on_page(place + np.outer([-reach, reach], left)) / per_mm, "#b00020", 0.25)
+        if not labelled:
+            return
+        text = station_text(station)
+        for side in (-1, 1):
+            outside = axis.half_width + 1.5 * per_mm
+            leader = sheet.on_page(place + np.outer([side * outside, side * (outside + 2.5 * per_mm)], left)) / per_mm
+            way = leader[1] - leader[0]
+            turned = math.degrees(math.atan2(way[1], way[0]))
+            upright = (turned + 135) % 180 - 135   # read from below or from the right
+            middle = leader[1] + way / max(np.hypot(*way), 1e-9) * (text_width(text, 7.0) / 2 + 1)
+            if drawing.text(*middle, text, 7.0, turned=upright, colour="#b00020", boxed=True, yields=True):
+                drawing.line(leader, "#b00020", 0.25)
+                return
+
+    def _draw_grid(self, paper, sheet, frame, scale):
+        """Crosses where lines of the grid meet, and their coordinates along the map's frame."""
+        step, per_mm = round_step(GRID * scale / 1000 / self.unit), scale / 1000
+        corners = np.array(sheet.outline().exterior.coords[:4]) / self.unit
+        easts, norths = (np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step
+                         for low, high in zip(corners.min(0), corners.max(0)))
+        place = lambda points: sheet.on_page(np.asarray(points, float) * self.unit) / per_mm + (frame.map.x(), frame.map.y())  # noqa: E731
+        arm = 2.0 * per_mm / self.unit
+        for east in easts:
+            for north in norths:
+                x, y = place([[east, north]])[0]
+                if frame.map.contains(x, y):
+                    for dx, dy in ((arm, 0), (0, arm)):
+                        paper.line(place([[east - dx, north - dy], [east + dx, north + dy]]), GREY, 0.15)
+        upright = abs(math.cos(sheet.heading)) >= abs(math.sin(sheet.heading))   # lines of equal east are the steeper ones on the page
+        for values, axis, word in ((easts, 0, tr("E")), (norths, 1, tr("N"))):
+            level = (axis == 0) == upright   # they meet the upper and lower frame
+            for value in values:
+                for x, y in _on_frame(sheet, value * self.unit, axis, level, frame.map, per_mm):
+                    out = np.array([0, math.copysign(1, y - frame.map.center().y())] if level else [math.copysign(1, x - frame.map.center().x()), 0])
+                    paper.line([(x, y), (x, y) + out * 1.2], width=0.25)
+                    paper.text(*((x, y) + out * 2.9), f"{word} {value:.0f}", 5.5, turned=0 if level else -90, yields=True)
+
+
+def _on_frame(sheet: Sheet, value: float, axis: int, level: bool, box: QRectF, per_mm: float) -> Iterator[tuple[float, float]]:
+    """Where the line of one coordinate (axis 0: east, 1: north) meets the upper and lower (`level`), or left and right, side of the map; mm."""
+    cos, sin = math.cos(sheet.heading), math.sin(sheet.heading)
+    right, up = ((cos, sin)[axis], (-sin, cos)[axis])   # change of the coordinate per metre right and up on the page
+    delta = value - (sheet.x, sheet.y)[axis]
+    w, h = sheet.width / 2, sheet.height / 2
+    for end in (-1, 1):
+        u, v = ((delta - up * end * h) / right, end * h) if level else (end * w, (delta - right * end * w) / up)
+        if abs(u) <= w + 1e-9 and abs(v) <= h + 1e-9:
+            yield box.x() + (u + w) / per_mm, box.y() + (h - v) / per_mm
+
+
+def _corners(box: QRectF) -> list[tuple[float, float]]:
+    return [(box.left(), box.top()), (box.right(), box.top()), (box.right(), box.bottom()), (box.left(), box.bottom())]
+
+
+def axes_of_layers(layers: dict[str, QgsMapLayer], project: QgsProject) -> list[Axis]:
+    """The axes that sheets of these layers follow, metres of the CRS that they are drawn in."""
+    crs = map_crs(list(layers.values()), project)
+    return axes_of(road_lines(lines_of(layers, crs, project, QgsUnitTypes.fromUnitToUnitFactor(crs.mapUnits(), Qgis.DistanceUnit.Meters))))
