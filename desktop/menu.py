@@ -46,6 +46,9 @@ class Menu(QObject):
                   "or where the boundary methods differ, and keeps what you decide there"), theme("/mActionZoomNext.svg"))
         self._add(tr("Cross-section"), self.open_section, tr("Points and lines of the road where you click in the map"),
                   theme("/mActionElevationProfile.svg"))
+        self._add(tr("Road map in 3D"), self.open_3d,
+                  tr("QGIS's 3D view over the middle of the map, with curbs, paint and driving lines at their heights"),
+                  theme("/mActionNew3DMap.svg"))
         self._add(tr("Control points from paint"), self.open_pairs, tr("Places UAV images on the map: the same paint in each and in the intensity "
                   "image, side by side to accept or refuse"), QIcon(str(ICON.parent / "icons" / "proposecontrolpoints.svg")))
         self._add(tr("Open the last report"), self.open_report, tr("The report of the run that ended last"), theme("/mIconHtml.svg"))
@@ -211,6 +214,20 @@ class Menu(QObject):
         self.dialog = processing.createAlgorithmDialog(name, values)
         if self.dialog is not None:  # QGIS has said why
             self.dialog.show()
+
+    def open_3d(self):
+        """QGIS's 3D view of the road map of the active layer, else of the newest; where QGIS has none, a word on that."""
+        maps = self._road_maps()
+        if not maps:
+            return
+        try:
+            from .view3d import show_in_3d
+
+            fine = show_in_3d(self.iface, maps[0], maps[0].title)
+        except ImportError:  # a QGIS that was built without 3D
+            fine = False
+        if not fine:
+            say(self.iface, tr("This QGIS opened no 3D view. It needs a graphics driver and a projected CRS of the project."))
 
     def open_layout(self):
         """The dialog of Sheets along the road, for the road map of the active layer, else the newest."""

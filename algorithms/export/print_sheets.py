@@ -47,7 +47,8 @@ SHEET_SETTINGS = (
                 choices=("landscape", "portrait")),
     SettingSpec("SCALE", SETTINGS, "scale", tr("Scale"),
                 tr("automatic takes the largest of 1:250, 1:500, 1:1000, 1:2000 and 1:5000 that needs at most 20 sheets and on which the road is not "
-                   "wider than the sheet. A larger scale shows curbs and paint better on more sheets; below 1:1000 lanes are thin bands."),
+                   "wider than the sheet; a road that fits on one sheet may be drawn at 1:100 or 1:200. "
+                   "A larger scale shows curbs and paint better on more sheets; below 1:1000 lanes are thin bands."),
                 choices=("automatic", *SCALES)),
     SettingSpec("PROFILE", SETTINGS, "profile", tr("Longitudinal profile"),
                 tr("Further pages with the height of the ground along the axis, stations and gradients. The layers need heights.")),
@@ -56,7 +57,7 @@ SHEET_SETTINGS = (
     SettingSpec("HEIGHT_SYSTEM", SETTINGS, "heights", tr("Height system"),
                 tr("What the heights refer to, for the title block, such as DHHN2016. Empty takes the vertical part of the CRS."), advanced=True),
     SettingSpec("CREDIT", SETTINGS, "credit", tr("Credit on the map"),
-                tr("Whose data lie below, as their licence wants it said; stands in the lower left corner of every map."), advanced=True),
+                tr("Whose data lie below, as their licence wants it said; stands in the lower left corner of the map"), advanced=True),
 )
 
 
@@ -79,7 +80,8 @@ class PrintSheets(Algorithm):
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr(
             "With it cross-sections show the ground as it was measured; without it straight lines between edges, paint and driving lines."),
             optional=True)
-        self.add_input("painted", "BELOW", tr("Layer below (orthoimage, web map, plan)"), tr("Drawn below all others and left out of the legend."),
+        self.add_input("painted", "BELOW", tr("Layer below (orthoimage, web map)"), tr(
+            "Drawn below all others and left out of the legend. Lanes and Road surface cover it where they are given."),
                        optional=True)
         self.add_settings(SHEET_SETTINGS)
         self.add_input("choice", "LANGUAGE", tr("Language of the sheets"), tr("automatic is the language of the program."), default="automatic",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -83,51 +84,57 @@ def axes_of(lines: Iterable[RoadLine]) -> list[Axis]:
 
 
 def _axes_of_road(road, lines):
-    first = np.floor(min(line.stations[0] for line in lines) / STEP) * STEP
-    count = int((max(line.stations[-1] for line in lines) - first) / STEP) + 2
-    stations = first + STEP * np.arange(count)
-    places = np.full((len(lines), count, 3), np.nan)
-    for row, line in enumerate(lines):
-        inside = (stations >= line.stations[0] - STEP / 2) & (stations <= line.stations[-1] + STEP / 2)
-        for column in range(3):
-            places[row, inside, column] = np.interp(stations[inside], line.stations, line.places[:, column])
-    axis = _led(places[:, :, :2], np.array([line.rank for line in lines]))
+    first = math.floor(min(line.stations[0] for line in lines) / STEP)
+    samples = [_samples(line, first) for line in lines]
+    rows = np.concatenate([rows for rows, _ in samples])
+    places = np.concatenate([on_line for _, on_line in samples])
+    line = np.repeat(np.arange(len(lines)), [len(rows) for rows, _ in samples])
+    axis = _led(rows, places[:, :2], line, np.array([one.rank for one in lines])[line])
     known = np.flatnonzero(np.isfinite(axis[:, 0]))
     for part in np.split(known, np.flatnonzero(np.diff(known) * STEP > LONGEST_GAP) + 1):
         if len(part) * STEP < SHORTEST_LINE:
             continue
         part = np.arange(part[0], part[-1] + 1)
         course = np.stack([_smooth(np.interp(part, known, axis[known, column]), SMOOTHED) for column in (0, 1)], axis=-1)
-        heights, half_width = _across(places[:, part], course)
-        yield Axis(road, stations[part], np.c_[course, heights], half_width)
+        inside = (rows >= part[0]) & (rows <= part[-1])
+        heights, half_width = _across(rows[inside] - part[0], places[inside], course)
+        yield Axis(road, (first + part) * STEP, np.c_[course, heights], half_width)
 
 
-def _led(places, ranks):
-    """(S, 2) the axis before it is smoothed, from (L, S, 2) places of lines; NaN where there is none."""
-    goes_on = np.isfinite(places[:, :-1, 0]) & np.isfinite(places[:, 1:, 0])
-    free, led = np.ones(places.shape[1] - 1, bool), np.zeros_like(goes_on)
+def _samples(line, first):
+    """(rows of stations counted from the first one of the road, (K, 3) places there) of a line."""
+    low, high = math.ceil(line.stations[0] / STEP - 0.5), math.floor(line.stations[-1] / STEP + 0.5)
+    rows = np.arange(low, high + 1)
+    return rows - first, np.stack([np.interp(rows * STEP, line.stations, column) for column in line.places.T], axis=-1)
+
+
+def _led(rows, places, line, ranks):
+    """(S, 2) the axis before it is smoothed, from places of lines at rows of stations; NaN where there is none."""
+    count = int(rows.max()) + 2
+    steps = np.flatnonzero(line[:-1] == line[1:])   # from a place to the next of its line
+    free, led = np.ones(count, bool), np.zeros(len(steps), bool)
     for rank in np.unique(ranks):   # where better lines break off for no longer than a junction, worse ones would lead around its corners
-        led |= goes_on & (ranks[:, None] == rank) & free
-        there = np.flatnonzero(led.any(axis=0))
-        for first, last in zip(there[:-1], there[1:]):
-            if (last - first) * STEP <= LONGEST_GAP:
-                free[first:last + 1] = False
+        led |= (ranks[steps] == rank) & free[rows[steps]]
+        there = np.unique(rows[steps[led]])
+        for before, after in zip(there[:-1], there[1:]):
+            if (after - before) * STEP <= LONGEST_GAP:
+                free[before:after + 1] = False
         free[there] = False
-    axis, middles, lefts = (np.full(places.shape[1:], np.nan) for _ in range(3))
-    for s in range(places.shape[1] - 1):
-        rows = np.flatnonzero(led[:, s])
-        if not len(rows):
-            continue
-        steps = places[rows, s + 1] - places[rows, s]
-        ahead = (steps / np.maximum(np.hypot(*steps.T), 1e-9)[:, None]).sum(0)
+    steps = steps[led][np.argsort(rows[steps[led]], kind="stable")]
+    starts = np.searchsorted(rows[steps], np.arange(count + 1))
+    axis, middles, lefts = (np.full((count, 2), np.nan) for _ in range(3))
+    for row in range(count - 1):
+        here = steps[starts[row]:starts[row + 1]]
+        ahead = places[here + 1] - places[here]
+        ahead = (ahead / np.maximum(np.hypot(*ahead.T), 1e-9)[:, None]).sum(0)
         if not ahead.any():
             continue
         left = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
-        if np.isnan(axis[s, 0]):
-            axis[s] = places[rows, s].mean(0)
-        offsets = (places[rows, s] - axis[s]) @ left
-        axis[s + 1] = np.mean(places[rows, s + 1] - np.outer(offsets, left), axis=0)
-        middles[s:s + 2], lefts[s:s + 2] = (offsets.min() + offsets.max()) / 2, left
+        if np.isnan(axis[row, 0]):
+            axis[row] = places[here].mean(0)
+        offsets = (places[here] - axis[row]) @ left
+        axis[row + 1] = np.mean(places[here + 1] - np.outer(offsets, left), axis=0)
+        middles[row:row + 2], lefts[row:row + 2] = (offsets.min() + offsets.max()) / 2, left
     known = np.flatnonzero(np.isfinite(axis[:, 0]))
     for part in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1) if len(known) else ():
         usual = median_filter(middles[part, 0], int(2 * CENTRED / STEP) + 1, mode="mirror")   # not of the lanes left at a stop line
@@ -147,22 +154,25 @@ def _smooth(values, sigma):
     return np.convolve(np.r_[before, values, after], weights / weights.sum(), "valid")
 
 
-def _across(places, course):
+def _across(rows, places, course):
     """(S,) height of the ground on the course between the lines to its left and right, and m to its sides within which the lines lie."""
     ahead = np.gradient(course, axis=0)
     ahead /= np.maximum(np.hypot(*ahead.T), 1e-9)[:, None]
-    offsets = (places[:, :, :2] - course) @ np.array([[0, 1], [-1, 0]])  # (L, S, 2) turned by a quarter
-    offsets = -(offsets * ahead).sum(-1)
-    offsets[~(np.abs(offsets) < BESIDE)] = np.nan
-    heights = np.full(len(course), np.nan)
-    for s in range(len(course)):
-        rows = np.flatnonzero(np.isfinite(offsets[:, s]) & np.isfinite(places[:, s, 2]))
-        if len(rows) and (np.abs(offsets[rows, s]).min() < ON_AXIS or np.ptp(np.sign(offsets[rows, s]))):
-            rows = rows[np.argsort(offsets[rows, s])]
-            heights[s] = np.interp(0.0, offsets[rows, s], places[rows, s, 2])
+    delta = places[:, :2] - course[rows]
+    offsets = delta[:, 1] * ahead[rows, 0] - delta[:, 0] * ahead[rows, 1]
+    near = np.abs(offsets) < BESIDE
+    sides, heights = np.zeros(len(course)), np.full(len(course), np.nan)
+    np.maximum.at(sides, rows[near], np.abs(offsets[near]))
+    near &= np.isfinite(places[:, 2])
+    order = np.flatnonzero(near)[np.lexsort((offsets[near], rows[near]))]
+    starts = np.searchsorted(rows[order], np.arange(len(course) + 1))
+    for row in range(len(course)):
+        here = order[starts[row]:starts[row + 1]]
+        across = offsets[here]
+        if len(here) and (np.abs(across).min() < ON_AXIS or across[0] < 0 < across[-1]):
+            heights[row] = np.interp(0.0, across, places[here, 2])
     known = np.isfinite(heights)
     if known.any():
         first, last = np.flatnonzero(known)[[0, -1]]
         heights[first:last + 1] = _smooth(np.interp(np.arange(first, last + 1), np.flatnonzero(known), heights[known]), SMOOTHED)
-    sides = np.nanmax(np.abs(np.where(np.isfinite(offsets).any(axis=0), offsets, 0.0)), axis=0)
     return heights, float(np.percentile(sides, USUAL))

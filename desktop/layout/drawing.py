@@ -7,12 +7,14 @@ import math
 from html import escape
 
 import numpy as np
+import shapely
 from qgis.PyQt.QtCore import QRectF
 from qgis.PyQt.QtGui import QFont, QFontMetricsF
 
 from .legend import FONT
 
 LETTER = 0.353   # mm of a point
+FINEST = 0.01    # mm by which a line may be drawn beside its places
 GREY, DARK = "#8a8a8a", "#202020"
 
 
@@ -31,6 +33,8 @@ class Drawing:
         for part in np.split(places, np.flatnonzero(~np.isfinite(places).all(axis=1))):
             part = part[np.isfinite(part).all(axis=1)]
             if len(part) > 1:
+                if not closed:
+                    part = shapely.get_coordinates(shapely.simplify(shapely.linestrings(part), FINEST))
                 path = "M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in part) + "Z" * closed
                 dashed = f' stroke-dasharray="{dash}"' if dash else ""
                 faint = f' fill-opacity="{int(fill[7:], 16) / 255:.2f}"' if len(fill) == 9 else ""
@@ -74,8 +78,9 @@ def text_width(text: str, size: float) -> float:
 
 def station_text(station: float) -> str:
     """0+125 for 125 m, as on plans."""
-    whole, rest = divmod(round(station, 3), 1000)
-    return f"{int(whole)}+{rest:03.0f}" if abs(rest - round(rest)) < 0.005 else f"{int(whole)}+{rest:06.2f}"
+    whole, rest = divmod(round(abs(station), 2), 1000)
+    sign = "-" if station < 0 else ""
+    return f"{sign}{int(whole)}+{rest:03.0f}" if rest == round(rest) else f"{sign}{int(whole)}+{rest:06.2f}"
 
 
 def round_step(least: float) -> float:

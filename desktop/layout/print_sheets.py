@@ -25,7 +25,8 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...core.common.texts import language
 from ...core.survey.las.reader import read_blocks, read_headers
-from ...processing_provider.results.road_maps import road_map_of
+from ...processing_provider.results.origin import origin_of
+from ...processing_provider.results.road_maps import CLOUDS, road_map_of
 from ...processing_provider.styling import LOOKS, STYLES, apply_style
 from ...processing_provider.texts import speak, tr
 from .sheets import sheet_layout
@@ -52,13 +53,16 @@ def _print(call, settings, progress):
         raise RoadExtractionError(tr("No layer was given. Choose the layers of a road map that the sheets are to show."))
     cloud = call.cloud("ROAD_POINTS")
     layout, numbers = sheet_layout(project, layers, _completed(settings, layers, project), _layer(call, "BELOW", project),
-                                   _ground(cloud, progress.part(0.0, 0.2)) if cloud else ())
-    write_pdf(layout, call.new_file("OUTPUT"), progress.part(0.2 if cloud else 0.05, 1.0), DPI_OF_LARGE.get(settings.paper, DPI))
+                                   _ground(cloud, progress.part(0.1, 0.3)) if cloud else (), progress.part(0.0, 0.1))
+    write_pdf(layout, call.new_file("OUTPUT"), progress.part(0.3 if cloud else 0.1, 1.0), DPI_OF_LARGE.get(settings.paper, DPI))
     progress.info(tr("{sheets} plan sheets of 1 : {scale}, {pages} pages in all.").format(
         sheets=int(numbers["SHEETS"]), scale=int(numbers["SCALE_NUMBER"]), pages=int(numbers["PAGES"])))
     if call.value("KEEP") and call.context.project() is not None:
-        layout.setName(unused_name(project, layout.name()))
-        project.layoutManager().addLayout(layout)
+        if all(project.mapLayer(layer.id()) is not None for layer in layers.values()):
+            layout.setName(unused_name(project, layout.name()))
+            project.layoutManager().addLayout(layout)
+        else:
+            progress.info(tr("The layout was not kept in the project, which lacks its layers: add the files to the project and choose them there."))
     return numbers
 
 
@@ -84,8 +88,11 @@ def _completed(settings, layers, project):
     if settings.title.strip():
         return settings
     road_map = next((one for layer in layers.values() if (one := road_map_of(layer, project)) is not None), None)
-    source = next(iter(layers.values())).source().split("|")[0]
-    return replace(settings, title=road_map.title if road_map is not None else survey_name([source]) or tr("Road map"))
+    if road_map is not None:
+        return replace(settings, title=road_map.title)
+    clouds = next((origin.provenance.values.get(CLOUDS) for layer in layers.values() if (origin := origin_of(layer)) is not None), None)
+    named = clouds if isinstance(clouds, list) else [clouds or next(iter(layers.values())).source().split("|")[0]]
+    return replace(settings, title=survey_name([str(name) for name in named]) or tr("Road map"))
 
 
 def _ground(path, progress) -> Iterator[np.ndarray]:

@@ -32,17 +32,19 @@ from qgis.PyQt.QtGui import QColor
 from ...algorithms.export.print_sheets import SheetSettings
 from ...algorithms.provenance import own_version
 from ...core.common.errors import RoadExtractionError
+from ...core.common.progress import Progress
 from ...processing_provider.texts import tr
 from .axes import Axis, axes_of
 from .charts import COLOURS, profile_pages, section_pages
-from .drawing import DARK, GREY, Drawing, round_step, station_text, text_width
+from .drawing import DARK, GREY, LETTER, Drawing, round_step, station_text, text_width
 from .legend import add_legend, as_it_stands, legend_height, text_format
 from .map_lines import MapLine, accuracy_of, lines_of, road_lines
 from .pages import Sheet, sheets_along
 
 PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1": (841.0, 594.0), "A0": (1189.0, 841.0)}  # mm, ISO 216
 SCALES = (100, 200, 250, 500, 1000, 2000, 2500, 5000, 10_000, 20_000, 25_000, 50_000, 100_000)
-BY_ITSELF = (250, 500, 1000, 2000, 5000)   # the scales that are chosen where none is given
+BY_ITSELF = (100, 200, 250, 500, 1000, 2000, 5000)   # the scales that are chosen where none is given, SINGLE for one sheet alone
+SINGLE = (100, 200)
 MOST_BY_ITSELF = 20   # sheets at such a scale
 MOST_SHEETS = 500     # more would take hours to draw
 RIM, RING = 8.0, 5.0  # mm: from the paper's edge to the frame, and from there to the map, where coordinates stand
@@ -96,7 +98,7 @@ def map_crs(layers: list[QgsMapLayer], project: QgsProject) -> QgsCoordinateRefe
 
 
 def sheet_layout(project: QgsProject, layers: dict[str, QgsMapLayer], choice: SheetSettings, below: QgsMapLayer | None = None,
-                 ground: Iterable[np.ndarray] = ()) -> tuple[QgsPrintLayout, dict[str, float]]:
+                 ground: Iterable[np.ndarray] = (), progress: Progress = Progress()) -> tuple[QgsPrintLayout, dict[str, float]]:
     """All pages in one layout, which is not yet added to the project's layouts; and SHEETS, PAGES and SCALE_NUMBER.
 
     Parameters
@@ -108,12 +110,13 @@ def sheet_layout(project: QgsProject, layers: dict[str, QgsMapLayer], choice: Sh
 
     Raises RoadExtractionError where no line runs along a road, or it would take too many sheets.
     """
-    made = _Pages(project, layers, choice, below, ground)
+    made = _Pages(project, layers, choice, below, ground, progress)
     return made.layout, {"SHEETS": float(len(made.sheets)), "PAGES": float(made.pages), "SCALE_NUMBER": float(made.scale)}
 
 
 class _Pages:
-    def __init__(self, project, layers, choice, below, ground):
+    def __init__(self, project, layers, choice, below, ground, progress):
+        self.progress = progress
         self.choice, self.layers = choice, list(layers.values())
         self.drawn = [*self.layers, *([below] if below is not None else [])]
         self.crs = map_crs(self.layers, project)
@@ -141,10 +144,10 @@ class _Pages:
             if expected > MOST_SHEETS:
                 continue
             if not chosen and scale != BY_ITSELF[-1] and (
-                    expected > MOST_BY_ITSELF or 2 * (self.axes[0].half_width + AROUND) > height):
+                    expected > (1 if scale in SINGLE else MOST_BY_ITSELF) or 2 * (self.axes[0].half_width + AROUND) > height):
                 continue
             sheets = sheets_along(self.axes, width, height)
-            if chosen or len(sheets) <= MOST_BY_ITSELF or scale == BY_ITSELF[-1]:
+            if chosen or len(sheets) <= (1 if scale in SINGLE else MOST_BY_ITSELF) or scale == BY_ITSELF[-1]:
                 return scale, sheets
         raise RoadExtractionError(tr("The road would take more than {count} sheets. Choose a smaller scale or larger paper.").format(
             count=MOST_SHEETS))
@@ -186,6 +189,7 @@ class _Pages:
         return section_pages(self.axes, self.lines, ground, interval, self.frame.map.width(), self.frame.map.height() - NOTES) if interval else []
 
     def _new_page(self):
+        self.progress.report(self.pages / (self.pages + len(self.sheets)))
         if self.pages:
             self.layout.pageCollection().addPage(QgsLayoutItemPage(self.layout))
         self.layout.pageCollection().page(self.pages).setPageSize(
@@ -197,11 +201,13 @@ class _Pages:
         """The whole road with the sheets on it, and the legend."""
         page, base = self._new_page(), self.frame.band
         tall, aside = min(legend_height(self.layers), MOST_LEGEND * self.frame.height), True
-        for band, aside in ((base, True), (max(base, tall), True), (max(base + ABOVE, tall), False)):
+        for band, aside in ((base, True), (max(base, tall), True), (max(base + ABOVE, tall), False), (base + tall, True)):
             frame = Frame(self.frame.width, self.frame.height, band)
             room = self._legend_room(frame, base)
             if not aside:   # scale and arrow stand above the title block
                 room.setRight(frame.title_block(base).left() - 1)
+            if band == base + tall:   # all of it stands there
+                room = QRectF(room.x(), room.y(), frame.strip.width() - 2, tall - 2)
             if add_legend(self.layout, self.layers, room, page) is not None:
                 break
         outlines = shapely.union_all([sheet.outline() for sheet in self.sheets])
@@ -277,7 +283,6 @@ class _Pages:
         picture = QgsLayoutItemPicture(self.layout)
         picture.setPicturePath(drawing.path())
         self._place(picture, page, x, y, drawing.width, drawing.height)
-        picture.setLocked(True)
 
     def _add_map(self, sheet, page, frame, scale):
         chart = QgsLayoutItemMap(self.layout)
@@ -362,8 +367,8 @@ class _Pages:
                 if x > block.left():
                     paper.line([(x, y), (x, y + height)])
                 paper.text(x + 1, y + 1.7, caption, 5.0, "start", colour=GREY)
-                room = max(1, int((height - 3.2) // 3.0))   # lines of small letters
-                size = max(min(size, size * (width - 2) * room * 0.9 / max(text_width(text, size), 1e-6)), 5.0)
+                while size > 5.0 and text_width(text, size) > 0.9 * (width - 2) * max(int((height - 2.8) / (1.3 * LETTER * size)), 1):
+                    size -= 0.5
                 self._place(self._label(text, size), page, x + 1, y + 2.6, width - 2, height - 2.8)
                 x += width
             y += height

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from jinja2 import UndefinedError
 from lanewright.core.common.features import ROAD_EDGES, Features
+from lanewright.core.pipeline.road_map import STAGE_NAMES
 from lanewright.products.report.map_figure import draw_map
 from lanewright.products.report.page import html_page, number, templates
 from shapely.geometry import LineString
@@ -68,3 +69,8 @@ def test_the_background_lies_under_the_lines_at_its_place():
 
 def test_nothing_to_draw_gives_no_picture():
     assert draw_map({"edges": Features("LineStringZ", ROAD_EDGES)}) is None
+
+
+def test_each_stage_of_a_road_map_has_a_name_in_its_report():
+    source = templates().loader.get_source(templates(), "road_map.html")[0]
+    assert [name for name in STAGE_NAMES if f'{name}=tr("' not in source] == []

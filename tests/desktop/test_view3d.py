@@ -1,0 +1,62 @@
+"""A road map in QGIS's 3D view: everything lies at its height, and the camera looks at the place that the map window shows."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from lanewright.core.common.features import DRIVING_LINES, MARKINGS, ROAD_EDGES
+from lanewright.desktop.view3d import give_3d_looks, show_in_3d
+from lanewright.processing_provider.results.road_maps import road_maps
+from qgis._3d import Qgs3DMapSettings, QgsLine3DSymbol, QgsVectorLayer3DRenderer
+from qgis.core import Qgis, QgsProject, QgsRectangle
+from qgis.gui import QgsMapCanvas
+from road_map_layers import EAST, NORTH, added
+
+
+@pytest.fixture
+def road_map(project):
+    added(project, "DRIVING_LINES", DRIVING_LINES, ("LINESTRING Z (0 0 100, 400 0 104)", dict(lane=1, direction=1)))
+    added(project, "MARKINGS", MARKINGS, ("POLYGON Z ((0 1 100, 9 1 100, 9 2 100, 0 1 100))", {}), kind="PolygonZ")
+    added(project, "ROAD_EDGES", ROAD_EDGES, ("LINESTRING Z (0 5 100, 20 5 100.2)", dict(edge="curb", part="bottom", height_m=0.14)),
+          ("LINESTRING Z (0 -5 100, 20 -5 100)", dict(edge="pavement", part="bottom", height_m=0.0)))
+    return road_maps(project)[0]
+
+
+def test_all_layers_lie_at_their_heights_and_curbs_are_stones_as_high_as_measured(road_map):
+    shown = give_3d_looks(road_map)
+    assert {layer.name() for layer in shown} == {"DRIVING_LINES", "MARKINGS", "ROAD_EDGES", "Curbs for the 3D view"}
+    assert all(layer.renderer3D().symbol().altitudeClamping() == Qgis.AltitudeClamping.Absolute for layer in shown)
+    stones, = (layer for layer in shown if layer.name().startswith("Curbs"))
+    stone, = stones.getFeatures()
+    assert stone["height_m"] == 0.14, "an edge of the pavement has no stone"
+    heights = [vertex.z() for vertex in stone.geometry().vertices()]
+    assert (min(heights), max(heights)) == (100.0, 100.2)
+    assert stones.extent3D().zMinimum() == 100.0, "QGIS shows nothing of a layer whose heights it does not know"
+    assert QgsProject.instance().layerTreeRoot().findLayer(stones) is not None, "the 3D view shows layers of the layer tree alone"
+
+
+def test_who_opens_the_view_again_has_the_curbs_once_and_keeps_a_look_of_ones_own(road_map):
+    give_3d_looks(road_map)
+    lines = next(layer for layer in road_map.vectors if layer.name() == "DRIVING_LINES")
+    chosen = QgsLine3DSymbol()
+    chosen.setAltitudeClamping(Qgis.AltitudeClamping.Terrain)
+    lines.setRenderer3D(QgsVectorLayer3DRenderer(chosen))
+    count = len(QgsProject.instance().mapLayers())
+    give_3d_looks(road_map)
+    assert len(QgsProject.instance().mapLayers()) == count and lines.renderer3D().symbol().altitudeClamping() == chosen.altitudeClamping()
+    assert len(road_maps(QgsProject.instance())) == 1 and len(road_maps(QgsProject.instance())[0].vectors) == 3
+
+
+def test_the_camera_looks_at_the_road_in_the_middle_of_the_map_window(road_map):
+    canvas, settings, seen = QgsMapCanvas(), Qgs3DMapSettings(), []
+    canvas.setDestinationCrs(road_map.vectors[0].crs())
+    canvas.setExtent(QgsRectangle(EAST + 190, NORTH - 10, EAST + 210, NORTH + 10))
+    camera = SimpleNamespace(setLookingAtPoint=lambda *values: seen.append(values))
+    view = SimpleNamespace(mapSettings=lambda: settings, cameraController=lambda: camera)
+    iface = SimpleNamespace(mapCanvas=lambda: canvas, createNewMapCanvas3D=lambda name: view)
+    assert show_in_3d(iface, road_map, "road")
+    place = settings.worldToMapCoordinates(seen[0][0])
+    np.testing.assert_allclose((place.x(), place.y(), place.z()), (EAST + 200, NORTH, 102), atol=2.1)
+    assert len(settings.layers()) == 4 and not settings.terrainRenderingEnabled()
+    iface.createNewMapCanvas3D = lambda name: None
+    assert not show_in_3d(iface, road_map, "road")
