@@ -83,14 +83,12 @@ class SideChains:
     steps : CurbSteps of the side
     chains : list of StepChain of these steps
     bounds : (K,) m, stations at which blocks begin and end
-    least_height : m, below which no step is a curb
     look : SideLook of the side, None where nothing is known of the ground
     """
 
     steps: CurbSteps
     chains: list[StepChain]
     bounds: np.ndarray
-    least_height: float = CURBS.least_height
     look: SideLook | None = None
 
     @staticmethod
@@ -103,28 +101,15 @@ class SideChains:
         chains = curb_chains(steps, label, width, limits)
         if look is not None:
             chains = [chain for chain in chains if _has_road_before(steps[chain.steps], chain.end - chain.start, look)]
-        side_chains = SideChains(steps, [], bounds, limits.least_height, look)
-        for chain in chains:
-            members = side_chains.without_low_ends(chain.steps)
-            if len(members) > 1:
-                side_chains.chains.append(replace(chain, steps=members, start=float(steps.s[members[0]]), end=float(steps.s[members[-1]])))
-        return side_chains
-
-    def without_low_ends(self, members: np.ndarray) -> np.ndarray:
-        """Of the (K,) steps of a line, by station, those between its first and last that are high enough.
-
-        At its ends a line may go down to a dropped curb, the place of whose foot is not known well.
-        """
-        high = np.flatnonzero(self.steps.height[members] >= CURBS.candidate_height_share * self.least_height)
-        return members[high[0]:high[-1] + 1] if len(high) else members[:0]
+        return SideChains(steps, chains, bounds, look)
 
     def points(self, members: np.ndarray, number: int) -> list[dict]:
         """Curb points of the steps with the (K,) indices, by station, of one line: one of each part per block.
 
         Returns a list of dict: s, u, h in m, and `fields`, what else is known of it, with the number of the line
         """
-        steps = self.steps[self.without_low_ends(members)]
-        if len(steps) < 2:
+        steps = self.steps[members]
+        if not len(steps):
             return []
         blocks, member = np.unique(_block_numbers(steps, self.bounds), return_inverse=True)
         n = np.bincount(member)

@@ -121,7 +121,9 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
     for members in np.split(order, np.flatnonzero(np.diff(label[order])) + 1):
         check_cancelled()
         length = (steps.profile[members[-1]] - steps.profile[members[0]] + 1) * profile_width
-        if length >= CURBS.min_chain_length - 1e-9 and len(members) * profile_width >= CURBS.min_chain_density * length:
+        # two steps do not show whether they lie in line
+        if len(members) >= CURBS.min_piece_steps and length >= CURBS.min_chain_length - 1e-9 \
+                and len(members) * profile_width >= CURBS.min_chain_density * length:
             chain, sure = _as_curb(steps, members, length, limits)
             if sure:
                 (chains if sure > 1 else weak).append(chain)
@@ -290,7 +292,6 @@ class _Paths:
             return 0.0, None
         k = int(np.argmax(total))
         return total[k], self.path[known[k]]
-
 
     def _across_the_road(self, s, u, h, end_s, end_u, end_h, gap, jump):
         """(N,) costs of going on from (N,) places to another one over ground that is road all the way, infinite where it is not.
