@@ -21,7 +21,7 @@ from .common.occlusion import OcclusionGrid
 from .common.side_curbs import SideChains, points_of_side
 from .common.sides import SIDE_SIGNS
 from .curb_returns.detect import with_curb_returns
-from .edges.fit import EdgeSettings, edges_through, fit_road_edges, tell_edges
+from .edges.fit import EdgeSettings, edges_through, tell_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from .profiles.detect import detect_curbs
 from .scanlines.candidates import ScanlineBoundarySettings
@@ -29,7 +29,7 @@ from .scanlines.detect import SurveyScanlines, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
-from .weights import BOUNDARY, SCANLINE
+from .weights import BOUNDARY, CURBS, SCANLINE
 
 if TYPE_CHECKING:
     from ..survey.open_survey import Survey
@@ -69,8 +69,8 @@ class RoadBoundaries:
     ----------
     curb_points : CurbPoints
     edges : RoadEdges
-    differences : RoadEdges, where the edges of the two methods lie apart; None with one method
-    length_by_method : method -> m of measured edges; empty with one method
+    differences : RoadEdges, where the curbs of the two methods lie apart; None with one method
+    length_by_method : method -> m of measured curb; empty with one method
     """
 
     curb_points: CurbPoints
@@ -159,94 +159,80 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
 
 def _drawn(found, frame, settings, executor, progress):
     """The edges at curbs alone."""
-    if "both" not in found:
-        points, = found.values()
-        return RoadBoundaries(points, fit_road_edges(points, frame, settings, progress))
-    fitting = Phase(edges_through, NoSource(), (frame, settings), lambda item: "the edges of all roads")
-    scanlines, profiles, edges = executor.run(fitting, [found[method] for method in (*METHODS, "both")])
+    points = found["both"] if "both" in found else next(iter(found.values()))
+    edges, = executor.run(Phase(edges_through, NoSource(), (frame, settings), lambda item: "the edges of all roads"), [points])
     tell_edges(edges, progress)
-    edges, differences = measure_agreement(edges, scanlines, profiles, frame)
-    lengths = {method: float(lines.length[lines.status == "measured"].sum()) for method, lines in zip(METHODS, (scanlines, profiles))}
-    differing = differences.length.sum()
+    if "both" not in found:
+        return RoadBoundaries(points, edges)
+    edges, differences = measure_agreement(edges, *(found[method] for method in METHODS), frame)
+    lengths = {method: _measured_length(found[method]) for method in METHODS}
     if any(lengths.values()):
-        progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
-                     f"they lie more than 5 cm apart along {differing:.0f} m.")
-    return RoadBoundaries(found["both"], edges, differences, lengths)
+        progress.info(f"Profiles measured {lengths['profiles']:.0f} m of curb and scanlines {lengths['scanlines']:.0f} m; "
+                     f"they lie more than 5 cm apart along {differences.length.sum():.0f} m.")
+    return RoadBoundaries(points, edges, differences, lengths)
 
 
-# How far apart two sets of road edges lie where both follow one curb.
+# How far apart the curbs of two methods lie, where both see one.
 
 
-@dataclass
-class _EdgeSamples:
-    """The edges of one side of a road at N places BOUNDARY.comparison_step apart.
-
-    s : (N,) m, station
-    d, z : (N,) m, offset and local height, NaN where there is no edge
-    """
-
-    s: np.ndarray
-    d: np.ndarray
-    z: np.ndarray
+def _measured(points):
+    """The measured feet of main curbs, by road, side and station, and (N - 1,) bool, where the curb goes on from one to the next."""
+    points = points[points.of_main_curb & (points.part == "bottom") & (points.status == "measured")]
+    points = points[np.lexsort((points.station, points.side.astype(str), points.road))]
+    same = (points.road[1:] == points.road[:-1]) & (points.side[1:] == points.side[:-1])
+    return points, same & (np.diff(points.station) <= CURBS.max_joined_gap)
 
 
-def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> _EdgeSamples:
-    """The edges of one side of a road at regular stations.
-
-    side : "left" or "right"
-    """
-    line = frame.road(road)
-    first, last = int(np.floor(line.start / BOUNDARY.comparison_step)), int(np.ceil(line.end / BOUNDARY.comparison_step))
-    s = np.arange(first, last + 1) * BOUNDARY.comparison_step
-    samples = _EdgeSamples(s, np.full(len(s), np.nan), np.full(len(s), np.nan))
-    course = edges.course
-    for k in np.flatnonzero((edges.road == road) & (edges.side == side) & (edges.status != "inferred") & (edges.part == "bottom")
-                            & edges.of_main_curb):
-        vertices = course.line(k)
-        good = np.isfinite(course.s[vertices])
-        station, d, z = (values[vertices][good] for values in (course.s, course.d, course.z))
-        if len(station) < 2:
-            continue
-        order = np.argsort(station, kind="stable")
-        station, d, z = station[order], d[order], z[order]
-        inside = stretch_of(s, station[0] - BOUNDARY.comparison_step / 2, station[-1] + BOUNDARY.comparison_step / 2)
-        samples.d[inside], samples.z[inside] = np.interp(s[inside], station, d), np.interp(s[inside], station, z)
-    return samples
+def _measured_length(points):
+    """m of curb along the road."""
+    points, goes_on = _measured(points)
+    return float(np.diff(points.station)[goes_on].sum())
 
 
-def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: RoadEdges, frame: RoadFrame) -> tuple[RoadEdges, RoadEdges]:
-    """How far apart two sets of edges lie beside every edge, and where that is much.
+def _curb_at(points, goes_on, s):
+    """(2, N) m, offset and local height of the curb of one side at N stations, NaN where it was not measured."""
+    if not goes_on.any():
+        return np.full((2, len(s)), np.nan)
+    after = np.clip(np.searchsorted(points.station, s), 1, len(goes_on))
+    seen = goes_on[after - 1] & (s >= points.station[0]) & (s <= points.station[-1])
+    return np.where(seen, [np.interp(s, points.station, values) for values in (points.offset, points.z)], np.nan)
+
+
+def measure_agreement(edges: RoadEdges, first: CurbPoints, second: CurbPoints, frame: RoadFrame) -> tuple[RoadEdges, RoadEdges]:
+    """How far apart the curbs of two methods lie beside every edge, and where that is much.
 
     The number is the distance that 95 % of the piece does not exceed, NaN where one of the
-    two sets has no line. It is measured across the road, every BOUNDARY.comparison_step metres.
+    two saw no curb. It is measured across the road, every BOUNDARY.comparison_step metres.
 
     edges : RoadEdges that are drawn
-    first_edges, second_edges : RoadEdges of two methods
+    first, second : CurbPoints of two methods
 
     Returns
     -------
     edges : RoadEdges with `agree`
-    differences : RoadEdges, lines along the drawn edges, one for every stretch where the two lie more
+    differences : RoadEdges, lines along the curb of the first, one for every stretch where the two lie more
         than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
     """
     agree = edges.agree.copy()
     differences: list[EdgePiece] = []
+    curbs = [_measured(points) for points in (first, second)]
     for road in frame.roads:
+        s = np.arange(np.floor(road.start / BOUNDARY.comparison_step), np.ceil(road.end / BOUNDARY.comparison_step) + 1) * BOUNDARY.comparison_step
         for side in SIDE_SIGNS:
-            first, second, drawn = (sample_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
-            difference = np.abs(first.d - second.d)
+            rows = [np.flatnonzero((points.road == road.number) & (points.side == side)) for points, _ in curbs]
+            (d, z), (other, _) = (_curb_at(points[of_side], goes_on[of_side[:-1]], s) for (points, goes_on), of_side in zip(curbs, rows))
+            difference = np.abs(d - other)
             for k in np.flatnonzero((edges.road == road.number) & (edges.side == side)):
-                distances = difference[stretch_of(first.s, edges.station[k], edges.end[k])]
+                distances = difference[stretch_of(s, edges.station[k], edges.end[k])]
                 distances = distances[np.isfinite(distances)]
                 if len(distances):
                     agree[k] = round(100 * float(np.quantile(distances, BOUNDARY.agreement_quantile)), 1)
             with np.errstate(invalid="ignore"):
-                differing = (difference > BOUNDARY.min_reported_difference) & np.isfinite(drawn.d)
+                differing = difference > BOUNDARY.min_reported_difference
             for a, b in mask_runs(differing):
                 if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_reported_length:
                     continue
-                x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])
-                differences.append(EdgePiece(
-                    np.c_[x, y, z], road.number, side, "measured", len(differences), float(first.s[a]), float(first.s[b - 1]),
-                    agree=100 * float(difference[a:b].max())))
+                vertices = np.column_stack(frame.to_map(road.number, s[a:b], d[a:b], z[a:b]))
+                differences.append(EdgePiece(vertices, road.number, side, "measured", len(differences), float(s[a]), float(s[b - 1]),
+                                             agree=100 * float(difference[a:b].max())))
     return replace(edges, agree=agree), joined_pieces(differences, frame, edges.crs)

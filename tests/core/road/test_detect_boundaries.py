@@ -75,8 +75,9 @@ def seen(*stretches):
     u = np.concatenate([offset + scatter * np.where(np.arange(len(part)) % 2, 1, -1) for part, (_, _, offset, scatter) in zip(s, stretches)])
     ends = np.cumsum([0, *map(len, s)])
     ones = np.ones(len(u))
-    steps = CurbSteps(profile=np.rint(np.concatenate(s) / 0.25).astype(int), s=np.concatenate(s), u=u, h=FOOT * ones, skew=0 * ones, height=0.12 * ones,
-                      run=0 * ones, noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones.astype(int), behind=20 * ones.astype(int))
+    steps = CurbSteps(profile=np.rint(np.concatenate(s) / 0.25).astype(int), s=np.concatenate(s), u=u, h=FOOT * ones, skew=0 * ones,
+                      height=0.12 * ones, run=0 * ones, noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones.astype(int),
+                      behind=20 * ones.astype(int))
     chains = [StepChain(np.arange(a, b), stretch[0], stretch[1], scatter=stretch[3]) for a, b, stretch in zip(ends[:-1], ends[1:], stretches)]
     return SideChains(steps, chains, np.arange(0.0, 62.0, 2.0))
 
@@ -124,9 +125,8 @@ def test_a_piece_in_line_with_curbs_of_different_methods_is_the_curb_and_the_car
 
 
 def test_a_stretch_where_the_two_lie_eight_centimetres_apart_is_reported(frame):
-    one = fit_road_edges(curb_points(frame, 3.5), frame)
-    other = fit_road_edges(curb_points(frame, lambda s: 3.5 + 0.08 * np.exp(-((s - 30) / 6) ** 4)), frame)
-    drawn = fit_road_edges(curb_points(frame, 3.5), frame)
+    one, other = curb_points(frame, 3.5), curb_points(frame, lambda s: 3.5 + 0.08 * np.exp(-((s - 30) / 6) ** 4))
+    drawn = fit_road_edges(one, frame)
     drawn, reported = measure_agreement(drawn, one, other, frame)
     assert len(reported) == 1 and 23 < reported.station[0] < 27 and 33 < reported.end[0] < 37
     assert reported.agree[0] == pytest.approx(8.0, abs=0.5)
