@@ -30,13 +30,14 @@ def add_library_folders(profile=""):
 
 
 def _dependency_folders(python_folder):
-    """Where packages for plugins lie in a profile: `<profile>/python/dependencies`.
+    """Where packages for plugins lie in a profile: in `<profile>/python/dependencies`, or below it as Python's own installation has them.
 
     The QPIP plugin installs there too, but is not loaded by qgis_process, so we look ourselves.
     """
     prefix = os.path.join(python_folder, "dependencies")
     version = f"python{sys.version_info.major}.{sys.version_info.minor}"
     return [
+        prefix,
         os.path.join(prefix, "Lib", "site-packages"),
         os.path.join(prefix, "lib", version, "site-packages"),
         os.path.join(prefix, "local", "lib", version, "dist-packages"),

@@ -12,13 +12,11 @@ from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_memory, out_of_memory
-from .algorithm import WARNINGS
-from .cloud_files import cloud_files, survey_name
+from ..core.common.progress import Progress
+from .algorithm import WARNINGS, settings_class
 from .destinations import Unfinished, check_suffix, check_writable, destination_path
-from .parameters import settings_class
-from .progress import CountedWarnings
-from .provenance import provenance_now, sign_file
-from .report_head import run_facts, sign_report
+from .provenance import provenance_now, run_facts, sign_file, sign_report
+from .survey_files import cloud_files, survey_name
 from .texts import tr
 from .vector_source import in_file_units, read_features
 
@@ -132,12 +130,15 @@ class Call:
 
     def cloud(self, name):
         """The path of one point cloud; "" where the optional parameter is empty."""
-        path = self.file(name)
-        return existing_file(path, self.label(name)) if path else ""
+        paths = cloud_files([self.file(name)], self.label(name))
+        if len(paths) > 1:
+            raise RoadExtractionError(tr("{label}: {path} names {count} point clouds, and one is needed. Choose one of them.").format(
+                label=self.label(name), path=self.file(name), count=len(paths)))
+        return existing_file(paths[0], self.label(name)) if paths else ""
 
     def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True, columns=""):
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` and the `columns` of a file overrule what it says."""
-        from .trajectory_source import read_trajectory_source, trajectory_path
+        from .survey_files import read_trajectory_source, trajectory_path
 
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
@@ -328,3 +329,35 @@ def existing_file(path, label):
         raise RoadExtractionError(
             tr("{label}: there is no file {path}. Check the name and the folder.").format(label=label, path=path))
     return path
+
+
+# How long a run will still take, in words, and how often it warned.
+
+class CountedWarnings(Progress):
+    """Hands everything on to another listener and keeps the warnings, in the words of the core."""
+
+    def __init__(self, listener):
+        self.listener = listener
+        self.texts: list[str] = []
+
+    def report(self, fraction):
+        self.listener.report(fraction)
+
+    def check_cancelled(self):
+        self.listener.check_cancelled()
+
+    def info(self, text):
+        self.listener.info(text)
+
+    def warn(self, text):
+        self.texts.append(text)
+        self.listener.warn(text)
+
+
+def time_left(seconds):
+    """What the user reads, in the unit that gives a small number."""
+    if seconds < 60:
+        return tr("About {number} s left").format(number=round(seconds))
+    if seconds < 3600:
+        return tr("About {number} min left").format(number=round(seconds / 60))
+    return tr("About {number} h left").format(number=round(seconds / 3600))

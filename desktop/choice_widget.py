@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..algorithms.choice_words import choice_word
+from ..algorithms.texts import choice_word
 from .dialog_wrapper import DialogWrapper
 from .widgets import choices
 

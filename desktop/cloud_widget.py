@@ -11,13 +11,13 @@ from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QDragEnterEvent, QDropEvent
 from qgis.PyQt.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QMenu, QToolButton, QVBoxLayout, QWidget
 
-from ..algorithms.cloud_files import SUFFIXES, cloud_files
+from ..algorithms.survey_files import SUFFIXES, VIRTUAL, cloud_files
 from ..core.common.errors import RoadExtractionError
+from ..processing_provider.parameters import CLOUD_FILTER
 from ..processing_provider.texts import tr
 from .dialog_wrapper import DialogWrapper
 from .widgets import LAST_INPUT, wrapped
 
-FILTER = "LAS, LAZ, COPC (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
 SEPARATOR = ";"
 MEGABYTE = 1e6
 MOST_HEADERS = 200          # files whose headers are read for the line below the names
@@ -91,7 +91,7 @@ class PointCloudsWidget(QWidget):
                 self.menu.addAction(name, lambda source=source: self.add([source]))
 
     def choose_files(self) -> None:
-        files, _ = QFileDialog.getOpenFileNames(self, tr("Point clouds"), QgsSettings().value(LAST_INPUT, ""), FILTER)
+        files, _ = QFileDialog.getOpenFileNames(self, tr("Point clouds"), QgsSettings().value(LAST_INPUT, ""), CLOUD_FILTER)
         if files:
             self.add(files)
 
@@ -140,7 +140,7 @@ def dropped_clouds(mime) -> list[str]:
         paths = [uri.uri for uri in QgsMimeDataUtils.decodeUriList(mime)]
     else:
         paths = [url.toLocalFile() for url in mime.urls() if url.isLocalFile()]
-    return [path for path in paths if path and (Path(path).is_dir() or path.lower().endswith(SUFFIXES))]
+    return [path for path in paths if path and (Path(path).is_dir() or path.lower().endswith((*SUFFIXES, VIRTUAL)))]
 
 
 def project_clouds() -> list[tuple[str, str]]:

@@ -8,7 +8,7 @@ from qgis.gui import QgsProcessingGui
 from qgis.PyQt.QtCore import QSignalBlocker, pyqtSignal
 from qgis.PyQt.QtWidgets import QComboBox, QHeaderView, QLineEdit, QTableWidget, QTableWidgetItem, QVBoxLayout, QWidget
 
-from ..algorithms.trajectory_source import trajectory_path
+from ..algorithms.survey_files import trajectory_path
 from ..core.common.errors import RoadExtractionError
 from ..processing_provider.texts import told, tr
 from .dialog_wrapper import DialogWrapper

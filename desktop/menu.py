@@ -32,7 +32,7 @@ class Menu(QObject):
         self.iface = iface
         self.actions = []
         self.dialog = self.designer = None  # kept, or Python would collect the open windows
-        self.section = self.doubts = self.pairs = None
+        self.section = self.doubts = self.pairs = self.swipe = None
         WINDOW.begin()
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
@@ -44,11 +44,18 @@ class Menu(QObject):
                   theme("/mActionNewLayout.svg"))
         self._add(tr("Next doubtful place"), self.next_doubt, tr("Goes along the road map through pieces that were not measured, that are uncertain, "
                   "or where the boundary methods differ, and keeps what you decide there"), theme("/mActionZoomNext.svg"))
+        self._add(tr("Steps of the road map"), lambda: self.next_doubt(steps=True), tr(
+            "The stages of the road map in their order, whether each still holds, its settings, and running it again"), theme("/mActionRefresh.svg"))
         self._add(tr("Cross-section"), self.open_section, tr("Points and lines of the road where you click in the map"),
                   theme("/mActionElevationProfile.svg"))
         self._add(tr("Road map in 3D"), self.open_3d,
                   tr("QGIS's 3D view over the middle of the map, with curbs, paint and driving lines at their heights"),
                   theme("/mActionNew3DMap.svg"))
+        self._add(tr("Compare two images"), self.compare, tr("Orthoimage or web map left of the mouse, intensity image right of it, lines on both"),
+                  theme("/mActionSplitFeatures.svg"))
+        self._add(tr("Photos along the road…"), lambda: self.open_algorithm("native:importphotos", {}), tr(
+            "A layer of the places of photos, by their EXIF data; the doubtful places show the photo that looks at them. "
+            "A CSV layer with a column of file names does as well"), theme("/mActionAddImage.svg"))
         self._add(tr("Control points from paint"), self.open_pairs, tr("Places UAV images on the map: the same paint in each and in the intensity "
                   "image, side by side to accept or refuse"), QIcon(str(ICON.parent / "icons" / "proposecontrolpoints.svg")))
         self._add(tr("Open the last report"), self.open_report, tr("The report of the run that ended last"), theme("/mIconHtml.svg"))
@@ -128,8 +135,21 @@ class Menu(QObject):
         self.pairs.show()
         self.pairs.raise_()
 
-    def next_doubt(self):
-        """Pan to the next doubtful place of the road map of the active layer, else of the newest, and say what is doubtful there."""
+    def compare(self):
+        """Two images of the project, divided by a line under the mouse, until another tool of the map is taken."""
+        from .overlay.swipe import Swipe, images_to_compare
+
+        images = images_to_compare(QgsProject.instance(), self.iface.activeLayer())
+        if len(images) < 2:
+            say(self.iface, tr("Two images are needed: the intensity image of a road map, and an orthoimage or web map. Add one to the project."))
+            return
+        self.swipe = self.swipe or Swipe(self.iface.mapCanvas())
+        self.swipe.begin(images)
+        say(self.iface, tr("Left of the mouse: {left}; right of it: {right}. Esc or another tool ends it.").format(
+            left=images[0].name(), right=images[1].name()))
+
+    def next_doubt(self, steps=False):
+        """The next doubtful place of the road map of the active layer, else of the newest, or the list of its steps."""
         maps = self._road_maps()
         if not maps or not all_is_there(self.iface):
             return
@@ -139,7 +159,8 @@ class Menu(QObject):
             self.doubts = DoubtDock(self.iface)
             self.doubts.shown.connect(self._show_section)
             self.doubts.run_wanted.connect(self.run_again)
-        self.doubts.go(maps[0])
+            self.doubts.stage_wanted.connect(self.open_algorithm)
+        (self.doubts.show_steps if steps else self.doubts.go)(maps[0])
 
     def _road_maps(self):
         """The road maps of the project; where there are none, a word on that."""
@@ -154,9 +175,12 @@ class Menu(QObject):
             self.section.show_at(place.middle, place.crs)
 
     def run_again(self, road_map, corrections):
-        """Road map with all that a road map was made from, and the corrections made in it."""
+        """Road map with all that a road map was made from, and the corrections made in it, if any."""
+        from .review.steps import values_again
+
         clouds, missing = clouds_of(road_map, QgsProject.instance())
-        self.open_road_map(**{**road_map.values, **({} if missing else {"POINT_CLOUDS": clouds}), "CORRECTIONS": corrections.id()})
+        self.open_road_map(**{**values_again(road_map), **({} if missing else {"POINT_CLOUDS": clouds}),
+                              "CORRECTIONS": None if corrections is None else corrections.id()})
 
     def _fill_layer_menu(self, menu):
         """"Run this stage again" for a layer of ours."""
@@ -200,6 +224,8 @@ class Menu(QObject):
             self.pairs.close()
             self.pairs.deleteLater()
             self.pairs = None
+        if self.swipe is not None:
+            self.swipe.end()
         self.manual.forget()
         WINDOW.end()
 

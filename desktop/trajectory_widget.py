@@ -8,8 +8,7 @@ from qgis.core import Qgis, QgsMapLayer, QgsProcessingContext, QgsProject
 from qgis.gui import QgsProcessingMapLayerComboBox
 from qgis.PyQt.QtWidgets import QComboBox
 
-from ..algorithms.cloud_files import cloud_files
-from ..algorithms.trajectory_source import FILE_SUFFIXES
+from ..algorithms.survey_files import FILE_SUFFIXES, cloud_files
 from ..core.common.errors import RoadExtractionError
 from ..core.survey.trajectory.columns import columns_by_role
 from .dialog_wrapper import DialogWrapper

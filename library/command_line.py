@@ -12,8 +12,7 @@ from contextlib import contextmanager
 from importlib.util import find_spec
 
 from ..algorithms.algorithm import GROUPS
-from ..algorithms.call import run
-from ..algorithms.progress import time_left
+from ..algorithms.call import run, time_left
 from ..algorithms.provenance import own_version
 from ..algorithms.texts import told, tr
 from ..core.common.errors import Cancelled, RoadExtractionError

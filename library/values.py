@@ -6,7 +6,7 @@ import math
 from difflib import get_close_matches
 from os import PathLike, fspath
 
-from ..algorithms.parameters import choice_refused, number_refused
+from ..algorithms.algorithm import choice_refused, number_refused
 from ..core.common.errors import RoadExtractionError
 
 YES, NO = ("true", "yes", "on", "1"), ("false", "no", "off", "0")

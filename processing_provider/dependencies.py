@@ -69,14 +69,19 @@ def _shapely_version():
 
 
 def install_command():
-    """The command that installs what is missing for the Python of this QGIS."""
+    """The command that installs what is missing for the Python of this QGIS, pip included."""
     names = _missing() or ["shapely"]
-    if Path("/etc/debian_version").exists():
-        system = [DEBIAN[name] for name in names if name in DEBIAN]
-        by_pip = [name for name in names if name not in DEBIAN]
-    else:
-        system, by_pip = [], list(names)
-    commands = [f"sudo apt install {' '.join(system)}"] if system else []
+    debian = Path("/etc/debian_version").exists()
+    system = [DEBIAN[name] for name in names if debian and name in DEBIAN]
+    by_pip = [name for name in names if not debian or name not in DEBIAN]
+    commands = []
+    if by_pip and not _is_there("pip"):
+        if debian:
+            system.append("python3-pip")
+        else:
+            commands.append(f"{_python()} -m ensurepip --user")
+    if system:
+        commands.append(f"sudo apt install {' '.join(system)}")
     if by_pip:
         commands.append(f'{_python()} -m pip install --no-deps --target "{library_folder()}" {" ".join(map(_wanted, by_pip))}')
     return " && ".join(commands)

@@ -21,11 +21,11 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ..algorithms.choice_words import choice_word
+from ..algorithms.texts import choice_word
 from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON
 
 # fileFilter is enforced and case-sensitive, and `extension=` accepts one suffix only
-CLOUD_FILTER = "Point clouds (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
+CLOUD_FILTER = "Point clouds (*.las *.laz *.vpc *.LAS *.LAZ *.VPC);;All files (*.*)"
 # Found by name when a dialog is made, which happens in a window only
 DESKTOP = f"{__name__.split('.')[0]}.desktop"
 WIDGETS = {"clouds": "cloud_widget.PointCloudsWrapper", "trajectory": "trajectory_widget.TrajectoryWrapper",

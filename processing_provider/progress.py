@@ -1,6 +1,6 @@
 """QGIS's progress bar and log as the listener that the core speaks to."""
 
-from ..algorithms.progress import time_left
+from ..algorithms.call import time_left
 from ..core.common.errors import Cancelled
 from ..core.common.progress import Progress, RemainingTime
 from .texts import told

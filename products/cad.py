@@ -11,6 +11,7 @@ import shapely
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
+from ..core.common.texts import word
 from ..core.io.crs import FOOT, US_SURVEY_FOOT, FileUnits, as_in_file, horizontal_part, parse_crs
 from ..core.io.local_files import gdal_exceptions
 from ..core.io.weights import IO
@@ -19,18 +20,23 @@ from .export.opendrive.geometry import PlanElement, PlanView
 from .export.opendrive.reference_line import fit_reference
 from .export.sources import RoadMapSource
 from .export.xml_tree import XmlElement, xml_text
+from .inventory.cross_sections import RoadSections, exceeded
 
 COLOURS = {"LANE_BORDER": "#808080", "DRIVING_LINE": "#00a0ff", "MARKING_EDGE": "#ffffff", "MARKING_LANE": "#e0e0e0", "MARKING_CENTRE": "#ffd040",
-           "ROAD_EDGE": "#ff8000", "MARKING_AREA": "#ffff00"}
+           "ROAD_EDGE": "#ff8000", "MARKING_AREA": "#ffff00", "SECTION_EXCEEDED": "#ff0000", "SECTION_GROUND": "#ffffff"}
+LETTER = 0.25         # source: m of a text in a drawing of sections, 2.5 mm at 1 : 100 (ISO 3098)
+SECTIONS_IN_COLUMN = 10   # cost: a column of sections more or less
 
 
 @dataclass(frozen=True)
 class _DxfLine:
-    """layer : name; places : (N, 3); closed : whether the last place is joined with the first."""
+    """layer : name; places : (N, 3); closed : whether the last place is joined with the first; text : written at the place, `turned` by degrees."""
 
     layer: str
     places: np.ndarray
     closed: bool = False
+    text: str = ""
+    turned: float = 0.0
 
 
 def dxf_lines(source: RoadMapSource) -> list[_DxfLine]:
@@ -49,6 +55,51 @@ def dxf_lines(source: RoadMapSource) -> list[_DxfLine]:
                                                                           str(row.get("pattern") or "").upper().replace("-", "_")))))
     lines += _of(source.road_edges, _edge_layer)
     lines += _of(source.markings, lambda row: f"MARKING_AREA_{str(row.get('class') or 'other').upper()}")
+    return lines
+
+
+def section_drawing(sections: RoadSections) -> list[_DxfLine]:
+    """Every section as one sees it along the road, true to scale, one below the other, with stations, heights, slopes and limits that are not kept.
+
+    Lengths are metres. The ground is drawn above a level line, whose height stands beside it.
+    """
+    limits, placed = sections.settings.limits(), []
+    for section in sections.sections:
+        seen = np.isfinite(section.z)
+        height = sections.frame.to_map(section.road, np.full(seen.sum(), section.station), section.d[seen], section.z[seen])[2]
+        placed.append((section, section.d[seen], height, np.floor(height.min()) - 1.0))
+    wide, lines, base = max(np.ptp(d) for _, d, _, _ in placed) + 40 * LETTER, [], 0.0
+    for k, (section, d, height, datum) in enumerate(placed):
+        left, top = k // SECTIONS_IN_COLUMN * wide, base if k % SECTIONS_IN_COLUMN else 0.0
+        broken = [exceeded(part, part.strip.width / float(np.hypot(1.0, section.heading)), limits) for part in section.parts]
+        reasons = [f"{part.strip.lane or word('carriageway')}: {text}" for part, texts in zip(section.parts, broken) for text in texts.values()]
+        level = top - (6 + 1.6 * len(reasons)) * LETTER - height.max() + datum
+        base = level - 12 * LETTER
+
+        def at(offsets, heights, left=left, level=level, datum=datum):
+            return np.c_[left - np.atleast_1d(offsets), level + np.atleast_1d(heights) - datum, np.zeros(np.size(offsets))]
+
+        def write(layer, offset, z, text, turned=0.0, at=at):
+            lines.append(_DxfLine(layer, at(offset, z), text=text, turned=turned))
+
+        lines += [_DxfLine("SECTION_GROUND", at(d, height)), _DxfLine("SECTION_DATUM", at([d.max(), d.min()], [datum, datum]))]
+        write("SECTION_TEXT", d.max() + 12 * LETTER, datum, f"{section.road}: {section.station:.2f} m, {datum:.2f} m")
+        for part, texts in zip(section.parts, broken):
+            strip, inside = part.strip, (d > part.strip.right) & (d < part.strip.left)
+            if texts and inside.sum() > 1:
+                lines.append(_DxfLine("SECTION_EXCEEDED", at(d[inside], height[inside])))
+            if strip.lane and np.isfinite(part.crossfall):
+                middle, width = 0.5 * (strip.left + strip.right), strip.width / float(np.hypot(1.0, section.heading))
+                write("SECTION_TEXT", middle, np.interp(middle, d, height) + 2 * LETTER, f"{width:.2f} m  {100 * part.crossfall:+.1f} %")
+        written = -np.inf
+        for border in sorted({edge for part in section.parts for edge in (part.strip.left, part.strip.right)}):
+            z = float(np.interp(border, d, height))
+            lines.append(_DxfLine("SECTION_BORDER", at([border, border], [datum, z])))
+            if border - written > 1.3 * LETTER:
+                write("SECTION_TEXT", border, datum - 5 * LETTER, f"{border:+.2f}  {z:.3f}", 90.0)
+                written = border
+        for row, text in enumerate(reasons):
+            write("SECTION_EXCEEDED", 0.5 * (d.min() + d.max()), height.max() + (4 + 1.6 * row) * LETTER, text)
     return lines
 
 
@@ -86,11 +137,13 @@ def write_dxf(lines: list[_DxfLine], path: str, crs: str = "") -> None:
         dataset = gdal.GetDriverByName("DXF").Create(path, 0, 0, 0, gdal.GDT_Unknown)
         layer = dataset.CreateLayer("entities")
         for line in lines:
-            feature, geometry = ogr.Feature(layer.GetLayerDefn()), ogr.Geometry(ogr.wkbLineString25D)
+            feature, geometry = ogr.Feature(layer.GetLayerDefn()), ogr.Geometry(ogr.wkbPoint25D if line.text else ogr.wkbLineString25D)
             for x, y, z in units.in_file(line.places):
                 geometry.AddPoint(float(x), float(y), float(z))
             feature.SetField("Layer", line.layer)
-            feature.SetStyleString(f"PEN(c:{_colour_of(line.layer)},w:1px)")
+            text = line.text.replace('"', "'")
+            feature.SetStyleString(f'LABEL(f:"Arial",s:{LETTER / units.across:.4f}g,a:{line.turned:g},p:5,c:{_colour_of(line.layer)},t:"{text}")'
+                                   if text else f"PEN(c:{_colour_of(line.layer)},w:1px)")
             feature.SetGeometryDirectly(geometry)
             layer.CreateFeature(feature)
             feature = None

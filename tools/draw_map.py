@@ -34,7 +34,7 @@ def styled_layers(package, tables, image, title):
 
 def draw(layers, picture, title, dpi=DPI):
     """Lay the map out as one plan sheet, and save it; layers by the result that they are, and below them an image."""
-    from lanewright.algorithms.export.print_sheets import SheetSettings
+    from lanewright.algorithms.export import SheetSettings
     from lanewright.desktop.layout.sheets import sheet_layout
     from qgis.core import QgsLayoutExporter, QgsProject
     from qgis.PyQt.QtCore import QCoreApplication

@@ -36,7 +36,8 @@ FILES = {
     **{f"{name}.{layer}": f"{name.removeprefix('import')}_{layer.lower()}.gpkg" for name in ("importopendrive", "importlanelet2")
        for layer in ("LANES", "DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES")},
     "roadside.OUTPUT": "roadside.gpkg", "roadside.OBJECTS": "roadside_objects.gpkg",
-    "crosssections.OUTPUT": "cross_sections.gpkg", "crosssections.TABLE": "cross_sections_table.gpkg",
+    "crosssections.OUTPUT": "cross_sections.gpkg", "crosssections.DRAWING": "sections.dxf",
+    "crosssections.TABLE": "cross_sections_table.gpkg",
     "assessboundaries.INPUT": "road_edges.gpkg", "assessboundaries.REFERENCE": "truth_boundaries.gpkg",
     "assessboundaries.OUTPUT": "boundaries_by_outcome.gpkg",
     "assessmarkings.INPUT": "markings.gpkg", "assessmarkings.REFERENCE": "truth_markings.gpkg",
@@ -123,7 +124,7 @@ def kind(d):
 def choices(d):
     if d.type() != "enum":
         return ""
-    from lanewright.algorithms.choice_words import choice_word
+    from lanewright.algorithms.texts import choice_word
 
     words = [f"`{option}`" + (f" ({choice_word(option)})" if choice_word(option) != option else "") for option in d.options()]
     return " " + tr("One of: {choices}.").format(choices=", ".join(words))

@@ -15,7 +15,7 @@ STEP_X, STEP_Y = 300, 130
 
 def definitions():
     """Every input a model may have, by name; its help is that of the stage it goes to."""
-    from lanewright.algorithms.road.detect_boundaries import METHOD_SETTING
+    from lanewright.algorithms.road import METHOD_SETTING
     from lanewright.processing_provider.parameters import qgis_parameter
     from qgis.core import (
         QgsProcessing,

@@ -147,7 +147,7 @@ CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part",
                   Field("rut_l_mm", float, "Rut depth, left wheel path (mm)"), Field("rut_r_mm", float, "Rut depth, right wheel path (mm)"),
                   Field("curb_l_m", float, "Height of the left curb (m)"), Field("curb_r_m", float, "Height of the right curb (m)"),
                   Field("clear_m", float, "Clearance above (m)"), Field("seen_pct", float, "Surface seen (%)"),
-                  Field("exceeds", str, "Limits not kept")]
+                  Field("exceeds", str, "Limits not kept"), Field("why", str, "Value, limit and rule of each")]
 EDGE_DISTANCE = Field("edge_m", float, "Distance from the carriageway's edge (m)")
 ROADSIDE = [ROAD, SIDE, Field("line", int, "Line"), Field("kind", str, "Kind (guard_rail/barrier/wall/fence/hedge/gutter)"), STATUS, STATION, END,
             OFFSET, EDGE_DISTANCE,

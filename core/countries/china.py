@@ -21,7 +21,7 @@ CHINA = Country(
     ),
     section_limits=SectionLimits(
         max_rut=15.0, min_crossfall=1.0, max_crossfall=6.0, min_width=3.25, min_clearance=4.5,
-        sources=("Rut depth: heavy rutting of JTG 5210-2018 begins at 15 mm.",
-                 "Crossfall of 1.0 to 2.0 %, superelevation of 6 % at most, lanes of 3.25 m and more, clear height of 4.5 m: CJJ 37-2012."),
+        rules={"max_rut": "JTG 5210-2018, heavy rutting", "min_crossfall": "CJJ 37-2012", "max_crossfall": "CJJ 37-2012, superelevation",
+               "min_width": "CJJ 37-2012", "min_clearance": "CJJ 37-2012"},
     ),
 )

@@ -22,8 +22,7 @@ GERMANY = Country(
     ),
     section_limits=SectionLimits(
         max_rut=10.0, min_crossfall=2.5, max_crossfall=7.0, max_grade=8.0, min_width=2.75, min_clearance=4.5,
-        sources=("Rut depth: warning value of ZTV ZEB-StB for the survey of road condition (10 mm; threshold 20 mm).",
-                 "Crossfall and grade: least 2.5 %, greatest 7 % on country roads (RAL 2012), grade of EKL 4 at most 8 %.",
-                 "Lane of 2.75 m in town with lorries (RASt 06); clear height of 4.50 m (RAL 2012)."),
+        rules={"max_rut": "ZTV ZEB-StB, warning value", "min_crossfall": "RAL 2012", "max_crossfall": "RAL 2012", "max_grade": "RAL 2012, EKL 4",
+               "min_width": "RASt 06, lane in town with lorries", "min_clearance": "RAL 2012"},
     ),
 )

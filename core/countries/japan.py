@@ -21,8 +21,7 @@ JAPAN = Country(
     ),
     section_limits=SectionLimits(
         max_rut=40.0, min_crossfall=1.5, max_crossfall=10.0, max_grade=12.0, min_width=2.75, min_clearance=4.5,
-        sources=("Rut depth: the most damaged of three classes of the inspection guideline for road stock (MLIT, 2013) begins at 40 mm.",
-                 "Crossfall of 1.5 % and more, superelevation of 10 % at most, lanes of 2.75 m and more, clear height of 4.5 m: "
-                 "Road Structure Ordinance (Cabinet Order 320 of 1970)."),
+        rules={"max_rut": "MLIT inspection guideline for road stock 2013, most damaged class",
+               **dict.fromkeys(("min_crossfall", "max_crossfall", "max_grade", "min_width", "min_clearance"), "Road Structure Ordinance")},
     ),
 )

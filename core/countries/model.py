@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 
@@ -34,7 +35,7 @@ class SectionLimits:
     max_grade: float | None = None   # %
     min_width: float | None = None   # m, of a driving lane
     min_clearance: float | None = None   # m above the road
-    sources: tuple[str, ...] = ()   # one sentence for each rule
+    rules: Mapping[str, str] = field(default_factory=dict)   # {name of a limit: the rule that sets it}
 
     NAMES: ClassVar[tuple[str, ...]] = ("max_rut", "min_crossfall", "max_crossfall", "max_grade", "min_width", "min_clearance")
 
@@ -53,4 +54,4 @@ class Country:
     design_code: str   # name of the code that curves are checked against
     design_speeds: tuple[DesignSpeed, ...]   # its rows, slowest first
     sources: tuple[str, ...]   # one sentence for each group of values above
-    section_limits: SectionLimits = SectionLimits()   # what cross-sections must keep to
+    section_limits: SectionLimits = field(default_factory=SectionLimits)   # what cross-sections must keep to

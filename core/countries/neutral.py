@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .model import Country, Dashes, DesignSpeed, SectionLimits
+from .model import Country, Dashes, DesignSpeed
 
 NEUTRAL = Country(
     name="neutral",
@@ -19,10 +19,5 @@ NEUTRAL = Country(
         "Widths of lanes: our own limits, which hold those of all files of the catalogue (narrowest lane 2.5 m).",
         "Line widths and dashes: those of the other files of the catalogue.",
         "Design code: CJJ 37-2012 as printed in the driving-line thesis (University of Waterloo, 2018), table 4.11.",
-    ),
-    section_limits=SectionLimits(
-        max_rut=20.0, max_crossfall=10.0, min_clearance=4.5,
-        sources=("Rut depth: threshold of ZTV ZEB-StB, where most rules at hand call for action; greatest crossfall and clear height: those of the "
-                 "other files of the catalogue.",),
     ),
 )

@@ -29,8 +29,7 @@ UNITED_STATES = Country(
     ),
     section_limits=SectionLimits(
         max_rut=0.40 * INCH, min_crossfall=1.5, max_crossfall=100 * SUPERELEVATION, min_width=9 * FOOT, min_clearance=14 * FOOT,
-        sources=("Rut depth: poor above 0.40 in (23 CFR 490.313).",
-                 "Cross slope of 1.5 % and more, superelevation of 8 % at most, lanes of 9 ft and more, vertical clearance of 14 ft: AASHTO, A "
-                 "Policy on Geometric Design of Highways and Streets."),
+        rules={"max_rut": "23 CFR 490.313, poor above 0.40 in",
+               **dict.fromkeys(("min_crossfall", "max_crossfall", "min_width", "min_clearance"), "AASHTO Green Book")},
     ),
 )

@@ -10,9 +10,9 @@ from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "base": ("Arc", "Curve", "CurveFit"),
-    "bspline": ("Spline", "fit_splines", "smooth_profiles"),
+    "bspline": ("Profile", "Spline", "fit_splines", "smooth_profiles"),
     "clothoid": ("Clothoid", "fit_clothoids"),
-    "model_selection": ("fit_curve", "fit_curves", "select_each"),
+    "model_selection": ("fit_curve", "fit_curves"),
     "segmentation": ("element_ranges",),
     "simple_curves": ("Ellipse", "Polynomial", "fit_circles", "fit_ellipse", "fit_lines", "fit_polynomial"),
 })

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -138,27 +138,25 @@ class Spline(TabulatedCurve):
     knots: tuple   # (K + 4,) metres
     control_x: tuple   # control_x, control_y: (K,) control points, metres
     control_y: tuple
-    _splines: dict = field(default_factory=dict, repr=False, compare=False)
 
     kind = "b-spline"
 
-    def _derivative(self, order):
-        if order not in self._splines:
-            base = BSpline(np.array(self.knots), np.c_[self.control_x, self.control_y], SPLINE_DEGREE)
-            self._splines[order] = base.derivative(order) if order else base
-        return self._splines[order]
+    @cached_property
+    def _derivatives(self):
+        base = BSpline(np.array(self.knots), np.c_[self.control_x, self.control_y], SPLINE_DEGREE)
+        return base, base.derivative(1), base.derivative(2)
 
     def _span(self):
         return self.knots[SPLINE_DEGREE], self.knots[-SPLINE_DEGREE - 1]
 
     def _place(self, t):
-        return self._derivative(0)(t)
+        return self._derivatives[0](t)
 
     def _slope(self, t):
-        return self._derivative(1)(t)
+        return self._derivatives[1](t)
 
     def _bend(self, t):
-        return self._derivative(2)(t)
+        return self._derivatives[2](t)
 
     def params(self) -> dict[str, Any]:
         return dict(curve=self.kind, degree=SPLINE_DEGREE, knots=list(self.knots), control_x=list(self.control_x),
@@ -278,17 +276,30 @@ def _penalised(lines):
             for knots, middle, (control, residuals) in zip(basis.knots, middles, basis.robustly_solved(places, across, FITS.max_reweightings))]
 
 
-def smooth_profiles(profiles: Sequence[tuple[np.ndarray, np.ndarray]], bandwidth: float) -> list[Callable[[np.ndarray], np.ndarray]]:
-    """Robust smoothing splines of profiles, such as heights or offsets along lines, with a `bandwidth` in metres.
+@dataclass(frozen=True)
+class Profile:
+    """A smooth function of (M,) t, metres, that gives (M,) metres, constant beyond both ends."""
 
-    Of each profile, (t, values) with (N,) metres and t rising, a function of (M,) t that gives (M,) metres, constant beyond both ends.
-    """
+    knots: np.ndarray   # (K + 4,) metres from `start`; none where it is `level` everywhere
+    control: np.ndarray   # (K,) control points, metres above `level`
+    level: float
+    start: float   # t of the first place
+
+    def __call__(self, at: np.ndarray) -> np.ndarray:
+        if not len(self.knots):
+            return np.full(np.shape(at), self.level)
+        spline = BSpline(self.knots, self.control, SPLINE_DEGREE)
+        return self.level + spline(np.clip(np.asarray(at, float) - self.start, 0.0, self.knots[-SPLINE_DEGREE - 1]))
+
+
+def smooth_profiles(profiles: Sequence[tuple[np.ndarray, np.ndarray]], bandwidth: float) -> list[Profile]:
+    """Robust smoothing splines of profiles, such as heights along lines, (t, values) with (N,) metres and t rising; `bandwidth` in metres."""
     profiles = [(np.asarray(t, float), np.asarray(values, float)) for t, values in profiles]
     functions: list[Any] = [None] * len(profiles)
     smoothable = []
     for k, (t, values) in enumerate(profiles):
         if len(t) < 4 or t[-1] - t[0] < 1.0:
-            functions[k] = _constant(median(values))
+            functions[k] = Profile(np.empty(0), np.empty(0), median(values), 0.0)
         else:
             smoothable.append(k)
     for first, end in _batches([len(profiles[k][0]) for k in smoothable], FITS.spline_points_per_batch):
@@ -310,18 +321,10 @@ def _batches(counts: Sequence[int], max_points: int) -> list[tuple[int, int]]:
     return [*ranges, (first, len(counts))] if len(counts) else []
 
 
-def _constant(level):
-    return lambda at: np.full(np.shape(at), level)
-
-
 def _smooth(profiles, bandwidth):
     basis = _SplineBasis([(t - t[0], [bandwidth]) for t, _ in profiles])
     levels = [median(values) for _, values in profiles]
     places = np.concatenate([values - level for (_, values), level in zip(profiles, levels)])
     solved = basis.robustly_solved(places[:, None], lambda at, slope: places - at[:, 0], FITS.max_profile_reweightings)
-    return [_profile(knots, control[:, 0], level, t[0]) for knots, (control, _), level, (t, _) in zip(basis.knots, solved, levels, profiles)]
+    return [Profile(knots, control[:, 0], level, float(t[0])) for knots, (control, _), level, (t, _) in zip(basis.knots, solved, levels, profiles)]
 
-
-def _profile(knots, control, level, start):
-    spline = BSpline(knots, control, SPLINE_DEGREE)
-    return lambda at: level + spline(np.clip(np.asarray(at, float) - start, 0.0, knots[-SPLINE_DEGREE - 1]))

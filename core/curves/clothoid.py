@@ -45,7 +45,7 @@ class Clothoid(Curve):
         u = np.asarray(u, float)
         nodes, weights = self.rule(u)
         turn = self.heading(u[:, None] * nodes)
-        points = np.stack([np.cos(turn) @ weights, np.sin(turn) @ weights], axis=1)
+        points = np.stack([np.einsum("nk,k->n", np.cos(turn), weights), np.einsum("nk,k->n", np.sin(turn), weights)], axis=1)
         points *= u[:, None]
         return np.add(points, (self.x, self.y), out=points)
 
@@ -108,7 +108,8 @@ class _ClothoidProblem(CurveProblem):
             ahead, across, *_ = self._separation(x, y, curve.heading(u))
             step = ahead / np.minimum(np.maximum(1 - (bend + change * u) * across, 0.3), 3.0)
             turn = curve.heading(u + np.multiply.outer(STEP_RULE[0], step))
-            x, y, u = x + step * (STEP_RULE[1] @ np.cos(turn)), y + step * (STEP_RULE[1] @ np.sin(turn)), u + step
+            x, y = (at + step * np.einsum("k,kn->n", STEP_RULE[1], way) for at, way in ((x, np.cos(turn)), (y, np.sin(turn))))
+            u = u + step
             if np.abs(step).max() < FITS.newton_tolerance:
                 break
         _, across, c, s = self._separation(x, y, curve.heading(u))
@@ -133,7 +134,8 @@ def _moments(curve, u):
     nodes, weights = curve.rule(u)
     turn = curve.heading(np.multiply.outer(nodes, u))
     powers = weights * nodes ** np.arange(3)[:, None]
-    return powers @ np.cos(turn), powers @ np.sin(turn)
+    # not by BLAS, whose last digit depends on how many threads it has
+    return np.einsum("pk,kn->pn", powers, np.cos(turn)), np.einsum("pk,kn->pn", powers, np.sin(turn))
 
 
 def _start(x, y):

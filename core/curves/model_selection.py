@@ -50,12 +50,15 @@ def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: in
     return fits[curve]([(x, y)])[0]
 
 
-def fit_curves(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> list[CurveFit]:
+def fit_curves(lines: Sequence[tuple[np.ndarray, np.ndarray]], elements: bool = False) -> list[CurveFit]:
     """The simplest acceptable curve of each of many lines, (x, y) of (N,) metres, selected as `fit_curve` does.
 
-    If no kind is acceptable, it is the one with the smallest 95th percentile of the residuals.
+    If no kind is acceptable, it is the one with the smallest 95th percentile of the residuals. What it is does not depend on the other lines.
+
+    elements : whether the lines are elements of an alignment: straight lines, circles or clothoids, however far off
     """
-    choices = select_each(lines, (*ALIGNMENT_CURVES, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)), FITS.max_residual_p95)
+    choices = _select_each(lines) if elements else _select_each(
+        lines, (*ALIGNMENT_CURVES, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)), FITS.max_residual_p95)
     return [choice.best or min(choice.found, key=lambda fit: fit.residual_p95) for choice in choices]
 
 
@@ -78,8 +81,8 @@ ALIGNMENT_CURVES = tuple((name, fewest, partial(fit_all, max_misfit=MAX_MISFIT))
                          for name, fewest, fit_all in (("line", 2, fit_lines), ("circle", 4, fit_circles), ("clothoid", 8, fit_clothoids)))
 
 
-def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
-                kinds: Sequence[tuple[str, int, Callable[..., Any]]] = ALIGNMENT_CURVES, max_residual: float = np.inf) -> list[_ModelSelection]:
+def _select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
+                 kinds: Sequence[tuple[str, int, Callable[..., Any]]] = ALIGNMENT_CURVES, max_residual: float = np.inf) -> list[_ModelSelection]:
     """Select the kind of curve of each of many lines; kinds that cannot change a selection are not fitted.
 
     lines : list of (x, y), each (N,) metres, ordered along the line

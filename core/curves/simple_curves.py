@@ -44,7 +44,7 @@ def _taubin(x, y, direction):
         return 0.0
     # Taubin's constraint, reduced to the least eigenvector of a 3 x 3 matrix (Chernov's TaubinSVD)
     design = np.stack([((x**2 + y**2) / size**2 - 1) / 2, x / size, y / size])
-    a, b, c = np.linalg.eigh(design @ design.T)[1][:, 0]
+    a, b, c = np.linalg.eigh(np.einsum("in,jn->ij", design, design))[1][:, 0]
     bend = abs(a) / max(np.sqrt(a * a + b * b + c * c), 1e-150) / size
     # the centre lies at (-b, -c) / a
     return bend * np.sign(a) * np.sign(b * np.sin(direction) - c * np.cos(direction)) if bend >= 1e-9 else 0.0
@@ -176,7 +176,7 @@ class _EllipseProblem(CurveProblem):
 def _direct(x, y):
     """(centre x, y, a, b, tilt) of the direct least-squares ellipse, or None."""
     squares, rest = np.c_[x * x, x * y, y * y], np.c_[x, y, np.ones_like(x)]
-    s1, s2, s3 = squares.T @ squares, squares.T @ rest, rest.T @ rest
+    s1, s2, s3 = (np.einsum("ni,nj->ij", *pair) for pair in ((squares, squares), (squares, rest), (rest, rest)))
     try:
         back = -np.linalg.solve(s3, s2.T)
     except np.linalg.LinAlgError:
@@ -295,4 +295,4 @@ class _PolynomialProblem(CurveProblem):
 
     def evaluate(self, unknown, along):
         design = np.vander(self.ahead / self.size, self.degree + 1, increasing=True)
-        return self.y * np.cos(self.direction) - self.x * np.sin(self.direction) - design @ unknown, -design.T, along
+        return self.y * np.cos(self.direction) - self.x * np.sin(self.direction) - np.einsum("nk,k->n", design, unknown), -design.T, along

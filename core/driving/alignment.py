@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 
 from ..common.parallel import check_cancelled
+from ..common.progress import Progress
 from ..countries.model import Country
 from ..countries.neutral import NEUTRAL
-from ..curves.base import Arc
-from ..curves.model_selection import fit_curves, select_each
+from ..curves.base import Arc, CurveFit
+from ..curves.model_selection import fit_curves
 from ..curves.segmentation import element_ranges
+from ..execution.phase import Executor, NoSource, Phase
 from ..io.crs import FOOT
 from ..markings.cross_section.sections import STATION_STEP
 from ..survey.frame.road import Road
@@ -34,27 +36,77 @@ class Element:
     complete: bool   # False where the lane or the road's lines end before the element does
 
 
-def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[list[Element]]:
-    """Arcs and straights of every lane, in order of station.
+@dataclass
+class Course:
+    """A lane's line."""
+
+    x: np.ndarray   # (V,) vertices in local metres and their stations, s rising
+    y: np.ndarray
+    s: np.ndarray
+    curve: object   # the fitted curve
+    rmse: float   # of the lane's places to it, metres
+
+
+@dataclass(frozen=True)
+class LanesOfRoad:
+    """The lanes of a road, and the (K,) grid stations on which they run."""
+
+    tracks: list[LaneTrack]
+    s: np.ndarray
+    road: Road
+
+
+def fitted_lanes(roads: Sequence[LanesOfRoad], executor: Executor, progress: Progress = Progress()) -> list[tuple[list[Course], list[list[Element]]]]:
+    """The courses of the lanes of each road, and the arcs and straights of every lane, in order of station; `executor` : who fits curves.
 
     Lanes of a road run parallel, so that their bends are concentric: what they have in common (the mean of their offsets, each less its own) is
     divided into elements once, with all of their evidence, and each lane's elements are the parallels. A lane that is not parallel to the others is
     divided alone.
     """
-    elements: list[list[Element]] = [[] for _ in tracks]
-    groups: list[tuple[list[tuple[int, float]], np.ndarray, int]] = []
-    order = sorted(range(len(tracks)), key=lambda i: (-len(tracks[i]), i))
-    by_length = [tracks[i] for i in order]
+    groups = [_parallel_groups(lanes) for lanes in roads]
+    long = [axis for of_road in groups for _, axis in of_road if len(axis.at) >= ALIGNMENT.min_places_per_fit]
+    ranges = Phase(_ranges_of_axis, NoSource(), (), lambda item: "the alignment of lanes")
+    parts = {id(axis): cuts for axis, cuts in zip(long, executor.run(ranges, [axis.thinned for axis in long], progress.part(0.0, 0.2)))}
+    places = [(*axis.part(first, last), True) for axis in long for first, last, _ in parts[id(axis)]]
+    places += [(*_known_places(track, lanes), False) for lanes in roads for track in lanes.tracks]
+    curves = Phase(curves_of_lanes, NoSource(), (), lambda item: "the courses of lanes")
+    fits = iter(list(executor.run_together(curves, places, ALIGNMENT.fitted_together, progress.part(0.2, 0.9))))
+    divided = {key: [(first, last, next(fits).curve) for first, last, _ in cuts] for key, cuts in parts.items()}
+    elements: list[list[list[Element]]] = [[[] for _ in lanes.tracks] for lanes in roads]
+    for lanes, of_road, of_lane in zip(roads, groups, elements):
+        for members, axis in of_road:
+            cuts = [(*map(float, np.interp([first, last], axis.u, axis.at)), curve) for first, last, curve in divided.get(id(axis), ())]
+            for i, offset in members:
+                of_lane[i] = _of_lane(lanes.tracks[i], offset, cuts, lanes.s, lanes.road)
+    return [(_courses([next(fits) for _ in lanes.tracks], lanes.road, of_lane), of_lane) for lanes, of_lane in zip(roads, elements)]
+
+
+def _ranges_of_axis(source: NoSource, line: tuple[np.ndarray, np.ndarray]) -> list[tuple[float, float, str]]:
+    """The `element_ranges` of one line."""
+    return element_ranges([line])[0]
+
+
+def curves_of_lanes(source: NoSource, lines: Sequence[tuple[np.ndarray, np.ndarray, bool]]) -> list[CurveFit]:
+    """What `fit_curves` fits to each of some lines, (x, y, whether it is one element of an alignment)."""
+    fits: dict[int, CurveFit] = {}
+    for elements in (False, True):
+        rows = [k for k, line in enumerate(lines) if line[2] == elements]
+        fits.update(zip(rows, fit_curves([lines[k][:2] for k in rows], elements)))
+    return [fits[k] for k in range(len(lines))]
+
+
+def _parallel_groups(lanes):
+    """[([(number of a lane, its offset from the axis)], _Axis)] of the parallel lanes of a road."""
+    order = sorted(range(len(lanes.tracks)), key=lambda i: (-len(lanes.tracks[i]), i))
+    by_length = [lanes.tracks[i] for i in order]
     waiting, spans = set(range(len(order))), spans_of(by_length)
+    groups = []
     for rank in range(len(order)):
         if rank in waiting:
-            groups.append(_parallel_lanes(rank, by_length, waiting, spans))
+            members, axis, first = _parallel_lanes(rank, by_length, waiting, spans)
+            groups.append(([(order[k], offset) for k, offset in members], _Axis.of(lanes.s, axis, first, lanes.road)))
             check_cancelled()
-    groups = [([(order[rank], offset) for rank, offset in members], axis, first) for members, axis, first in groups]
-    for (members, _, _), divided in zip(groups, _divided([_Axis.of(s, axis, first, road) for _, axis, first in groups])):
-        for i, offset in members:
-            elements[i] = _of_lane(tracks[i], offset, divided, s, road)
-    return elements
+    return groups
 
 
 def _parallel_lanes(longest, tracks, waiting, spans):
@@ -155,19 +207,6 @@ class _Axis:
         return self.x[inside], self.y[inside]
 
 
-def _divided(axes):
-    """[(start station, end station, curve)] of each of some axes, whose parts are fitted together."""
-    long = [k for k, axis in enumerate(axes) if len(axis.at) >= ALIGNMENT.min_places_per_fit]
-    cuts = element_ranges([axes[k].thinned for k in long])
-    parts = [(k, first, last) for k, bounds in zip(long, cuts) for first, last, _ in bounds]
-    choices = select_each([axes[k].part(first, last) for k, first, last in parts])
-    divisions = [[] for _ in axes]
-    for (k, first, last), choice in zip(parts, choices):
-        divisions[k].append((first, last, choice.best))
-    return [[(*map(float, np.interp([first, last], axis.u, axis.at)), best.curve) for first, last, best in parts]
-            for axis, parts in zip(axes, divisions)]
-
-
 def _of_lane(track, offset, divided, s, road):
     stations = s[track.first:track.last + 1]
     x, y = road.to_map(stations, track.d)
@@ -197,20 +236,8 @@ def _cut(arc, first, last):
 # The smooth course of a lane, its pieces by status, and the arcs in it.
 
 
-@dataclass
-class Course:
-    """A lane's line."""
-
-    x: np.ndarray   # (V,) vertices in local metres and their stations, s rising
-    y: np.ndarray
-    s: np.ndarray
-    curve: object   # the fitted curve
-    rmse: float   # of the lane's places to it, metres
-
-
-def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: list[list[Element]]) -> list[Course]:
-    """The courses of the lanes of a road, fitted together; on an Element its arc or straight itself, so that lanes of a bend are concentric."""
-    fits = fit_curves([_known_places(track, s, road) for track in tracks])
+def _courses(fits, road, elements):
+    """The Courses of fitted lanes of a road; on an Element its arc or straight itself, so that lanes of a bend are concentric."""
     drawn = [fit.curve.sample(STATION_STEP) for fit in fits]
     stations = road.locate(*np.concatenate(drawn).T)[0] if drawn else np.empty(0)
     courses, first = [], 0
@@ -228,12 +255,12 @@ def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: l
     return courses
 
 
-def _known_places(track, s, road):
+def _known_places(track, lanes):
     """x, y of a lane where it is not bridged, of all of it where little is known."""
     measured = track.status != BRIDGED
     if measured.sum() < ALIGNMENT.min_places_per_fit:
         measured = np.ones(len(track), bool)
-    return road.to_map(s[track.first:track.last + 1][measured], track.d[measured])
+    return lanes.road.to_map(lanes.s[track.first:track.last + 1][measured], track.d[measured])
 
 
 def _draw_to(element, places, station):

@@ -11,6 +11,7 @@ from scipy.ndimage import distance_transform_edt, gaussian_filter1d, uniform_fil
 
 from ..common.progress import Progress
 from ..countries.catalogue import country
+from ..execution.phase import THREADS
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads, usual_side
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
@@ -21,7 +22,7 @@ from ..road.edges.road_edges import RoadEdges
 from ..survey.frame.road_frame import Road, RoadFrame
 from ..survey.frame.row_table import cuts_where_it_changes
 from ..survey.store.road_points import RoadPoints
-from .alignment import Course, Element, element_of, is_curve, lane_courses, lane_elements, track_pieces
+from .alignment import Course, Element, LanesOfRoad, element_of, fitted_lanes, is_curve, track_pieces
 from .heights import lane_heights
 from .lane_areas import RoadLanes, connectors_between_roads, lane_areas, make_lanes
 from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
@@ -71,26 +72,25 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         progress.warn(f"The survey hardly shows on which side traffic drives; the {estimates.side} was taken. Set Side of traffic if that is wrong.")
     if estimates.against_arrows:
         progress.warn("The vehicle drove against the arrows painted in its lanes; lanes lead the way it drove. Look at the times of the trajectory.")
-    for count, (number, estimated) in enumerate(estimates.roads.items()):
-        part = progress.part(0.4 + 0.6 * count / len(estimates.roads), 0.4 + 0.6 * (count + 1) / len(estimates.roads))
-        s = estimated.lines.s
+    roads = [LanesOfRoad(_road_lanes(estimated, settings, estimates.lane_width), estimated.lines.s, frame.roads[number])
+             for number, estimated in estimates.roads.items()]
+    progress.report(0.5)
+    fitted = fitted_lanes(roads, THREADS if road_points is None else road_points.executor, progress.part(0.5, 0.7))
+    for count, ((number, estimated), road, (courses, alignment)) in enumerate(zip(estimates.roads.items(), roads, fitted)):
+        part = progress.part(0.7 + 0.3 * count / len(roads), 0.7 + 0.3 * (count + 1) / len(roads))
+        s = road.s
         passes = frame.passes_sigma(number, s)
-        tracks = [replace(track, confidence=track.confidence * share_within(passes[track.first:track.last + 1]))
-                  for track in _road_lanes(estimated, settings, estimates.lane_width)]
-        part.report(0.25)
-        alignment = lane_elements(tracks, s, frame.roads[number])
-        part.report(0.5)
-        heights = lane_heights(estimated.lines, road_points, number, tracks, part.part(0.5, 0.7))
+        tracks = [replace(track, confidence=track.confidence * share_within(passes[track.first:track.last + 1])) for track in road.tracks]
+        heights = lane_heights(estimated.lines, road_points, number, tracks, part.part(0.0, 0.7))
         if any(np.isnan(z).any() for z in heights):
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
-        courses = lane_courses(tracks, s, frame.roads[number], alignment)
         spacing = None if road_points is None else point_spacing(road_points, number, s)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
-            sigma = lane_sigma(track, course, frame.roads[number], estimated, paint, passes[track.first:track.last + 1], spacing)
+            sigma = lane_sigma(track, course, road.road, estimated, paint, passes[track.first:track.last + 1], spacing)
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, estimated.lines, z, sigma)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
-            part.report(0.8 + 0.1 * lane / len(tracks))
+            part.report(0.7 + 0.2 * lane / len(tracks))
         tracks = [track.without_jumps(s) for track in tracks]
         areas += lane_areas(estimated, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number))
         lanes[number] = RoadLanes(s, tracks, heights)

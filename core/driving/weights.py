@@ -18,6 +18,7 @@ class _AlignmentWeights:
     min_element_share: float = 0.9   # share of a piece that one element must cover to give it its name
     arc_blend_length: float = 5.0   # m at its ends over which an arc passes into what comes before and after
     max_shared_arc_rmse: float = 0.02   # m: RMSE below which a lane is taken to be the arc it shares with its neighbours
+    fitted_together: int = 8   # curves of a task at most: one takes some 20 ms
     min_places_per_fit: int = 8   # grid stations of a lane that a curve is fitted to
     max_curve_radius: float = 5000.0   # m: flatter arcs are straights to any driver
     min_turn: float = np.radians(1.0)   # of an arc that is a curve

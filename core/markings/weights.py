@@ -252,6 +252,7 @@ class _StrandWeights:
     guide_spacing: float = 2.0   # m between guiding places
     kept_distance: float = 0.1   # m within which a line keeps its distance from what it runs along, as `max_stray_offset` of its own pieces
     line_height_smoothing: float = 3.0   # m
+    fitted_together: int = 8   # lines of a task at most: one takes some 20 ms
     max_distance_to_line: float = 0.15   # m between a marking and the line along it
     paint_beside_piece: float = 2.0   # m of station before and after a piece whose paint counts for its offset
     # Roughness of paint about fitted lines.

@@ -10,7 +10,7 @@ from qgis import utils
 from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QInputDialog, QMenu, QTextBrowser, QWidget
 
-from ...algorithms.cloud_files import cloud_files, survey_name
+from ...algorithms.survey_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.run_table import last_run
 from ...processing_provider.texts import tr
@@ -20,10 +20,9 @@ from ..widgets import button, folder_for_results
 from .batch_dialog import BatchAlgorithmDialog
 from .database_dialog import DatabaseDialog, database_destinations
 from .destinations import destinations, outputs_by_default
-from .stage_inputs import name_by_survey, presets
+from .stage_inputs import SETTINGS, name_by_survey, presets
 
 PRESETS = "lanewright/presets"
-SETTINGS = ("number", "enum", "boolean", "string", "crs", "expression", "distance")  # what a preset holds: no data, no destination
 FEWEST_OUTPUTS = 3  # that are worth one place for all
 
 

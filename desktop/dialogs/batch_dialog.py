@@ -11,7 +11,7 @@ from processing.gui import BatchPanel as qgis_batch_panel
 from qgis.core import Qgis, QgsProcessing, QgsProcessingAlgorithm, QgsProcessingOutputHtml, QgsProcessingUtils, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QWidget
 
-from ...algorithms.cloud_files import SUFFIXES, cloud_files, survey_name
+from ...algorithms.survey_files import SUFFIXES, VIRTUAL, cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.texts import tr
 from ..trajectory_widget import trajectory_beside
@@ -23,9 +23,19 @@ PATH_WIDTH = 330  # px
 
 
 def surveys_in(folder: str) -> list[str]:
-    """Folders with point clouds: the given one and those below it, each a survey, by name."""
-    clouds = (path for path in Path(folder).rglob("*") if path.suffix.lower() in SUFFIXES and path.is_file())
-    return sorted({str(path.parent) for path in clouds})
+    """Folders with point clouds, the given one and those below it, and virtual point clouds of other folders: each a survey, by name."""
+    paths = [path for path in Path(folder).rglob("*") if path.is_file()]
+    folders = {str(path.parent) for path in paths if path.suffix.lower() in SUFFIXES}
+    virtual = [str(path) for path in paths if path.suffix.lower() == VIRTUAL]
+    return sorted({*folders, *(path for path in virtual if folders.isdisjoint(_folders_of(path)))})
+
+
+def _folders_of(cloud):
+    """The folders of the files of a virtual point cloud; none of one that cannot be used, of which the run says why."""
+    try:
+        return {str(Path(path).parent) for path in cloud_files([cloud], tr("Point clouds"))}
+    except RoadExtractionError:
+        return set()
 
 
 class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):

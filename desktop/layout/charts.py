@@ -10,7 +10,7 @@ import shapely
 
 from ...processing_provider.texts import tr
 from .axes import Axis
-from .drawing import DARK, GREY, Drawing, round_step, station_text
+from .drawing import DARK, GREY, Drawing, round_step, station_text, text_width
 from .map_lines import MapLine
 
 EXAGGERATIONS = (10, 5, 2, 1)   # heights of a profile are drawn so many times as large as lengths
@@ -19,6 +19,8 @@ PER_PAGE = 3
 FREE = 14.0           # mm of height above and below the relief of a strip
 TABLE = 30.0          # mm below it for stations, heights and gradients
 LEFT = 24.0           # mm for captions and heights left of a drawing
+SECTIONS = "CROSS_SECTIONS"
+REASON = 2.6          # mm between lines of text on the limits that a section does not keep
 TANGENT = 0.03        # m that a height may miss the tangents whose gradients are written
 COLUMN = 5.0          # mm between heights in the table at least
 SECTION_SCALES = (100, 200, 250, 500)   # of offsets
@@ -123,15 +125,20 @@ def _draw_profile(drawing, axis, first, last, top, strip, scale, times, named):
 
 def section_pages(axes: list[Axis], lines: list[MapLine], ground: Iterable[np.ndarray], interval: float, width: float,
                   height: float) -> list[tuple[Drawing, str]]:
-    """Pages of so many mm with a section every so many metres of every axis where there is a line or a point, and the words of each page's scale."""
-    places = [(axis, float(station)) for axis in axes
-              for station in np.arange(math.ceil(axis.stations[0] / interval) * interval, axis.stations[-1] + 1e-6, interval)]
+    """Pages of so many mm with a section every so many metres of every axis where there is a line or a point, and the words of each page's scale.
+
+    Where there is a layer of cross-sections, its own are shown: those that are so far apart, and those in which a limit is not kept.
+    """
+    measured = [line for line in lines if line.output == SECTIONS]
+    places = _measured_places(axes, measured, interval) if measured else [
+        (axis, float(station), (*axis.at(np.array([station]))[0, :2], axis.heading(station)), (), None) for axis in axes
+        for station in np.arange(math.ceil(axis.stations[0] / interval) * interval, axis.stations[-1] + 1e-6, interval)]
     if not places:
         return []
-    planes = np.array([(*axis.at(np.array([station]))[0, :2], axis.heading(station)) for axis, station in places])
+    planes = np.array([plane for _, _, plane, _, _ in places])
     reach = max(axis.half_width for axis in axes) + SIDE
-    crossed = _crossings(planes, lines, reach)
-    surfaces = _surfaces(planes, ground, reach)
+    crossed = _crossings(planes, [line for line in lines if line.output != SECTIONS], reach)
+    surfaces = [seen if len(seen) or profile is None else profile for seen, (*_, profile) in zip(_surfaces(planes, ground, reach), places)]
     heights = [_heights(*pair) for pair in zip(crossed, surfaces)]
     seen = [k for k, found in enumerate(heights) if len(found)]
     if not seen:
@@ -140,18 +147,42 @@ def section_pages(axes: list[Axis], lines: list[MapLine], ground: Iterable[np.nd
     cell = width / columns
     scale = next((scale for scale in SECTION_SCALES if 2 * reach * 1000 / scale <= cell - LEFT - 4), SECTION_SCALES[-1])
     up = scale / SECTION_HEIGHTS
-    tall = min(max(max(np.ptp(heights[k]) for k in seen) * 1000 / up, 12.0) + 26, height)
+    head = 8 + REASON * max(max(len(places[k][3]) for k in seen) - 2, 0)
+    tall = min(max(max(np.ptp(heights[k]) for k in seen) * 1000 / up, 12.0) + 18 + head, height)
     rows = max(int(height // tall), 1)
     tall, pages = height / rows, []
     for start in range(0, len(seen), rows * columns):
         drawing = Drawing(width, height)
         for number, k in enumerate(seen[start:start + rows * columns]):
             column, row = divmod(number, rows)
-            axis, station = places[k]
+            axis, station, _, reasons, _ = places[k]
             name = f"{tr('Road {number}').format(number=axis.road)}, {station_text(station)}" if len(axes) > 1 else station_text(station)
-            _draw_section(drawing, column * cell, row * tall, cell, tall, name, crossed[k], surfaces[k], scale, up, reach)
+            _draw_section(drawing, column * cell, row * tall, cell, tall, head, name, crossed[k], surfaces[k], scale, up, reach)
+            for line, reason in enumerate(reasons):
+                drawing.text(column * cell + 6 + text_width(name, 9.0), row * tall + 3 + REASON * line, reason, 6.0, "start", colour="#b00020")
         pages.append((drawing, tr("offsets 1 : {offsets}, heights 1 : {heights}").format(offsets=scale, heights=f"{up:g}")))
     return pages
+
+
+def _measured_places(axes, lines, interval):
+    """[(axis, station, (x, y, heading), limits that are not kept, (K, 2) offset and height)] of the sections of a layer."""
+    sections: dict = {}
+    for line in lines:
+        sections.setdefault((line.row.get("road"), line.row.get("section")), []).append(line)
+    result, shown = [], {}
+    for (road, _), parts in sections.items():
+        station, whole = parts[0].number("station"), max((part.places for part in parts), key=lambda places: np.ptp(places[:, :2], axis=0).max())
+        reasons = [f"{part.row['lane'] if isinstance(part.row.get('lane'), int) else tr('carriageway')}: {reason}" for part in parts
+                   if isinstance(part.row.get("why"), str) for reason in part.row["why"].split("; ")]
+        across = (whole[0] - whole[-1])[:2] / np.hypot(*(whole[0] - whole[-1])[:2])   # to the left
+        away, axis = min(((np.hypot(*(axis.places - whole.mean(0))[:, :2].T).min(), axis) for axis in axes), key=lambda pair: pair[0])
+        if away > axis.half_width + SIDE or not reasons and station - shown.get(road, -math.inf) < interval - 1e-6:
+            continue
+        shown[road] = station
+        nearest = axis.places[np.argmin(np.hypot(*(axis.places - whole.mean(0))[:, :2].T)), :2]
+        place = whole[0, :2] + (nearest - whole[0, :2]) @ across * across
+        result.append((axis, station, (*place, math.atan2(-across[0], across[1])), reasons, np.c_[(whole[:, :2] - place) @ across, whole[:, 2]]))
+    return result
 
 
 def _crossings(planes, lines, reach):
@@ -205,7 +236,7 @@ def _heights(found, surface):
     return np.r_[[z for _, z, _, _ in found], tops, surface[np.isfinite(surface[:, 1]), 1]]
 
 
-def _draw_section(drawing, left, top, wide, tall, name, found, surface, scale, up, reach):
+def _draw_section(drawing, left, top, wide, tall, head, name, found, surface, scale, up, reach):
     per_mm, per_mm_up = scale / 1000, up / 1000
     middle, base = left + LEFT + (wide - LEFT - 4) / 2, top + tall - 12
     drawing.text(left + 3, top + 4, name, 9.0, "start")
@@ -215,13 +246,13 @@ def _draw_section(drawing, left, top, wide, tall, name, found, surface, scale, u
     x_of = lambda offset: middle - np.asarray(offset) / per_mm  # noqa: E731
     y_of = lambda z: base - (np.asarray(z) - datum) / per_mm_up  # noqa: E731
     low, high = middle - reach / per_mm, middle + reach / per_mm
-    for z in np.arange(datum, datum + (base - top - 8) * per_mm_up, step):
+    for z in np.arange(datum, datum + (base - top - head) * per_mm_up, step):
         drawing.line([(low, float(y_of(z))), (high, float(y_of(z)))], "#c8c8c8", 0.1)
         drawing.text(low - 1, float(y_of(z)), f"{z:.{1 if step >= 0.1 else 2}f}", 5.5, "end")
     across = round_step(9 * per_mm)
     for offset in np.arange(-math.floor(reach / across), math.floor(reach / across) + 1) * across:
         x = float(x_of(offset))
-        drawing.line([(x, base), (x, top + 8)], "#b00020" if offset == 0 else "#c8c8c8", 0.15 if offset == 0 else 0.1)
+        drawing.line([(x, base), (x, top + head)], "#b00020" if offset == 0 else "#c8c8c8", 0.15 if offset == 0 else 0.1)
         drawing.text(x, base + 2.2, f"{offset + 0.0:g}", 5.5)
     road = np.array([(offset, z) for offset, z, _, _ in found]).reshape(-1, 2)
     if len(surface):

@@ -19,8 +19,8 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QMarginsF
 from qgis.PyQt.QtGui import QPageLayout, QPageSize, QPainter, QPdfWriter
 
-from ...algorithms.cloud_files import survey_name
-from ...algorithms.export.print_sheets import DRAWN, SheetSettings
+from ...algorithms.export import DRAWN, SheetSettings
+from ...algorithms.survey_files import survey_name
 from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...core.common.texts import language

@@ -29,7 +29,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QRectF, Qt
 from qgis.PyQt.QtGui import QColor
 
-from ...algorithms.export.print_sheets import SheetSettings
+from ...algorithms.export import SheetSettings
 from ...algorithms.provenance import own_version
 from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress

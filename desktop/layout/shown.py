@@ -6,7 +6,7 @@ from typing import Any
 
 from qgis.core import Qgis, QgsMapLayer, QgsProject
 
-from ...algorithms.export.print_sheets import DRAWN
+from ...algorithms.export import DRAWN
 from ...processing_provider.results.road_maps import RoadMap
 
 

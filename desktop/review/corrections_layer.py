@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timezone
 from pathlib import Path
 
 from qgis.core import (
@@ -31,6 +32,7 @@ NAME = "CORRECTIONS"
 TABLE = "corrections"
 NEEDED = {"action", "target"}        # fields by which a layer of corrections is known
 SURVEY = "lanewright/survey"         # custom property of the layer: whose corrections it has
+CHANGED = "lanewright/changed/"      # custom property of the layer, with what the corrections are about: when one was made or taken back last
 MOVED = 2.0        # m that a piece is moved at most
 SAME_PLACE = 0.1   # m between two lines of which one is taken for the other
 
@@ -112,6 +114,7 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
 
     Returns the number of the feature
     """
+    _note_change(layer, values["target"])
     placed = _placed(line, crs, layer)
     former = former or correction_at(layer, line, crs, str(values["target"]))
     lacking = [column for column in CORRECTIONS if column.name in values and layer.fields().lookupField(column.name) < 0]
@@ -161,9 +164,25 @@ def take_back(layer: QgsVectorLayer) -> bool:
     ids = layer.allFeatureIds()
     if not ids:
         return False
+    _note_change(layer, layer.getFeature(max(ids))["target"])
     _delete(layer, [max(ids)])
     layer.triggerRepaint()
     return True
+
+
+def _note_change(layer, target):
+    layer.setCustomProperty(f"{CHANGED}{target}", datetime.now(timezone.utc).isoformat())
+
+
+def changed_at(layer: QgsVectorLayer, target: str, unmade: bool) -> datetime | None:
+    """When corrections of a target (edge, marking, lane) were made or taken back last, UTC; None where that is not known.
+
+    unmade : no run has made them yet, so that a row of which nothing is known counts as made now
+    """
+    noted = layer.customProperty(f"{CHANGED}{target}")
+    if noted:
+        return datetime.fromisoformat(str(noted))
+    return datetime.now(timezone.utc) if unmade and any(row["target"] == target for row in layer.getFeatures()) else None
 
 
 def _delete(layer, ids):

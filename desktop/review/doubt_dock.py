@@ -7,20 +7,34 @@ from pathlib import Path
 
 from qgis.core import Qgis, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsTask, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapMouseEvent, QgsMapTool, QgsMapToolEmitPoint, QgsRubberBand
-from qgis.PyQt.QtCore import Qt, pyqtSignal
+from qgis.PyQt.QtCore import Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtGui import QAction, QColor, QKeyEvent, QKeySequence
-from qgis.PyQt.QtWidgets import QAbstractItemView, QCheckBox, QDockWidget, QFileDialog, QLineEdit, QListWidget, QMenu, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QCheckBox,
+    QDockWidget,
+    QFileDialog,
+    QLineEdit,
+    QListWidget,
+    QMenu,
+    QTabWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
 from ...core.common.errors import RoadExtractionError
 from ...core.corrections.corrections import taken_reading
 from ...processing_provider.results.attributes import WORDS
-from ...processing_provider.results.road_maps import RoadMap, clouds_of
+from ...processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
 from ...processing_provider.texts import tr
 from ..widgets import button, choices, row, say, show_extent, wrapped
 from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
+from .photos import PhotoButton, photo_of
 from .smart_pick import evidence, pick, snap
+from .steps import StepsPanel
 
+ARRIVED = 700   # ms after the last layer of a run that came into the project
 LEAST_VIEW = 30.0   # m of ground shown about a place
 FILE = "corrections.gpkg"
 CHOSEN = "#6eff00c8"  # pieces that the buttons are about
@@ -30,11 +44,13 @@ SEEN = "lanewright/seen"  # custom property of a layer: keys of pieces that were
 class DoubtDock(QDockWidget):
     """The window. `go` leads to another place; begins again when the road map is another or has changed.
 
-    Signal `shown` has the place; `run_wanted` the road map and the layer of corrections.
+    Signal `shown` has the place; `run_wanted` the road map and the layer of corrections, if any; `stage_wanted` an algorithm and its values.
+    Where the map is made again while the window is open, the window goes on in the new one.
     """
 
     shown = pyqtSignal(object)
     run_wanted = pyqtSignal(object, object)
+    stage_wanted = pyqtSignal(str, dict)
 
     def __init__(self, iface):
         super().__init__(tr("Doubtful places"), iface.mainWindow())
@@ -57,6 +73,12 @@ class DoubtDock(QDockWidget):
         iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self, [], True)
         self.visibilityChanged.connect(lambda visible: self._highlight() if visible else self._unlight())
         QgsProject.instance().layersWillBeRemoved.connect(self._forget)
+        self.arrived: set[str] = set()   # layers that came into the project; a run adds them one by one, and says what they are after that
+        self.settled = QTimer(self)
+        self.settled.setSingleShot(True)
+        self.settled.setInterval(ARRIVED)
+        self.settled.timeout.connect(self._follow)
+        QgsProject.instance().layersAdded.connect(self._note_layers)
 
     def _build(self):
         self.where = wrapped()
@@ -73,6 +95,7 @@ class DoubtDock(QDockWidget):
         self.list.setWordWrap(True)
         self.list.setToolTip(tr("What is doubtful here. The buttons are about what is selected."))
         self.list.itemSelectionChanged.connect(self._selected)
+        self.photo = PhotoButton()
         self.note = QLineEdit()
         self.note.setPlaceholderText(tr("Note, kept with the correction"))
         self.accept_button = self._button(tr("Accept"), tr("It is right as it is"), lambda: self.decide("accept"), "A")
@@ -102,13 +125,22 @@ class DoubtDock(QDockWidget):
         column.addLayout(row(self.kinds, self.order))
         column.addWidget(self.undecided)
         column.addWidget(self.list, 1)
+        column.addWidget(self.photo)
         column.addLayout(row(self.accept_button, self.delete_button, self.move_button, self.other_button))
         column.addLayout(row(self.pick_button, self.draw_button, self.snap))
         column.addWidget(self.note)
         column.addWidget(self.hint)
         column.addWidget(self.kept)
         column.addLayout(row(self.undo_button, self.run_button))
-        self.setWidget(body)
+        self.steps = StepsPanel()
+        self.steps.run_wanted.connect(lambda: self.run_wanted.emit(self.road_map, self.layer))
+        self.steps.stage_wanted.connect(self.stage_wanted)
+        self.tabs = QTabWidget()
+        self.tabs.setDocumentMode(True)
+        self.tabs.addTab(body, tr("Doubtful places"))
+        self.tabs.addTab(self.steps, tr("Steps"))
+        self.tabs.currentChanged.connect(lambda tab: self._tell())
+        self.setWidget(self.tabs)
 
     def _button(self, text, tip, what, key=""):
         """A button; `key` presses it while the window has the focus."""
@@ -124,6 +156,8 @@ class DoubtDock(QDockWidget):
     def remove(self) -> None:
         """Take the window out of QGIS."""
         QgsProject.instance().layersWillBeRemoved.disconnect(self._forget)
+        QgsProject.instance().layersAdded.disconnect(self._note_layers)
+        self.settled.stop()
         self._stop_drawing()
         self._unlight()
         self._stop_looking()
@@ -135,8 +169,39 @@ class DoubtDock(QDockWidget):
             self._stop_drawing()
             self._stop_looking()
             self.road_map, self._of, self.places, self.at = None, None, [], -1
+            self.photo.show_photo(None)
             self._fill()
             self.where.clear()
+
+    def _note_layers(self, layers):
+        self.arrived |= {layer.id() for layer in layers}
+        self.settled.start()
+
+    def _follow(self):
+        """Go on in the map that has just been made again of the same survey, where a run or a stage has added layers of it."""
+        arrived, self.arrived = self.arrived, set()
+        if self.road_map is None:
+            return
+        newer = next((one for one in road_maps(QgsProject.instance()) if one.survey == self.road_map.survey and one.has_any(arrived)), None)
+        if newer is not None:
+            self._stop_drawing()
+            self._take(newer)
+            self._fill()
+
+    def show_steps(self, road_map: RoadMap) -> None:
+        """The steps of a road map."""
+        self._take(road_map)
+        self._fill()
+        self.tabs.setCurrentWidget(self.steps)
+        self.show()
+        self.raise_()
+
+    def _take(self, road_map):
+        """Be about a road map; from the first place, where it is another one or has changed."""
+        counts = [(layer.id(), layer.featureCount()) for layer in road_map.vectors]
+        if counts != self._of:
+            self._of, self.road_map = counts, road_map
+            self._list_places()
 
     # -- from place to place ----------------------------------------------------------------------
 
@@ -149,10 +214,8 @@ class DoubtDock(QDockWidget):
         """Show the next place of a road map, or the one before; after the last comes the first."""
         if road_map is None:
             return
-        counts = [(layer.id(), layer.featureCount()) for layer in road_map.vectors]
-        if counts != self._of:
-            self._of, self.road_map = counts, road_map
-            self._list_places()
+        self._take(road_map)
+        self.tabs.setCurrentIndex(0)
         self.show()
         self.raise_()
         for _ in self.places:
@@ -163,6 +226,7 @@ class DoubtDock(QDockWidget):
             self._stop_drawing()  # a piece of the place before was to be moved
         self._fill()
         self.list.setFocus()  # for the keys
+        self.photo.show_photo(None if self.place is None else photo_of(QgsProject.instance(), self.place.middle, self.place.crs))
         if self.place is not None:
             self._zoom(self.place)
             self.shown.emit(self.place)
@@ -182,7 +246,9 @@ class DoubtDock(QDockWidget):
         """List the pieces of the place; the buttons are about one of them, until the user selects more."""
         place = self.place
         self.list.clear()
-        if place is None:
+        if place is None and self.places:
+            self.where.setText(tr("<b>{name}</b>: {count} places. ▶ goes to the first.").format(name=self.road_map.name, count=len(self.places)))
+        elif place is None:
             self.where.setText(tr("Nothing of this is doubtful in the road map: all of it was measured."))
         else:
             self.where.setText(tr("<b>Place {at} of {count}</b>, {done} done; road {road}, station {station:.0f} m").format(
@@ -414,6 +480,8 @@ class DoubtDock(QDockWidget):
 
     def _tell(self):
         """How many corrections there are, and what to do with them."""
+        if self.tabs.currentWidget() is self.steps:
+            self.steps.show_map(self.road_map, self.layer)
         count = 0 if (layer := self.layer) is None else layer.featureCount()
         self.undo_button.setEnabled(count > 0)
         self.run_button.setEnabled(count > 0)

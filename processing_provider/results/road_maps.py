@@ -13,8 +13,8 @@ from qgis.core import Qgis, QgsLayerTreeGroup, QgsMapLayer, QgsProject, QgsProvi
 from qgis.PyQt import sip
 
 from ...algorithms.catalogue import ALGORITHMS
-from ...algorithms.cloud_files import cloud_files, survey_name
 from ...algorithms.provenance import Provenance
+from ...algorithms.survey_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from .origin import Origin, origin_of
 

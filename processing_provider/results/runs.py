@@ -7,8 +7,8 @@ from datetime import datetime
 
 from qgis.core import QgsProcessingContext
 
-from ...algorithms.cloud_files import survey_name
 from ...algorithms.provenance import Provenance
+from ...algorithms.survey_files import survey_name
 
 GROUP = "Lanewright"
 SURVEY_OF_RUN = "lanewright_survey"  # what the stages of a model tell each other through their common context

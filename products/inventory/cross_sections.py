@@ -12,6 +12,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.features import CROSS_SECTIONS, Features
 from ...core.common.parallel import ordered_map
 from ...core.common.progress import Progress
+from ...core.common.texts import told, word
 from ...core.countries.catalogue import country
 from ...core.countries.model import SectionLimits
 from ...core.curves.robust import MAD_TO_SIGMA
@@ -485,40 +486,39 @@ def sections_to_features(sections: RoadSections) -> tuple[Features, Features]:
     return lines, table
 
 
-def exceeded(part: _StripMeasures, width: float, limits: SectionLimits) -> list[str]:
-    """Names of the limits that a lane or carriageway does not keep, in a fixed order.
+def exceeded(part: _StripMeasures, width: float, limits: SectionLimits) -> dict[str, str]:
+    """{limit that a lane or carriageway does not keep: value, limit and rule}, in a fixed order.
 
-    Crossfall and width are judged of driving lanes, the grade and the clearance of everything.
+    Crossfall and width are judged of driving lanes, the grade and the clearance of everything; a crossfall where its error does not explain it.
     """
     driven = part.strip.lane > 0 and part.strip.type == "driving"
-    fall = abs(100 * part.crossfall)
+    fall, unsure = abs(100 * part.crossfall), 2 * 100 * part.crossfall_sigma
     checks = (
-        ("rut", driven and _above(1000 * np.fmax(*part.ruts), limits.max_rut)),
-        ("crossfall", driven and (_above(fall, limits.max_crossfall) or _below(fall, limits.min_crossfall))),
-        ("grade", _above(abs(100 * part.grade), limits.max_grade)),
-        ("width", driven and part.strip.borders != "track" and _below(width, limits.min_width)),
-        ("clearance", _below(part.clearance, limits.min_clearance)),
+        ("rut", "max_rut", driven, 1000 * np.fmax(*part.ruts), 0.0, "{:.1f} > {:.4g} mm"),
+        ("crossfall", "max_crossfall", driven, fall, unsure, "{:.2f} > {:.4g} %"),
+        ("crossfall", "min_crossfall", driven, fall, unsure, "{:.2f} < {:.4g} %"),
+        ("grade", "max_grade", True, abs(100 * part.grade), 0.0, "{:.1f} > {:.4g} %"),
+        ("width", "min_width", driven and part.strip.borders != "track", width, 0.0, "{:.2f} < {:.4g} m"),
+        ("clearance", "min_clearance", True, part.clearance, 0.0, "{:.2f} < {:.4g} m"),
     )
-    return [name for name, over in checks if over]
-
-
-def _above(value, limit):
-    return bool(limit is not None and value > limit)
-
-
-def _below(value, limit):
-    return bool(limit is not None and value < limit)
+    reasons = {}
+    for name, limit_name, is_judged, value, error, form in checks:
+        limit = getattr(limits, limit_name)
+        if is_judged and limit is not None and (value - error > limit if limit_name.startswith("max") else value + error < limit):
+            reasons[name] = f"{word(name)} {form.format(value, limit)} [{told(limits.rules[limit_name])}]"
+    return reasons
 
 
 def _row(number: int, section: _RoadSection, part: _StripMeasures, limits: SectionLimits) -> dict[str, Any]:
     strip = part.strip
     width = strip.width / float(np.hypot(1.0, section.heading))
+    reasons = exceeded(part, width, limits)
     return dict(
         road=section.road, section=number + 1, station_m=section.station, part="lane" if strip.lane else "carriageway",
         lane=strip.lane or None, type=strip.type, direction=strip.direction, offset_m=0.5 * (strip.left + strip.right), width_m=width,
         borders=strip.borders, crossf_pct=100 * part.crossfall, crossf_sig=100 * part.crossfall_sigma, grade_pct=100 * part.grade,
         rut_l_mm=1000 * part.ruts[1], rut_r_mm=1000 * part.ruts[0], curb_l_m=part.curbs[1], curb_r_m=part.curbs[0], clear_m=part.clearance,
-        seen_pct=100 * part.seen, exceeds=", ".join(exceeded(part, width, limits)) or None)
+        seen_pct=100 * part.seen, exceeds=", ".join(reasons) or None, why="; ".join(reasons.values()) or None)
 
 
 def _line(section, part, frame):

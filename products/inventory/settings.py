@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.setting import check_limits, setting
@@ -38,7 +38,8 @@ class CrossSectionSettings:
     def limits(self) -> SectionLimits:
         """The limits that hold: the user's own, else the country's; None where neither has one."""
         national = country(self.country).section_limits
-        return SectionLimits(**{name: getattr(self, name) or getattr(national, name) for name in SectionLimits.NAMES}, sources=national.sources)
+        chosen = {name: value for name in SectionLimits.NAMES if (value := getattr(self, name))}
+        return replace(national, **chosen, rules={**national.rules, **dict.fromkeys(chosen, "limit set by the user")})
 
 
 # Settings of the roadside.

@@ -120,7 +120,9 @@ def _names_columns(fields: Sequence[str], least: int) -> bool:
 
 def _rows_of_image(rows, image, column, what):
     """The rows that belong to the image in hand; all where no column names images."""
-    text = lambda row, k: str(row[k]).strip() if k < len(row) and row[k] is not None else ""
+    def text(row, k):
+        return str(row[k]).strip() if k < len(row) and row[k] is not None else ""
+
     # a name of a column is a hint; only names of files say that rows belong to several images
     widest = max(len(row) for row in rows)
     columns = range(widest) if column is None else [column]

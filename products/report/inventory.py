@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
 from typing import Any
 
@@ -18,7 +19,6 @@ LANE_COLOURS = ("#2b6ca3", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9"
 EXCEEDED_COLOUR, KEPT_COLOUR, LIMIT_COLOUR = "#f6c6c6", "#cfe3cf", "#b00020"
 PLAN_EXCEEDED_COLOUR = "#d43d51"
 MAX_TABLE_ROWS = 200
-VALUE_OF_LIMIT = dict(rut="rut_l_mm", crossfall="crossf_pct", grade="grade_pct", width="width_m", clearance="clear_m")
 KIND_COLOURS = dict(guard_rail="#5b6b8c", barrier="#b08a3e", wall="#8c4b3c", fence="#e08020", hedge="#3f8f3a", gutter="#2b8cbe",
                     pole="#7f7f7f", sign="#c9a400", trunk="#6b4a2b")
 EDGE_COLOUR = "#444444"
@@ -62,7 +62,7 @@ def cross_section_report(sections: RoadSections, table: Features) -> str:
 
 
 def _exceeded(rows):
-    """(road, lane, limit, from, to, worst value) of stretches that exceed a limit."""
+    """(road, lane, from, to, the worst) of stretches that exceed a limit."""
     runs: dict[Any, list[list[dict]]] = defaultdict(list)
     for row in rows:
         for name in (row["exceeds"] or "").split(", ") if row["exceeds"] else ():
@@ -71,16 +71,19 @@ def _exceeded(rows):
                 runs[key][-1].append(row)
             else:
                 runs[key].append([row])
-    result = [(road, str(lane or word("carriageway")), word(name), run[0]["station_m"], run[-1]["station_m"], _worst(run, name))
+    result = [(road, str(lane or word("carriageway")), run[0]["station_m"], run[-1]["station_m"], _worst(run, name))
               for (road, lane, name), group in runs.items() for run in group]
-    return sorted(result, key=lambda one: (one[0], one[3]))
+    return sorted(result, key=lambda one: (one[0], one[2]))
 
 
 def _worst(run, name):
-    if name == "rut":
-        return max(value for row in run for value in (row["rut_l_mm"], row["rut_r_mm"]) if value is not None)
-    values = [row[VALUE_OF_LIMIT[name]] for row in run]
-    return min(values, key=abs) if name in ("width", "clearance") else max(values, key=abs)
+    """What the layer says of the section that misses the limit by most."""
+    def missed(reason):
+        value, limit = (float(number) for number in re.findall(r" ([\d.]+) [<>] ([\d.]+) ", reason)[0])
+        return abs(value - limit)
+
+    place = [row["exceeds"].split(", ").index(name) for row in run]
+    return max((row["why"].split("; ")[k] for row, k in zip(run, place)), key=missed)
 
 
 def _parts(rows):

@@ -1,5 +1,5 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
-<qgis labelsEnabled="0" version="3.40.6-Bratislava" styleCategories="Symbology|Labeling">
+<qgis labelsEnabled="1" version="3.40.6-Bratislava" styleCategories="Symbology|Labeling">
   <renderer-v2 forceraster="0" attr="if(coalesce(&quot;exceeds&quot;,'')&lt;>'','exceeded',&quot;part&quot;)" symbollevels="0" type="categorizedSymbol" enableorderby="0" referencescale="-1">
     <categories>
       <category render="true" uuid="{b890a442-a531-445d-b0ff-76e083734199}" label="A limit is exceeded" type="string" value="exceeded" symbol="0"/>
@@ -29,7 +29,7 @@
             <Option type="QString" value="bevel" name="joinstyle"/>
             <Option type="QString" value="212,61,81,255,rgb:0.83137254901960789,0.23921568627450981,0.31764705882352939,1" name="line_color"/>
             <Option type="QString" value="solid" name="line_style"/>
-            <Option type="QString" value="0.9" name="line_width"/>
+            <Option type="QString" value="0.7" name="line_width"/>
             <Option type="QString" value="MM" name="line_width_unit"/>
             <Option type="QString" value="0" name="offset"/>
             <Option type="QString" value="3x:0,0,0,0,0,0" name="offset_map_unit_scale"/>
@@ -76,7 +76,7 @@
             <Option type="QString" value="bevel" name="joinstyle"/>
             <Option type="QString" value="63,155,107,255,rgb:0.24705882352941178,0.60784313725490191,0.41960784313725491,1" name="line_color"/>
             <Option type="QString" value="solid" name="line_style"/>
-            <Option type="QString" value="0.5" name="line_width"/>
+            <Option type="QString" value="0.25" name="line_width"/>
             <Option type="QString" value="MM" name="line_width_unit"/>
             <Option type="QString" value="0" name="offset"/>
             <Option type="QString" value="3x:0,0,0,0,0,0" name="offset_map_unit_scale"/>
@@ -159,6 +159,19 @@
       </Option>
     </data-defined-properties>
   </renderer-v2>
+  <labeling type="rule-based">
+    <rules key="{5b0f8f0c-61a3-4a35-9b0e-0a86d4f3f6c1}">
+      <rule key="{0f3b4a54-8a0b-4e0f-8a39-5d3f0a7c9d52}" filter="coalesce(&quot;why&quot;, '') &lt;> ''" scalemaxdenom="600">
+        <settings calloutType="simple">
+          <text-style isExpression="1" fontFamily="Noto Sans" fontSize="6" fontSizeUnit="Point" textColor="176,0,32,255" textOpacity="1" fieldName="concat(format_number(coalesce(attribute('station_m'), attribute('station_ft')), 0), ': ', regexp_replace(&quot;why&quot;, ' \\[[^\\]]*\\]', ''))">
+            <text-buffer bufferDraw="1" bufferSize="0.8" bufferSizeUnits="MM" bufferColor="255,255,255,255" bufferOpacity="1"/>
+          </text-style>
+          <placement placement="4" overlapHandling="PreventOverlap" priority="5"/>
+          <rendering drawLabels="1" scaleVisibility="0" obstacle="0" maxNumLabels="2000"/>
+        </settings>
+      </rule>
+    </rules>
+  </labeling>
   <selection mode="Default">
     <selectionColor invalid="1"/>
   </selection>

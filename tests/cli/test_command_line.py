@@ -10,6 +10,7 @@ from pathlib import Path
 import laspy
 import numpy as np
 import pytest
+from copc_files import write_vpc
 from spoken import complaints
 from words import OPEN_ELSEWHERE
 
@@ -97,9 +98,10 @@ def test_an_image_without_a_position_is_georeferenced_and_the_false_alarm_explai
     assert "GDAL ERROR 1: Unable to compute a transformation, is QGIS saying the same and harmless" in run.stdout
 
 
-def test_a_survey_is_inspected_with_numbers_and_a_report(survey, tmp_path):
+def test_a_survey_of_a_virtual_point_cloud_is_inspected_with_numbers_and_a_report(survey, tmp_path):
+    write_vpc(tmp_path / "all.vpc", [f"./{os.path.relpath(survey / 's.laz', tmp_path)}"])
     run = qgis_process(
-        "run", "lanewright:inspectsurvey", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.csv'}",
+        "run", "lanewright:inspectsurvey", "--POINT_CLOUDS=all.vpc", f"--TRAJECTORY={survey / 'drive.csv'}",
         "--REPORT=report.html", "--DENSITY=density.tif", "--json", folder=tmp_path,
     )
     assert run.returncode == 0, run.stderr
@@ -107,7 +109,8 @@ def test_a_survey_is_inspected_with_numbers_and_a_report(survey, tmp_path):
     results = json.loads(run.stdout)["results"]
     assert results["SCANNERS"] == 2 and results["TIME_COVERED"] == 100 and results["NEAR_TRAJECTORY"] > 99
     assert "Survey: " in json.dumps(json.loads(run.stdout)["log"]) and "of the points lie within 25 m of it" in run.stdout
-    assert "Points per m" in (tmp_path / "report.html").read_text() and (tmp_path / "density.tif").stat().st_size > 300
+    report = (tmp_path / "report.html").read_text()
+    assert "s.laz" in report and "Points per m" in report and (tmp_path / "density.tif").stat().st_size > 300
 
 
 def changed_cloud(survey, path, change):

@@ -3,7 +3,8 @@
 import shutil
 
 import pytest
-from lanewright.desktop.dialogs.batch_dialog import BatchAlgorithmDialog
+from copc_files import write_vpc
+from lanewright.desktop.dialogs.batch_dialog import BatchAlgorithmDialog, surveys_in
 from lanewright.processing_provider.results.road_maps import road_maps
 from lanewright.processing_provider.results.run_table import run_table
 from qgis.core import QgsApplication, QgsProject
@@ -107,6 +108,18 @@ def test_a_row_that_names_no_place_makes_temporary_layers(dialog, monkeypatch):
     assert first["DRIVING_LINES"].sink.staticValue() == first["REPORT"] == "TEMPORARY_OUTPUT" and not first["CURB_POINTS"].sink.staticValue()
     assert first["DRIVING_LINES"].destinationProject is not None
     assert second["MARKINGS"].sink.staticValue() == "markings.gpkg" and not second["REPORT"]
+
+
+def test_a_virtual_point_cloud_is_a_survey_of_its_own_where_no_folder_is_one_already(tmp_path):
+    for place in ("north", "elsewhere", "shown"):
+        (tmp_path / place).mkdir()
+        (tmp_path / place / "tile.laz").touch()
+    (tmp_path / "shown" / "tile.laz").rename(tmp_path / "elsewhere" / "other.laz")
+    write_vpc(tmp_path / "north.vpc", ["./north/tile.laz"])  # made to show the tiles
+    far = write_vpc(tmp_path / "shown" / "far.vpc", ["./../../elsewhere/tile.laz"])
+    (tmp_path / "shown" / "broken.vpc").touch()
+    (tmp_path / "elsewhere").rename(tmp_path.parent / f"{tmp_path.name}_elsewhere")
+    assert surveys_in(str(tmp_path)) == [str(tmp_path / "north"), str(tmp_path / "shown" / "broken.vpc"), far]
 
 
 def test_a_folder_of_surveys_gives_a_row_each_with_its_trajectory_and_nothing_else(dialog, tmp_path):

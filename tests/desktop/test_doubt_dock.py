@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from lanewright.algorithms.corrections import read_corrections
+from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.desktop.review import points_task, smart_pick
 from lanewright.desktop.review.corrections_layer import corrections_layers
@@ -12,9 +12,10 @@ from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.layers import QgisSource
 from lanewright.processing_provider.results.attributes import second_reading
 from lanewright.processing_provider.results.road_maps import clouds_lie_in, road_maps
-from qgis.core import QgsPointXY, QgsProject, QgsRectangle
+from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
+from qgis.PyQt.QtGui import QImage
 from qgis.PyQt.QtWidgets import QMainWindow
 from road_map_layers import EAST, NORTH, added, run_at
 
@@ -325,3 +326,39 @@ def test_a_line_drawn_beside_the_curb_is_laid_onto_it_unless_that_is_switched_of
         *_, (_, _, line) = corrected_lines()
         assert np.abs(np.array(line.xy)[1] - NORTH - 5).max() == pytest.approx(0.25 if not on else 0.0, abs=beside)
         over_points.undo()
+
+
+def photos(folder, *rows):
+    """A layer of the places of photos; rows of (name, m east and north, direction or None)."""
+    layer = QgsVectorLayer("Point?crs=EPSG:32650&field=photo:string&field=direction:double", "Photos", "memory")
+    for name, east, north, direction in rows:
+        picture = QImage(4000, 3000, QImage.Format.Format_RGB32)
+        picture.fill(Qt.GlobalColor.gray)
+        assert picture.save(str(folder / name))
+        feature = QgsFeature(layer.fields())
+        feature.setGeometry(QgsGeometry.fromPointXY(QgsPointXY(EAST + east, NORTH + north)))
+        feature.setAttributes([str(folder / name), direction])
+        layer.dataProvider().addFeature(feature)
+    return QgsProject.instance().addMapLayer(layer)
+
+
+def test_a_doubtful_place_shows_the_photo_that_looks_at_it(window, tmp_path):
+    photos(tmp_path, ("away.jpg", 12, -2, 270.0), ("ahead.jpg", 4, 0, 95.0), ("far.jpg", 75, 0, None))
+    window.go(road_maps(QgsProject.instance())[0])   # at 10 to 22 m
+    assert window.photo.photo.path.name == "ahead.jpg" and window.photo.isVisible()
+    assert window.photo.iconSize().width() <= 320, "read no larger than it is shown"
+    window.go(window.road_map)   # at 80 m, where the photo's direction is not known
+    assert window.photo.photo.path.name == "far.jpg"
+    (tmp_path / "far.jpg").unlink()
+    window.go(window.road_map)
+    window.go(window.road_map)
+    assert window.photo.photo is None and not window.photo.isVisible(), "a file that is gone is not shown"
+
+
+def test_a_list_of_photos_with_names_beside_it_is_enough(window, tmp_path):
+    photos(tmp_path, ("a.jpg", 500, 500, None))
+    (tmp_path / "list.csv").write_text(f"name,x,y\na.jpg,{EAST + 8},{NORTH + 1}\n", encoding="utf-8")
+    QgsProject.instance().addMapLayer(QgsVectorLayer(
+        f"file://{tmp_path}/list.csv?type=csv&xField=x&yField=y&crs=EPSG:32650", "list", "delimitedtext"))
+    window.go(road_maps(QgsProject.instance())[0])
+    assert window.photo.photo.path == tmp_path / "a.jpg"

@@ -9,9 +9,9 @@ import resource
 import numpy as np
 import pytest
 import shapely
-from lanewright.algorithms.export.print_sheets import SheetSettings
+from lanewright.algorithms.export import SheetSettings
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import DRIVING_LINES, ROAD_EDGES
+from lanewright.core.common.features import CROSS_SECTIONS, DRIVING_LINES, ROAD_EDGES
 from lanewright.core.common.progress import Progress
 from lanewright.core.common.texts import language
 from lanewright.desktop.layout.axes import axes_of, road_line
@@ -293,6 +293,17 @@ def test_a_cross_section_shows_the_edges_the_step_of_the_curb_and_the_ground_bet
     places = np.array([place.split() for place in slope.split("L")], float)
     assert scale == "offsets 1 : 100, heights 1 : 20"
     assert np.polyfit(*places.T, 1)[0] == pytest.approx(0.03 * 5, rel=0.02), "left of the road, which is higher, is on the left of the page"
+
+
+def test_the_pages_of_sections_show_those_of_a_layer_with_the_limits_that_are_not_kept(project):
+    sections = [(f"LINESTRING Z ({at} 10 101, {at} 5 100.9, {at} 0 101)", dict(road=0, section=at, station_m=float(at), part="carriageway", why=why))
+                for at, why in ((12, None), (25, "grade 9.1 > 8 % [RAL 2012]; clearance 3.10 < 4.5 m [RAL 2012]"), (40, None), (52, None))]
+    layers = {"ROAD_EDGES": street(project), "CROSS_SECTIONS": added(project, "CROSS_SECTIONS", CROSS_SECTIONS, *sections)}
+    axes = axes_of_layers({"ROAD_EDGES": layers["ROAD_EDGES"]}, project)
+    (drawing, _), = section_pages(axes, lines_of(layers, layers["ROAD_EDGES"].crs(), project, 1.0), [], 20.0, 271.0, 200.0)
+    shown = re.findall(r">(0\+\d+)<", said(drawing))
+    assert shown == ["0+012", "0+025", "0+052"], "20 m apart, and where a limit is not kept"
+    assert ">carriageway: grade 9.1 &gt; 8 % [RAL 2012]<" in said(drawing) and "clearance 3.10 &lt; 4.5 m" in said(drawing)
 
 
 def test_a_layer_below_is_drawn_last_and_is_not_in_the_legend(project):

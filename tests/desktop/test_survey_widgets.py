@@ -1,7 +1,8 @@
 """The widgets by which a survey is chosen: point clouds and trajectory."""
 
 import pytest
-from lanewright.algorithms.cloud_files import cloud_files
+from copc_files import write_vpc
+from lanewright.algorithms.survey_files import cloud_files
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.desktop.cloud_widget import PointCloudsWidget, PointCloudsWrapper, described, dropped_clouds
 from lanewright.desktop.trajectory_widget import TrajectoryWrapper
@@ -61,6 +62,33 @@ def test_a_folder_or_wildcard_without_a_cloud_is_said(tmp_path, given, said):
         cloud_files([str(tmp_path / given)], "Point clouds")
 
 
+@pytest.mark.parametrize("names", [
+    ["./tile_1.laz", "./tile_2.LAZ"], ["tile_1.laz", "tile_2.LAZ"], ["./..\\{folder}\\tile_1.laz", "./..\\{folder}\\tile_2.LAZ"]])
+def test_a_virtual_point_cloud_gives_the_files_that_it_names_and_no_overview(folder, names):
+    tiles = [str(folder / name) for name in ("tile_1.laz", "tile_2.LAZ")]
+    (folder / "all-overview.copc.laz").touch()
+    named = write_vpc(folder / "all.vpc", [name.format(folder=folder.name) for name in names], "./all-overview.copc.laz")
+    assert cloud_files([named], "Point clouds") == tiles == cloud_files([named, *tiles], "Point clouds")
+    assert cloud_files([str(folder)], "Point clouds") == tiles, "the folder holds the overview beside it"
+
+
+@pytest.mark.parametrize("given", ["", "*.VPC"])
+def test_a_folder_that_holds_but_a_virtual_point_cloud_gives_its_files(folder, given):
+    (folder / "shown").mkdir()
+    write_vpc(folder / "shown" / "all.VPC", ["./../tile_1.laz", str(folder / "tile_2.LAZ")])
+    assert cloud_files([str(folder / "shown" / given)], "Point clouds") == [str(folder / name) for name in ("tile_1.laz", "tile_2.LAZ")]
+
+
+@pytest.mark.parametrize("names, said", [
+    (["./a.laz", "https://tiles.test/b.copc.laz"], "all.vpc names https://tiles.test/b.copc.laz on a server, and nothing is fetched"),
+    (["/vsicurl/https://tiles.test/b.laz"], "on a server"), ([], "all.vpc names no point clouds"), (None, "all.vpc names no point clouds")])
+def test_a_virtual_point_cloud_of_a_server_and_one_that_is_none_are_refused_in_one_sentence(tmp_path, names, said):
+    path = tmp_path / "all.vpc"
+    path.write_text('{"type": "FeatureCollection", "features": [{"assets": [1]}]}') if names is None else write_vpc(path, names)
+    with pytest.raises(RoadExtractionError, match=said):
+        cloud_files([str(path)], "Point clouds")
+
+
 # -- the widget ------------------------------------------------------------------------------------
 
 
@@ -71,8 +99,8 @@ def test_what_was_typed_is_counted_and_what_is_missing_named(qgis_app, folder):
 
 def test_files_folders_and_only_those_can_be_dropped(qgis_app, folder):
     mime = QMimeData()
-    mime.setUrls([QUrl.fromLocalFile(str(path)) for path in (folder, folder / "tile_2.LAZ", folder / "drive.csv")])
-    assert dropped_clouds(mime) == [str(folder), str(folder / "tile_2.LAZ")]
+    mime.setUrls([QUrl.fromLocalFile(str(path)) for path in (folder, folder / "tile_2.LAZ", folder / "all.vpc", folder / "drive.csv")])
+    assert dropped_clouds(mime) == [str(folder), str(folder / "tile_2.LAZ"), str(folder / "all.vpc")]
 
 
 def test_a_name_is_taken_once(qgis_app):

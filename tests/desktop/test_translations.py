@@ -82,14 +82,14 @@ def test_a_german_qgis_process_speaks_german(tmp_path):
 
 def test_every_choice_of_a_dialog_has_a_word_in_german_or_is_a_name():
     from lanewright.algorithms.catalogue import ALGORITHMS
-    from lanewright.algorithms.choice_words import CHOICES, NAMES
+    from lanewright.algorithms.texts import CHOICES, NAMES
 
     choices = {choice for algorithm in ALGORITHMS for spec in algorithm().parameters for choice in getattr(spec, "choices", ())}
     assert choices <= {*CHOICES, *NAMES}
 
 
 def test_a_choice_reads_german_and_keeps_its_value(german, provider, monkeypatch):
-    from lanewright.algorithms.driving.road_map import RoadMap
+    from lanewright.algorithms.driving import RoadMap
     from lanewright.desktop.choice_widget import ChoiceWrapper
     from lanewright.processing_provider.parameters import qgis_parameter
     from processing.gui import ParametersPanel

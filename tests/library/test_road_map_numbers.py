@@ -1,7 +1,7 @@
 """The road map in numbers."""
 
 import pytest
-from lanewright.algorithms.driving.road_map_numbers import NUMBERS, road_map_numbers
+from lanewright.algorithms.driving import NUMBERS, road_map_numbers
 from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.core.corrections.corrections import Correction, Corrections
 

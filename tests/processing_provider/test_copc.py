@@ -1,6 +1,9 @@
 """A COPC file through Processing, and in the eyes of QGIS itself."""
 
+import os
+
 import pytest
+from lanewright.algorithms.survey_files import cloud_files
 from qgis.core import QgsPointCloudLayer, QgsProviderRegistry, QgsVectorLayer
 
 
@@ -23,6 +26,16 @@ def test_qgis_itself_shows_it(survey):
     layer = QgsPointCloudLayer(survey[1], "street", "copc", options)
     assert layer.isValid() and layer.crs().isValid()
     assert layer.pointCount() == laspy.open(survey[0]).header.point_count
+
+
+@pytest.mark.skipif("vpc" not in QgsProviderRegistry.instance().providerList(), reason="this QGIS knows no virtual point clouds")
+def test_a_virtual_point_cloud_as_the_tests_write_it_is_one_for_qgis(survey, tmp_path):
+    from copc_files import write_vpc
+
+    path = write_vpc(tmp_path / "all.vpc", [f"./{os.path.relpath(survey[1], tmp_path)}", survey[0]])
+    layer = QgsPointCloudLayer(path, "all", "vpc")
+    assert layer.isValid() and layer.pointCount() == 2 * 1000, "as it says; each of its files is named with 1000"
+    assert cloud_files([layer.source()], "") == [os.path.normpath(survey[1]), survey[0]]
 
 
 def test_curb_points_and_road_points_are_those_of_the_laz(survey, tmp_path):

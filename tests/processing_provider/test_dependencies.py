@@ -21,6 +21,13 @@ def test_one_sentence_names_what_is_missing_and_the_command(bare):
     assert "-m pip install --no-deps --target" in said and 'laspy "shapely>=2"' in said
 
 
+def test_outside_debian_a_python_without_pip_gets_it_first(monkeypatch):
+    monkeypatch.setattr(dependencies, "find_spec", lambda name: None if name in ("scipy", "shapely", "pip") else True)
+    monkeypatch.setattr(dependencies.Path, "exists", lambda path: False)
+    first, second = dependencies.install_command().split(" && ")
+    assert first.endswith("-m ensurepip --user") and second.endswith('scipy "shapely>=2"')
+
+
 def test_the_command_installs_where_the_plugin_looks(bare, tmp_path, monkeypatch):
     import sys
 

@@ -11,7 +11,7 @@ import pytest
 from drives import write_cloud
 from lanewright.algorithms import destinations
 from lanewright.algorithms.destinations import Unfinished, check_suffix, check_writable, destination_path, table_of
-from lanewright.algorithms.driving.road_map import RoadMap
+from lanewright.algorithms.driving import RoadMap
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.weights import IO
 from lanewright.processing_provider.call import QgisCall

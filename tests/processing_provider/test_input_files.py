@@ -5,6 +5,7 @@ import shutil
 import sqlite3
 
 import pytest
+from copc_files import write_vpc
 from qgis.core import QgsProcessingException, QgsProcessingFeatureSourceDefinition, QgsProject, QgsVectorLayer
 
 
@@ -84,14 +85,17 @@ def test_a_point_cloud_that_is_read_is_not_written_over(survey):
     assert (survey / "s.laz").read_bytes() == before
 
 
-def test_a_run_on_a_folder_or_wildcard_reads_its_clouds_and_writes_over_none(survey):
+@pytest.mark.parametrize("named", ["*.laz", "all.vpc"])
+def test_a_run_on_a_folder_wildcard_or_virtual_point_cloud_reads_its_clouds_and_writes_over_none(survey, named):
     import processing
+
+    write_vpc(survey / "all.vpc", ["./s.laz"])
 
     report = survey / "report.html"
     processing.run("lanewright:inspectsurvey", {"POINT_CLOUDS": str(survey), "REPORT": str(report)})
     assert "s.laz" in report.read_text()
     before = (survey / "s.laz").read_bytes()
     with pytest.raises(QgsProcessingException, match="s.laz, which is read as Point clouds"):
-        processing.run("lanewright:extractroadsurface", {"POINT_CLOUDS": [str(survey / "*.laz")], "TRAJECTORY": str(survey / "drive.gpkg"),
+        processing.run("lanewright:extractroadsurface", {"POINT_CLOUDS": [str(survey / named)], "TRAJECTORY": str(survey / "drive.gpkg"),
                                                          "ROAD_POINTS": str(survey / "s.laz")})
     assert (survey / "s.laz").read_bytes() == before

@@ -1,8 +1,8 @@
 """A dialog offers what the core accepts, to the last number, and nothing beyond."""
 
 import pytest
+from lanewright.algorithms.algorithm import SettingSpec, settings_class
 from lanewright.algorithms.catalogue import ALGORITHMS
-from lanewright.algorithms.parameters import SettingSpec, settings_class
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.processing_provider.algorithm import LanewrightAlgorithm
 

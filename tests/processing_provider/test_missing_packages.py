@@ -66,7 +66,7 @@ def started_without(package):
 
 @pytest.mark.parametrize("package, called", [
     ("numpy,shapely", "numpy, shapely"), ("shapely", "shapely"), ("scipy,lazrs", "scipy, lazrs"), ("laspy,markupsafe", "laspy, markupsafe"),
-    ("pyproj,jinja2", "pyproj, jinja2"), ("cv2,osgeo", "opencv-python-headless, gdal")])
+    ("pyproj,jinja2", "pyproj, jinja2"), ("cv2,osgeo", "opencv-python-headless, gdal"), ("scipy,shapely,pip", "scipy, shapely")])
 def test_the_plugin_loads_and_says_what_is_missing(package, called):
     said = started_without(package)
     algorithms, actions = map(int, said["algorithms"].split())
@@ -74,6 +74,7 @@ def test_the_plugin_loads_and_says_what_is_missing(package, called):
     assert said["said"] == f"Missing Python package(s): {called}.", "one short sentence"
     assert f"Missing Python package(s): {called}." in said["can"] and said["copied"] in said["can"]
     assert "install" in said["copied"] and "terminal" not in said["copied"], "nothing but the command"
+    assert ("python3-pip &&" in said["copied"]) == ("pip" in package.split(",")), "pip is installed before it is called"
 
 
 def test_a_package_that_qgis_does_without_is_not_missed():

@@ -3,9 +3,9 @@
 import re
 
 import pytest
+from lanewright.algorithms.algorithm import settings_class
 from lanewright.algorithms.catalogue import ALGORITHMS
-from lanewright.algorithms.driving.road_map import OFFERED, STAGES
-from lanewright.algorithms.parameters import settings_class
+from lanewright.algorithms.driving import OFFERED, STAGES
 from lanewright.processing_provider.algorithm import LanewrightAlgorithm
 from qgis.core import Qgis, QgsProcessingParameterDefinition
 

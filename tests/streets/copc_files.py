@@ -1,4 +1,4 @@
-"""COPC files for the tests, as the specification 1.0 (copc.io) has them: an octree of chunks in a LAZ 1.4 file.
+"""COPC files for the tests, as the specification 1.0 (copc.io) has them: an octree of chunks in a LAZ 1.4 file; and virtual point clouds.
 
 Nothing that Lanewright needs at work writes them; here a LAS file is parted
 into nodes, each a chunk of its own size, with the hierarchy in a record after
@@ -6,7 +6,9 @@ the points.
 """
 
 import io
+import json
 import struct
+from pathlib import Path
 
 import laspy
 import lazrs
@@ -54,6 +56,24 @@ def write_copc(source, path, deepest=3, in_a_node=2000):
         info = struct.pack("<5dQQ2d88x", *middle, half, 2 * half / 128, hierarchy_at + EVLR, len(entries), times.min(), times.max())
         file.seek(0)
         file.write(header + _record(b"copc", 1, info) + b"".join(_record(*record) for record in records))
+    return str(path)
+
+
+def write_vpc(path, names, overview="", corner=(500000.0, 5400000.0, 0.0), edge=100.0, crs=""):
+    """Write a virtual point cloud that names these files, as pdal_wrench and with it QGIS write it; returns the path."""
+    (x, y, z), (far, deep, high) = corner, (value + edge for value in corner)
+    outline = {"type": "Polygon", "coordinates": [[[x, y, z], [x, deep, z], [far, deep, high], [far, y, high], [x, y, z]]]}
+    box = [x, y, z, far, deep, high]
+    shown = {"overview": {"href": overview, "roles": ["overview"]}} if overview else {}
+    features = [{
+        "type": "Feature", "stac_version": "1.0.0", "stac_extensions": [
+            "https://stac-extensions.github.io/pointcloud/v1.0.0/schema.json", "https://stac-extensions.github.io/projection/v1.1.0/schema.json"],
+        "id": Path(name).stem, "geometry": outline, "bbox": box, "properties": {
+            "datetime": "2024-05-17T00:00:00Z", "pc:count": 1000, "pc:encoding": "?", "pc:type": "lidar",
+            "pc:schemas": [{"name": axis, "size": 8, "type": "floating"} for axis in "XYZ"],
+            "proj:bbox": box, "proj:geometry": outline, "proj:wkt2": crs},
+        "links": [], "assets": {"data": {"href": name, "roles": ["data"]}, **shown}} for name in names]
+    Path(path).write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
     return str(path)
 
 

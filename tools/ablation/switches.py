@@ -306,7 +306,7 @@ ROWS = (
         ("no lane over another", "lane_track:_crowded", gives(False)),
         ("one to one across gaps", "lane_track:_one_to_one", gives(True)),
         ("doubtful ends", "lane_track:LaneTrack.without_doubtful_ends", nth(0), "turns from road to road"),
-        ("common alignment", "alignment:lane_elements", lambda tracks, *_: [[] for _ in tracks], "")),
+        ("common alignment", "alignment:_of_lane", gives([]), "")),
     _set("intensity", "correction of intensity", "intensity", "intensity:correct_intensity intensity:AsphaltTable intensity:IntensityHistograms",
          correct=False),
     _set("paint", "outliers by window (else the whole survey)", "outliers", outliers=dict(scope="all")),

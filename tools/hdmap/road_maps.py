@@ -67,7 +67,7 @@ def results(folder):
 
 
 def _source(folder):
-    from lanewright.algorithms.export.inputs import road_map_source
+    from lanewright.algorithms.export import road_map_source
     from lanewright.core.common.progress import Progress
     from lanewright.library.call import FileCall
     from lanewright.library.run import algorithms

@@ -17,12 +17,12 @@ from ...common.setting import check_limits, setting
 from ...countries.catalogue import country
 from ...countries.neutral import NEUTRAL
 from ...curves.base import CurveFit
-from ...curves.bspline import fit_splines, smooth_profiles
+from ...curves.bspline import Profile, fit_splines, smooth_profiles
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
+from ...execution.phase import THREADS, NoSource, Phase
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import LINE_VERTEX_SPACING
-from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..cross_section.estimate import boundary_uses
@@ -36,7 +36,7 @@ from ..weights import STRANDS
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
 from .painted_lines import PaintedLines, painted_lines_of
 from .selection import SelectedLine, hatching_bars, same_dash_pattern, select_lines
-from .strands import EdgesBeside, LinkedLine, edges_beside, line_paint, painted_strands
+from .strands import LinkedLine, edges_beside, line_paint, painted_strands
 
 # The course of one marking line in plan and height: places from its paint, a curve through them.
 
@@ -75,82 +75,84 @@ class _LineShape:
     """A line that can be drawn between two stations: the fit of its curve, whose residuals belong to the places at (K,) stations `s`."""
 
     fit: CurveFit
+    wanted: bool   # whether the curve is of the wanted kind, not the automatic one
     s: np.ndarray
-    _station_to_u: tuple
-    _height: Callable[[np.ndarray], np.ndarray]   # above the trajectory
-    _track_height: Callable[[np.ndarray], np.ndarray]
+    station_to_u: tuple[np.ndarray, np.ndarray]
+    height: Profile   # above the trajectory
+
+    # its height is smoothed as the difference to the trajectory, so that it goes on along the road's slope
 
     def u(self, s: np.ndarray) -> np.ndarray:
         """Arc length on the curve at stations s, going on evenly beyond the ends."""
-        stations, lengths = self._station_to_u
+        stations, lengths = self.station_to_u
         inside = np.interp(s, stations, lengths)
         return inside + np.minimum(s - stations[0], 0.0) + np.maximum(s - stations[-1], 0.0)
 
-    def draw(self, first: float, last: float) -> np.ndarray:
-        """(M, 3) local places from station `first` to `last`, at most half a metre apart."""
+    def draw(self, first: float, last: float, track_height: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """(M, 3) local places from station `first` to `last`, at most half a metre apart; `track_height` : m, of the trajectory at stations."""
         ends = self.u(np.array([first, last]))
         count = max(2, int(np.ceil((ends[1] - ends[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1)
         u = np.linspace(ends[0], ends[1], count)
-        stations, lengths = self._station_to_u
+        stations, lengths = self.station_to_u
         s = np.interp(u, lengths, stations) + np.minimum(u - lengths[0], 0.0) + np.maximum(u - lengths[-1], 0.0)
-        return np.c_[self.fit.curve.at(u), self._height(s) + self._track_height(s)]
+        return np.c_[self.fit.curve.at(u), self.height(s) + track_height(s)]
 
 
-def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], road: Road, trend: CommonTrend, edges: EdgesBeside,
-                    track_height: Callable[[np.ndarray], np.ndarray], settings: MarkingLineSettings,
-                    progress: Progress = Progress()) -> tuple[list[_LineShape], int]:
-    """The _LineShapes of linked lines, fitted together, and how many of them could not take the wanted curve and have the automatic one.
+def _shapes_of_lines(source: NoSource, courses: Sequence[_Course], curve: str, degree: int) -> list[_LineShape]:
+    """The shapes of some lines, with a curve of the wanted kind, where they can take it.
 
-    Parameters
-    ----------
-    spans : (first, last) stations of each to be drawn, which may reach beyond the paint
-    trend : how the painted lines of the road run together
-    track_height : function of stations (N,), height of the trajectory; the line's height is smoothed as the difference to it, so that it goes on
-        along the road's slope
+    curve, degree : as of MarkingLineSettings
     """
-    if not lines:
-        return [], 0
-    courses = []
-    for line, span in zip(lines, spans):
-        courses.append(_course(line, trend, edges, span))
-        progress.report(0.2 * len(courses) / len(lines))
-    s, d, measured_place = (np.concatenate(parts) for parts in zip(*((course.s, course.d, course.own) for course in courses)))
-    bounds = np.cumsum([len(course.s) for course in courses])[:-1]
-    x, y = (np.split(values, bounds) for values in road.to_map(s, d))
-    measured = [(x[k][course.own], y[k][course.own]) for k, course in enumerate(courses)]
-    fits, replaced = _fitted(measured, settings)
-    progress.report(0.6)
+    measured = [(course.x[course.own], course.y[course.own]) for course in courses]
+    fits = _fitted(measured, curve, degree)
+    wanted = [fit is not None for fit in fits]
+    lacking = [k for k, fit in enumerate(fits) if fit is None]
+    for k, fit in zip(lacking, fit_curves([measured[k] for k in lacking])):
+        fits[k] = fit
     # splines once more with the guides, which are no measurements and count in no choice
     curved = [k for k, fit in enumerate(fits) if fit.curve.kind == "b-spline"]
-    parameters = [_along(road, courses[k].s, courses[k].d) for k in curved]
-    guesses = [None] * len(courses)
-    for k, t, guided in zip(curved, parameters, fit_splines([(x[k], y[k]) for k in curved], parameters)):
+    along, guesses = [courses[k].along for k in curved], [None] * len(courses)
+    for k, t, guided in zip(curved, along, fit_splines([(courses[k].x, courses[k].y) for k in curved], along)):
         fits[k], guesses[k] = guided, guided.curve.u_of(t)
-    track = np.split(track_height(s[measured_place]), np.cumsum([len(course.z) for course in courses])[:-1])
-    heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], STRANDS.line_height_smoothing)
+    heights = smooth_profiles([(course.s[course.own], course.z) for course in courses], STRANDS.line_height_smoothing)
     shapes = []
-    for k, (course, fit, height) in enumerate(zip(courses, fits, heights)):
-        progress.report(0.9 + 0.1 * k / len(courses))
-        u, e = fit.curve.project(x[k], y[k], guesses[k])
-        if guesses[k] is not None:
+    for course, fit, guess, of_kind, height in zip(courses, fits, guesses, wanted, heights):
+        u, e = fit.curve.project(course.x, course.y, guess)
+        if guess is not None:
             fit = CurveFit(fit.curve, e[course.own], fit.parameters)
         rising = np.maximum.accumulate(u)
         keep = np.append(True, np.diff(rising) > 1e-6)
-        shapes.append(_LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]), height, track_height))
-    return shapes, replaced
+        shapes.append(_LineShape(fit, of_kind, course.s[course.own], (course.s[keep], rising[keep]), height))
+    return shapes
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Course:
-    """Places of a line by station, (N,) m, with heights of its own ones, and places that guide its curve where nothing is painted."""
+    """Places of a line by station, (N,) m, of which some guide its curve where nothing is painted; z of its own ones above the trajectory."""
 
     s: np.ndarray
-    d: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    along: np.ndarray   # length along the line
     own: np.ndarray
     z: np.ndarray
 
 
-def _course(line, trend, edges, span):
+def _courses(selected, road, trend, edges, track_height):
+    """The _Courses of the selected lines of a road, which lead over the stations that are to be drawn, beyond the paint, too."""
+    places = [_places(chosen.line, trend, edges, chosen.span) for chosen in selected]
+    if not places:
+        return []
+    s, d = (np.concatenate(parts) for parts in list(zip(*places))[:2])
+    own = np.concatenate([own for _, _, own, _ in places])
+    bounds = np.cumsum([len(stations) for stations, *_ in places])[:-1]
+    track = np.split(track_height(s[own]), np.cumsum([len(z) for *_, z in places])[:-1])
+    return [_Course(of_s, x, y, _along(road, of_s, of_d), of_own, z - below)
+            for (of_s, of_d, of_own, z), x, y, below in zip(places, *(np.split(values, bounds) for values in road.to_map(s, d)), track)]
+
+
+def _places(line, trend, edges, span):
+    """(N,) stations and offsets, whether they are the line's own, and the heights of those."""
     s, d, z, weight = line.places()
     strong = weight >= STRANDS.min_points_per_place
     if strong.sum() >= max(4, 0.5 * len(s)):
@@ -159,21 +161,20 @@ def _course(line, trend, edges, span):
     s, d, z = s[order], d[order], z[order]
     guide_s, guide_d = _guides(s, d, trend, edges, span)
     order = np.argsort(np.concatenate([s, guide_s]), kind="stable")
-    return _Course(np.concatenate([s, guide_s])[order], np.concatenate([d, guide_d])[order], order < len(s), z)
+    return np.concatenate([s, guide_s])[order], np.concatenate([d, guide_d])[order], order < len(s), z
 
 
-def _fitted(places, settings):
-    """Fits to a list of (x, y), and how many of them are not the wanted curve."""
-    if settings.curve == "automatic":
-        return fit_curves(places), 0
-    fits, replaced = [], 0
+def _fitted(places, curve, degree):
+    """Fits to a list of (x, y), None where the wanted curve cannot be taken."""
+    if curve == "automatic":
+        return fit_curves(places)
+    fits = []
     for x, y in places:
         try:
-            fits.append(fit_curve(x, y, settings.curve, settings.degree))
+            fits.append(fit_curve(x, y, curve, degree))
         except RoadExtractionError:
-            fits.append(fit_curve(x, y, "automatic"))
-            replaced += 1
-    return fits, replaced
+            fits.append(None)
+    return fits
 
 
 def _guides(s, d, trend, edges, span):
@@ -308,7 +309,7 @@ def _second_kinds(estimates):
     return result
 
 
-LINES_SHARE = 0.65   # derived: of the work; the rest is the estimate that names the lines
+LINES_SHARE = 0.65   # derived: of the work, half of it to link lines; the rest is the estimate that names the lines
 
 
 def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, frame: RoadFrame,
@@ -335,30 +336,32 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     if not clustered_points.has_cluster:
         raise RoadExtractionError(
             "The points have no field “cluster”. Give the file that “Cluster markings” wrote, together with its layer.")
-    rows: list[dict[str, Any]] = []
-    number, replaced, dropped = 0, 0, 0
+    selected: list[tuple[int, SelectedLine]] = []
+    courses: list[_Course] = []
+    dropped = 0
     roads = clustered_points.roads()
     edge_lines = edges_beside(edges, roads)
     for k, road in enumerate(roads):
-        part = progress.part(LINES_SHARE * k / len(roads), LINES_SHARE * (k + 1) / len(roads))
+        part = progress.part(LINES_SHARE / 2 * k / len(roads), LINES_SHARE / 2 * (k + 1) / len(roads))
         records, rank = line_paint(columns_of_roads(clustered_points.store, [road]), markings, road)
-        part.report(0.1)
-        strands = painted_strands(records, rank)
         part.report(0.2)
-        lines, trend = _linked(strands, edge_lines[road], settings)
+        strands = painted_strands(records, rank)
         part.report(0.4)
-        selected = select_lines(lines, trend, settings.min_paint, hatching_bars(markings, road), country(settings.country).longest_dash)
-        dropped += len(lines) - len(selected)
-        shapes, unwanted = fit_line_shapes([chosen.line for chosen in selected], [chosen.span for chosen in selected], frame.road(road), trend,
-                                           edge_lines[road], partial(frame.track_height, road), settings, part.part(0.45, 0.9))
-        replaced += unwanted
-        for j, (chosen, shape) in enumerate(zip(selected, shapes)):
-            number += 1
-            rows += [dict(row, line=number, road=int(road)) for row in _drawn_pieces(chosen, shape, frame.origin)]
-            part.report(0.9 + 0.1 * (j + 1) / len(selected))
-    progress.info(f"Marking lines: {number}; {dropped} fragments were left out.")
+        lines, trend = _linked(strands, edge_lines[road], settings)
+        part.report(0.8)
+        of_road = select_lines(lines, trend, settings.min_paint, hatching_bars(markings, road), country(settings.country).longest_dash)
+        dropped += len(lines) - len(of_road)
+        courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
+        selected += [(int(road), chosen) for chosen in of_road]
+    phase = Phase(_shapes_of_lines, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
+    executor = THREADS if road_points is None else road_points.executor
+    shapes = list(executor.run_together(phase, courses, STRANDS.fitted_together, progress.part(LINES_SHARE / 2, LINES_SHARE)))
+    rows = [dict(row, line=number, road=road) for number, ((road, chosen), shape) in enumerate(zip(selected, shapes), start=1)
+            for row in _drawn_pieces(chosen, shape, frame.origin, partial(frame.track_height, road))]
+    progress.info(f"Marking lines: {len(shapes)}; {dropped} fragments were left out.")
+    replaced = sum(not shape.wanted for shape in shapes)
     if replaced:
-        progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
+        progress.warn(f"{replaced} of {len(shapes)} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")
     drawn = painted_lines_of(rows, frame, clustered_points.crs)
     if road_points is not None:
@@ -376,10 +379,11 @@ def _linked(strands, edges, settings):
     return [without_strays(line, trend, edges) for line in lines], trend
 
 
-def _drawn_pieces(one: SelectedLine, shape: _LineShape, origin: np.ndarray) -> Iterator[dict[str, Any]]:
+def _drawn_pieces(one: SelectedLine, shape: _LineShape, origin: np.ndarray,
+                  track_height: Callable[[np.ndarray], np.ndarray]) -> Iterator[dict[str, Any]]:
     """The pieces of one line that have a length on the map."""
     for piece in one.pieces:
-        vertices = shape.draw(piece.first, piece.last)
+        vertices = shape.draw(piece.first, piece.last, track_height)
         if not np.ptp(vertices[:, :2] + origin[:2], axis=0).any():
             continue
         residuals = shape.fit.residuals[slice(np.searchsorted(shape.s, piece.first), np.searchsorted(shape.s, piece.last, side="right"))]

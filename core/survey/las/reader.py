@@ -92,7 +92,7 @@ def _mended(path):
     if not Path(path).exists():
         raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
     if not path.lower().endswith(CLOUD_SUFFIXES):
-        raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
+        raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz, .copc.laz and .vpc; convert other formats first.")
     mended = mend(path)
     if damage := find_damage(path, mended):
         raise RoadExtractionError(f"{path} is damaged or cut off: {damage}. Copy or export the file again.")

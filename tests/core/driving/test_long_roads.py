@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 from counted_calls import calls
-from lanewright.core.driving.alignment import lane_elements, without_short_status
+from lanewright.core.driving.alignment import LanesOfRoad, fitted_lanes, without_short_status
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
 from lanewright.core.driving.lane_areas import follow
 from lanewright.core.driving.lane_track import LaneTrack, connect
 from lanewright.core.driving.lanes import laid_out
+from lanewright.core.execution.phase import Threads
 from lanewright.core.markings.cross_section.candidates import boundary_candidates, gather_boundaries
 from lanewright.core.markings.cross_section.sections import sections_of_lines
 from lanewright.core.markings.cross_section.weights import EstimateWeights
@@ -73,7 +74,7 @@ def test_lanes_are_compared_with_those_beside_them():
     shown = np.ones(len(sections.s), bool)
     work = dict(
         joined=lambda tracks: connect(tracks, sections, 20.0, 60.0, shown), tapers=laid_out,
-        elements=lambda tracks: lane_elements(tracks, sections.s, frame.roads[0]))
+        curves=lambda tracks: fitted_lanes([LanesOfRoad(tracks, sections.s, frame.roads[0])], Threads(1)))
     for name, function in work.items():
         few, many = (calls(lambda tracks=lanes_of(blocks): function(tracks)) for blocks in (FEW // 2, MANY // 2))
         assert many < 1.2 * MANY / FEW * few, name

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
+from lanewright.products.cad import section_drawing, write_dxf
 from lanewright.products.inventory.borders import BorderLayers
 from lanewright.products.inventory.cross_sections import measure_cross_sections, sections_to_features
 from lanewright.products.inventory.settings import CrossSectionSettings
@@ -168,6 +169,43 @@ def test_what_exceeds_the_users_limits_is_named():
     rows = rows_of(measured_road(rut=0.015, crossfall=0.04), max_rut=10.0, max_crossfall=3.0, min_width=3.5)
     assert {row["exceeds"] for row in rows} == {"rut, crossfall, width"}
     assert {row["exceeds"] for row in rows_of(measured_road(rut=0.015), max_rut=20.0)} == {None}
+
+
+def test_each_limit_that_is_not_kept_says_its_value_and_whose_rule_it_is():
+    steep = rows_of(measured_road(crossfall=0.05), country="germany", max_crossfall=3.0, min_width=3.5)
+    assert all(re.fullmatch(r"crossfall [45]\.\d\d > 3 % \[limit set by the user\]; width 3\.\d\d < 3.5 m \[limit set by the user\]", row["why"])
+               for row in steep)
+    rows = rows_of(measured_road(rut=0.015, crossfall=0.04), country="germany")
+    assert {row["exceeds"] for row in rows} == {"rut"}
+    assert all(re.fullmatch(r"rut 1\d\.\d > 10 mm \[ZTV ZEB-StB, warning value\]", row["why"]) for row in rows)
+
+
+def test_where_no_country_is_chosen_and_no_limit_set_nothing_is_judged_and_the_report_says_so():
+    sections = measure_cross_sections(measured_road(rut=0.05, crossfall=0.2), BorderLayers(edges_of(), markings_of()))
+    table = sections_to_features(sections)[1]
+    assert not any(row["exceeds"] or row["why"] for row in table.rows)
+    page = cross_section_report(sections, table)
+    assert "Nothing is judged" in page and "No section exceeds" not in page
+
+
+def test_a_crossfall_whose_error_explains_it_is_not_marked():
+    level = {"country": "germany", "min_crossfall": 2.55}   # of 2.5 %, which one pass knows to 0.09 %
+    assert not any("crossfall" in (row["exceeds"] or "") for row in rows_of(measured_road(), **level))
+    assert all("crossfall" in row["exceeds"] for row in rows_of(measured_road(), **{**level, "min_crossfall": 3.0}))
+
+
+def test_the_drawing_of_the_sections_has_the_ground_true_to_scale_with_its_limits_in_words(tmp_path):
+    ogr = pytest.importorskip("osgeo.ogr")
+    sections = measure_cross_sections(measured_road(rut=0.015), BorderLayers(edges_of(), markings_of()), CrossSectionSettings(country="germany"))
+    write_dxf(section_drawing(sections), str(tmp_path / "sections.dxf"))
+    source = ogr.Open(str(tmp_path / "sections.dxf"))
+    rows = [(feature["Layer"], feature["Text"], feature.GetGeometryRef().Clone()) for feature in source.GetLayer(0)]
+    ground = [line for layer, _, line in rows if layer == "SECTION_GROUND"]
+    assert len(ground) == len(sections.sections)
+    assert ground[0].Length() == pytest.approx(np.ptp(sections.sections[0].d), abs=0.5)
+    texts = {layer: [text for kind, text, _ in rows if text and kind == layer] for layer, _, _ in rows}
+    assert any("10 mm [ZTV ZEB-StB, warning value]" in text for text in texts["SECTION_EXCEEDED"])
+    assert any(text.startswith(f"0: {sections.sections[0].station:.2f} m") for text in texts["SECTION_TEXT"])
 
 
 def test_a_limit_left_at_0_is_the_countrys():

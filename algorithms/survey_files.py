@@ -1,11 +1,93 @@
-"""The trajectory from whatever the user has: a layer, a table, or the file itself."""
+"""The point clouds that files, folders and wildcards name."""
 
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
 from dataclasses import replace
+from glob import glob, has_magic
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from .texts import tr
 from .vector_source import LINE, POINT, vertices_of
+
+SUFFIXES = (".las", ".laz")
+COPC, VIRTUAL = ".copc.laz", ".vpc"
+
+
+def cloud_files(given: Iterable[str], label: str) -> list[str]:
+    """The files of a survey.
+
+    Parameters
+    ----------
+    given : files, virtual point clouds (for the files that they name), folders (their LAS and LAZ files, without those of folders inside; the
+        virtual point clouds where there are none) and names with the wildcards * ? [ ]
+    label : what messages call the parameter
+
+    Returns list of paths, each once, those of a folder or wildcard by name. A file that is named is not looked for. Of a folder or wildcard,
+    `a.copc.laz` is left out where `a.laz` or `a.las` is among it, and `a-overview.copc.laz` where `a.vpc` is: QGIS makes such copies of clouds
+    that it shows, and no point shall count twice.
+
+    Raises RoadExtractionError if a folder or wildcard holds no point cloud, or a virtual point cloud cannot be used.
+    """
+    files: list[str] = []
+    for name in filter(None, given):
+        path = Path(name)
+        if path.is_file():
+            files += _clouds([path], "") if path.suffix.lower() == VIRTUAL else [name]
+        elif path.is_dir():
+            files += _clouds(path.iterdir(), tr("{label}: the folder {name} holds no LAS or LAZ file.").format(label=label, name=name))
+        elif has_magic(name):
+            files += _clouds(map(Path, glob(name)), tr("{label}: no LAS or LAZ file is called {name}.").format(label=label, name=name))
+        else:
+            files.append(name)
+    return list(dict.fromkeys(files))
+
+
+def survey_name(clouds: list[str]) -> str:
+    """What a survey is called: the folder of its point clouds and what their names have in common, such as B12/tile."""
+    stems = [Path(path).stem.removesuffix(".copc") for path in clouds]
+    folders = {Path(path).absolute().parent for path in clouds}
+    folder = folders.pop().name if len(folders) == 1 else ""
+    name = os.path.commonprefix(stems).rstrip("_-. 0123456789") if len(set(stems)) > 1 else "".join(stems[:1])
+    return "/".join(part for part in dict.fromkeys((folder, name)) if part)
+
+
+def _clouds(paths, none_found):
+    """Point clouds among paths, by name; raises RoadExtractionError with `none_found` where there is none."""
+    files = sorted(str(path) for path in paths if path.suffix.lower() in (*SUFFIXES, VIRTUAL) and path.is_file())
+    virtual = [name for name in files if name.lower().endswith(VIRTUAL)]
+    clouds = {name for name in files if name not in virtual}
+    copies = {name for name in clouds if name.lower().endswith(COPC) and (
+        any(name[:-len(COPC)] + suffix in clouds for suffix in SUFFIXES)
+        or any(name.startswith(f"{shown[:-len(VIRTUAL)]}-overview") for shown in virtual))}
+    if not files:
+        raise RoadExtractionError(none_found)
+    return sorted(clouds - copies) if clouds else [name for shown in virtual for name in _named_by(shown)]
+
+
+def _named_by(path):
+    """The files of a virtual point cloud, a table of contents in JSON: https://github.com/PDAL/wrench/blob/main/vpc-spec.md
+
+    Names without folder are beside it; one made on Windows has strokes that lean left. What it says about points and CRS, the files say too.
+    """
+    try:
+        assets = [asset for feature in json.loads(Path(path).read_text(encoding="utf-8-sig"))["features"] for asset in feature["assets"].values()]
+        names = [asset["href"].replace("\\", "/") for asset in assets if "overview" not in (asset.get("roles") or ())]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        names = []
+    if not names:
+        raise RoadExtractionError(tr("{path} names no point clouds as a virtual point cloud does. Make it again in QGIS, or choose the LAS and LAZ "
+                                     "files themselves.").format(path=path))
+    if remote := [name for name in names if "://" in name or name.lower().startswith("/vsi")]:
+        raise RoadExtractionError(tr("{path} names {name} on a server, and nothing is fetched. Download the files and choose them.").format(
+            path=path, name=remote[0]))
+    return [os.path.normpath(os.path.join(os.path.dirname(path), name)) for name in names]
+
+
+# The trajectory from whatever the user has: a layer, a table, or the file itself.
 
 # Files the core reads better than QGIS and GDAL: headers of any wording, none at all, binary SBET, logs of receivers, tracks
 FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj", ".llh", ".tsv", ".dat", ".asc", ".log", ".nmea", ".pof", ".gpx", ".kml"}

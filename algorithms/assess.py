@@ -1,0 +1,448 @@
+"""How good a result is: boundaries, markings and driving lines against a reference, from layers of any software."""
+
+import re
+from dataclasses import replace
+
+from ..core.common.errors import RoadExtractionError
+from ..core.common.features import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS
+from .algorithm import Algorithm, SettingSpec, settings_class
+from .texts import tr
+
+NOT_THERE = ("dropped", "none")  # values of the field `edge` or `kind` of a reference that mean: no curb to be found here
+
+
+def add_excluded(algorithm):
+    algorithm.add_input("expression", "EXCLUDED", tr("Rows of the reference that are not judged"),
+                        tr("An expression, such as \"type\" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the "
+                           "rows whose field edge or kind says dropped or none."), optional=True, advanced=True, default="", of="REFERENCE")
+
+
+def add_area(algorithm):
+    algorithm.add_input("layer", "AREA", tr("Area"),
+                        tr("Polygons. What lies outside is left out of both layers; without it a result beyond the ends of the reference is false."),
+                        "PolygonZ", optional=True)
+
+
+def add_tolerances(algorithm, settings, label, text):
+    """The list of tolerances as text: a model can hand it on, and any number of them will do. `settings` names the class, as in SettingSpec."""
+    owner = settings_class(settings)
+    if owner is not None:
+        algorithm.add_input("text", "TOLERANCES", label, text, default=", ".join(f"{number:g}" for number in owner().tolerances))
+
+
+def tolerances(call, name="TOLERANCES"):
+    """The numbers of a list such as 0.05, 0.10 or 0,05; 0,10."""
+    text = call.value(name)
+    if ";" in text or re.fullmatch(r"\s*\d+,\d+\s*", text) and text.strip().startswith("0,"):
+        text = text.replace(",", ".")
+    parts = [part for part in re.split(r"[;,\s]+", text) if part]
+    try:
+        return tuple(float(part) for part in parts)
+    except ValueError:
+        raise RoadExtractionError(
+            tr("{label} is {text!r}; give numbers with commas between them, such as 0.05, 0.10, 0.20.").format(label=call.label(name), text=text)
+        ) from None
+
+
+def layer_of(call, name):
+    """A vector input as AssessedLayer, whatever its fields, heights and parts; None where the optional parameter is empty."""
+    source = call.source(name)
+    return None if source is None else _read(source)[0]
+
+
+def layer_and_excluded(call, name):
+    """(AssessedLayer, whether each row is excluded, why) of a reference."""
+    source = call.source(name)
+    excluded = call.rows_where("EXCLUDED", source)
+    layer, indices = _read(source)
+    # `edge` says what an edge is, and `kind` where it runs; layers without `edge` say in `kind` what it is
+    kinds = ["" if kind is None and edge is None else str(kind if edge is None else edge)
+             for kind, edge in zip(layer.column("kind"), layer.column("edge"))]
+    if excluded is None:
+        kinds = [kind.lower() for kind in kinds]
+        return layer, [kind in NOT_THERE for kind in kinds], kinds
+    return layer, [excluded[k] for k in indices], kinds
+
+
+def _read(source):
+    """(AssessedLayer, place of each of its rows among those of the source)."""
+    import shapely
+
+    from ..products.assess.inputs import AssessedLayer
+
+    layer, indices = AssessedLayer(source.label, [], [], source.crs), []
+    for k, (wkb, values) in enumerate(source.rows()):
+        if wkb is not None:
+            layer.geometries.append(shapely.from_wkb(wkb))
+            layer.rows.append(dict(zip(source.names, values)))
+            indices.append(k)
+    return layer, indices
+
+
+def compared_lines(result, reference, progress):
+    """(result, reference, their CRS) of two layers of lines, in one CRS and without stray vertices; refused where they do not overlap."""
+    from ..products.assess.inputs import check_kind, check_overlap, common_crs, in_crs, without_stray_vertices
+
+    for layer in (result, reference):
+        check_kind(layer, ("LineString", "Polygon"), tr("lines"))
+    crs = common_crs((reference, result))
+    result, reference = (without_stray_vertices(in_crs(layer, crs, progress.warn), progress.warn) for layer in (result, reference))
+    check_overlap(result, reference)
+    return result, reference, crs
+
+
+def painted_of(call, name, progress):
+    """(AssessedLayer of polygons and lines, whether it was a raster) of a vector or raster layer."""
+    import shapely
+
+    from ..core.io.crs import in_metres
+    from ..products.assess.inputs import AssessedLayer, polygons_of_raster
+
+    source, path, crs = call.painted(name)
+    if source is not None:
+        return _read(source)[0], False
+    polygons, values, _ = polygons_of_raster(path, progress)
+    crs, units = in_metres(crs)
+    if not units.metric:
+        polygons = [shapely.transform(polygon, units.in_metres) for polygon in polygons]
+    has_classes = len(set(values.tolist())) > 1
+    return AssessedLayer(call.label(name), polygons, [{"class": str(value)} if has_classes else {} for value in values], crs), True
+
+
+def frame_of_drive(call, crs):
+    """The road frame of TRAJECTORY in the CRS; None where it was not given. Heights are not needed."""
+    from ..core.survey.frame.road_frame import build_frame
+    from ..core.survey.trajectory.trajectory import reproject_trajectory
+
+    trajectory = call.trajectory(heights_needed=False)
+    if trajectory is None:
+        return None
+    return build_frame(reproject_trajectory(trajectory, crs))
+
+
+def area_of(call, crs, warn):
+    """The union of AREA's polygons in the CRS; None where it was not given."""
+    import shapely
+
+    from ..products.assess.inputs import check_kind, in_crs
+
+    layer = layer_of(call, "AREA")
+    if layer is None:
+        return None
+    check_kind(layer, ("Polygon",), "polygons")
+    if not layer.geometries:
+        raise RoadExtractionError(tr("{label} has no polygons. Leave it empty to judge everywhere.").format(label=layer.label))
+    return shapely.union_all(shapely.make_valid(shapely.force_2d(in_crs(layer, crs, warn).geometries)))
+
+
+def found_numbers(numbers):
+    """The numbers that there are: a share of nothing is left out."""
+    return {name: float(value) for name, value in numbers.items() if value is not None and value == value}
+
+
+def shares_of(numbers, names):
+    """Shares as the log tells them: precision 99.5 %, recall 98.0 %."""
+    shares = [f"{name.split('_')[0].capitalize() if name.startswith('F1') else name.split('_')[0].lower()} {numbers[name]:.1f} %"
+              for name in names if name in numbers]
+    return ", ".join(shares)
+
+
+BOUNDARY = "products.assess.boundaries:BoundaryAccuracySettings"
+
+EDGES = ("automatic", "all", "curbs")
+BOUNDARY_SETTINGS = (
+    SettingSpec("TOLERANCE", BOUNDARY, "tolerance", tr("Tolerance of the layer and of the numbers (m)"),
+                tr("The tolerance for which intervals are drawn and numbers returned; the report has all of them.")),
+    SettingSpec("INTERVAL", BOUNDARY, "interval", tr("Length of an interval (m)"),
+                tr("Longer lets a short error pass or spoil more of the road; published figures use 2."), advanced=True),
+    SettingSpec("CORRIDOR", BOUNDARY, "corridor", tr("Corridor either side of the trajectory (m)"),
+                tr("What lies farther out belongs to no road and is left out; the report tells how much."), advanced=True),
+)
+
+
+class AssessBoundaries(Algorithm):
+    ID, TITLE, GROUP = "assessboundaries", "Assess road boundaries", "Assessment"
+    SUMMARY = "Sets road boundaries against reference lines, side by side in intervals of 2 m: precision, recall, errors across and in height."
+    HELP = ("Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. "
+            "A layer in another CRS is reprojected. Where a layer tells tops from bottoms in a field part, bottoms count.")
+    TAGS = ("accuracy", "precision", "recall", "validation", "curb", "reference", "ground truth")
+    LOOKS = {"OUTPUT": "ASSESSED_LINES"}
+    NUMBERS = (
+        ("PRECISION", tr("Precision (%)")), ("RECALL", tr("Recall (%)")), ("F1", tr("F (%)")), ("IOU", tr("Intersection over union (%)")),
+        ("CORRECT", tr("Correct intervals")), ("MISSED", tr("Missed intervals")), ("FALSE", tr("False intervals")),
+        ("EXCLUDED_INTERVALS", tr("Intervals that were not judged")),
+        ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
+        ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_MEAN", tr("Mean height error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")),
+        ("HEIGHT_P95", tr("95th percentile of the height error (m)")), ("HEIGHT_MAXIMUM", tr("Largest height error (m)")),
+        *((f"{rate}_{side.upper()}", tr("{rate}, {side} (%)").format(rate=rate.capitalize(), side=side))
+          for side in ("left", "right") for rate in ("PRECISION", "RECALL", "F1")),
+    )
+
+    def declare(self):
+        self.add_input("layer", "INPUT", tr("Boundaries to assess"), tr("Lines that were extracted, such as road edges."), "LineStringZ")
+        self.add_input("layer", "REFERENCE", tr("Reference boundaries"), tr(
+            "Lines that are known to be right, one on each side of the road, such as the feet of the curbs."), "LineStringZ")
+        self.add_trajectory(optional=True)
+        add_tolerances(self, BOUNDARY, tr("Tolerances (m)"), tr(
+            "Distances to either side within which a line is right, with commas between them. The report has a row for each."))
+        self.add_settings(BOUNDARY_SETTINGS)
+        self.add_input("choice", "EDGES", tr("Edges to judge"),
+                       tr("Road edges hold curbs and, where there is no curb, edges of the pavement. Curbs judges curbs alone; all judges whatever "
+                          "both layers hold. Automatic leaves edges of the pavement out where the field edge or kind of the reference says that it "
+                          "holds curbs alone: such a reference cannot tell whether they are right."), default=EDGES[0], choices=EDGES)
+        add_excluded(self)
+        add_area(self)
+        self.add_sink("OUTPUT", tr("Boundaries by outcome"), tr("One line an interval and outcome."), fields=ASSESSED_BOUNDARIES,
+                      geometry="MultiLineStringZ")
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..products.assess.boundaries import assess_boundaries
+        from ..products.assess.inputs import along_the_road_only, bottoms_only, check_reference, edges_that_compare
+        from ..products.assess.layers import boundary_layer
+        from ..products.report.assessment import boundary_report
+
+        settings = call.settings(BOUNDARY_SETTINGS, tolerances=tolerances(call))
+        reference, excluded, kinds = layer_and_excluded(call, "REFERENCE")
+        result, reference, crs = compared_lines(layer_of(call, "INPUT"), reference, progress)
+        progress.report(0.2)
+        frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
+        for choose in (bottoms_only, along_the_road_only):
+            result, _ = choose(result, progress.warn)
+            reference, kept = choose(reference, progress.warn)
+            excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
+        result, reference, kept = edges_that_compare(result, reference, call.value("EDGES"), progress.warn)
+        excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
+        judged = reference.subset([not x for x in excluded])
+        check_reference(judged, result, frame, area, settings.corridor, progress.warn)
+        progress.report(0.4)
+        accuracy = assess_boundaries(
+            result.geometries, judged.geometries, settings, frame, reference.subset(excluded).geometries,
+            [kind for kind, out in zip(kinds, excluded) if out], area, judged.column("side"), progress.part(0.4, 0.8))
+        progress.report(0.8)
+        layer = boundary_layer(accuracy, crs, progress.part(0.8, 0.95))
+        call.layer("OUTPUT", layer)
+        if call.wants("REPORT"):
+            call.text("REPORT", boundary_report(accuracy, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), progress.texts))
+        numbers = found_numbers(_boundary_numbers(accuracy))
+        progress.info(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.").format(
+            correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,
+            rates=shares_of(numbers, ("PRECISION", "RECALL", "F1"))))
+        return numbers
+
+
+def _boundary_numbers(accuracy):
+    tolerance = accuracy.settings.tolerance
+    total = accuracy.total[tolerance]
+    numbers = {
+        "PRECISION": 100 * total.rates.precision, "RECALL": 100 * total.rates.recall, "F1": 100 * total.rates.f1, "IOU": 100 * total.rates.iou,
+        "CORRECT": total.rates.right, "MISSED": total.rates.missed, "FALSE": total.rates.false,
+        "EXCLUDED_INTERVALS": (accuracy.intervals.excluded != "").sum(),
+        "MEAN": total.lateral.mean, "RMSE": total.lateral.rmse, "P95": total.lateral.p95, "MAXIMUM": total.lateral.maximum,
+        "HEIGHT_MEAN": total.height.mean, "HEIGHT_RMSE": total.height.rmse, "HEIGHT_P95": total.height.p95, "HEIGHT_MAXIMUM": total.height.maximum,
+    }
+    for side in ("left", "right"):
+        if side in accuracy.by_side:
+            rates = accuracy.by_side[side][tolerance].rates
+            shares = {"PRECISION": rates.precision, "RECALL": rates.recall, "F1": rates.f1}
+            numbers |= {f"{name}_{side.upper()}": 100 * share for name, share in shares.items()}
+    return numbers
+
+
+MARKINGS = "products.assess.markings:MarkingAccuracySettings"
+
+MARKING_SETTINGS = (
+    SettingSpec("TOLERANCE", MARKINGS, "tolerance", tr("Tolerance of objects and of the layer (cells)"),
+                tr("Objects are judged and numbers ending in TOLERANT returned with this tolerance; the report has all of them.")),
+    SettingSpec("CELL_SIZE", MARKINGS, "cell_size", tr("Cell size (m)"),
+                tr("Smaller weighs the rims of markings more and takes longer; published figures use 0.04."), advanced=True),
+    SettingSpec("LINE_WIDTH", MARKINGS, "line_width", tr("Width of lines (m)"),
+                tr("How wide paint is where a layer of lines has no field width_m or width."), advanced=True),
+)
+
+
+class AssessMarkings(Algorithm):
+    ID, TITLE, GROUP = "assessmarkings", "Assess markings", "Assessment"
+    SUMMARY = "Sets road markings against a reference, cell by cell, by class and by object: precision, recall, F1 and intersection over union."
+    HELP = ("Polygons, lines or a raster mask (anything but 0 and no-data is paint), of other software too, on either side. A layer in another CRS "
+            "is reprojected.")
+    TAGS = ("accuracy", "precision", "recall", "iou", "validation", "road marking", "reference", "ground truth")
+    LOOKS = {"OUTPUT": "ASSESSED_POLYGONS", "CELLS": "ASSESSED_CELLS"}
+    NUMBERS = (
+        *((name, tr("{what} (%)").format(what=what)) for name, what in (
+            ("PRECISION", "Precision of cells, strict"), ("RECALL", "Recall of cells, strict"), ("F1", "F1 of cells, strict"),
+            ("IOU", "Intersection over union of cells, strict"), ("PRECISION_TOLERANT", "Precision of cells with tolerance"),
+            ("RECALL_TOLERANT", "Recall of cells with tolerance"), ("F1_TOLERANT", "F1 of cells with tolerance"),
+            ("OBJECT_PRECISION", "Precision of objects"), ("OBJECT_RECALL", "Recall of objects"), ("OBJECT_F1", "F1 of objects"))),
+        ("HITS", tr("Cells that are right")), ("MISSES", tr("Cells that were missed")), ("FALSE_ALARMS", tr("Cells that are false")),
+    )
+    RETIRED = ("FOUND_SHARE",)
+
+    def declare(self):
+        self.add_input("painted", "INPUT", tr("Markings to assess"), tr("Polygons, lines with a width, or a mask."))
+        self.add_input("painted", "REFERENCE", tr("Reference markings"),
+                       tr("Polygons, lines or a raster of what is painted; the values of a raster are its classes."))
+        self.add_trajectory(optional=True)
+        add_tolerances(self, MARKINGS, tr("Tolerances (cells)"), tr(
+            "Cells by which the other layer is widened before it is asked, with commas between them; 0 is strict."))
+        self.add_settings(MARKING_SETTINGS)
+        self.add_input("text", "CLASS_FIELD", tr("Field with the class"),
+                       tr("Looked for in both layers; a layer without it has no classes. Fields named mark_class and kind are found too."),
+                       optional=True, advanced=True, default="class")
+        add_area(self)
+        self.add_input(
+            "raster", "IMAGE", tr("Image that shows what was scanned"),
+            tr("Where this raster, such as the intensity image, is empty nothing is judged, and the report's map lies over it. It hides what was "
+               "never scanned, but also what the road surface left out: leave it empty to hold that against the result."), optional=True)
+        self.add_sink("OUTPUT", tr("Markings by outcome"), tr("Objects of the reference, correct or missed, and the false ones of the result."),
+                      fields=ASSESSED_MARKINGS, geometry="MultiPolygonZ")
+        self.add_output("raster", "CELLS", tr("Hits, misses and false alarms"), tr(
+            "1 hit, 2 missed, 3 false, 4 missed beside a hit (within the tolerance), 5 false beside paint."), optional=True, by_default=False)
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..products.assess.inputs import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_polygons
+        from ..products.assess.layers import marking_layer
+        from ..products.assess.markings import OutcomeRaster, assess_markings
+
+        settings = call.settings(MARKING_SETTINGS, tolerances=tolerances(call))
+        layers = [painted_of(call, name, progress.part(*part))[0] for name, part in (("INPUT", (0.0, 0.15)), ("REFERENCE", (0.15, 0.3)))]
+        crs = common_crs(layers[::-1])
+        field = call.value("CLASS_FIELD")
+        result, reference = (marking_polygons(in_crs(layer, crs, progress.warn), settings.line_width) for layer in layers)
+        check_overlap(result, reference)
+        frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
+        check_marking_reference(reference, result, area, progress.warn)
+        classes = [classes_of(layer, field) for layer in (result, reference)]
+        image = call.raster_in("IMAGE", crs)
+        cells = None
+        if call.wants("CELLS"):
+            shapes = [*result.geometries, *reference.geometries]
+            cells = OutcomeRaster(call.new_file("CELLS"), shapes, settings.cell_size, crs, max(settings.tolerances))
+        accuracy = assess_markings(result.geometries, reference.geometries, settings, *classes, area, image, cells, progress.part(0.35, 0.9))
+        if cells is not None:
+            cells.close()
+        layer = marking_layer(accuracy, result.geometries, reference.geometries, *classes, crs)
+        call.layer("OUTPUT", layer)
+        if call.wants("REPORT"):
+            self._report(call, accuracy, layer, frame, image, progress.texts)
+        numbers = found_numbers(_marking_numbers(accuracy))
+        progress.info(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.").format(
+            cells=settings.tolerance, strict=shares_of(numbers, ("PRECISION", "RECALL", "F1")),
+            tolerant=shares_of(numbers, ("PRECISION_TOLERANT", "RECALL_TOLERANT", "F1_TOLERANT"))))
+        return numbers
+
+    def _report(self, call, accuracy, layer, frame, image, warnings):
+        from ..products.assess.matching import stations_of_blocks
+        from ..products.report.assessment import marking_report
+
+        station, along = stations_of_blocks(accuracy.blocks, frame)
+        names = call.layer_name("INPUT"), call.layer_name("REFERENCE")
+        call.text("REPORT", marking_report(accuracy, layer, names, station, along, image, warnings))
+
+
+def _marking_numbers(accuracy):
+    strict, tolerant, objects = accuracy.strict, accuracy.tolerant, accuracy.objects
+    return {
+        "PRECISION": 100 * strict.precision, "RECALL": 100 * strict.recall, "F1": 100 * strict.f1, "IOU": 100 * strict.iou,
+        "PRECISION_TOLERANT": 100 * tolerant.precision, "RECALL_TOLERANT": 100 * tolerant.recall, "F1_TOLERANT": 100 * tolerant.f1,
+        "OBJECT_PRECISION": 100 * objects.precision, "OBJECT_RECALL": 100 * objects.recall, "OBJECT_F1": 100 * objects.f1,
+        "HITS": strict.right, "MISSES": strict.missed, "FALSE_ALARMS": strict.false,
+    }
+
+
+LINES = "products.assess.driving_lines:LineAccuracySettings"
+WIDTHS = ("half-width", "total-width")
+
+LINE_SETTINGS = (
+    SettingSpec(
+        "TOLERANCE", LINES, "tolerance", tr("Tolerance of the layer and of the numbers (m)"),
+        tr("The tolerance for which pieces are drawn and numbers returned, of the same kind as the others; the report has all of them."),
+        times=2.0,  # total widths are halved
+    ),
+    SettingSpec("MAX_ANGLE", LINES, "max_angle", tr("Largest angle between lines that match (°)"),
+                tr("Smaller keeps lines that cross from matching; 90 lets any direction match. The way a line is drawn does not matter."),
+                advanced=True),
+)
+
+
+class AssessDrivingLines(Algorithm):
+    ID, TITLE, GROUP = "assessdrivinglines", "Assess driving lines", "Assessment"
+    SUMMARY = "Sets driving lines against reference lines within buffers: completeness, correctness, miscoding, errors and gaps."
+    HELP = ("Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. "
+            "A layer in another CRS is reprojected. Miscoding is the share of the result outside the buffer of the reference.")
+    TAGS = ("accuracy", "miscoding", "completeness", "correctness", "buffer", "validation", "reference", "ground truth")
+    LOOKS = {"OUTPUT": "ASSESSED_LINES"}
+    NUMBERS = (
+        ("COMPLETENESS", tr("Completeness (%)")), ("CORRECTNESS", tr("Correctness (%)")),
+        ("QUALITY", tr("Quality (%)")), ("MISCODING", tr("Miscoding (%)")),
+        ("PRECISION", tr("Precision, the same as correctness (%)")), ("RECALL", tr("Recall, the same as completeness (%)")), ("F1", tr("F1 (%)")),
+        ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
+        ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")), ("GAPS_PER_KM", tr("Gaps per km")),
+        ("MEAN_GAP", tr("Mean length of the gaps (m)")), ("RESULT_LENGTH", tr("Length of the result (m)")),
+        ("REFERENCE_LENGTH", tr("Length of the reference (m)")),
+    )
+
+    def declare(self):
+        self.add_input("layer", "INPUT", tr("Driving lines to assess"), tr("Lines that were made."), "LineStringZ")
+        self.add_input("layer", "REFERENCE", tr("Reference lines"), tr(
+            "Lines that are known to be right, such as those drawn over an orthoimage."), "LineStringZ")
+        self.add_trajectory(optional=True)
+        add_tolerances(self, LINES, tr("Tolerances (m)"), tr("Sizes of the buffer, with commas between them. The report has a row for each."))
+        self.add_input("choice", "WIDTH", tr("Tolerances are"),
+                       tr("Half-width: from the line to the rim of its buffer. Total-width: from rim to rim, so that 0.20 lets a line be 0.10 m off. "
+                          "Published figures seldom say which they mean; the report shows both."), default=WIDTHS[0], choices=WIDTHS)
+        self.add_settings(LINE_SETTINGS)
+        add_area(self)
+        self.add_sink("OUTPUT", tr("Driving lines by outcome"), tr("The lines cut where the outcome changes: false pieces lie outside the buffer."),
+                      fields=ASSESSED_DRIVING_LINES, geometry="MultiLineStringZ")
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..products.assess.driving_lines import match_lines
+        from ..products.assess.inputs import check_reference
+        from ..products.assess.layers import driving_line_layer
+        from ..products.assess.matching import stations_of_match
+        from ..products.report.assessment import driving_report
+
+        settings = self._settings(call)
+        result, reference, crs = compared_lines(layer_of(call, "INPUT"), layer_of(call, "REFERENCE"), progress)
+        frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
+        check_reference(reference, result, frame, area, warn=progress.warn)
+        progress.report(0.3)
+        match = match_lines(result.geometries, reference.geometries, area, settings.max_angle, progress.part(0.3, 0.7))
+        accuracy = match.accuracy(settings.tolerances)
+        progress.report(0.7)
+        layer = driving_line_layer(match, settings, crs, progress.part(0.7, 0.95))
+        call.layer("OUTPUT", layer)
+        if call.wants("REPORT"):
+            station, along = stations_of_match(match, frame)
+            call.text("REPORT", driving_report(
+                match, accuracy, settings, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), station, along,
+                call.value("WIDTH") == "total-width", progress.texts))
+        numbers = found_numbers(_line_numbers(accuracy, settings.tolerance))
+        progress.info(tr("Within {tolerance:g} cm to either side: {rates}.").format(
+            tolerance=100 * settings.tolerance, rates=shares_of(numbers, ("COMPLETENESS", "CORRECTNESS", "MISCODING"))))
+        return numbers
+
+    def _settings(self, call):
+        """The core works with half-widths."""
+        share = 0.5 if call.value("WIDTH") == "total-width" else 1.0
+        values = {spec.field: call.value(spec.name) for spec in LINE_SETTINGS}
+        widths = tuple(share * width for width in tolerances(call))
+        return replace(settings_class(LINES)(), **(values | {"tolerance": share * values["tolerance"], "tolerances": widths}))
+
+
+def _line_numbers(accuracy, tolerance):
+    from ..products.assess.metrics import f1_of
+
+    complete, correct = 100 * accuracy.completeness[tolerance], 100 * accuracy.correctness[tolerance]
+    return {
+        "COMPLETENESS": complete, "CORRECTNESS": correct,
+        "QUALITY": 100 * accuracy.quality[tolerance], "MISCODING": 100 * accuracy.miscoding[tolerance],
+        "PRECISION": correct, "RECALL": complete, "F1": f1_of(correct if accuracy.result_length else 0.0, complete),
+        "MEAN": accuracy.lateral.mean, "RMSE": accuracy.rmse,
+        "P95": accuracy.lateral.p95, "MAXIMUM": accuracy.lateral.maximum, "HEIGHT_RMSE": accuracy.height_rmse,
+        "GAPS_PER_KM": accuracy.gaps_per_km[tolerance], "MEAN_GAP": accuracy.mean_gap[tolerance],
+        "RESULT_LENGTH": accuracy.result_length, "REFERENCE_LENGTH": accuracy.reference_length,
+    }

@@ -1,0 +1,274 @@
+"""Where to drive: driving lines with their curve elements, and the whole chain in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from ..core.common.errors import RoadExtractionError
+from ..core.common.features import (
+    CURB_POINTS,
+    CURVE_ELEMENTS,
+    DRIVING_LINES,
+    LANES,
+    MARKING_LINES,
+    MARKINGS,
+    PASSES,
+    ROAD_EDGES,
+    ROAD_SURFACE,
+    Features,
+)
+from ..core.countries.catalogue import COUNTRIES
+from .algorithm import Algorithm, SettingSpec
+from .markings import CLUSTER_SETTINGS, IMAGE_SETTINGS, INTENSITY_SETTINGS, LINE_SETTINGS, MARKING_METHOD, OUTLIER_SETTINGS, marking_settings
+from .road import CURB_SETTINGS, EDGE_SETTINGS, METHOD_SETTING, SCANLINE_METHOD_SETTINGS, SURFACE_SETTINGS
+from .survey_input import (
+    SURVEY_SETTINGS,
+    WITHOUT_TRAJECTORY,
+    add_corrections,
+    add_execution,
+    corrections_of,
+    estimated_trajectory,
+    execution_of,
+    frame_of,
+    road_points_of,
+    survey_inputs,
+)
+from .texts import tr
+
+if TYPE_CHECKING:
+    from ..core.corrections.corrections import Corrections
+
+DRIVING = "core.driving.settings:DrivingSettings"
+
+DRIVING_SETTINGS = (
+    SettingSpec("COUNTRY", DRIVING, "country", tr("Country"),
+                tr("Whose dashes are looked for, whose usual lane is assumed where the data do not decide, and whose design code curves are checked "
+                   "against. It is never guessed; neutral holds for roads of all countries of the catalogue and checks curves against CJJ 37-2012."),
+                choices=tuple(COUNTRIES), advanced=True),
+    SettingSpec("LANE_WIDTH", DRIVING, "lane_width", tr("Lane width, 0 = as seen on the road (m)"),
+                tr("0 takes the width that is seen between lines. A width named here is held to: where only the outer lines are painted, their "
+                   "distance and this width give the number of lanes. Wider makes fewer lanes.")),
+    SettingSpec("LINE_DISTANCE", DRIVING, "line_distance", tr("Distance from a line without partner, 0 = half a lane (m)"),
+                tr("How far beside a painted line the driving line runs where the lane has no second line."), advanced=True),
+    SettingSpec("TRAFFIC_SIDE", DRIVING, "traffic_side", tr("Side of traffic"),
+                tr("The side one drives on; it gives lanes that nobody drove their direction. Automatic goes by where and which way the vehicle "
+                   "drove, by lines that part the directions, and a little by the country where the survey lies. A driven lane leads the way it "
+                   "was driven, whatever is named here."),
+                choices=("automatic", "right", "left")),
+)
+
+
+class DrivingLines(Algorithm):
+    ID, TITLE, GROUP = "drivinglines", "Driving lines", "Driving"
+    SUMMARY = "Draws the line to drive in every lane, in the direction of travel, and tabulates the elements of its curves."
+    TAGS = ("lane", "centre line", "hd map", "curve elements", "radius")
+    RETIRED = ("MAX_BRIDGE", "MAX_INFERRED", "SHORTEST")
+
+    def declare(self):
+        self.add_input("layer", "MARKING_LINES", tr("Marking lines"), tr("The layer written by Fit marking lines."), "LineStringZ")
+        self.add_trajectory()
+        self.add_input("layer", "MARKINGS", tr("Markings"),
+                       tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are distinguished."), "PolygonZ",
+                       optional=True)
+        self.add_input("layer", "ROAD_EDGES", tr("Road edges"), tr("With it lanes without an outer line end at the edge."), "LineStringZ",
+                       optional=True)
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
+        self.add_settings(DRIVING_SETTINGS)
+        self.add_sink("DRIVING_LINES", tr("Driving lines"), fields=DRIVING_LINES, geometry="LineStringZ")
+        self.add_sink("LANES", tr("Lanes"), fields=LANES, geometry="PolygonZ", optional=True,
+                      text=tr("The area of each lane between its borders, with what follows it. Exports to HD maps are made from this layer."))
+        self.add_sink("CURVE_ELEMENTS", tr("Curve elements"), fields=CURVE_ELEMENTS, geometry="None", optional=True)
+
+    def work(self, call, progress):
+        from ..core.driving.driving_lines import make_driving_lines
+        from ..core.markings.lines.painted_lines import PaintedLines
+        from ..core.markings.objects.marking_objects import MarkingObjects
+        from ..core.road.edges.road_edges import RoadEdges
+
+        marking_lines = call.features("MARKING_LINES", MARKING_LINES, "LineStringZ")
+        markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
+        edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.3)) if call.cloud("ROAD_POINTS") else None
+        layers = {"MARKING_LINES": marking_lines, "MARKINGS": markings, "ROAD_EDGES": edges}
+        frame = frame_of(call, marking_lines.crs, progress, road_points, layers)
+        lines, elements, lanes = make_driving_lines(
+            PaintedLines.from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
+            markings=None if markings is None else MarkingObjects.from_features(markings, frame),
+            edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points)
+        call.layer("DRIVING_LINES", lines.to_features(frame))
+        call.layer("LANES", lanes.to_features(frame))
+        call.layer("CURVE_ELEMENTS", elements.to_features(frame))
+
+
+# The road map in numbers, for batches and models: how much there is, and how much of it was measured.
+
+MEASURED = "measured"
+
+NUMBERS = (
+    ("ROADS", tr("Roads")),
+    ("ROAD_LENGTH", tr("Length of the roads (m)")),
+    ("EDGE_LENGTH", tr("Length of the road edges (m)")),
+    ("EDGES_MEASURED", tr("Of the road edges measured (%)")),
+    ("LINE_LENGTH", tr("Length of the marking lines (m)")),
+    ("LINES_MEASURED", tr("Of the marking lines measured (%)")),
+    ("LANE_COUNT", tr("Lanes")),
+    ("LANE_LENGTH", tr("Length of the driving lines (m)")),
+    ("LANES_MEASURED", tr("Of the driving lines measured (%)")),
+    ("MARKING_COUNT", tr("Markings")),
+    ("TRUST", tr("Confidence of the driving lines, mean along them (0 to 1)")),
+    ("CORRECTIONS_MADE", tr("Corrections made")),
+    ("CORRECTIONS_UNMATCHED", tr("Corrections that match nothing")),
+)
+
+
+def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, marking_lines: Features | None, driving_lines: Features | None,
+                     markings: Features | None, corrections: Corrections | None = None) -> dict[str, float]:
+    """The values of NUMBERS to three decimals; a share or mean of nothing is left out.
+
+    road_lengths : m of each road
+    edges, marking_lines, driving_lines, markings : layers of the road map, None where there are none
+    corrections : of an analyst, and which of them were made; None for none
+    """
+    lengths = list(road_lengths)
+    numbers: dict[str, float | None] = {"ROADS": float(len(lengths)), "ROAD_LENGTH": float(sum(lengths))}
+    for layer, length, share in ((edges, "EDGE_LENGTH", "EDGES_MEASURED"), (marking_lines, "LINE_LENGTH", "LINES_MEASURED"),
+                                 (driving_lines, "LANE_LENGTH", "LANES_MEASURED")):
+        numbers[length], numbers[share] = _measured(layer)
+    lanes = [] if driving_lines is None else driving_lines.rows
+    numbers["LANE_COUNT"] = float(len({(row.get("road"), row.get("lane")) for row in lanes}))
+    numbers["MARKING_COUNT"] = float(0 if markings is None else len(markings))
+    numbers["TRUST"] = _trust(driving_lines)
+    unmatched = 0 if corrections is None else len({correction.row for correction in corrections.unmatched})
+    made = 0 if corrections is None else len({correction.row for correction in corrections.rows}) - unmatched
+    numbers["CORRECTIONS_MADE"], numbers["CORRECTIONS_UNMATCHED"] = float(made), float(unmatched)
+    return {name: round(value, 3) for name, value in numbers.items() if value is not None}
+
+
+def _trust(layer):
+    """Mean confidence of lines by their lengths, None without lines."""
+    pieces = [] if layer is None else [(geometry.length, row.get("confidence")) for geometry, row in layer]
+    rated = [(length, sure) for length, sure in pieces if sure is not None]
+    total = sum(length for length, _ in rated)
+    return sum(length * sure for length, sure in rated) / total if total else None
+
+
+def _measured(layer):
+    """(m of all lines, percent of them measured or None)."""
+    if layer is None:
+        return 0.0, None
+    lengths = [(geometry.length, row.get("status")) for geometry, row in layer]
+    total = sum(length for length, _ in lengths)
+    return total, 100.0 * sum(length for length, status in lengths if status == MEASURED) / total if total else None
+
+
+# Field of RoadMapSettings -> its settings
+STAGES = {
+    "curbs": CURB_SETTINGS,
+    "scanlines": SCANLINE_METHOD_SETTINGS,
+    "edges": EDGE_SETTINGS,
+    "surface": SURFACE_SETTINGS,
+    "intensity": INTENSITY_SETTINGS,
+    "image": IMAGE_SETTINGS,
+    "outliers": OUTLIER_SETTINGS,
+    "clusters": CLUSTER_SETTINGS,
+    "lines": LINE_SETTINGS,
+    "driving": DRIVING_SETTINGS,
+}
+
+# Settings of the stages that one turns now and then; the rest is left to the single algorithms
+OFFERED = ("BLOCK_LENGTH", "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH", "CELL_SIZE", "CURVE", "DEGREE",
+           "COUNTRY", "LANE_WIDTH", "TRAFFIC_SIDE")
+
+LAYERS = (
+    ("ROAD_EDGES", "edges", "LineStringZ", ROAD_EDGES, tr("Road edges")),
+    ("ROAD_SURFACE", "surface", "PolygonZ", ROAD_SURFACE, tr("Road surface")),
+    ("MARKINGS", "markings", "PolygonZ", MARKINGS, tr("Markings")),
+    ("MARKING_LINES", "marking_lines", "LineStringZ", MARKING_LINES, tr("Marking lines")),
+    ("DRIVING_LINES", "driving_lines", "LineStringZ", DRIVING_LINES, tr("Driving lines")),
+    ("LANES", "lanes", "PolygonZ", LANES, tr("Lanes")),
+    ("CURVE_ELEMENTS", "curve_elements", "None", CURVE_ELEMENTS, tr("Curve elements")),
+)
+
+
+ESTIMATED = 0.2   # of the work, where the trajectory is estimated first
+
+
+class RoadMap(Algorithm):
+    ID, TITLE, GROUP = "roadmap", "Road map", "Road map"
+    SUMMARY = "From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements."
+    HELP = ("Point clouds, the trajectory, and where to save are enough: everything else has a default that suits most surveys. "
+            "The stages are those of the single algorithms, handed on in memory. Every output is optional.")
+    TAGS = ("hd map", "lane", "driving line", "road marking", "curb", "kerb")
+    WHOLE_MAP = True
+    NEEDS_GDAL = True  # the stages hand the intensity image on as a GeoTIFF
+    NUMBERS = NUMBERS
+    RETIRED = ("INTERVAL", "SCANLINE_MIN_HEIGHT", "LINE_DISTANCE")
+
+    def declare(self):
+        # the dialog shows clouds, trajectory and where to save; all else is folded away, in the order of the stages
+        self.add_survey(trajectory_optional=True, without=WITHOUT_TRAJECTORY)
+        self.add_settings((METHOD_SETTING,), advanced=True)
+        for stage, specs in STAGES.items():
+            if stage == "intensity":
+                self.add_input("flag", "CORRECT_INTENSITY", tr("Correct intensity first"),
+                               tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose intensity was "
+                                  "corrected already."), default=True, advanced=True)
+            self.add_settings(specs, only=OFFERED, advanced=True)
+            if stage == "image":
+                self.add_settings((MARKING_METHOD,), advanced=True)
+        self.add_settings(SURVEY_SETTINGS)
+        add_corrections(self)
+        add_execution(self)
+        for name, _, geometry, fields, label in LAYERS:
+            self.add_sink(name, label, fields=fields, geometry=geometry, optional=True)
+        self.add_sink("PASSES", tr("Passes (the trajectory)"), tr("Where the vehicle drove, as this run used it: one line a pass."), fields=PASSES,
+                      geometry="LineStringZ", optional=True)
+        self.add_sink("CURB_POINTS", tr("Curb points"), fields=CURB_POINTS, geometry="PointZ", optional=True, by_default=False)
+        self.add_output("cloud", "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True,
+                        by_default=False)
+        self.add_output("raster", "INTENSITY_IMAGE", tr("Intensity image"), optional=True)
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..core.pipeline.road_map import RoadMapSettings, make_road_map
+        from ..core.survey.road_points_las import write_road_points
+
+        settings = RoadMapSettings(
+            correct=call.value("CORRECT_INTENSITY"),
+            boundary_method=call.value("BOUNDARY_METHOD"),
+            survey=call.settings(SURVEY_SETTINGS, crs=call.crs()),
+            execution=execution_of(call),
+            markings=marking_settings(call),
+            **{field: call.settings(specs) for field, specs in STAGES.items()})
+        if not any(call.wants(output.name) for output in self.outputs()):
+            raise RoadExtractionError(tr(
+                "No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT."))
+        corrections = corrections_of(call)
+        estimated = estimated_trajectory(call, progress.part(0.0, ESTIMATED))
+        paths, trajectory = (call.point_clouds(), estimated.trajectory) if estimated else survey_inputs(call)
+        progress = progress.part(ESTIMATED if estimated else 0.0, 1.0)
+        image_path = call.new_file("INTENSITY_IMAGE") or call.scratch_file("intensity.tif")
+        road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95), corrections)
+        call.at_end(road_map.free)
+        if estimated:
+            road_map.survey_facts["trajectory"] = estimated.summary()
+        if call.wants("ROAD_POINTS"):
+            write_road_points(road_map.road_points, call.new_file("ROAD_POINTS"), progress.part(0.95, 1.0))
+        if road_map.image is None:
+            call.drop_file("INTENSITY_IMAGE")
+        layers = {}
+        for name, attribute, geometry, fields, _ in LAYERS:
+            layer = layers[attribute] = road_map.layer(attribute)
+            call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
+        if call.wants("PASSES"):
+            from ..core.survey.frame.placement import passes_to_features
+
+            call.layer("PASSES", passes_to_features(road_map.frame, road_map.crs))
+        call.layer("CURB_POINTS", road_map.layer("curb_points"))
+        if call.wants("REPORT"):
+            from ..products.report.road_map import road_map_report
+
+            call.text("REPORT", road_map_report(road_map, image_path))
+        return road_map_numbers([road.length for road in road_map.frame.roads],
+                                *(layers[name] for name in ("edges", "marking_lines", "driving_lines", "markings")), road_map.corrections)

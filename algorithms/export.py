@@ -1,0 +1,593 @@
+"""To and from the formats of simulators, planners and design offices; the check of HD maps, and the map on paper."""
+
+from dataclasses import dataclass
+
+from ..core.common.errors import RoadExtractionError
+from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ..core.common.setting import check_limits, setting
+from .algorithm import Algorithm, SettingSpec
+from .call import existing_file
+from .survey_input import road_points_of
+from .texts import languages, told, tr
+
+OPENDRIVE_FILTER = "OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)"
+LANELET_FILTER = "Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)"
+MAP_LAYERS = (
+    ("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it."), LANES, "PolygonZ", "lane_areas"),
+    ("DRIVING_LINES", tr("Driving lines"), tr("The middle of every lane that is driven, in the direction of travel."), DRIVING_LINES, "LineStringZ",
+     "driving_lines"),
+    ("MARKING_LINES", tr("Marking lines"), tr("Borders that are painted."), MARKING_LINES, "LineStringZ", "marking_lines"),
+    ("ROAD_EDGES", tr("Road edges"), tr("Curbs and borders of the road."), ROAD_EDGES, "LineStringZ", "road_edges"),
+)
+MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of the driven lanes (m)")))
+
+
+def add_map_file(algorithm, label, text, file_filter):
+    algorithm.add_input("file", "INPUT", label, text, file_filter=file_filter)
+
+
+def add_map_crs(algorithm, text):
+    algorithm.add_input("crs", "CRS", tr("CRS of the layers"), text, optional=True)
+
+
+def add_map_layers(algorithm):
+    """The layers that a map is read into."""
+    for name, label, text, fields, geometry, _ in MAP_LAYERS:
+        algorithm.add_sink(name, label, text, fields=fields, geometry=geometry, optional=True)
+
+
+def map_file(call):
+    return existing_file(call.file("INPUT"), call.label("INPUT"))
+
+
+def write_map_layers(call, layers, progress):
+    """Hand on the MapLayers of a map; returns the numbers."""
+    for note in layers.notes:
+        progress.warn(note)
+    for name, _, _, _, _, make in MAP_LAYERS:
+        if call.wants(name):
+            call.layer(name, getattr(layers, make)())
+    lanes = layers.lanes
+    driven = (lanes.type == "driving") | (lanes.type == "connector")
+    length = float(lanes.length[driven].sum())
+    progress.info(tr("{count} lanes and pieces, {length:.0f} m of driven lanes.").format(count=len(lanes), length=length))
+    return {"LANE_COUNT": float(len(lanes)), "LENGTH": length}
+
+
+LINE_FIELDS = tuple(field for field in DRIVING_LINES if field.name in ("road", "lane", "status", "station_m", "end_m", "sigma_m"))
+MARKING_LINE_FIELDS = tuple(field for field in MARKING_LINES if field.name in ("road", "line", "kind", "pattern", "width_m"))
+EDGE_FIELDS = tuple(field for field in ROAD_EDGES if field.name in ("road", "height_m", "edge"))
+MARKING_FIELDS = tuple(field for field in MARKINGS if field.name in ("road", "class"))
+
+
+def add_road_map_layers(algorithm):
+    """The layers of the road map that an export takes."""
+    algorithm.add_input("layer", "LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
+    algorithm.add_input("layer", "DRIVING_LINES", tr("Driving lines"), tr(
+        "Held against the middles of the lanes: the report says how far apart they are. The uncertainty of every lane comes from "
+        "them."), "LineStringZ", optional=True)
+    algorithm.add_input("layer", "MARKING_LINES", tr("Marking lines"), tr("The widths of the painted borders."), "LineStringZ", optional=True)
+    algorithm.add_input("layer", "ROAD_EDGES", tr("Road edges"), tr("The heights of curbs."), "LineStringZ", optional=True)
+    algorithm.add_input("layer", "MARKINGS", tr("Markings"), tr("Zebra crossings, stop lines, arrows and hatched areas."), "PolygonZ", optional=True)
+    algorithm.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it the borders have the heights of the road's surface."), optional=True)
+
+
+def road_map_source(call, progress):
+    """The layers given, checked, as RoadMapSource."""
+    from dataclasses import replace
+
+    from ..core.driving.layers import Lanes
+    from ..products.export.sources import RoadMapSource, checked
+
+    source = RoadMapSource(
+        Lanes.from_features(call.features("LANES", LANES, "PolygonZ")), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
+        call.features("MARKING_LINES", MARKING_LINE_FIELDS, "LineStringZ"), call.features("ROAD_EDGES", EDGE_FIELDS, "LineStringZ"),
+        call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"))
+    source = checked(source)
+    if call.cloud("ROAD_POINTS"):
+        from ..products.export.sources import with_surface_heights
+
+        road_points = road_points_of(call, "ROAD_POINTS", progress)
+        lanes, share = with_surface_heights(source.lanes, road_points)
+        road_points.close()
+        progress.info(tr("{share:.0f} % of the border vertices have heights of road points.").format(share=100 * share))
+        source = replace(source, lanes=lanes)
+    return source
+
+
+def lanes_with_borders(call, progress):
+    """The same with ways through junctions, and borders that neighbours share."""
+    from ..products.export.inferred_ways import with_inferred_ways
+    from ..products.export.shared_borders import with_shared_borders
+
+    return with_shared_borders(with_inferred_ways(road_map_source(call, progress)))
+
+
+def warn_of_faults(notes, found, progress):
+    """Say what a map lacks, and what the check of its file found."""
+    for text in (*notes, *(tr("{fault}: {count}").format(fault=told(fault), count=count) for fault, count in found.counts().items())):
+        progress.warn(text)
+
+
+def fault_table(found):
+    """The table of a report on what the check of a file found; none where it found nothing."""
+    counts = [(told(fault), count) for fault, count in sorted(found.counts().items())]
+    return [(tr("Findings of the check"), (tr("Fault"), tr("Count")), counts)] if counts else []
+
+
+ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
+VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
+ROAD_SETTINGS = (
+    SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
+                tr("How far borders may be missed, across and in height. Smaller follows the survey more closely with more and shorter elements.")),
+)
+
+
+class ExportOpenDrive(Algorithm):
+    ID, TITLE, GROUP = "exportopendrive", "Export OpenDRIVE", "Export"
+    SUMMARY = "Writes lanes as an OpenDRIVE map for simulators: roads with a reference line, lane sections, heights, road marks and junctions."
+    HELP = ("The reference line is made of lines, arcs and spirals, where the tolerance allows none of them of parametric cubics. Lanes beside each "
+            "other are one road; a section begins where a lane begins or ends, and a junction where lanes part. Beside a double line lanes reach to "
+            "its middle, where the mark of both stripes is. Widths are cubics, heights an elevation with superelevation or, on a crowned road, the "
+            "shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra crossings, stop "
+            "lines, arrows and hatched areas are objects. What was inferred or bridged, and the uncertainty of every lane, is said in userData.\n\n"
+            "The file is read back and checked before it is handed over: the report says how far its borders lie from the survey's. OpenDRIVE "
+            "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Signals, signs, "
+            "speed limits and buildings are not there.")
+    TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
+    NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
+               ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
+               ("HEIGHT_MAXIMUM", tr("Largest difference in height of a border (m)")),
+               ("DRIVING_LINE_P95", tr("95th percentile of the distance of driving lines from the middles of lanes (m)")),
+               ("FINDINGS", tr("Findings of the check")))
+
+    def declare(self):
+        add_road_map_layers(self)
+        self.add_input("choice", "VERSION", tr("Version"), tr("Of the format; older simulators read 1.7."), default=VERSIONS[0], choices=VERSIONS)
+        self.add_settings(ROAD_SETTINGS)
+        self.add_input("choice", "TRAFFIC_SIDE", tr("Side of traffic"), tr(
+            "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), default=SIDES[0], choices=SIDES)
+        self.add_output("file", "OUTPUT", tr("OpenDRIVE file"), tr("The map."), suffixes=(".xodr",), file_filter="OpenDRIVE (*.xodr)")
+        self.add_report()
+
+    def work(self, call, progress):
+        from pathlib import Path
+
+        from ..products.export.check.roads import check_opendrive
+        from ..products.export.map_layers import border_misses, driving_line_misses, reference_of_crs
+        from ..products.export.opendrive.exporter import draft_opendrive
+        from ..products.export.opendrive.layers import layers_of_opendrive
+        from ..products.export.opendrive.xodr import opendrive_text, read_opendrive
+
+        source = lanes_with_borders(call, progress.part(0.0, 0.2))
+        settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
+        draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
+        draft.map.reference = reference_of_crs(source.lanes.crs)
+        path = call.new_file("OUTPUT")
+        Path(path).write_text(opendrive_text(draft.map), encoding="utf-8")
+        whole = read_opendrive(path)
+        shown, check = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
+        across, rise = border_misses(source.lanes, shown.lanes)
+        driven = driving_line_misses(source.driving_lines, shown.lanes)
+        led = source.led_to_middles()
+        single = driving_line_misses(source.driving_lines, shown.lanes, apart_from=led) if len(led) else driven
+        notes = [*source.notes, *draft.notes]
+        if not source.lanes.crs:
+            notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))
+        if across.largest > settings.tolerance or rise.largest > settings.tolerance:
+            x, y, _ = (across if across.largest > settings.tolerance else rise).worst
+            notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
+                            "tolerance, the farthest near x {x:.1f}, y {y:.1f}.").format(across=across.largest, rise=rise.largest, x=x, y=y))
+        warn_of_faults(notes, check, progress)
+        progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
+            roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
+        if call.wants("REPORT"):
+            call.text("REPORT", _report(call, whole, check, shown, (across, rise, driven, single), notes))
+        numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": check.successors, "FINDINGS": len(check.found),
+                   "BORDER_MAXIMUM": across.largest, "HEIGHT_MAXIMUM": rise.largest}
+        if driven.places:
+            numbers["DRIVING_LINE_P95"] = driven.p95
+        return {name: float(value) for name, value in numbers.items()}
+
+
+def _report(call, whole, found, shown, misses, notes):
+    from collections import defaultdict
+
+    from ..core.common.texts import word
+    from ..products.report.hd_map import map_export_report
+
+    lengths = defaultdict(float)
+    for road in whole.roads:
+        for element in road.plan.elements:
+            lengths[element.kind] += element.length
+    facts = [(tr("Roads"), len(whole.roads)), (tr("Junctions"), len(whole.junctions)), (tr("Lanes of sections that are driven"), found.lanes),
+             (tr("Links from one lane to the next"), found.successors), (tr("Pairs of lanes side by side"), found.neighbours),
+             (tr("False origin"), f"{whole.offset[0]:g}, {whole.offset[1]:g}"), ("geoReference", whole.reference or tr("none"))]
+    names = (tr("Borders, across"), tr("Borders, in height"), tr("Driving lines from the middles of lanes (measured)"),
+             tr("The same, of lanes beside no double line"))
+    tables = [
+        (tr("Against the survey"), ("", tr("Mean (m)"), "95 % (m)", tr("Largest (m)"), tr("Places")),
+         [(name, round(miss.mean, 4), round(miss.p95, 4), round(miss.largest, 4), miss.places) for name, miss in zip(names, misses) if miss.places]),
+        (tr("Elements of the reference lines"), (tr("Element"), tr("Length (m)")),
+         [(word(kind, "element"), round(metres, 1)) for kind, metres in sorted(lengths.items())]),
+    ]
+    return map_export_report(tr("OpenDRIVE map"), call.layer_name("LANES"), facts, tables + fault_table(found), notes, shown)
+
+
+LANELETS = "products.export.lanelet_export:LaneletSettings"
+LOCATIONS = ("urban", "nonurban")
+LANELET_SETTINGS = (
+    SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
+                tr("Written to every lanelet for vehicles. 0 writes none: the survey does not know it.")),
+)
+
+
+class ExportLanelet2(Algorithm):
+    ID, TITLE, GROUP = "exportlanelet2", "Export Lanelet2", "Export"
+    SUMMARY = "Writes lanes as a Lanelet2 map for planners such as Autoware: lanelets that share their borders, with heights and centre lines."
+    HELP = ("Lanes that are driven, their connectors, bicycle lanes and shoulders become lanelets; parking, hatched areas and medians do not. Where "
+            "a lane begins beside another one, both are cut, so that neighbours share their border. Curbs are curbstone high or low, painted borders "
+            "line_thin or line_thick, other edges road_border, and what is neither is virtual. Zebra crossings and stop lines come from the "
+            "markings. What was inferred or bridged has the tags lanewright:status and lanewright:confidence, and "
+            "lanewright:sigma_m is the uncertainty of the lane.\n\n"
+            "The file is read back and checked before it is handed over; the report names the transformation to latitude and longitude and what "
+            "the heights are. Traffic lights, signs, right of way and regulatory elements are not there.")
+    TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
+    NUMBERS = (("LANELETS", tr("Lanelets")), ("WAYS", tr("Ways")), ("NODES", tr("Nodes")), ("SUCCESSORS", tr("Links from one lane to the next")),
+               ("FINDINGS", tr("Findings of the check")))
+
+    def declare(self):
+        add_road_map_layers(self)
+        self.add_settings(LANELET_SETTINGS)
+        self.add_input("choice", "LOCATION", tr("Location"), tr("Whether the roads are in a town; planners draw traffic rules from it."),
+                       default=LOCATIONS[0], choices=LOCATIONS)
+        self.add_input("flag", "LOCAL_COORDINATES", tr("Write local_x and local_y"), tr(
+            "Autoware reads these metres within a square of 100 km instead of latitude and longitude."), default=False)
+        self.add_output("file", "OUTPUT", tr("Lanelet2 file"), tr("The map."), suffixes=(".osm",), file_filter="Lanelet2 (*.osm)")
+        self.add_report()
+
+    def work(self, call, progress):
+        from pathlib import Path
+
+        from ..products.export.check.lanelets import check_lanelets
+        from ..products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+        from ..products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
+        from ..products.report.hd_map import map_export_report
+
+        source = lanes_with_borders(call, progress.part(0.0, 0.2))
+        progress.report(0.2)
+        draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.value("LOCATION")))
+        degrees = to_degrees(draft.nodes, source.lanes.crs)
+        path = call.new_file("OUTPUT")
+        Path(path).write_text(lanelet2_text(draft, degrees, call.value("LOCAL_COORDINATES")), encoding="utf-8")
+        progress.report(0.6)
+        whole = read_lanelet2(path)
+        check = check_lanelets(whole, *node_places(whole, source.lanes.crs))
+        progress.report(0.8)
+        notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
+                                  for kind, count in draft.skipped.items())]
+        if degrees.local:
+            notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
+        warn_of_faults(notes, check, progress)
+        numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
+                   "SUCCESSORS": float(check.successors), "FINDINGS": float(len(check.found))}
+        progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=told(degrees.way)))
+        if call.wants("REPORT"):
+            accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else tr("not stated")
+            facts = [(tr("Lanelets"), len(draft.lanelets)), (tr("Links from one lane to the next"), check.successors),
+                     (tr("Pairs of lanes side by side"), check.neighbours), (tr("Ways"), len(whole.ways)), (tr("Nodes"), len(whole.node_ids)),
+                     (tr("Transformation to latitude and longitude"), told(degrees.way)), (tr("Accuracy of the transformation"), accuracy),
+                     (tr("Heights"), told(degrees.vertical))]
+            call.text("REPORT", map_export_report(tr("Lanelet2 map"), call.layer_name("LANES"), facts, fault_table(check), notes,
+                                                  layers_of_lanelets(whole, source.lanes.crs)))
+        return numbers
+
+
+ALIGNMENTS = "products.export.opendrive.exporter:OpenDriveSettings"
+FORMATS = ("dxf", "landxml")
+SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}
+CAD_SETTINGS = (
+    SettingSpec("TOLERANCE", ALIGNMENTS, "tolerance", tr("Tolerance (m)"),
+                tr("LandXML: how far a line may be missed by its elements, in plan and in height. DXF has every vertex.")),
+)
+
+
+class ExportCad(Algorithm):
+    ID, TITLE, GROUP = "exportcad", "Export CAD", "Export"
+    SUMMARY = "Writes the road map for the design office: 3D polylines as DXF, or alignments of lines, curves and spirals with profile as LandXML."
+    HELP = ("DXF: lane borders, driving lines, marking lines, road edges and outlines of markings as 3D polylines, each class in a layer of its own "
+            "with a colour. LandXML 1.2: the axis of every road and every driving line as an alignment of the fitted lines, curves and spirals, "
+            "with a profile of tangents; a line that no elements follow within the tolerance is an irregular line.\n\n"
+            "DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US "
+            "survey feet. Surfaces and texts are not there; Cross-sections draws sections as DXF.")
+    TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
+    NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
+
+    def declare(self):
+        add_road_map_layers(self)
+        self.add_input("choice", "FORMAT", tr("Format"), tr("dxf is drawn by every CAD program, landxml is taken over by programs for road design."),
+                       default=FORMATS[0], choices=FORMATS)
+        self.add_settings(CAD_SETTINGS)
+        self.add_output("file", "OUTPUT", tr("CAD file"), tr("With the ending .dxf, or .xml for LandXML."),
+                        suffixes=(".dxf", ".xml", ".landxml"), file_filter="DXF (*.dxf);;LandXML (*.xml *.landxml)")
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..products.report.hd_map import map_export_report
+
+        kind = call.value("FORMAT")
+        self._check_name(call, kind)
+        source = road_map_source(call, progress.part(0.0, 0.2))
+        for note in source.notes:
+            progress.warn(note)
+        numbers, tables = (_dxf if kind == "dxf" else _landxml)(call, source, progress)
+        if call.wants("REPORT"):
+            facts = [(tr("Format"), {"dxf": "DXF", "landxml": "LandXML 1.2"}[kind]), (tr("Lines"), int(numbers["LINES"]))]
+            call.text("REPORT", map_export_report(tr("Road map for CAD"), call.layer_name("LANES"), facts, tables, source.notes))
+        return numbers
+
+    def _check_name(self, call, kind):
+        path = call.destination("OUTPUT") or ""
+        named = next((name for name, suffixes in SUFFIXES.items() if path.lower().endswith(suffixes)), kind)
+        if named != kind and path != "TEMPORARY_OUTPUT":
+            raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.").format(
+                path=path, named=named, kind=kind))
+
+
+def _dxf(call, source, progress):
+    from collections import Counter
+
+    from ..products.cad import dxf_lines, write_dxf
+
+    lines = dxf_lines(source)
+    write_dxf(lines, call.new_file("OUTPUT"), source.lanes.crs)
+    counts = Counter(line.layer for line in lines)
+    progress.info(tr("{count} polylines in {layers} layers.").format(count=len(lines), layers=len(counts)))
+    return {"LINES": float(len(lines)), "ALIGNMENTS": 0.0, "MISSED": 0.0}, [(tr("Layers"), (tr("Layer"), tr("Polylines")), sorted(counts.items()))]
+
+
+def _landxml(call, source, progress):
+    from datetime import datetime
+    from pathlib import Path
+
+    from ..products.cad import alignments_of, landxml_text
+
+    tolerance = call.value("TOLERANCE")
+    alignments = alignments_of(source, tolerance)
+    now = datetime.now()
+    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))
+    Path(call.new_file("OUTPUT")).write_text(text, encoding="utf-8")
+    irregular = sum(alignment.plan is None for alignment in alignments)
+    if irregular:
+        progress.warn(tr("{count} lines are followed by no elements within the tolerance and are irregular lines.").format(count=irregular))
+    missed = max((alignment.missed for alignment in alignments), default=0.0)
+    progress.info(tr("{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.").format(
+        count=len(alignments), length=sum(alignment.length for alignment in alignments), missed=missed))
+    rows = [(alignment.name, told(alignment.description), round(alignment.length, 2),
+             len(alignment.plan.elements) if alignment.plan is not None else None, len(alignment.profile))
+            for alignment in alignments]
+    tables = [(tr("Alignments"), (tr("Name"), tr("What it is"), tr("Length (m)"), tr("Elements"), tr("Points of the profile")), rows)]
+    return {"LINES": float(len(alignments)), "ALIGNMENTS": float(len(alignments)), "MISSED": missed}, tables
+
+
+SETTINGS = "algorithms.export:SheetSettings"
+PAPERS = ("A4", "A3", "A2", "A1", "A0")
+SCALES = ("1:100", "1:200", "1:250", "1:500", "1:1000", "1:2000", "1:2500", "1:5000")
+# Results that are drawn, from above
+DRAWN = (("DRIVING_LINES", tr("Driving lines"), "LineStringZ"), ("ROAD_EDGES", tr("Road edges"), "LineStringZ"),
+         ("MARKING_LINES", tr("Marking lines"), "LineStringZ"), ("CROSS_SECTIONS", tr("Cross-sections"), "LineStringZ"),
+         ("MARKINGS", tr("Markings"), "PolygonZ"), ("LANES", tr("Lanes"), "PolygonZ"),
+         ("ROAD_SURFACE", tr("Road surface"), "PolygonZ"))
+
+
+@dataclass(frozen=True)
+class SheetSettings:
+    """What the user chose; what is "" is filled in by the program."""
+
+    title: str = ""
+    office: str = ""
+    author: str = ""
+    heights: str = ""
+    credit: str = ""
+    paper: str = "A3"
+    orientation: str = "landscape"
+    scale: str = "automatic"
+    profile: bool = True
+    section_interval: float = setting(20.0, 0.0, 10_000.0, "Interval of the cross-sections", "m")
+
+    def __post_init__(self) -> None:
+        check_limits(self)
+
+
+SHEET_SETTINGS = (
+    SettingSpec("TITLE", SETTINGS, "title", tr("Title (project)"),
+                tr("Stands large in the title block and is the name of the layout. Empty takes the name of the survey.")),
+    SettingSpec("OFFICE", SETTINGS, "office", tr("Office"), tr("Who is responsible for the plan, for the title block. Save it with Presets.")),
+    SettingSpec("AUTHOR", SETTINGS, "author", tr("Author"), tr("Who made the plan, for the title block.")),
+    SettingSpec("PAPER", SETTINGS, "paper", tr("Paper"),
+                tr("Larger paper gives fewer sheets at the same scale, but needs a plotter from A2 on."), choices=PAPERS),
+    SettingSpec("ORIENTATION", SETTINGS, "orientation", tr("Orientation"),
+                tr("landscape shows more of the road along each sheet; portrait shows more beside it, as at a junction or on a winding road."),
+                choices=("landscape", "portrait")),
+    SettingSpec("SCALE", SETTINGS, "scale", tr("Scale"),
+                tr("automatic takes the largest of 1:250, 1:500, 1:1000, 1:2000 and 1:5000 that needs at most 20 sheets and on which the road is not "
+                   "wider than the sheet; a road that fits on one sheet may be drawn at 1:100 or 1:200. "
+                   "A larger scale shows curbs and paint better on more sheets; below 1:1000 lanes are thin bands."),
+                choices=("automatic", *SCALES)),
+    SettingSpec("PROFILE", SETTINGS, "profile", tr("Longitudinal profile"),
+                tr("Further pages with the height of the ground along the axis, stations and gradients. The layers need heights.")),
+    SettingSpec("SECTION_INTERVAL", SETTINGS, "section_interval", tr("Interval of the cross-sections, 0 = none (m)"),
+                tr("Further pages with a section at every such station of the axis. Lower shows more of the road on more pages; 0 leaves them out. "
+                   "Where a layer of sections is given, those in which a limit is not kept are shown in any case.")),
+    SettingSpec("HEIGHT_SYSTEM", SETTINGS, "heights", tr("Height system"),
+                tr("What the heights refer to, for the title block, such as DHHN2016. Empty takes the vertical part of the CRS."), advanced=True),
+    SettingSpec("CREDIT", SETTINGS, "credit", tr("Credit on the map"),
+                tr("Whose data lie below, as their licence wants it said; stands in the lower left corner of the map"), advanced=True),
+)
+
+
+class PrintSheets(Algorithm):
+    ID, TITLE, GROUP = "printsheets", "Sheets along the road", "Export"
+    SUMMARY = "Draws the road map on sheets of paper that follow the road, with longitudinal profile and cross-sections, as one PDF."
+    HELP = ("Every sheet is turned so that the road runs from left to right, overlaps its neighbours, and has match lines with their numbers, the "
+            "axis with stations, a grid with coordinates, a key map and a title block. An overview of all sheets with the legend comes "
+            "first.\n\nThe axis lies amid the driving lines (else the marking lines, else the road edges); its stations are those of the layers.\n\n"
+            "Layers are drawn as they are styled in the project, layers from files as Lanewright styles them. Texts in the title block are printed "
+            "as they stand. The accuracy is the median of sigma_m along the lines.")
+    TAGS = ("print", "plan", "sheet", "PDF", "layout", "atlas", "profile", "title block", "map")
+    NUMBERS = (("SHEETS", tr("Plan sheets")), ("PAGES", tr("Pages")), ("SCALE_NUMBER", tr("Denominator of the scale")))
+    DRAWS = True
+
+    def declare(self):
+        for name, label, geometry in DRAWN:
+            text = tr("Drawn on the sheets, if given.") if geometry == "PolygonZ" else tr("Drawn on the sheets, and leads the axis if given.")
+            if name == "CROSS_SECTIONS":
+                text = tr("Of the algorithm Cross-sections: drawn on the sheets, and the pages of sections show them with the limits not kept.")
+            self.add_input("layer", name, label, text, geometry, optional=True)
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr(
+            "With it cross-sections show the ground as it was measured; without it straight lines between edges, paint and driving lines."),
+            optional=True)
+        self.add_input("painted", "BELOW", tr("Layer below (orthoimage, web map)"), tr(
+            "Drawn below all others and left out of the legend. Lanes and Road surface cover it where they are given."),
+                       optional=True)
+        self.add_settings(SHEET_SETTINGS)
+        self.add_input("choice", "LANGUAGE", tr("Language of the sheets"), tr("automatic is the language of the program."), default="automatic",
+                       choices=("automatic", *languages()))
+        self.add_input("flag", "KEEP", tr("Keep the layout in the project"),
+                       tr("Then all pages can be changed in QGIS's layout designer and printed from there: menu Project, Layouts."), default=True)
+        self.add_output("file", "OUTPUT", tr("Sheets"), tr("All pages in one file."), suffixes=(".pdf",), file_filter="PDF (*.pdf)")
+
+    def work(self, call, progress):
+        return call.print_sheets(call.settings(SHEET_SETTINGS), progress)
+
+
+class ImportOpenDrive(Algorithm):
+    ID, TITLE, GROUP = "importopendrive", "Import OpenDRIVE", "Export"
+    SUMMARY = "Reads an OpenDRIVE map (1.1 to 1.8) into layers like those of the road map, to lay it over a survey and assess it."
+    HELP = ("Lines, arcs, spirals and polynomials of the reference line, elevation, superelevation and shape, lane offsets, widths and borders, road "
+            "marks, heights of curbs and the links of lanes are read. Signals, objects, bridges, railways and the lines of their paint are not.\n\n"
+            "Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one "
+            "begins, with the height of its curb. Gaps of reference lines, borders that fold back in a tight curve, and widths below 0 are named "
+            "with their road; folds are cut off. Files that declare entities, or are not what a map can be, are refused.")
+    TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
+    NUMBERS = MAP_NUMBERS
+
+    def declare(self):
+        add_map_file(self, tr("OpenDRIVE file"), tr("A map with the ending .xodr."), OPENDRIVE_FILTER)
+        add_map_crs(self, tr("Only where the file does not say it in geoReference, or says it wrongly: the coordinates are taken to be in this CRS."))
+        add_map_layers(self)
+
+    def work(self, call, progress):
+        from ..products.export.map_layers import crs_of_reference
+        from ..products.export.opendrive.layers import layers_of_opendrive
+        from ..products.export.opendrive.xodr import read_opendrive
+
+        road_map = read_opendrive(map_file(call), progress.part(0.0, 0.5))
+        crs, note = crs_of_reference(road_map.reference, call.crs())
+        layers = layers_of_opendrive(road_map, crs, progress.part(0.5, 0.95))
+        layers.notes += [note] if note else []
+        return write_map_layers(call, layers, progress)
+
+
+class ImportLanelet2(Algorithm):
+    ID, TITLE, GROUP = "importlanelet2", "Import Lanelet2", "Export"
+    SUMMARY = "Reads a Lanelet2 map into layers like those of the road map, to lay it over a survey and assess it."
+    HELP = ("Every lanelet becomes a lane between its two borders, with the lanelets that begin where it ends as successors. Footways, areas and "
+            "regulatory elements are not read. Heights are the tag ele of the nodes, as they stand in the file.\n\n"
+            "Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone, or whose latitudes and longitudes are all about 0, "
+            "gets layers in local coordinates, without CRS.")
+    TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
+    NUMBERS = MAP_NUMBERS
+
+    def declare(self):
+        add_map_file(self, tr("Lanelet2 file"), tr("A map with the ending .osm."), LANELET_FILTER)
+        add_map_crs(self, tr("Projected, such as that of the survey. Empty takes the UTM zone of the map."))
+        add_map_layers(self)
+
+    def work(self, call, progress):
+        from ..products.export.lanelet_map import layers_of_lanelets, read_lanelet2
+
+        lanelet_map = read_lanelet2(map_file(call), progress.part(0.0, 0.5))
+        return write_map_layers(call, layers_of_lanelets(lanelet_map, call.crs(), progress.part(0.5, 0.95)), progress)
+
+
+MAP_FILTER = "HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)"
+ROWS_IN_LOG, PLACES_IN_LOG = 50, 3   # of findings that the log tells, and of the places of each
+
+
+class CheckMap(Algorithm):
+    ID, TITLE, GROUP = "checkhdmap", "Check HD map", "Export"
+    SUMMARY = "Looks for faults of an OpenDRIVE or Lanelet2 map that other validators pass over, and puts them on the map."
+    HELP = ("OpenDRIVE: gaps, kinks and steps between geometries, profiles and linked lanes, wrong lengths, lanes narrower than nothing, borders "
+            "that fold back in curves, numbering, types, links that lead nowhere or one way only, lanes that end though the road goes on, roads on "
+            "one another, words, numbers and orders of records that the standard does not have, a geoReference that is none.\n\n"
+            "Lanelet2: missing nodes and members, types and tags that no reader knows, borders that cross, swap sides or lie there twice, lanelets "
+            "that meet without sharing their nodes or meet head on, nodes that lie aside, rules of traffic that are not whole or that nobody "
+            "obeys.\n\n"
+            "The same finding at many places is one row of the report and one line of the log, with its count, its places and the largest; those at "
+            "the fewest places come first. A schema validator looks at other things; use both.")
+    TAGS = ("OpenDRIVE", "Lanelet2", "HD map", "validation", "topology", "routing")
+    LOOKS = {"OUTPUT": "FINDINGS"}
+    NUMBERS = (("FINDINGS", tr("Findings")), ("FAULTS", tr("Kinds of faults")), ("LANES", tr("Driven lanes and pieces")),
+               ("SUCCESSORS", tr("Links from one lane to the next")), ("NEIGHBOURS", tr("Pairs of lanes side by side")))
+
+    def declare(self):
+        add_map_file(self, tr("Map file"), tr("An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides."), MAP_FILTER)
+        self.add_input("crs", "CRS", tr("CRS of the findings"), tr(
+            "OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map."),
+            optional=True)
+        self.add_sink("OUTPUT", tr("Findings"), tr(
+            "A point for each finding, with the row of the report in which the same findings are one. Heights are the map's."),
+            fields=MAP_FINDINGS, geometry="PointZ")
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..products.report.hd_map import map_check_report, places_of_findings
+
+        path = map_file(call)
+        check, note = (_lanelets if _is_lanelet2(path) else _roads)(path, call.crs(), progress)
+        if note:
+            progress.warn(note)
+        call.layer("OUTPUT", check.to_features())
+        if call.wants("REPORT"):
+            call.text("REPORT", map_check_report(check, path, [note] if note else []))
+        counts = check.counts()
+        groups, _ = check.groups()
+        for group in groups[:ROWS_IN_LOG]:
+            progress.warn(tr("{fault}: {count} ({places}). {text}").format(
+                fault=told(group.worst.fault), count=group.count, places=places_of_findings(group, PLACES_IN_LOG), text=told(group.worst.text)))
+        if len(groups) > ROWS_IN_LOG:
+            progress.warn(tr("The first {shown} of {count}; the layer has all of them.").format(shown=ROWS_IN_LOG, count=len(groups)))
+        progress.info(tr("{findings} findings; {lanes} driven lanes and pieces, {successors} links to the next, {neighbours} pairs side by "
+                         "side.").format(
+            findings=len(check.found), lanes=check.lanes, successors=check.successors, neighbours=check.neighbours))
+        return {"FINDINGS": float(len(check.found)), "FAULTS": float(len(counts)), "LANES": float(check.lanes),
+                "SUCCESSORS": float(check.successors), "NEIGHBOURS": float(check.neighbours)}
+
+
+def _is_lanelet2(path):
+    """Whether a file begins as maps of OpenStreetMap do."""
+    with open(path, "rb") as file:
+        head = file.read(4096)
+    if b"<osm" not in head and b"<OpenDRIVE" not in head:
+        raise RoadExtractionError(
+            tr("{path} begins neither as OpenDRIVE nor as Lanelet2 does. Choose a file with the ending .xodr or .osm.").format(path=path))
+    return b"<osm" in head
+
+
+def _roads(path, crs, progress):
+    from ..products.export.check.roads import check_opendrive
+    from ..products.export.map_layers import crs_of_reference
+    from ..products.export.opendrive.xodr import read_opendrive
+
+    whole = read_opendrive(path, progress.part(0.0, 0.4))
+    crs, note = crs_of_reference(whole.reference, crs)
+    return check_opendrive(whole, crs, progress.part(0.4, 0.95)), note
+
+
+def _lanelets(path, crs, progress):
+    from ..products.export.check.lanelets import check_lanelets
+    from ..products.export.lanelet_map import node_places, read_lanelet2
+
+    whole = read_lanelet2(path, progress.part(0.0, 0.4))
+    return check_lanelets(whole, *node_places(whole, crs), progress.part(0.4, 0.95)), ""

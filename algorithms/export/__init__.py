@@ -1,1 +1,0 @@
-"""To and from the formats of simulators, planners and design offices."""

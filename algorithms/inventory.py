@@ -1,0 +1,198 @@
+"""What else the road shows: cross-sections, and what stands beside it."""
+
+from ..core.common.features import CROSS_SECTIONS, DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES, ROADSIDE, ROADSIDE_OBJECTS
+from ..core.countries.catalogue import COUNTRIES
+from .algorithm import Algorithm, SettingSpec
+from .survey_input import READING_SETTINGS, check_layers_on_roads, open_survey_of
+from .texts import tr
+
+# parameter -> its label, fields and geometry, in the order of BorderLayers
+BORDER_LAYERS = {
+    "ROAD_EDGES": (tr("Road edges"), ROAD_EDGES, "LineStringZ"),
+    "MARKING_LINES": (tr("Marking lines"), MARKING_LINES, "LineStringZ"),
+    "DRIVING_LINES": (tr("Driving lines"), DRIVING_LINES, "LineStringZ"),
+    "LANES": (tr("Lanes"), LANES, "PolygonZ"),
+}
+
+
+def add_borders(algorithm, *helps):
+    """Declare the layers of the road map, each with what it is good for."""
+    for (name, (label, _, geometry)), text in zip(BORDER_LAYERS.items(), helps, strict=True):
+        algorithm.add_input("layer", name, label, text, geometry, optional=True)
+
+
+def survey_with_borders(call, progress, above_road):
+    """The survey, with points up to `above_road` metres above the road, and the BorderLayers, which lie on its roads and in its CRS.
+
+    A layer without features, as a step before may have found nothing, counts as not given.
+    """
+    from shapely import get_coordinates
+
+    from ..core.io.crs import check_same_crs
+    from ..products.inventory.borders import BorderLayers
+
+    layers = {name: call.features(name, schema, geometry) for name, (_, schema, geometry) in BORDER_LAYERS.items()}
+    for name, features in layers.items():
+        if features is not None and not len(features):
+            progress.warn(tr("{label} holds no features and is not used.").format(label=call.label(name)))
+            layers[name] = None
+    survey = open_survey_of(call, progress, above_road=above_road)
+    for name, features in layers.items():
+        if features is not None:
+            check_same_crs(features.crs, survey.crs, get_coordinates(features.geometries[0])[0], call.label(name))
+    check_layers_on_roads(call, layers, survey.frame, progress)
+    return survey, BorderLayers(*layers.values())
+
+
+SECTIONS = "products.inventory.settings:CrossSectionSettings"
+ABOVE_SECTIONS = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
+
+SECTION_SETTINGS = (
+    SettingSpec("INTERVAL", SECTIONS, "interval", tr("Interval of the sections (m)"),
+                tr("Smaller shows where a rut or a change of crossfall begins, but takes longer; below 10 m grade and ruts are measured over that "
+                   "length only.")),
+    SettingSpec("COUNTRY", SECTIONS, "country", tr("Country"),
+                tr("Whose rules give the limits that are left at 0; neutral has none, and nothing is judged. Also whose usual lane is measured about "
+                   "the track where no layer of the road map is given. It is never guessed."), choices=tuple(COUNTRIES)),
+    SettingSpec("MAX_RUT", SECTIONS, "max_rut", tr("Rut depth at most, 0 = of the country (mm)"),
+                tr("Deeper ruts under a straight edge of 2 m are marked. Lower finds shallow ones, down to what noise leaves, about 2 mm.")),
+    SettingSpec("MIN_CROSSFALL", SECTIONS, "min_crossfall", tr("Crossfall at least, 0 = of the country (%)"),
+                tr("Lanes that fall less to either side are marked: water stands there. Lower leaves the places where the crossfall changes sides "
+                   "unmarked."), advanced=True),
+    SettingSpec("MAX_CROSSFALL", SECTIONS, "max_crossfall", tr("Crossfall at most, 0 = of the country (%)"),
+                tr("Steeper lanes are marked. Lower marks the superelevation of bends too."), advanced=True),
+    SettingSpec("MAX_GRADE", SECTIONS, "max_grade", tr("Grade at most, 0 = of the country (%)"),
+                tr("Steeper sections are marked, climbing or falling. Lower marks ramps too."), advanced=True),
+    SettingSpec("MIN_WIDTH", SECTIONS, "min_width", tr("Lane width at least, 0 = of the country (m)"),
+                tr("Narrower driving lanes are marked. Higher marks turning lanes too."), advanced=True),
+    SettingSpec("MIN_CLEARANCE", SECTIONS, "min_clearance", tr("Clearance at least, 0 = of the country (m)"),
+                tr("Sections with something hanging lower are marked. Higher finds branches above the traffic too."), advanced=True),
+)
+
+
+class CrossSections(Algorithm):
+    ID, TITLE, GROUP = "crosssections", "Cross-sections", "Inventory"
+    SUMMARY = "Measures width, crossfall, grade, rut depth, curb heights and clearance of every lane at fixed stations against limits."
+    HELP = ("Steps between scanners and passes are estimated where they overlap and taken off first. An error in roll looks like crossfall: passes "
+            "in opposite directions distinguish the two, and where there are none the report says so and the sigma of the crossfall holds it.\n\n"
+            "Lanes are those of the layer Lanes, else of the driving lines between the marking lines, else of the marking lines alone; the "
+            "carriageway ends at the road edges, else at the outermost line. Rut depths are measured under a straight edge of 2 m laid over profiles "
+            "averaged over 1 m of road (over more where points are few), less what noise adds. Something that stands on the road does not "
+            "count as hanging above it.\n\n"
+            "Judged is what the rules of the country chosen say, and what you set a limit for. Field why gives value, limit and rule. A "
+            "crossfall is marked where twice its sigma does not explain it.")
+    TAGS = ("profile", "rutting", "crossfall", "superelevation", "clearance", "road condition", "width")
+    LOOKS = {"OUTPUT": "CROSS_SECTIONS"}
+    NUMBERS = (("SECTIONS", tr("Sections")),
+               ("EXCEEDED", tr("Lanes and carriageways that exceed a limit")),
+               ("LARGEST_RUT", tr("Greatest rut depth (mm)")),
+               ("LEAST_CLEARANCE", tr("Least clearance (m)")))
+
+    def declare(self):
+        self.add_survey()
+        add_borders(self,
+                    tr("With it the carriageway ends at the edges, and heights of curbs are measured there."),
+                    tr("With it lanes end at the painted lines."),
+                    tr("With it lanes have their numbers and directions; not needed beside Lanes."),
+                    tr("With it every lane, shoulder and parking strip of the road map is measured."))
+        self.add_settings(SECTION_SETTINGS)
+        self.add_settings(READING_SETTINGS)
+        self.add_sink("OUTPUT", tr("Cross-sections"), tr("A line across every lane and carriageway at every section."), fields=CROSS_SECTIONS,
+                      geometry="LineStringZ")
+        self.add_sink("TABLE", tr("Table of the cross-sections"), tr("The same rows without lines, for spreadsheets."), fields=CROSS_SECTIONS,
+                      geometry="None", optional=True, by_default=False)
+        self.add_output("file", "DRAWING", tr("Drawing of the sections"), tr(
+            "Every section true to scale, one below the other, with stations, heights and slopes, for CAD; lengths are metres."),
+                        suffixes=(".dxf",), file_filter="DXF (*.dxf)", optional=True, by_default=False)
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..products.inventory.cross_sections import measure_cross_sections, sections_to_features
+        from ..products.report.inventory import cross_section_report
+
+        settings = call.settings(SECTION_SETTINGS)
+        survey, layers = survey_with_borders(call, progress.part(0.0, 0.5), ABOVE_SECTIONS)
+        sections = measure_cross_sections(survey, layers, settings, progress.part(0.5, 1.0))
+        lines, table = sections_to_features(sections)
+        call.layer("OUTPUT", lines)
+        call.layer("TABLE", table)
+        if call.wants("DRAWING"):
+            from ..products.cad import section_drawing, write_dxf
+
+            write_dxf(section_drawing(sections), call.new_file("DRAWING"))
+        call.text("REPORT", cross_section_report(sections, table))
+        return _numbers(table, len(sections.sections))
+
+
+def _numbers(table, count):
+    ruts = [value for name in ("rut_l_mm", "rut_r_mm") for value in table.column(name) if value is not None]
+    clear = [value for value in table.column("clear_m") if value is not None]
+    counts = {"SECTIONS": float(count), "EXCEEDED": float(sum(bool(row["exceeds"]) for row in table.rows))}
+    return {**counts, **({"LARGEST_RUT": max(ruts)} if ruts else {}), **({"LEAST_CLEARANCE": min(clear)} if clear else {})}
+
+
+ROADSIDE_OF = "products.inventory.settings:RoadsideSettings"
+ABOVE_ROADSIDE = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
+
+ROADSIDE_SETTINGS = (
+    SettingSpec("INTERVAL", ROADSIDE_OF, "interval", tr("Longest interval between vertices (m)"),
+                tr("Lines have a vertex wherever they bend, and at least one every so many metres. Smaller gives more of them."), advanced=True),
+    SettingSpec("COUNTRY", ROADSIDE_OF, "country", tr("Country"),
+                tr("Whose lane widths tell two marking lines that bound a lane, where there are no road edges. It is never guessed."),
+                choices=tuple(COUNTRIES), advanced=True),
+    SettingSpec("REACH", ROADSIDE_OF, "reach", tr("Reach beyond the carriageway's edge (m)"),
+                tr("Farther finds what stands behind verge and sidewalk, but also what belongs to the land beside the road.")),
+    SettingSpec("MIN_LENGTH", ROADSIDE_OF, "min_length", tr("Shortest line (m)"),
+                tr("Shorter finds short pieces of rail and wall, but also cars and bins that stand in a row.")),
+    SettingSpec("MIN_HEIGHT", ROADSIDE_OF, "min_height", tr("Lowest line (m)"),
+                tr("Lower finds low walls, but also high grass and steps."), advanced=True),
+    SettingSpec("MAX_GAP", ROADSIDE_OF, "max_gap", tr("Longest gap bridged (m)"),
+                tr("Longer joins what follows in line; shorter distinguishes more lines. What vehicles hide is bridged up to 12 m whatever this is, "
+                   "and an opening of 1.5 m or more through which the scanner saw is left open."), advanced=True),
+    SettingSpec("MIN_POLE_HEIGHT", ROADSIDE_OF, "min_pole_height", tr("Lowest pole, sign or trunk (m)"),
+                tr("Lower finds bollards and delineator posts, but also people."), advanced=True),
+)
+
+
+class Roadside(Algorithm):
+    ID, TITLE, GROUP = "roadside", "Roadside", "Inventory"
+    SUMMARY = "Finds guard rails, concrete barriers, walls, fences, hedges and gutters as lines, and poles, signs and tree trunks as points."
+    HELP = ("What repeats along the road at a steady offset and height is a line; its kind follows from its section: a beam with free height "
+            "below, a face that leans back, an upright plane, something that is seen through, something rough. "
+            "Buildings and rows of parked cars are none. Where a scanner sees hardly higher than it rides, as heads of many beams do, "
+            "what is as high as it is left out: it may be a house front.\n\n"
+            "Status says which pieces of a line were measured. Where something stands before it, as parked cars before a wall, and what is seen "
+            "of it on both sides agrees in offset and height, it is one line, and the piece between them is bridged and drawn paler. Where the "
+            "scanner saw through a gap, as through a gate or a driveway, nothing is drawn.\n\n"
+            "Only what stands outside the carriageway counts: give the road edges, or the layers of lines or lanes. Gutters are the lowest points "
+            "along an edge that the road falls to; the higher side of a road has none.")
+    TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")
+    LOOKS = {"OUTPUT": "ROADSIDE", "OBJECTS": "ROADSIDE_OBJECTS"}
+    NUMBERS = (("LENGTH", tr("Length of all lines but gutters (m)")), ("POLES", tr("Poles, signs and trunks")))
+
+    def declare(self):
+        self.add_survey()
+        add_borders(self,
+                    tr("With it things are looked for from the edges outward, and gutters along them."),
+                    tr("With it the carriageway without edges ends at the outermost line."),
+                    tr("With it the carriageway without edges holds every lane."),
+                    tr("The same, with shoulders and parking strips."))
+        self.add_settings(ROADSIDE_SETTINGS)
+        self.add_settings(READING_SETTINGS)
+        self.add_sink("OUTPUT", tr("Roadside"), tr("Pieces of lines along the foot, on the ground; those of one line have its number."),
+                      fields=ROADSIDE, geometry="LineStringZ")
+        self.add_sink("OBJECTS", tr("Poles, signs and trunks"), fields=ROADSIDE_OBJECTS, geometry="PointZ", optional=True)
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..products.inventory.roadside.find import find_roadside, roadside_to_features
+        from ..products.report.inventory import roadside_report
+
+        settings = call.settings(ROADSIDE_SETTINGS)
+        survey, layers = survey_with_borders(call, progress.part(0.0, 0.6), ABOVE_ROADSIDE)
+        roadside = find_roadside(survey, layers, settings, progress.part(0.6, 1.0))
+        lines, points = roadside_to_features(roadside)
+        call.layer("OUTPUT", lines)
+        call.layer("OBJECTS", points)
+        call.text("REPORT", roadside_report(roadside, lines, points))
+        return {"LENGTH": sum(row["length_m"] for row in lines.rows if row["kind"] != "gutter"), "POLES": float(len(points))}

@@ -1,0 +1,258 @@
+"""What is painted: intensity corrected and drawn, paint, markings and the lines along them."""
+
+from ..core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES
+from ..core.countries.catalogue import COUNTRIES
+from .algorithm import Algorithm, ParameterSpec, SettingSpec
+from .survey_input import bright_road_points_of, check_layers_on_roads, frame_of, paint_of, road_points_of
+from .texts import tr
+
+INTENSITY = "core.intensity.correction:IntensitySettings"
+
+INTENSITY_SETTINGS = (
+    SettingSpec("SCALE", INTENSITY, "scale", tr("Scale of the intensities"),
+                tr("Linear ones are multiplied, logarithmic ones added to. Automatic goes by the spread of asphalt; choose one when the report names "
+                   "the wrong one."), choices=("automatic", "linear", "logarithmic"), advanced=True),
+)
+
+
+class CorrectIntensity(Algorithm):
+    ID, TITLE, GROUP = "correctintensity", "Correct intensity", "Markings"
+    SUMMARY = "Evens out the fall of intensity with range and incidence, scanner by scanner, from the road's own asphalt."
+    HELP = "The raw intensity stays as it was; the corrected one is the extra field intensity_corrected, which later stages prefer."
+    TAGS = ("intensity", "range correction", "calibration")
+
+    def declare(self):
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("The file written by Extract road surface."))
+        self.add_trajectory()
+        self.add_settings(INTENSITY_SETTINGS)
+        self.add_output("cloud", "OUTPUT", tr("Corrected road points"))
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..core.intensity.correction import correct_intensity
+        from ..core.survey.road_points_las import write_road_points
+        from ..products.report.page import html_page
+
+        road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
+        frame = frame_of(call, road_points.crs, progress, road_points)
+        corrected, report = correct_intensity(road_points, frame, call.settings(INTENSITY_SETTINGS), progress.part(0.2, 0.8))
+        write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
+        for line in report.lines()[1:]:  # the first was said when it was found, as was a warning
+            if line != report.saturation_warning:
+                progress.info(line)
+        call.text("REPORT", html_page("intensity_correction", found=report))
+
+
+IMAGE = "core.intensity.image:ImageSettings"
+
+IMAGE_SETTINGS = (
+    SettingSpec("CELL_SIZE", IMAGE, "cell_size", tr("Cell size (m)"),
+                tr("Smaller shows narrow lines more sharply while the cloud is dense enough; larger fills gaps and makes smaller files.")),
+)
+
+
+class IntensityImage(Algorithm):
+    ID, TITLE, GROUP = "intensityimage", "Intensity image", "Markings"
+    SUMMARY = "Interpolates the intensity of road points into a GeoTIFF: near and bright points count more."
+    TAGS = ("intensity", "image", "raster", "orthophoto")
+    RETIRED = ("POWER", "BETA", "RADIUS_CELLS")
+
+    def declare(self):
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"),
+                       tr("The file written by Correct intensity, or by Extract road surface for the raw intensity."))
+        self.add_settings(IMAGE_SETTINGS)
+        self.add_output("raster", "INTENSITY_IMAGE", tr("Intensity image"))
+        self.add_output("raster", "DISPLAY_IMAGE", tr("Intensity image, 8 bit"),
+                        tr("The same for viewing: stretched to 256 grey values, for programs that show no floating-point images."), optional=True,
+                        by_default=False)
+
+    def work(self, call, progress):
+        from ..core.intensity.image import write_intensity_image
+        from ..core.io.geotiff import write_display_image
+
+        road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
+        path = call.new_file("INTENSITY_IMAGE")
+        write_intensity_image(road_points, path, call.settings(IMAGE_SETTINGS), progress.part(0.2, 0.9))
+        if call.wants("DISPLAY_IMAGE"):
+            write_display_image(path, call.new_file("DISPLAY_IMAGE"), progress.part(0.9, 1.0))
+
+
+EXTRACTION = "core.markings.paint.settings:MarkingSettings"
+
+MARKING_METHOD = ParameterSpec(
+    "choice", "METHOD", tr("Method"),
+    tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The other two are published "
+       "methods to compare with. intensity-peaks looks for narrow peaks in profiles across the road and finds lines only; point-segments sets "
+       "thresholds on the points and keeps the dense ones. Neither tells concrete gutters from paint."),
+    default="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"))
+
+MARKING_SETTINGS = (
+    SettingSpec("SEPARATION", EXTRACTION, "separation", tr("Multi-threshold: least distance of paint from asphalt (σ)"),
+                tr("How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower finds fainter "
+                   "paint, but also gutters, patches and noise."), advanced=True),
+)
+
+
+def marking_settings(call):
+    """MarkingSettings with the method that the user chose."""
+    from ..products.published_markings import METHODS
+
+    return call.settings(MARKING_SETTINGS, method=METHODS[call.value("METHOD")])
+
+
+class ExtractMarkings(Algorithm):
+    ID, TITLE, GROUP = "extractmarkings", "Extract markings", "Markings"
+    SUMMARY = "Separates paint from asphalt by intensity and keeps the points of the paint."
+    TAGS = ("road marking", "lane marking", "paint", "threshold", "otsu", "intensity peak", "density")
+    RETIRED = ("SHORTEST_PAINT", "CLOSE", "PROFILE_LENGTH", "PROMINENCE", "NARROWEST", "WIDEST", "JUMP", "PEAK_GAP", "SHORTEST_LINE",
+               "SEGMENT_LENGTH", "SEGMENT_WIDTH", "SEGMENT_SEPARATION", "NEIGHBOUR_RADIUS")
+
+    def declare(self):
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("The file that the intensity image was made from."))
+        self.add_input("raster", "INTENSITY_IMAGE", tr("Intensity image"), tr("The GeoTIFF written by Intensity image."))
+        self.add_trajectory()
+        self.add(MARKING_METHOD)
+        self.add_settings(MARKING_SETTINGS)
+        self.add_output("cloud", "MARKING_POINTS", tr("Marking points"))
+        self.add_output("raster", "MARKING_MASK", tr("Marking mask"), tr("1 where a pixel is paint, 0 where it is not."), optional=True,
+                        by_default=False)
+
+    def work(self, call, progress):
+        from ..core.intensity.image import check_image_shows
+        from ..core.io.geotiff import IntensityImage
+        from ..core.markings.paint.extract import extract_markings
+        from ..core.survey.road_points_las import write_road_points
+
+        road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
+        frame = frame_of(call, road_points.crs, progress, road_points)
+        image = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
+        check_image_shows(image, road_points)
+        markings = extract_markings(
+            road_points, image, frame, marking_settings(call), progress.part(0.2, 0.95), mask_path=call.new_file("MARKING_MASK") or None)
+        write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))
+
+
+OUTLIERS = "core.markings.outliers:OutlierSettings"
+
+OUTLIER_SETTINGS = (
+    SettingSpec("NEIGHBOURS", OUTLIERS, "neighbours", tr("Nearest points looked at (points)"),
+                tr("More judges by a wider neighbourhood and removes small clumps too; fewer removes single points only.")),
+    SettingSpec("STD_RATIO", OUTLIERS, "std_ratio", tr("Allowed distance above the mean (σ)"),
+                tr("Smaller removes more, first where points are sparse; larger keeps far paint, and some noise with it.")),
+    SettingSpec("SCOPE", OUTLIERS, "scope", tr("Statistics over"),
+                tr("All compares every point with the whole file, as PCL does, and eats sparse paint far from the scanner; windows compares it with "
+                   "its own stretch of the road."), choices=("all", "windows")),
+)
+
+
+class RemoveOutliers(Algorithm):
+    ID, TITLE, GROUP = "removeoutliers", "Remove outliers", "Markings"
+    SUMMARY = "Statistical outlier removal: points that lie farther from their neighbours than is usual go."
+    TAGS = ("outlier", "noise", "sor")
+
+    def declare(self):
+        self.add_input("cloud", "INPUT", tr("Marking points"), tr("The file written by Extract markings."))
+        self.add_settings(OUTLIER_SETTINGS)
+        self.add_output("cloud", "OUTPUT", tr("Marking points without outliers"))
+
+    def work(self, call, progress):
+        from ..core.markings.outliers import remove_outliers
+        from ..core.survey.road_points_las import write_road_points
+
+        points = paint_of(call, "INPUT", progress.part(0.0, 0.3))
+        settings = call.settings(OUTLIER_SETTINGS)
+        kept = remove_outliers(points, settings, progress.part(0.3, 0.8)) if len(points) else points
+        write_road_points(kept, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
+
+
+CLUSTERS = "core.markings.objects.cluster:ClusterSettings"
+
+CLUSTER_SETTINGS = (
+    SettingSpec("DISTANCE", CLUSTERS, "distance", tr("Distance that joins points (m)"),
+                tr("Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart.")),
+)
+
+
+class ClusterMarkings(Algorithm):
+    ID, TITLE, GROUP = "clustermarkings", "Cluster markings", "Markings"
+    SUMMARY = "Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest."
+    HELP = (
+        "The field class is edge, lane or centre for lines, and zebra, stop, give_way (a row of equal blocks across a lane), zigzag (a "
+        "line along the road that turns back again and again: no stopping), arrow, bicycle, bus (the word BUS, its letters one "
+        "marking), hatch or symbol for what is no line. A bicycle or a word that is not clearly seen stays symbol. Far from the "
+        "vehicle, points join over the distance between the tracks of the scan."
+    )
+    TAGS = ("road marking", "lane marking", "cluster", "give-way line", "zigzag line", "zebra crossing", "stop line", "arrow",
+            "bicycle symbol", "bus lane")
+    RETIRED = ("MIN_POINTS",)
+
+    def declare(self):
+        self.add_input("cloud", "MARKING_POINTS", tr("Marking points"), tr("The file written by Remove outliers or Extract markings."))
+        self.add_trajectory()
+        self.add_settings(CLUSTER_SETTINGS)
+        self.add_sink("MARKINGS", tr("Markings"), fields=MARKINGS, geometry="PolygonZ")
+        self.add_output("cloud", "CLUSTERED_POINTS", tr("Clustered points"), tr("The points with the extra field cluster."))
+
+    def work(self, call, progress):
+        from ..core.markings.objects.cluster import cluster_markings
+        from ..core.survey.road_points_las import write_road_points
+
+        points = paint_of(call, "MARKING_POINTS", progress.part(0.0, 0.2))
+        frame = frame_of(call, points.crs, progress, points)
+        markings, clustered = cluster_markings(points, frame, call.settings(CLUSTER_SETTINGS), progress.part(0.2, 0.9))
+        write_road_points(clustered, call.new_file("CLUSTERED_POINTS"), progress.part(0.9, 1.0))
+        call.layer("MARKINGS", markings.to_features(frame))
+
+
+LINES = "core.markings.lines.fit:MarkingLineSettings"
+
+LINE_SETTINGS = (
+    SettingSpec("COUNTRY", LINES, "country", tr("Country"),
+                tr("Whose dashes are looked for. It is never guessed; neutral holds for roads of all countries of the catalogue."),
+                choices=tuple(COUNTRIES), advanced=True),
+    SettingSpec("CURVE", LINES, "curve", tr("Curve fitted to marking lines"),
+                tr("Automatic takes the simplest curve that fits (Bayesian information criterion). Choose one to force it on every line."),
+                choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")),
+    SettingSpec("DEGREE", LINES, "degree", tr("Degree of the polynomial (0-9)"),
+                tr("Used with polynomial only. Higher follows more bends, but swings between its points.")),
+)
+
+
+class FitMarkingLines(Algorithm):
+    ID, TITLE, GROUP = "fitmarkinglines", "Fit marking lines", "Markings"
+    SUMMARY = "Links dashes along the road and fits a curve to every painted line."
+    LOOKS = {"NAMED_MARKINGS": "MARKINGS"}
+    TAGS = ("lane line", "curve fitting", "circle", "clothoid", "spline")
+    RETIRED = ("LINK_GAP", "LINK_BRIDGE", "MIN_PAINT")
+
+    def declare(self):
+        self.add_input("cloud", "CLUSTERED_POINTS", tr("Clustered points"), tr("The file written by Cluster markings."))
+        self.add_input("layer", "MARKINGS", tr("Markings"), tr("The layer written by Cluster markings together with the points."), "PolygonZ")
+        self.add_trajectory()
+        self.add_input("layer", "ROAD_EDGES", tr("Road edges"), tr("With it curbs help to tell edge lines from lane lines."),
+                       "LineStringZ", optional=True)
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"),
+                       tr("With it the width of the road helps to tell what a line separates."), optional=True)
+        self.add_settings(LINE_SETTINGS)
+        self.add_sink("MARKING_LINES", tr("Marking lines"), fields=MARKING_LINES, geometry="LineStringZ")
+        self.add_sink("NAMED_MARKINGS", tr("Markings named by their lines"), fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False,
+                      text=tr("The markings again, each dash and piece of a line with the class of the line that runs along it: alone, a dash of a "
+                              "centre line looks like any other."))
+
+    def work(self, call, progress):
+        from ..core.markings.lines.fit import fit_marking_lines, named_by_lines
+        from ..core.markings.objects.marking_objects import MarkingObjects, with_kinds_of
+        from ..core.road.edges.road_edges import RoadEdges
+
+        layer = call.features("MARKINGS", MARKINGS, "PolygonZ")
+        points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
+        frame = frame_of(call, points.crs, progress, points, {"MARKINGS": layer})
+        markings = MarkingObjects.from_features(layer, frame)
+        edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        check_layers_on_roads(call, {"ROAD_EDGES": edges}, frame, progress)
+        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.2, 0.3)) if call.cloud("ROAD_POINTS") else None
+        lines = fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.3, 1.0),
+                                  edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points)
+        call.layer("MARKING_LINES", lines.to_features(frame))
+        if call.wants("NAMED_MARKINGS"):
+            call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines), frame))

@@ -1,0 +1,252 @@
+"""UAV images below the road map, placed by ground control points."""
+
+from ..core.common.errors import RoadExtractionError
+from ..core.common.features import PROPOSED_POINTS, RESIDUALS
+from .algorithm import Algorithm, SettingSpec
+from .texts import tr
+from .vector_source import LINE, POINT, POLYGON, vertices_of
+
+
+def read_control_point_layer(source, image, crs=""):
+    """ControlPoints of a layer.
+
+    Parameters
+    ----------
+    source : VectorSource, points with the fields pixel and line, or a table
+    image : SourceImage that the points belong to
+    crs : WKT where the layer carries none
+
+    Raises RoadExtractionError if the layer holds lines or polygons, or lacks a field.
+    """
+    from ..products.overlay.control_points import control_points
+
+    if source.kind in (LINE, POLYGON):
+        raise RoadExtractionError(
+            tr("{label}: the layer holds {kind} geometries. Control points are points, or a table.").format(
+                label=source.label, kind=source.kind_label(source.kind)))
+    placed = source.kind == POINT
+    rows = [_row(wkb, values, placed) for wkb, values in source.stored_rows()]
+    return control_points([*source.names, *["mapX", "mapY", "mapZ"] * placed], rows, image, source.label, source.stored_crs or crs)
+
+
+def _row(wkb, values, placed):
+    if not placed:
+        return list(values)
+    vertices = vertices_of(wkb) if wkb else []
+    if not len(vertices):
+        return [*values, None, None, None]
+    x, y, z, _ = vertices[0].tolist()
+    return [*values, x, y, z if z == z else None]
+
+
+PROPOSE = "products.overlay.matching.propose:ProposalSettings"
+
+PROPOSE_SETTINGS = (
+    SettingSpec("PIXEL_SIZE", PROPOSE, "pixel_size", tr("Pixel size of the image on the ground (m)"),
+                tr("Roughly, to a tenth; 0 takes it from the image's position, or from the height and focal length in its tags. With it alone the "
+                   "whole intensity image is searched, in every direction.")),
+    SettingSpec("SEARCH", PROPOSE, "search", tr("How far the rough position may be off (m)"),
+                tr("Larger finds images with poor tags, takes longer, and meets more places that look alike on a road of equal dashes.")),
+    SettingSpec("TOLERANCE", PROPOSE, "tolerance", tr("Largest distance from the other pairs (m)"),
+                tr("A pair is accepted where the others place it, to so much. Larger keeps pairs of an oblique image that a polynomial follows "
+                   "badly."), advanced=True),
+    SettingSpec("MIN_SCORE", PROPOSE, "min_score", tr("Smallest likeness of two cut-outs (0-1)"),
+                tr("Correlation, 1 for the same picture. Lower accepts worn paint and shadows, higher only what looks the same."), advanced=True),
+    SettingSpec("COUNT", PROPOSE, "count", tr("Most pairs that are accepted (points)"),
+                tr("They are spread over the image. Half as many doubtful ones are listed besides."), advanced=True),
+)
+
+
+class ProposeControlPoints(Algorithm):
+    ID, TITLE, GROUP = "proposecontrolpoints", "Propose control points", "Orthoimages"
+    SUMMARY = "Finds the same paint in a UAV image and in the intensity image, as control points for Georeference image."
+    HELP = ("The image needs a rough position: two given points, or a world file, or the position tags of the drone, or the size of its "
+            "pixels. The paint of both images is laid over each other, the distortion of the camera followed, and about every "
+            "corner of paint (ends of dashes, arrows, bars, stop lines) the two cut-outs are compared.\n\n"
+            "A pair is accepted by default where its cut-outs look alike, nothing beside it looks the same, and the other pairs place it "
+            "where it is. Where the paint repeats so that the whole image fits elsewhere as well, no pair is accepted and a warning says so. "
+            "Look through the pairs with Control points from paint in the Lanewright menu, in the report, or in the table: points whose field "
+            "accepted is 1 are used by Georeference image, others are not.\n\n"
+            "The pairs tell how well the image fits the point cloud, not how well either fits the ground. They lie on the road, so that the "
+            "image is reliable there and less so beside it. Sun, shadow and dark paint do no harm; paint renewed between the two surveys does.")
+    TAGS = ("UAV", "drone", "GCP", "control points", "matching", "registration", "orthoimage", "georeferencer")
+    NUMBERS = (
+        ("PROPOSED", tr("Pairs proposed")),
+        ("ACCEPTED", tr("Pairs accepted")),
+        ("RMSE", tr("RMSE of the accepted pairs, each left out in turn (m)")),
+        ("GROUND_PIXEL", tr("Pixel of the image on the ground (m)")),
+        ("TURN", tr("Turn of the image, from its rows to east (°)")),
+    )
+
+    def declare(self):
+        self.add_input("raster", "IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster that looks straight down, of up to 500 m of ground."))
+        self.add_input("raster", "INTENSITY_IMAGE", tr("Intensity image"), tr("As Intensity image and Road map write it."))
+        self.add_input("layer", "ROUGH_POINTS", tr("Two rough points"),
+                       tr("Where the image has no position: a layer with the fields pixel and line of two or more points far apart, right to some "
+                          "metres."), optional=True)
+        self.add_settings(PROPOSE_SETTINGS)
+        self.add_sink("CONTROL_POINTS", tr("Control points"), tr("As Georeference image takes them."), "PointZ", fields=PROPOSED_POINTS)
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..core.io.geotiff import IntensityImage
+        from ..products.overlay.matching.propose import propose_control_points
+        from ..products.overlay.rough_place import rough_place
+        from ..products.overlay.source_image import open_image
+        from ..products.report.overlay import proposed_points_report
+
+        image = open_image(call.raster("IMAGE"))
+        intensity = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
+        settings = call.settings(PROPOSE_SETTINGS)
+        rough = rough_place(image, intensity.crs, settings.search, settings.pixel_size, _rough_points(call, image, intensity.crs))
+        progress.info(tr("The image is looked for by {source}.").format(source=rough.source))
+        proposal = propose_control_points(image, intensity, rough, settings, progress.part(0.0, 0.95))
+        for note in proposal.notes:
+            progress.warn(note)
+        values = {"PROPOSED": len(proposal), "ACCEPTED": int(proposal.accepted.sum()), "GROUND_PIXEL": proposal.size, "TURN": proposal.turn_degrees}
+        if values["ACCEPTED"]:
+            values["RMSE"] = proposal.rmse
+            progress.info(tr("{accepted} of {count} pairs accepted, RMSE {rmse:.3f} m, each left out in turn.").format(
+                accepted=values["ACCEPTED"], count=values["PROPOSED"], rmse=proposal.rmse))
+        call.layer("CONTROL_POINTS", proposal.features())
+        if call.wants("REPORT"):
+            call.text("REPORT", proposed_points_report(proposal))
+        return values
+
+
+def _rough_points(call, image, crs):
+    """Given points in the CRS of the intensity image, None where there are none."""
+    from dataclasses import replace
+
+    from ..products.overlay.rough_place import to_map
+
+    source = call.source("ROUGH_POINTS")
+    if source is None:
+        return None
+    points = read_control_point_layer(source, image)
+    easting, northing = to_map(points.easting, points.northing, points.crs, crs)
+    return replace(points, easting=easting, northing=northing, crs=crs)
+
+
+GEOREFERENCE = "products.overlay.georeference:GeoreferenceSettings"
+POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
+
+GEOREFERENCE_SETTINGS = (
+    SettingSpec("ORDER", GEOREFERENCE, "order", tr("Order of the polynomial (0-3)"),
+                tr("0 only shifts an image that already has a rough position; 1 also turns, scales and shears it (3 points or more), 2 also bends it "
+                   "(6), 3 bends it twice (10). Higher follows the points more closely and runs away faster outside them: watch the leave-one-out "
+                   "error, which falls only as long as the order is worth it.")),
+    SettingSpec("PIXEL_SIZE", GEOREFERENCE, "pixel_size", tr("Pixel size (m)"),
+                tr("Of the result; 0 keeps that of the image. Smaller makes a larger file, not a sharper image. A shift (order 0) of an image "
+                   "without position takes this as the image's own pixel size, north up.")),
+    SettingSpec("EXTRAPOLATION", GEOREFERENCE, "extrapolation", tr("Outside the control points"),
+                tr("What becomes of the image outside the hull of the control points, where the polynomial extrapolates: automatic draws it up to "
+                   "order 2 and leaves it out at order 3."), choices=("automatic", "draw", "leave-out"), advanced=True),
+    SettingSpec("RESAMPLING", GEOREFERENCE, "resampling", tr("Resampling"),
+                tr("Bilinear is smooth and safe, cubic a little sharper, nearest keeps the values as they are (for classes and temperatures)."),
+                choices=("bilinear", "nearest", "cubic"), advanced=True),
+    SettingSpec("CHECK_DISABLED", GEOREFERENCE, "check_disabled", tr("Disabled points are check points"),
+                tr("Points that are switched off in the georeferencer, or have 0 in a column enable, judge the result instead of being passed over. "
+                   "A layer or CSV may name check points in a column role."), advanced=True),
+)
+
+
+class GeoreferenceImage(Algorithm):
+    ID, TITLE, GROUP = "georeferenceimage", "Georeference image", "Orthoimages"
+    SUMMARY = "Places a UAV image on the map by ground control points, and reports its accuracy."
+    HELP = ("Control points come as a layer or as a file, each with pixel, line, easting and northing; pixel and line count from the "
+            "outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.\n\n"
+            "Spread the points over the whole image, its corners first: between them the polynomial is held, outside it runs away. Take twice "
+            "as many as the order needs. Judge the result by check points, or by the error of each point without itself (leave-one-out), not by "
+            "the residuals, which the polynomial was bent to make small. Control points taken from the point cloud tell how "
+            "well the image fits the cloud, not how well either fits the ground.")
+    TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
+    LOOKS = {"OUTPUT": "ORTHOIMAGE"}
+    NUMBERS = (
+        ("POINTS", tr("Control points")),
+        ("RMSE", tr("RMSE of the control points (m)")),
+        ("LEFT_OUT_RMSE", tr("RMSE of the control points, each left out in turn (m)")),
+        ("CHECK_POINTS", tr("Check points")),
+        ("CHECK_RMSE", tr("RMSE of the check points (m)")),
+        ("LARGEST", tr("Largest residual of a control point (m)")),
+        ("OUTSIDE", tr("Image outside the hull of the control points (%)")),
+    )
+
+    def declare(self):
+        self.add_input("raster", "IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster, with a position on the map or without."))
+        self.add_input("layer", "GCPS", tr("Control points (layer)"),
+                       tr("A point layer with the fields pixel and line, or a table that also has easting and northing. A field role (control or "
+                          "check) sets points aside that only judge the result, a field enable switches points off."), optional=True)
+        self.add_input("file", "GCP_FILE", tr("Control points (file)"),
+                       tr("In place of a layer: the .points file of QGIS's georeferencer, the gcp_list.txt of OpenDroneMap, or a CSV with the "
+                          "columns pixel, line, easting, northing in any order. Where rows name images, those of this image are used."),
+                       optional=True, file_filter=POINTS_FILTER)
+        self.add_input("crs", "CRS", tr("CRS of the control points"),
+                       tr("Only for control points that name none of their own. It must be projected."), optional=True)
+        self.add_settings(GEOREFERENCE_SETTINGS)
+        self.add_output("raster", "OUTPUT", tr("Georeferenced image"),
+                        tr("GeoTIFF with overviews; transparent or without data where the image ends."))
+        self.add_sink("RESIDUALS", tr("Residuals"), tr("From where the polynomial puts each point to where it was measured."), "LineStringZ",
+                      optional=True, fields=RESIDUALS)
+        self.add_report()
+
+    def work(self, call, progress):
+        from ..products.overlay.georeference import georeference, residual_vectors
+        from ..products.overlay.source_image import open_image
+        from ..products.overlay.warp import draw_image
+        from ..products.report.overlay import georeferencing_report
+
+        image = open_image(call.raster("IMAGE"))
+        if image.geotransform is None:
+            # QGIS looks at a raster as a map layer before it starts an algorithm, and passes on what GDAL thinks of it
+            progress.info(tr("The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute "
+                            "a transformation, is QGIS saying the same and harmless."))
+        result = georeference(image, _control_points(call, image, progress), call.settings(GEOREFERENCE_SETTINGS))
+        for note in result.notes:
+            progress.warn(note)
+        values = _numbers(result)
+        progress.info(tr("Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
+            count=values["POINTS"], order=result.settings.order, rmse=values["RMSE"], left=result.left_out_rmse))
+        if values["CHECK_POINTS"]:
+            progress.info(tr("Check points: {count}, RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
+        drawn = call.new_file("OUTPUT")
+        departure = draw_image(result, drawn, progress.part(0.02, 0.97))
+        call.layer("RESIDUALS", residual_vectors(result))
+        if call.wants("REPORT"):
+            call.text("REPORT", call.in_users_names(georeferencing_report(result, drawn, departure)))
+        return values
+
+
+def _control_points(call, image, progress):
+    """From the layer or the file, whichever was given."""
+    from ..core.io.crs import horizontal_part, parse_crs, same_crs
+    from ..products.overlay.control_points import read_control_points
+
+    crs = call.crs()
+    path = call.file("GCP_FILE")
+    source = call.source("GCPS")
+    if bool(path) == (source is not None):
+        raise RoadExtractionError(
+            tr("Control points were given twice, as a layer and as a file. Leave one of them empty.") if path else
+            tr("There are no control points. Choose a layer, or a .points or CSV file."))
+    if path:
+        points = read_control_points(path, image, crs)
+    else:
+        points = read_control_point_layer(source, image, crs)
+    if crs and not same_crs(parse_crs(crs), parse_crs(points.crs)):
+        progress.warn(tr("The control points say that they are in {own}; the CRS given is for points that name none and was not used.").format(
+            own=horizontal_part(parse_crs(points.crs)).name))
+    return points
+
+
+def _numbers(found):
+    from ..products.overlay.control_points import CHECK, CONTROL
+
+    lengths = [float((dx * dx + dy * dy) ** 0.5) for dx, dy in found.errors[found.points.having(CONTROL)]]
+    values = {
+        "POINTS": len(lengths), "RMSE": found.rmse(), "LEFT_OUT_RMSE": found.left_out_rmse,
+        "CHECK_POINTS": len(found.points.having(CHECK)), "CHECK_RMSE": found.rmse(CHECK), "LARGEST": max(lengths),
+        "OUTSIDE": 100.0 * found.outside,
+    }
+    # JSON knows no NaN: what cannot be told is left out
+    return {name: value for name, value in values.items() if value == value}

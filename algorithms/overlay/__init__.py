@@ -1,1 +1,0 @@
-"""UAV images below the road map."""

@@ -1,0 +1,299 @@
+"""Where the road is: scanlines, curbs, edges, and the points and outline of the surface."""
+
+from contextlib import nullcontext
+
+from ..core.common.features import CURB_POINTS, ROAD_EDGES, ROAD_SURFACE, SCANLINES
+from .algorithm import Algorithm, SettingSpec
+from .survey_input import SURVEY_SETTINGS, add_execution, check_layers_on_roads, frame_of, open_survey_of
+from .texts import tr
+
+PLANES = "core.road.scanlines.section_planes:ScanlineSettings"
+
+SCANLINE_SETTINGS = (
+    SettingSpec("INTERVAL", PLANES, "interval", tr("Interval of section planes along the road (m)"),
+                tr("Smaller gives more scanlines, and more of them than were measured where scan lines lie far apart; larger is quicker.")),
+    SettingSpec("CORRIDOR", PLANES, "corridor", tr("Corridor either side of the road's reference line (m)"),
+                tr("Wider reaches the far side of a broad avenue, but takes longer.")),
+    SettingSpec("ROTATION_FREQUENCY", PLANES, "rotation_frequency", tr("Scan lines of each scanner, 0 = from the data (per second)"),
+                tr("The data know it well. Give it where they are said to show no regular scan lines although the scanner has a rotating mirror; the "
+                   "direction of rotation is found anyway."), advanced=True),
+)
+LAYER_SETTINGS = (
+    SettingSpec("SIMPLIFY", "products.scanline_layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
+                tr("Larger draws and writes faster and shows less of the surface; 0 keeps every vertex.")),
+)
+POINT_SETTINGS = (
+    SettingSpec("RESAMPLED_SPACING", "products.scanline_layer:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
+                tr("Smaller gives more points, without more being known of the surface."), advanced=True),
+)
+
+
+class NormalizedScanlines(Algorithm):
+    ID, TITLE, GROUP = "normalizedscanlines", "Normalized scanlines", "Road"
+    SUMMARY = "Cuts the measured surface by planes across the road, one scanline for every plane, pass and scanner."
+    HELP = ("The lines of a rotating scanner are distinguished by the times and places of the points alone; neighbouring lines make the "
+            "surface that is cut. Where it is interrupted, behind a car say, a new scanline begins. Points without times, or of a "
+            "head with many beams, have no such lines: there the points near each plane make the scanline, and the log says so.")
+    TAGS = ("scanline", "profile", "cross section", "resample")
+
+    def declare(self):
+        self.add_survey()
+        self.add_settings(SCANLINE_SETTINGS)
+        self.add_settings(LAYER_SETTINGS)
+        self.add_settings(POINT_SETTINGS)
+        self.add_settings(SURVEY_SETTINGS, only=("SCANNER_FIELD", "TIME", "INTENSITY_FROM", "FIT_PASSES", "TRAJECTORY_SIGMA"))
+        add_execution(self)
+        self.add_sink("SCANLINES", tr("Normalized scanlines"),
+                      tr("Lines with height (Z) and intensity (M)."), fields=SCANLINES, geometry="LineStringZM", optional=True)
+        self.add_output("cloud", "RESAMPLED_POINTS", tr("Resampled points"), tr(
+            "Points at equal steps along the scanlines, with intensity, station and offset: a cloud of even density."),
+            optional=True, by_default=False)
+
+    def work(self, call, progress):
+        from ..products.scanline_layer import ResampledPoints, write_scanlines
+
+        survey = open_survey_of(call, progress.part(0.0, 0.5))
+        points = nullcontext()
+        if call.wants("RESAMPLED_POINTS"):
+            points = ResampledPoints(call.new_file("RESAMPLED_POINTS"), survey.frame.origin, survey.crs, call.settings(POINT_SETTINGS),
+                                     survey.frame.farthest)
+        layer = call.settings(LAYER_SETTINGS) if call.wants("SCANLINES") else None
+        with points as opened:
+            scanlines, _ = write_scanlines(survey, call.settings(SCANLINE_SETTINGS), layer, opened, progress.part(0.5, 1.0))
+        call.layer("SCANLINES", scanlines)
+
+
+SCANLINES_OF = "core.road.scanlines.detect:ScanlineBoundarySettings"
+
+BOUNDARY_SETTINGS = (
+    SettingSpec("MIN_HEIGHT", SCANLINES_OF, "min_height", tr("Least height of a step, 0 = as the data allow (m)"),
+                tr("As the data allow, 3 cm count, and less, down to 2 cm, where a step stands out from the noise and continues for 5 m. A number is "
+                   "your own limit: lower finds dropped curbs, but also tar seams and the edges of manholes.")),
+    SettingSpec("SEARCH_WIDTH", SCANLINES_OF, "search_width", tr("Search width across a step (m)"),
+                tr("The height must change within this width. Wider finds rounded and bevelled curbs, but also ramps."), advanced=True),
+    SettingSpec("SENSOR_HEIGHT", SCANLINES_OF, "sensor_height", tr("Trajectory above the road, 0 = from the data (m)"),
+                tr("Give it where little road was scanned under the vehicle; otherwise the data know better."), advanced=True),
+    SettingSpec("CLIPPING_HEIGHT", SCANLINES_OF, "clipping_height", tr("Height above the road that is looked at (m)"),
+                tr("Higher keeps curbs on steeply banked roads, but also low walls and the sills of cars."), advanced=True),
+    SettingSpec("DISTANCE_ACROSS", SCANLINES_OF, "distance_across", tr("Reach of a plane across the road (m)"),
+                tr("Points this far to either side of a step give its planes. Longer is steadier, shorter keeps to narrow gutters and curb stones."),
+                advanced=True),
+    SettingSpec("DISTANCE_ALONG", SCANLINES_OF, "distance_along", tr("Reach of a plane along the road (m)"),
+                tr("Longer is steadier where points are sparse, shorter follows sharp corners."), advanced=True),
+    SettingSpec("RANSAC_DISTANCE", SCANLINES_OF, "ransac_distance", tr("Points of a plane lie within (m)"),
+                tr("Larger for noisy scanners; where points scatter more, 1.5 sigma of the plane is taken anyway."), advanced=True),
+    SettingSpec("VERTICAL_ANGLE", SCANLINES_OF, "vertical_angle",
+                tr("Least angle of a curb face's normal from the vertical, 0 = as the data allow (°)"),
+                tr("90 is upright. As the data allow, 60 counts, and less, down to 25, where the face keeps its line for 10 m. A number is your own "
+                   "limit: lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks."), advanced=True),
+    SettingSpec("HORIZONTAL_ANGLE", SCANLINES_OF, "horizontal_angle", tr("Largest angle of road's and sidewalk's normal from the vertical (°)"),
+                tr("Larger accepts sloping ground behind the curb."), advanced=True),
+    SettingSpec("MAX_GAP", SCANLINES_OF, "max_gap", tr("Longest gap connected (m)"),
+                tr("Corners farther apart along the road are not joined. Longer passes driveways and parked cars, and says so.")),
+)
+
+
+class BoundariesFromScanlines(Algorithm):
+    ID, TITLE, GROUP = "boundariesfromscanlines", "Boundaries from scanlines", "Road"
+    SUMMARY = "Bottom and top corners of curbs on normalized scanlines, and the boundary lines through them."
+    HELP = ("From the vehicle outward every scanline is searched for a step. About each step the points of the neighbouring scanlines "
+            "give three planes: road, curb face and sidewalk. Where they meet the scanline's own plane lie the corners. Lines are cut "
+            "by status: measured; bridged, a gap between corners; occluded, a gap that something hides.")
+    TAGS = ("curb", "kerb", "boundary", "scanline", "ransac", "corner")
+    LOOKS = {"CORNERS": "CURB_POINTS"}
+
+    def declare(self):
+        self.add_input("layer", "SCANLINES", tr("Normalized scanlines"), tr("The layer written by Normalized scanlines."), "LineStringZM")
+        self.add_trajectory()
+        self.add_settings(BOUNDARY_SETTINGS)
+        self.add_sink("CORNERS", tr("Curb corners"), tr("Bottoms and tops, one of each per half metre and side."), fields=CURB_POINTS,
+                      geometry="PointZ", optional=True)
+        self.add_sink("BOUNDARIES", tr("Road boundaries"), tr("Bottom and top lines of either side."), fields=ROAD_EDGES,
+                      geometry="LineStringZ", optional=True)
+
+    def work(self, call, progress):
+        from ..core.road.scanlines.detect import LayerScanlines, boundary_lines, curbs_from_scanlines
+        from ..core.road.weights import SCANLINE
+        from ..core.survey.adjustment.register import sigma_of_layer
+        from ..products.scanline_layer import scanlines_from_features
+
+        settings = call.settings(BOUNDARY_SETTINGS)
+        layer = call.features("SCANLINES", SCANLINES, "LineStringZM")
+        frame = frame_of(call, layer.crs, progress)
+        frame.pass_sigma = sigma_of_layer(layer)
+        lines, interval = scanlines_from_features(layer, frame)
+        source = LayerScanlines(lines, frame, interval, layer.crs, settings.sensor_height)
+        corners = curbs_from_scanlines(source, settings, SCANLINE.corner_block, progress.part(0.3, 0.95))
+        lines = boundary_lines(corners, frame, settings.max_gap, progress.part(0.95, 1.0))
+        call.layer("CORNERS", corners.to_features(frame))
+        call.layer("BOUNDARIES", lines.to_features(frame))
+
+
+CURBS = "core.road.profiles.detect:CurbSettings"
+
+CURB_SETTINGS = (
+    SettingSpec("BLOCK_LENGTH", CURBS, "block_length", tr("Block length along the road, 0 = automatic (m)"),
+                tr("Automatic takes 0.5 m in sharp curves and up to 2 m on straights. Shorter follows a bend more closely but has fewer points to go "
+                   "by.")),
+    SettingSpec("PROFILE_WIDTH", CURBS, "profile_width", tr("Profile width along the road (m)"),
+                tr("Wider finds curbs far from the scanner, where points are sparse, but blurs them in bends.")),
+    SettingSpec("POINT_SPACING", CURBS, "point_spacing", tr("Cell across the road (m)"),
+                tr("Finer places the curb more exactly; coarser fills gaps in sparse clouds, but misses low curbs."), advanced=True),
+    SettingSpec("LAYER_JUMP", CURBS, "layer_jump", tr("Height gap between layers (m)"),
+                tr("Points of a cell this far apart in height belong to different things: the road and a car above it. Smaller cuts the curb off "
+                   "grass and cars, but also splits noisy ground."), advanced=True),
+    SettingSpec("SLOPE", CURBS, "slope", tr("Smallest slope of the curb face, 0 = as the data allow (°)"),
+                tr("As the data allow, faces of 60° count, and less steep ones, down to 25°, where they keep their line for 10 m. A number is your "
+                   "own limit: lower accepts short bevelled and worn curbs, but also verges and ramps.")),
+    SettingSpec("MIN_HEIGHT", CURBS, "min_height", tr("Minimum curb height, 0 = as the data allow (m)"),
+                tr("As the data allow, curbs of 5 cm count, and lower ones, down to 2 cm, where they stand out from the noise and continue for 5 m. "
+                   "With a noisy scanner, curbs dropped to 1 cm are followed from the end of a sure one. A number is your own limit: lower finds "
+                   "dropped curbs at driveways, but also tar seams and gutters.")),
+    SettingSpec("MAX_HEIGHT", CURBS, "max_height", tr("Maximum curb height (m)"), tr("Higher accepts platforms and low walls as the road's edge.")),
+)
+
+
+class DetectCurbs(Algorithm):
+    ID, TITLE, GROUP = "detectcurbs", "Detect curbs", "Road"
+    SUMMARY = "Finds the curb nearest to the driven track on each side, on profiles across the road."
+    HELP = ("Where there is no curb none is made up; a curb hidden behind parked cars becomes a point of status occluded. The field "
+            "kind tells the road's own curbs (main) from those of corners, side streets and islands, which are found in plan.")
+    TAGS = ("curb", "kerb", "road edge")
+
+    def declare(self):
+        self.add_survey()
+        self.add_settings(CURB_SETTINGS)
+        self.add_settings(SURVEY_SETTINGS)
+        self.add_sink("CURB_POINTS", tr("Curb points"), fields=CURB_POINTS, geometry="PointZ")
+        self.add_sink("PRINCIPAL_POINTS", tr("Principal points"),
+                      tr("The highest point of the lowest layer of every cell: what the curbs were looked for on."), geometry="PointZ", optional=True,
+                      by_default=False)
+
+    def work(self, call, progress):
+        from ..core.road.profiles.detect import detect_curbs
+
+        survey = open_survey_of(call, progress.part(0.0, 0.5))
+        settings = call.settings(CURB_SETTINGS)
+        if call.wants("PRINCIPAL_POINTS"):
+            from ..core.road.profiles.detect import find_principal_points
+
+            call.layer("PRINCIPAL_POINTS", find_principal_points(survey, settings, progress.part(0.5, 0.6)))
+        points = detect_curbs(survey, settings, progress.part(0.6, 1.0))
+        call.layer("CURB_POINTS", points.to_features(survey.frame))
+
+
+EDGES = "core.road.edges.fit:EdgeSettings"
+
+EDGE_SETTINGS = (
+    SettingSpec("MAX_GAP", EDGES, "max_gap", tr("Longest gap bridged (m)"),
+                tr("Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there. Where both parts of the curb lie "
+                   "in one line, gaps up to twice as long are bridged.")),
+    SettingSpec("FALLBACK_WIDTH", EDGES, "fallback_width", tr("Assumed road width where no curb is seen, 0 = none (m)"),
+                tr("0 draws no edge where none was found. A width draws one at half of it either side of the road's reference line, flagged as "
+                   "inferred."), advanced=True),
+)
+
+
+class FitRoadEdges(Algorithm):
+    ID, TITLE, GROUP = "fitroadedges", "Fit road edges", "Road"
+    SUMMARY = "Draws the road edges through curb points as smoothing splines, bridging short gaps and saying so."
+    TAGS = ("curb", "kerb", "road edge", "spline")
+
+    def declare(self):
+        self.add_input("layer", "CURB_POINTS", tr("Curb points"), tr("The layer written by Detect curbs."), "PointZ")
+        self.add_trajectory()
+        self.add_settings(EDGE_SETTINGS)
+        self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
+
+    def work(self, call, progress):
+        from ..core.road.common.curb_points import CurbPoints
+        from ..core.road.edges.fit import fit_road_edges
+
+        layer = call.features("CURB_POINTS", CURB_POINTS, "PointZ")
+        frame = frame_of(call, layer.crs, progress, layers={"CURB_POINTS": layer})
+        edges = fit_road_edges(CurbPoints.from_features(layer, frame), frame, call.settings(EDGE_SETTINGS), progress)
+        call.layer("ROAD_EDGES", edges.to_features(frame))
+
+
+METHOD_SETTING = SettingSpec(
+    "BOUNDARY_METHOD", "core.road.detect_boundaries:BoundarySettings", "method", tr("Boundary method"),
+    tr("Profiles looks for the curb in slices across the road; scanlines meets the planes of road, curb face and sidewalk; both "
+       "lets the two check each other: at every place the one that measures better is drawn, agree_cm says how far apart they are, "
+       "and it takes as long as the two together."),
+    choices=("profiles", "scanlines", "both"))
+# Both methods ask for one least height
+SCANLINE_METHOD_SETTINGS = tuple(spec for spec in BOUNDARY_SETTINGS if spec.name == "MIN_HEIGHT")
+OFFERED = ("BLOCK_LENGTH", "SLOPE", "MIN_HEIGHT", "MAX_HEIGHT")
+
+
+class DetectBoundaries(Algorithm):
+    ID, TITLE, GROUP = "detectboundaries", "Detect road boundaries", "Road"
+    SUMMARY = "Road edges straight from the point clouds, by profiles, by scanlines or by both."
+    HELP = ("Where there is no curb the edge of the pavement is drawn: where asphalt ends at gravel, grass or a ditch, which are rougher, brighter, "
+            "higher or lower than the road before them. The field edge distinguishes the two (curb, pavement). Where nothing separates the "
+            "road from what lies beside it, no edge is made up.")
+    TAGS = ("curb", "kerb", "road edge", "boundary", "scanline")
+    RETIRED = ("PROFILE_WIDTH", "POINT_SPACING", "LAYER_JUMP", "INTERVAL", "ROTATION_FREQUENCY", "SCANLINE_MIN_HEIGHT", "SEARCH_WIDTH",
+               "SENSOR_HEIGHT", "CLIPPING_HEIGHT", "DISTANCE_ACROSS", "DISTANCE_ALONG", "RANSAC_DISTANCE", "VERTICAL_ANGLE", "HORIZONTAL_ANGLE")
+
+    def declare(self):
+        self.add_survey()
+        self.add_settings((METHOD_SETTING,))
+        self.add_settings(CURB_SETTINGS, only=OFFERED)
+        self.add_settings(EDGE_SETTINGS)
+        self.add_settings(SURVEY_SETTINGS)
+        add_execution(self)
+        self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
+
+    def work(self, call, progress):
+        from ..core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+        from ..core.road.surface.ground_grid import MeasuredGround
+
+        settings = BoundarySettings(call.value("BOUNDARY_METHOD"), call.settings(CURB_SETTINGS), call.settings(SCANLINE_METHOD_SETTINGS))
+        survey = open_survey_of(call, progress.part(0.0, 0.5))
+        ground = MeasuredGround(survey)
+        curbs = find_curb_points(survey, settings, progress.part(0.5, 0.95), ground)
+        boundaries = draw_boundaries(curbs, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0), survey, ground)
+        call.layer("ROAD_EDGES", boundaries.edges.to_features(survey.frame))
+
+
+SURFACE = "core.road.surface.extract:SurfaceSettings"
+
+SURFACE_SETTINGS = (
+    SettingSpec("MAX_WIDTH", SURFACE, "max_width", tr("Farthest surface from the trajectory (m)"),
+                tr("On a side without an edge the surface grows outward while it stays smooth, at most this far. Wider reaches the far lanes of a "
+                   "broad road, but also yards and forecourts.")),
+)
+
+
+class ExtractRoadSurface(Algorithm):
+    ID, TITLE, GROUP = "extractroadsurface", "Extract road surface", "Road"
+    SUMMARY = "Keeps the points of the road surface: between the road edges, or as far as the ground stays smooth."
+    TAGS = ("road surface", "ground")
+    RETIRED = ("HEIGHT_TOLERANCE",)
+
+    def declare(self):
+        self.add_survey()
+        self.add_input("layer", "ROAD_EDGES", tr("Road edges"),
+                       tr("The layer written by Fit road edges. Without it the surface is grown on both sides."), "LineStringZ", optional=True)
+        self.add_settings(SURFACE_SETTINGS)
+        self.add_settings(SURVEY_SETTINGS)
+        self.add_output("cloud", "ROAD_POINTS", tr("Road points"),
+                        tr("Class 11, with the extra fields road, pass, station_m, offset_m, half_width and covered for the stages that follow."))
+        self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)
+
+    def work(self, call, progress):
+        from ..core.road.edges.road_edges import RoadEdges
+        from ..core.road.surface.extract import extract_road_surface
+        from ..core.survey.road_points_las import write_road_points
+
+        layer = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        survey = open_survey_of(call, progress.part(0.0, 0.5))
+        edges = None
+        if layer is not None:
+            check_layers_on_roads(call, {"ROAD_EDGES": layer}, survey.frame, progress)
+            edges = RoadEdges.from_features(layer, survey.frame)
+        road_points, surface = extract_road_surface(survey, edges, call.settings(SURFACE_SETTINGS), progress.part(0.5, 0.9))
+        write_road_points(road_points, call.new_file("ROAD_POINTS"), progress.part(0.9, 1.0))
+        road_points.close()
+        call.layer("ROAD_SURFACE", surface.to_features(survey.frame))

@@ -1,0 +1,156 @@
+"""The steps of a road map in their order: when each was made, whether it still holds, with what settings, and running it again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from qgis.core import QgsApplication, QgsMapLayer, QgsProject, QgsVectorLayer
+from qgis.PyQt.QtCore import pyqtSignal
+from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
+
+from ...algorithms.survey_input import SURVEY_SETTINGS
+from ...processing_provider.results.origin import origin_of
+from ...processing_provider.results.road_maps import CLOUDS, RoadMap
+from ...processing_provider.texts import tr
+from ..dialogs.stage_inputs import SETTINGS, STAGES, TRAJECTORY, stage_again
+from ..widgets import button, row, wrapped
+from .corrections_layer import NAME, changed_at
+
+FRESH, STALE, CORRECTED = "#1a9850", "#d73027", "#2166ac"   # colours of the states
+# What corrections are about -> the first step that they change
+FIRST = {"edge": "detectboundaries", "marking": "clustermarkings", "lane": "drivinglines"}
+
+
+@dataclass(frozen=True)
+class Step:
+    """One stage of a road map.
+
+    title : of its algorithm; layer : one that it made; made : when; colour : of the state; state, reason : in the user's words
+    settings : (label, value, whether it is not the default)
+    """
+
+    title: str
+    layer: QgsMapLayer
+    made: datetime
+    colour: str
+    state: str
+    reason: str
+    settings: tuple[tuple[str, str, bool], ...]
+
+
+def steps_of(road_map: RoadMap, corrections: QgsVectorLayer | None) -> list[Step]:
+    """The steps of which a road map has layers, in the order of the work.
+
+    corrections : the layer of this survey's corrections, None where there is none
+    """
+    layer_of: dict[str, QgsMapLayer] = {}
+    for output, stage in STAGES.items():
+        layer = road_map.layer(output)
+        if layer is not None:
+            layer_of.setdefault(stage, layer)
+    steps, before, waits = [], None, False
+    for stage, layer in layer_of.items():
+        provenance = origin_of(layer).provenance
+        targets = [target for target, first in FIRST.items() if first == stage]
+        given = bool(provenance.values.get(NAME))
+        changed = [changed_at(corrections, target, unmade=not given) for target in targets if corrections is not None]
+        waits = waits or any(when is not None and when > provenance.ended for when in changed)
+        if before is not None and before > provenance.ended:
+            state = STALE, tr("stale"), tr("A step before it was run again later.")
+        elif waits:
+            state = STALE, tr("stale"), tr("Corrections were made since that change it.")
+        elif given:
+            state = CORRECTED, tr("corrected"), tr("Made with the corrections as they are.")
+        else:
+            state = FRESH, tr("fresh"), tr("Nothing that it is made from has changed.")
+        before = max(filter(None, (before, provenance.ended)))
+        algorithm = QgsApplication.processingRegistry().createAlgorithmById(f"lanewright:{stage}")
+        settings = tuple(_settings(algorithm, {**road_map.values, **provenance.values}))
+        steps.append(Step(algorithm.declaration.title(), layer, provenance.ended, *state, settings))
+    return steps
+
+
+def _settings(algorithm, values):
+    common = {spec.name for spec in SURVEY_SETTINGS}
+    for definition in algorithm.parameterDefinitions():
+        if definition.type() in SETTINGS and definition.name() not in common:
+            value = values.get(definition.name(), definition.defaultValue())
+            text = {True: tr("yes"), False: tr("no")}[value] if isinstance(value, bool) else "–" if value in (None, "") else str(value)
+            yield definition.description(), text, value not in (None, definition.defaultValue())
+
+
+def values_again(road_map: RoadMap) -> dict[str, object]:
+    """{parameter: value} of the run of a road map, with the settings of those steps that were run again by themselves."""
+    values = road_map.values
+    for origin in sorted((origin_of(layer) for layer in road_map.layers), key=lambda origin: origin.provenance.ended):
+        values |= {name: value for name, value in origin.provenance.values.items() if name in values and name not in (CLOUDS, TRAJECTORY, NAME)}
+    return values
+
+
+class StepsPanel(QWidget):
+    """The list. Signal `run_wanted` asks for the whole map once more, `stage_wanted` (algorithm, values) for one step alone."""
+
+    run_wanted = pyqtSignal()
+    stage_wanted = pyqtSignal(str, dict)
+
+    def __init__(self):
+        super().__init__()
+        self.steps: list[Step] = []
+        self.of = wrapped()
+        self.tree = QTreeWidget()
+        self.tree.setHeaderLabels([tr("Step"), tr("State")])
+        self.tree.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.tree.header().setStretchLastSection(False)
+        self.tree.header().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        self.tree.itemSelectionChanged.connect(self._selected)
+        self.why = wrapped()
+        self.again = button(tr("Run again from here…"), self.run_wanted.emit, tr(
+            "Opens Road map with the settings of this run and the corrections; what is kept of the steps before is not made again"))
+        self.alone = button(tr("This step alone…"), self._run_alone, tr("Opens the algorithm of this step with what its run was given"))
+        column = QVBoxLayout(self)
+        column.addWidget(self.of)
+        column.addWidget(self.tree, 1)
+        column.addWidget(self.why)
+        column.addLayout(row(self.again, self.alone))
+
+    def show_map(self, road_map: RoadMap | None, corrections: QgsVectorLayer | None) -> None:
+        """List the steps of a road map; None for none."""
+        chosen = self.tree.indexOfTopLevelItem(self._top()) if self.tree.selectedItems() else 0
+        self.steps = [] if road_map is None else steps_of(road_map, corrections)
+        self.of.setText("" if road_map is None else f"<b>{road_map.name}</b>")
+        open_titles = {self.tree.topLevelItem(k).text(0) for k in range(self.tree.topLevelItemCount()) if self.tree.topLevelItem(k).isExpanded()}
+        self.tree.clear()
+        for step in self.steps:
+            item = QTreeWidgetItem([step.title, f"{step.state}, {step.made.astimezone():%H:%M}"])
+            item.setForeground(1, QColor(step.colour))
+            for label, value, changed in step.settings:
+                setting = QTreeWidgetItem(item, [label, value])
+                setting.setToolTip(0, label)
+                font = setting.font(1)
+                font.setBold(changed)
+                setting.setFont(1, font)
+            self.tree.addTopLevelItem(item)
+            item.setExpanded(step.title in open_titles)
+        if self.steps:
+            self.tree.setCurrentItem(self.tree.topLevelItem(min(max(chosen, 0), len(self.steps) - 1)))
+        self._selected()
+
+    def _top(self):
+        item, = self.tree.selectedItems()
+        return item.parent() or item
+
+    @property
+    def chosen(self) -> Step | None:
+        """The step that is selected, or one of whose settings is."""
+        return self.steps[self.tree.indexOfTopLevelItem(self._top())] if self.steps and self.tree.selectedItems() else None
+
+    def _selected(self):
+        step = self.chosen
+        self.again.setEnabled(step is not None)
+        self.alone.setEnabled(step is not None and stage_again(step.layer, QgsProject.instance()) is not None)
+        self.why.setText("" if step is None else step.reason)
+
+    def _run_alone(self):
+        self.stage_wanted.emit(*stage_again(self.chosen.layer, QgsProject.instance()))
