@@ -153,7 +153,6 @@ ROWS = (
         ("chains that go on unselected", "common.tracking:_continued", Around(gives(nth(0))), "residential street"),
         ("short curbs dropped", "common.tracking:drop_short_curbs", as_list),
         ("wander of sloped chains", "common.tracking:_wander", gives(0.0), "curbs in bends"),
-        ("densely seen stretch", "common.tracking:seen_stretch", gives(slice(None)), "residential street, stations moved"),
         ("averages of noisy profiles", "profiles.detect:_steps_by_noise", _unaveraged, "many-beam scanner (Karlsruhe)",
          "profiles.averaged_steps:find_averaged_steps profiles.detect:_steps_by_noise"),
         ("profiles: ground stays up", "profiles.steps:_stays_up", all_of(3)),

@@ -386,18 +386,6 @@ def _chain_scatter(s, u):
     return np.median(np.abs(u[1:-1] - u[:-2] - f * (u[2:] - u[:-2])))
 
 
-def seen_stretch(profile: np.ndarray) -> slice:
-    """The rows of a run of steps in which it is seen densely enough: all, or those whose profiles exceed CURBS.min_chain_density by most.
-
-    profile : (N,) int, ascending, numbers of the profiles
-    """
-    excess = np.arange(len(profile)) - CURBS.min_chain_density * (profile - profile[0])
-    if excess[-1] + 1 >= CURBS.min_chain_density:
-        return slice(None)
-    last = int(np.argmax(excess - np.minimum.accumulate(excess)))
-    return slice(int(np.argmin(excess[:last + 1])), last + 1)
-
-
 def _merged(path):
     """Adjacent intervals of one chain joined."""
     merged = []
@@ -506,7 +494,7 @@ def pieces_between(before: CurbSteps, after: CurbSteps, others: _StepsByStation,
     near = near[np.lexsort((np.abs(off[near]), steps.profile[rows[near]]))]
     near = near[np.r_[True, np.diff(steps.profile[rows[near]]) > 0]]
     parted = (np.diff(s[near]) > CURBS.max_link_length) | (np.abs(np.diff(off[near])) > CURBS.link_tolerance)
-    runs = [run[seen_stretch(steps.profile[rows[run]])] for run in np.split(near, np.flatnonzero(parted) + 1)]
+    runs = np.split(near, np.flatnonzero(parted) + 1)
     return [PieceInLine(rows[run], float(np.abs(off[run]).max()), float(s[run[0]]), float(s[run[-1]])) for run in runs
             if len(run) >= CURBS.min_piece_steps and np.ptp(s[run]) >= CURBS.min_piece_length
             and _is_curb(steps[rows[run]], off[run], across[run].min(), height0 + share[run] * (height1 - height0))]
