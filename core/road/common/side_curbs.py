@@ -143,7 +143,7 @@ def points_of_side(source: Any, road: int, side: str, found: Sequence[SideChains
     chains.sort(key=lambda chain: (chain.start, chain.end))
     track = OutermostTrack(frame, road, sign)
     selected = drop_short_curbs(select_along_road(chains, steps, track, found[0].look), chains, steps)
-    lines = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u), first[1:-1])
+    lines = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u), first[1:-1].tolist())
     rows = []
     for number, members in enumerate(lines):
         method = int(np.searchsorted(first, members[0], side="right")) - 1
