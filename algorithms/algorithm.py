@@ -34,7 +34,6 @@ class Algorithm:
     RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
     WHOLE_MAP = False  # a run makes a map of its own, not one layer of one
     DRAWS = False  # it draws pages by QGIS, which does that in the thread of its window alone
-    NEEDS_GDAL = False  # it cannot run without GDAL's Python module, whatever is asked of it
 
     def __init__(self):
         self.parameters = []

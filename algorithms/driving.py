@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from ..core.common.errors import RoadExtractionError
@@ -201,7 +202,6 @@ class RoadMap(Algorithm):
             "The stages are those of the single algorithms, handed on in memory. Every output is optional.")
     TAGS = ("hd map", "lane", "driving line", "road marking", "curb", "kerb")
     WHOLE_MAP = True
-    NEEDS_GDAL = True  # the stages hand the intensity image on as a GeoTIFF
     NUMBERS = NUMBERS
     RETIRED = ("INTERVAL", "SCANLINE_MIN_HEIGHT", "LINE_DISTANCE")
 
@@ -248,7 +248,10 @@ class RoadMap(Algorithm):
         estimated = estimated_trajectory(call, progress.part(0.0, ESTIMATED))
         paths, trajectory = (call.point_clouds(), estimated.trajectory) if estimated else survey_inputs(call)
         progress = progress.part(ESTIMATED if estimated else 0.0, 1.0)
-        image_path = call.new_file("INTENSITY_IMAGE") or call.scratch_file("intensity.tif")
+        # GDAL writes the image; a report without one has its map on plain ground
+        image_path = call.new_file("INTENSITY_IMAGE")
+        if not image_path and call.wants("REPORT") and find_spec("osgeo") is not None:
+            image_path = call.scratch_file("intensity.tif")
         road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95), corrections)
         call.at_end(road_map.free)
         if estimated:

@@ -24,8 +24,8 @@ class FileCall(Call):
     def __init__(self, algorithm, given, progress):
         values = checked_values(algorithm, given)
         rasters = [spec for spec in algorithm.parameters if spec.kind == "raster" and spec.name in values]
-        if rasters or algorithm.NEEDS_GDAL:
-            check_gdal(f"{rasters[0].label} ({rasters[0].name}) is a raster" if rasters else f"{algorithm.title()} makes a raster")
+        if rasters:
+            check_gdal(f"{rasters[0].label} ({rasters[0].name}) is a raster")
         for spec in algorithm.parameters:
             if spec.is_output and spec.geometry.endswith("ZM") and spec.name in values:
                 check_format(file_and_table(values[spec.name])[0], spec.label)

@@ -8,8 +8,9 @@ import os
 import signal
 import sys
 import warnings
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.util import find_spec
+from pathlib import Path
 
 from ..algorithms.algorithm import GROUPS
 from ..algorithms.call import run, time_left
@@ -24,6 +25,7 @@ from .run import algorithm_named, algorithms, speak
 METAVARS = {"layer": "LAYER", "folder": "FOLDER", "crs": "EPSG:NUMBER", "flag": "true|false", "expression": "CONDITION", "text": "TEXT",
             "columns": "TEXT", "whole": "NUMBER", "number": "NUMBER"}
 JSON, LANG = "--json", "--lang"
+DEMO = {"LENGTH": 100}  # m, of the simulated street
 
 
 def about_layers():
@@ -91,6 +93,8 @@ def _main(arguments, as_json):
         print(overview(algorithms()))
     elif first == "--version":
         print(f"lanewright {own_version()}")
+    elif first == "demo":
+        demo(options, as_json)
     elif first == "list":
         print("\n".join(f"{algorithm.ID:24}{algorithm.summary()}" for algorithm in algorithms().values()))
     else:
@@ -99,7 +103,29 @@ def _main(arguments, as_json):
 
 
 def _run(algorithm, options, as_json):
-    parameters = {name: value for name, value in vars(parser_of(algorithm).parse_args(options)).items() if value is not None}
+    _run_with(algorithm, {name: value for name, value in vars(parser_of(algorithm).parse_args(options)).items() if value is not None}, as_json)
+
+
+def demo(options, as_json):
+    """`lanewright demo FOLDER`: a simulated street, its road map, and how far the driving lines are from the true ones."""
+    parser = Parser(prog="lanewright demo", description=tr("A simulated street, its road map with a report, and how far the driving lines are from "
+                                                           "the true ones: files in a folder to look at and to try things on."))
+    parser.add_argument("folder", metavar="FOLDER", nargs="?", default="lanewright_demo", help=tr("default {value}").format(value="lanewright_demo"))
+    folder = Path(parser.parse_args(options).folder)
+    with suppress(OSError):  # the first run says why nothing can be written
+        folder.mkdir(parents=True, exist_ok=True)
+    cloud, drive, truth = (str(folder / name) for name in ("street.laz", "trajectory.gpkg", "truth.gpkg|layername=driving_lines"))
+    layers = {spec.name: f"{folder / 'road_map.gpkg'}|layername={spec.name.lower()}"
+              for spec in algorithm_named("roadmap").outputs() if spec.kind == "layer" and spec.by_default}
+    for name, parameters in (
+            ("samplesurvey", {**DEMO, "POINT_CLOUD": cloud, "TRAJECTORY": drive, "TRUTH_DRIVING_LINES": truth}),
+            ("roadmap", {"POINT_CLOUDS": [cloud], "TRAJECTORY": drive, **layers, "REPORT": str(folder / "report.html")}),
+            ("assessdrivinglines", {"INPUT": layers["DRIVING_LINES"], "REFERENCE": truth, "OUTPUT": str(folder / "accuracy.gpkg"),
+                                    "REPORT": str(folder / "accuracy.html")})):
+        _run_with(algorithm_named(name), parameters, as_json)
+
+
+def _run_with(algorithm, parameters, as_json):
     progress = TextProgress()
     with cancelled_by_signals(progress):
         results = run(FileCall(algorithm, parameters, progress), progress)
@@ -111,7 +137,8 @@ def _run(algorithm, options, as_json):
 
 def overview(known):
     """What `lanewright --help` prints."""
-    lines = ["usage: lanewright ALGORITHM --PARAMETER=VALUE ...", "       lanewright ALGORITHM --help", "       lanewright list | --version", "",
+    lines = ["usage: lanewright ALGORITHM --PARAMETER=VALUE ...", "       lanewright ALGORITHM --help",
+             "       lanewright demo [FOLDER] | list | --version", "",
              tr("Road maps from mobile laser scanning: the algorithms of Lanewright in QGIS, on files."), about_layers()]
     for group in GROUPS:
         lines += ["", tr(group)] + [f"  {algorithm.ID:24}{algorithm.title()}" for algorithm in known.values() if algorithm.GROUP == group]

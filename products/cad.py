@@ -125,16 +125,20 @@ def _colour_of(layer: str) -> str:
 
 
 def write_dxf(lines: list[_DxfLine], path: str, crs: str = "") -> None:
-    """Write the file by GDAL, in the units of the survey's own CRS, metric WKT, or ""; RoadExtractionError if there is no GDAL."""
+    """Write the file by GDAL, in the units of the survey's own CRS, metric WKT, or ""; RoadExtractionError if there is none that writes DXF."""
     try:
         from osgeo import gdal, ogr
-    except ImportError as problem:
-        raise RoadExtractionError("DXF is written by GDAL, whose Python module is not installed. Install it (on Debian python3-gdal), or choose "
-                                  "FORMAT = landxml.") from problem
+
+        driver = gdal.GetDriverByName("DXF")
+    except ImportError:
+        driver = None
+    if driver is None:  # gdal-wheel of PyPI has none
+        raise RoadExtractionError("DXF is written by GDAL, and there is no GDAL that does. Install it by conda-forge (gdal) or Debian "
+                                  "(python3-gdal), or choose FORMAT = landxml.")
 
     units = as_in_file(crs)[1]
     with gdal_exceptions():
-        dataset = gdal.GetDriverByName("DXF").Create(path, 0, 0, 0, gdal.GDT_Unknown)
+        dataset = driver.Create(path, 0, 0, 0, gdal.GDT_Unknown)
         layer = dataset.CreateLayer("entities")
         for line in lines:
             feature, geometry = ogr.Feature(layer.GetLayerDefn()), ogr.Geometry(ogr.wkbPoint25D if line.text else ogr.wkbLineString25D)

@@ -388,7 +388,10 @@ ROADS = _RoadWeights()
 
 @dataclass(frozen=True)
 class _NoisyWeights:
-    """Paint where single points are noisy: first their averages."""
+    """Paint where single points are noisy: first their averages.
+
+    The nats are rounded from a logistic regression of what bright pieces measure on a real street with paint and one without, told apart by eye.
+    """
 
     spot_sigma: float = 1.25   # cells, of the average in which pieces are searched
     ground_sigma: float = 10.0   # cells, of the average it is compared with: wheel tracks, patches and shadows are wider than paint
@@ -401,37 +404,45 @@ class _NoisyWeights:
     paint_contrast: float = 3.0   # and no brighter ones, which may be paint: the default of the threshold on averages
     slope_sigma: float = 3.0   # cells, of the averaged heights whose slopes are compared
     ground_slope_sigma: float = 12.0   # with those of heights averaged so
-    # Bright pieces in these averages that are paint.
-    min_rim_distance: float = 0.20   # m from the rim of the road: nearer pieces are curbs or plants
-    faint_dash: float = 0.75   # of the threshold: a dash may be so faint where as many of its row reach the threshold
-    worn_dash: float = 0.5   # of the threshold: a dash may be so faint where it continues a row that is sure
-    piece_brightness: float = 0.6   # of the threshold: brightness of all cells of a piece that reaches the threshold in places
-    top_percentile: int = 90   # %: of a piece's cells; its brightness must reach the threshold
-    usual_percentile: int = 75   # %: of a piece's cells; its contrast is that of the piece
+    # Bright pieces in these averages.
+    bright: float = 0.6   # of the threshold, that a cell of a stroke has at least
+    faint: float = 0.3   # likewise of a dash or a faint line
     half_maximum: float = 0.5   # of the maximum contrast nearby: the rim of paint in a blurred image
     half_maximum_reach: int = 7   # cells: where the maximum is taken
-    max_fading: float = 0.15   # of a piece's contrast: where as much is left just beside it, it has no sharp rim
+    least_area: float = 0.03   # m2
+    usual_percentile: int = 75   # % of a piece's cells: its contrast
+    top_percentile: int = 90   # % of them: its brightness
     fading_ring: tuple[float, int] = 1.5, 3   # cells from a piece: where its fading is measured
-    max_slope: float = 0.020   # m per m against the ground around: the face of a curb is steeper
-    dash_slope_factor: float = 2.5   # times: a single dash may be as much steeper where its row is flat on average, as beside the grooves of rails
-    max_covered: float = 1 / 3   # of a piece's points: covered by an object above, such as a parked car
-    stroke_area: float = 0.12   # m2, least of an elongated piece
-    stroke_length: float = 0.80   # m likewise
-    stroke_elongation: float = 3.5   # length over width likewise
-    clear_brightness: float = 4 / 3   # of the threshold: an elongated piece must be so bright,
-    clear_length: float = 2.0   # or so long, m
-    faint_line_length: float = 3.0   # m, least
-    faint_line_width: float = 0.30   # m, most
-    faint_line_elongation: float = 15.0   # length over width, least: noise is never so straight and thin,
-    faint_line: float = 0.5   # of the threshold: so faint may a piece of that shape be
-    branched_length: float = 1.5   # m: least area over thickness of a branched piece
-    dash_area: float = 0.03   # m2, least of a dash in a row
-    dash_length: float = 0.25   # m, least
-    dash_width: float = 0.40   # m, most
     view_ring: tuple[int, int] = 3, 8   # cells from a piece: asphalt that it is compared with in each view
     view_length: float = 0.5   # m of the vehicle's way: points measured from farther apart are different views
-    min_views: int = 4   # of a piece, so that the scatter among them says how well their mean is known
-    min_view_sigmas: float = 3.0   # standard errors by which a piece is brighter than its surroundings in the mean of the views
+    # Nats by which such a piece is more likely paint than noise, which is dim, short and seldom seen so often.
+    noise: float = 2.5   # of any piece, against paint
+    brightness: float = 4.2   # per threshold that it is brighter than that; twice the threshold counts at most
+    seen_often: float = 0.3   # per standard error by which all views together saw it brighter than its surroundings,
+    usual_sigmas: float = 8.0   # beyond so many; twice as many count at most
+    per_length: float = 2.0   # per m of length,
+    usual_length: float = 0.6   # beyond so many m,
+    most_length: float = 3.0   # of which so many count at most
+    # Than a spot, such as a cover, which is round and short.
+    per_elongation: float = 1.5   # per length over width,
+    elongation_of_spots: float = 3.5   # beyond so much; length counts as above
+    round: float = -1.5   # at least: blocks are round, too
+    next_spot: float = 3.5   # for each dash of a row after the second: one in 30 such places has a bright spot
+    # Than the face of a curb, which is steep and lies at the rim.
+    flat: float = 3.0   # of flat pieces away from the rim
+    per_slope: float = 100.0   # per m per m against the ground around
+    at_rim: float = 5.0   # at the very rim of the road,
+    rim_reach: float = 0.15   # m from it in which that falls to a third
+    # Than a patch, which is dim and broad and fades out; brightness counts as above.
+    sharp: float = 4.0   # of narrow pieces with a sharp rim
+    per_fading: float = 10.0   # times the share of the contrast that is left just beside it
+    per_width: float = 20.0   # per m where it is thickest,
+    usual_width: float = 0.30   # beyond so many m
+    # Than glare, which is bright from one place only: a nat for each standard error,
+    sigmas_of_glare: float = 3.0   # beyond so many.
+    # Than what shines beneath a parked car.
+    uncovered: float = 3.0   # of pieces that nothing covers
+    per_cover: float = 9.0   # times the share of points beneath an object
 
 
 NOISY = _NoisyWeights()
@@ -522,8 +533,15 @@ class _RowWeights:
     max_step_ratio: float = 2.5   # times: how much one step of a row may be longer than the next, a dash worn away between them
     min_step_cosine: float = np.cos(np.radians(12.0))   # by which a row may turn from dash to dash
     min_dashes_in_row: int = 4   # of a row
-    max_dash_length_ratio: float = 2.0   # times: a dash that leads a row on to the usual one of the row, either way
-    min_next_step: float = 2 / 3   # of the usual step of a row: the next dash lies no nearer
+    # Nats by which pieces are more likely a row of dashes than noise.
+    row: float = 3.5   # of a row, against it
+    min_lead: float = 0.6   # cosine of its steps to the road, or to the square across it
+    next_dash: float = 2.7   # for each dash after the second, where a row leads: noise has a piece in one of 15 such places
+    offset_sigma: float = 0.06   # m off the line of the step before
+    step_sigma: float = 0.2   # of the step before, by which a step is longer or shorter
+    length_sigma: float = 0.4   # of the length of the dash before likewise
+    dimmest: float = -3.0   # of a dash, however dim
+    worn_dash: float = 1.5   # for a dash worn away: one in five
     # Blocks of give-way lines.
     min_blocks_in_row: int = 3   # of a row
     block_size: tuple[float, float] = 0.30, 0.80   # m, either way

@@ -103,7 +103,7 @@ class RoadMap:
     boundary_differences: RoadEdges | None = None   # RoadEdges, where the two boundary methods disagree; None if one method was used
     length_by_method: dict = field(default_factory=dict)   # {method: metres of measured curb}
     intensity_report: Any = None   # of the correction, None without it
-    image: Any = None   # IntensityImage, None without intensity
+    image: Any = None   # IntensityImage, None without intensity or where no file was asked for
     markings: Features | None = None   # layers; None where not made
     marking_lines: Features | None = None
     driving_lines: Features | None = None
@@ -125,7 +125,7 @@ class RoadMap:
         return result.to_features(self.frame) if isinstance(result, LayerRows) else result
 
 
-def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_path: str | Path,
+def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_path: str | Path | None,
                   settings: RoadMapSettings = RoadMapSettings(), progress: Progress = Progress(), corrections: Features | None = None,
                   kept: KeptRun = WINDOW) -> RoadMap:
     """Run the chain.
@@ -133,7 +133,7 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     Parameters
     ----------
     paths : point cloud files
-    image_path : where the intensity image is written (.tif)
+    image_path : where the intensity image is written (.tif), by GDAL; None for no file, which the chain does without
     settings : RoadMapSettings, those of every stage
     corrections : the layer CORRECTIONS of an analyst, or None; each is made where its kind of line was found, so that what follows builds on it
     kept : what the last run gave, if it is wanted; stages that would give the same are not run again
@@ -256,7 +256,7 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
                        result.road_points, settings.image, path=image_path, depends=(settings.correct, settings.image),
-                       free=TiledImage.close, renewed=True, again=lambda image: image.write(image_path))
+                       free=TiledImage.close, renewed=True, again=lambda image: image.write(image_path) if image_path else None)
     executor.forget()
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
@@ -264,7 +264,7 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     executor.forget()
     if stages.kept is None:
         image.close()
-    result.image = IntensityImage.open(image_path)
+    result.image = IntensityImage.open(image_path) if image_path else None
     result.counts["marking_points"] = len(points)
     if len(points):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers,

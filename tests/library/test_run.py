@@ -108,10 +108,38 @@ def test_what_cannot_work_is_said_in_one_sentence(survey, tmp_path, monkeypatch,
 def test_without_gdal_rasters_are_refused_with_what_to_install(survey, tmp_path, monkeypatch):
     find = gdal_module.find_spec
     monkeypatch.setattr(gdal_module, "find_spec", lambda name: None if name == "osgeo" else find(name))
-    for name, outputs in (("roadmap", {"ROAD_EDGES": tmp_path / "e.gpkg"}), ("inspectsurvey", {"REPORT": tmp_path / "r.html",
+    for name, outputs in (("roadmap", {"INTENSITY_IMAGE": tmp_path / "i.tif"}), ("inspectsurvey", {"REPORT": tmp_path / "r.html",
                                                                                             "DENSITY": tmp_path / "d.tif"})):
-        with pytest.raises(RoadExtractionError, match=r"raster, which needs GDAL's Python module.*python3-gdal.*lanewright\[gdal\]"):
+        with pytest.raises(RoadExtractionError, match=r"raster, which needs GDAL's Python module.*lanewright\[gdal\].*python3-gdal"):
             run(name, POINT_CLOUDS=[survey / "s.laz"], TRAJECTORY=survey / "drive.gpkg", **outputs)
+
+
+@pytest.mark.slow
+def test_without_gdal_the_road_map_and_its_report_are_those_with_it(survey, tmp_path, monkeypatch):
+    layers = ("ROAD_EDGES", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES")
+    rows = {}
+    for gdal in ("with", "without"):
+        if gdal == "without":
+            monkeypatch.setitem(sys.modules, "osgeo", None)
+        run("roadmap", POINT_CLOUDS=[survey / "s.laz"], TRAJECTORY=survey / "drive.gpkg", REPORT=tmp_path / f"{gdal}.html",
+            **{name: f"{tmp_path / gdal}.gpkg|layername={name}" for name in layers})
+        rows[gdal] = {name: [(row.geometry.coordinates, dict(row.properties)) for row in fiona.open(tmp_path / f"{gdal}.gpkg", layer=name)]
+                      for name in layers}
+    assert rows["with"] == rows["without"] and all(rows["with"].values())
+    assert all("<img" in (tmp_path / f"{gdal}.html").read_text() for gdal in rows)
+
+
+@pytest.mark.slow
+def test_the_demo_makes_a_survey_its_map_and_how_good_it_is(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "osgeo", None)  # as pip installs it
+    monkeypatch.setattr(command_line, "DEMO", {"LENGTH": 40, "PULSE_RATE": 60000})
+    assert command_line.main(["demo", str(tmp_path / "here")]) == 0
+    printed = capsys.readouterr().out
+    assert {"street.laz", "trajectory.gpkg", "truth.gpkg", "road_map.gpkg", "report.html", "accuracy.gpkg", "accuracy.html"} == set(
+        os.listdir(tmp_path / "here"))
+    assert "driving_lines" in fiona.listlayers(tmp_path / "here" / "road_map.gpkg") and "COMPLETENESS" in printed
+    (tmp_path / "file").touch()
+    assert command_line.main(["demo", str(tmp_path / "file")]) == 1 and "there is no folder" in capsys.readouterr().err
 
 
 def test_scanlines_are_refused_before_the_work_where_they_cannot_be_written(survey, tmp_path, monkeypatch):

@@ -34,6 +34,7 @@ class _End:
     d: float
     slope: float
     reach: float   # m of paint the slope is from
+    open: float   # m across that it may be off by: where tracks are few, and where so short a piece shows no slope, from its middle on
 
     def offset_at(self, s, trust):
         return self.d + trust * self.slope * (s - self.s)
@@ -61,7 +62,8 @@ def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reac
     squares = np.where(span < 1.0, 1.0, np.add.reduceat(weight * lever**2, starts))
     slope = np.add.reduceat(weight * lever * (d - np.repeat(offset, count)), starts) / squares
     slope = np.where(span < 1.0, 0.0, np.clip(slope, -TREND.max_line_slope, TREND.max_line_slope))
-    return [_End(*end) for end in np.column_stack([tips, level + slope * (tips - middle), slope, span]).tolist()]
+    unknown = np.where(span < 1.0, TREND.max_line_slope * np.abs(tips - middle), 0.0) + [line.strands[0 if at_start else -1].open for line in lines]
+    return [_End(*end) for end in np.column_stack([tips, level + slope * (tips - middle), slope, span, unknown]).tolist()]
 
 
 def _lateral_mismatch(before: _End, after: _End) -> float:
@@ -115,7 +117,7 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, 
             if abs(before.slope - after.slope) > TREND.max_line_slope and min(before.reach, after.reach) > 3.0:
                 continue
             miss = _miss(before, after, trend, edges, lines[a], lines[b])
-            limit = allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6)) + lines[a].strands[-1].open + lines[b].strands[0].open
+            limit = allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6)) + before.open + after.open
             if _between_twins(twin_ends[a], twin_starts[b], before, after):
                 continue
             if miss <= limit:

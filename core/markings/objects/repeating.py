@@ -360,9 +360,12 @@ def _line_of_ends(number, end, outward):
 
 def rows_of_dashes(shapes: Sequence[Shape]) -> list[np.ndarray]:
     """Pieces that stand in rows: ascending int arrays, the pieces of each row; a piece where rows meet is in several."""
-    if len(shapes) < ROWS.min_dashes_in_row:
-        return []
-    middle = np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes])
+    return _chains(*_steps(shapes)) if len(shapes) >= ROWS.min_dashes_in_row else []
+
+
+def _steps(shapes):
+    """Pairs (P, 2) of pieces that may be neighbours in a row of dashes, both ways, (P,) m between them, and (P, 2) unit vectors to the second."""
+    middle = np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes]).reshape(-1, 2)
     length, width, turn = (np.array([getattr(shape, name) for shape in shapes]) for name in ("length", "width", "direction"))
     pairs = cKDTree(middle).query_pairs((1 + ROWS.max_gap_per_dash) * CLASSES.short_dash_length[1], output_type="ndarray")
     pairs = np.concatenate([pairs, pairs[:, ::-1]])
@@ -372,39 +375,68 @@ def rows_of_dashes(shapes: Sequence[Shape]) -> list[np.ndarray]:
     ways = step / np.maximum(apart, 1e-9)[:, None]
     links = _narrow(length, width, turn, pairs, ways) & (apart >= ROWS.min_dash_spacing) \
         & (apart - length[pairs].mean(axis=1) <= ROWS.max_gap_per_dash * length[pairs].max(axis=1))
-    return _chains(pairs[links], apart[links], ways[links])
+    return pairs[links], apart[links], ways[links]
 
 
-def dashes_beyond(row: Sequence[Shape], others: Sequence[Shape]) -> list[int]:
-    """Numbers of the pieces that lead a row of dashes, at least two in any order, on beyond its ends, from the row outwards. By our own rule.
+def likely_rows(shapes: Sequence[Shape], odds: np.ndarray) -> list[np.ndarray]:
+    """Arrays of the pieces of each row of dashes that is more likely painted than there by chance, from one end to the other. By our own rule.
 
-    A row that is sure says where its next dash lies: in line with its last dashes, one step ahead, or two where a dash is worn away. The nearest
-    piece there that is about as long as a dash of the row is the next one, and so on. Those of the row may be among the others.
+    The odds of its dashes are added up, and for each of them how well it lies where the two before it lead. The likeliest row is taken first, and
+    no piece is in two. `odds` : (N,) nats by which a piece is more likely paint than noise, if it is as likely as not that there is paint.
     """
-    if not others:
-        return []
-    middle, other_middle = (np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes]) for shapes in (row, others))
-    length, width, turn = (np.array([getattr(shape, name) for shape in others]) for name in ("length", "width", "direction"))
-    usual = np.median([shape.length for shape in row])
-    alike = np.maximum(length, usual) <= ROWS.max_dash_length_ratio * np.minimum(length, usual)
-    along = np.argsort((middle - middle.mean(axis=0)) @ _way(middle))
-    pace = float(np.median(np.hypot(*np.diff(middle[along], axis=0).T)))
-    result: list[int] = []
-    for outwards in (along, along[::-1]):
-        chain = list(middle[outwards])
-        while True:
-            last = np.array(chain[-ROWS.min_dashes_in_row:])
-            way = _way(last)
-            ahead, offset = (other_middle - last[-1]) @ way, np.abs((other_middle - last.mean(axis=0)) @ (-way[1], way[0]))
-            oblique = turn - np.arctan2(way[1], way[0])
-            narrow = length * np.abs(np.sin(oblique)) + width * np.abs(np.cos(oblique)) <= ROWS.max_dash_breadth
-            follows = np.flatnonzero(alike & narrow & (offset <= ROWS.max_dash_offset)
-                                     & (ahead >= max(ROWS.min_next_step * pace, ROWS.min_dash_spacing)) & (ahead <= ROWS.max_step_ratio * pace))
-            if not len(follows):
-                break
-            result.append(int(follows[np.argmin(ahead[follows])]))
-            chain.append(other_middle[result[-1]])
-    return result
+    pairs, apart, ways = _steps(shapes)
+    odds = np.maximum(odds, ROWS.dimmest)
+    length = np.log([max(shape.length, CELL_SIZE) for shape in shapes])
+    # a row leads one way along the road or across it
+    directions = [_Steps.of(pairs[chosen], apart[chosen], ways[chosen], length) for chosen in (ways @ way >= ROWS.min_lead for way in np.eye(2))]
+    rows: list[np.ndarray] = []
+    free = np.ones(len(shapes), bool)
+    while True:
+        score, row = max((steps.likeliest(odds, free) for steps in directions), key=lambda found: found[0])
+        if score <= ROWS.row:
+            return rows
+        rows.append(np.array(row))
+        free[row] = False
+
+
+class _Steps(NamedTuple):
+    """Steps between pieces that lead one way, and which step goes on with which."""
+
+    pairs: np.ndarray   # (P, 2) the pieces of each
+    before: np.ndarray   # (T,) a step, the one that goes on with it, and how much more likely that is in a row than by chance, nats
+    after: np.ndarray
+    gain: np.ndarray
+
+    @classmethod
+    def of(cls, pairs, apart, ways, length):
+        before, after, offset = _transitions(pairs, apart, ways)
+        step = np.abs(np.log(apart[after] / apart[before]))
+        # a dash between two of the three may be worn away
+        worn = step > np.log(2.0) / 2
+        step = step - np.log(2.0) * worn
+        longer = length[pairs[after, 1]] - length[pairs[before, 1]]
+        squares = (offset / ROWS.offset_sigma) ** 2 + (step / ROWS.step_sigma) ** 2 + (longer / ROWS.length_sigma) ** 2
+        return cls(pairs, before, after, ROWS.next_dash - ROWS.worn_dash * worn - squares / 2)
+
+    def likeliest(self, odds, free):
+        """Nats of the likeliest row of three free pieces or more, and their numbers."""
+        odds = np.where(free, odds, -np.inf)
+        total, led_by = odds[self.pairs].sum(axis=1), np.full(len(self.pairs), -1)
+        better = np.arange(len(self.before))
+        while len(better):
+            value = total[self.before] + self.gain + odds[self.pairs[self.after, 1]]
+            better = np.lexsort((value, self.after))
+            # of the steps that lead to one, the likeliest
+            better = better[np.diff(self.after[better], append=-1) != 0]
+            better = better[value[better] > total[self.after[better]] + 1e-9]
+            total[self.after[better]], led_by[self.after[better]] = value[better], self.before[better]
+        # two pieces are in line in any case
+        total[led_by < 0] = -np.inf
+        score, step, row = total.max(initial=-np.inf), int(np.argmax(np.r_[total, -np.inf])), []
+        while 0 <= step < len(total):
+            row += [self.pairs[step, 1]] if led_by[step] >= 0 else self.pairs[step, ::-1].tolist()
+            step = led_by[step]
+        return score, row[::-1]
 
 
 def _way(places):
@@ -535,6 +567,15 @@ def _narrow(length, width, turn, pairs, ways):
 
 def _chains(pairs, apart, ways, fewest=ROWS.min_dashes_in_row, max_step_ratio=ROWS.max_step_ratio, max_offset=ROWS.max_dash_offset):
     """Arrays of the pieces of each row, from steps between neighbours."""
+    before, after, _ = _transitions(pairs, apart, ways, max_step_ratio, max_offset)
+    row = linked_groups(before, after, len(pairs))
+    # a row is found twice, forwards and backwards
+    chains = {tuple(np.unique(pairs[steps]).tolist()) for _, steps in members_of(row) if len(steps) >= fewest - 1}
+    return [np.array(members) for members in sorted(chains) if len(members) >= fewest]
+
+
+def _transitions(pairs, apart, ways, max_step_ratio=ROWS.max_step_ratio, max_offset=ROWS.max_dash_offset):
+    """Steps (T,) and those that go on with them in a row, and (T,) m that the third piece lies off the line through the first two."""
     # a step from i to j goes on in one from j to k
     order = np.argsort(pairs[:, 0], kind="stable")
     first, last = (np.searchsorted(pairs[order, 0], pairs[:, 1], side=side) for side in ("left", "right"))
@@ -545,7 +586,4 @@ def _chains(pairs, apart, ways, fewest=ROWS.min_dashes_in_row, max_step_ratio=RO
     straight = (ways[before] * ways[after]).sum(axis=1) >= ROWS.min_step_cosine
     offset = apart[after] * np.abs(ways[before, 0] * ways[after, 1] - ways[before, 1] * ways[after, 0])
     joined = even & straight & (offset <= max_offset)
-    row = linked_groups(before[joined], after[joined], len(pairs))
-    # a row is found twice, forwards and backwards
-    chains = {tuple(np.unique(pairs[steps]).tolist()) for _, steps in members_of(row) if len(steps) >= fewest - 1}
-    return [np.array(members) for members in sorted(chains) if len(members) >= fewest]
+    return before[joined], after[joined], offset[joined]

@@ -1,8 +1,8 @@
-"""Paint in averages of noisy points, and faint lines: bright pieces that are elongated, flat and bright from every viewpoint.
+"""Paint in averages of noisy points: bright pieces that are more likely paint than anything else that is bright on a road.
 
-Single points are too noisy to be classified, so averages over a decimetre are searched. The face of a curb is steep, a surface beneath a parked
-car is covered by it, the arc of one beam is bright from one place only, a patch fades out, and spots are not elongated. A short or worn dash is
-recognised by its row. All rules are our own.
+Single points are too noisy to be classified, so averages over a decimetre are searched. The face of a curb is steep and lies at the rim, a surface
+beneath a parked car is covered by it, the arc of one beam is bright from one place only, a patch is broad and fades out, a spot is round, and noise
+is dim and short: what a piece measures weighs against each of these in nats. A short or worn dash is recognised by its row. Our own estimate.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from scipy import ndimage
 
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.records import COORDINATE_SCALE, Points
-from ..objects.repeating import dashes_beyond, rows_of_dashes
-from ..objects.shape import Shape, measure
+from ..objects.repeating import likely_rows
+from ..objects.shape import measure
 from ..road_grid import CELL_SIZE, CELL_UNITS
-from ..weights import NOISY, ROWS
+from ..weights import NOISY
 
 SCATTER_SIGMAS = 0.5244   # derived: standard deviations of a normal distribution that it lies below the median
 BRIGHTNESS_STEPS = 64   # derived: brightness is summed in whole 64ths: their sums are exact in any order
@@ -97,35 +97,6 @@ def _local_scatter(contrast: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class _BrightPiece:
-    """A connected bright piece of a window."""
-
-    cells: tuple[np.ndarray, np.ndarray]   # rows and columns of its cells
-    shape: Shape
-    thickness: float   # m, where it is thickest
-    slope: np.ndarray   # (2,) mean slope along and across the road, m per m
-    rim: float
-    top: float   # contrast of its bright cells
-    fading: float   # share of its contrast that is left just beside it
-    z: float
-
-    @property
-    def is_elongated(self) -> bool:
-        """Whether it is long for its width: as a whole, or, branched like hatching, by its area over its thickness."""
-        if self.shape.area < NOISY.stroke_area or self.fading > NOISY.max_fading:
-            return False
-        if self.shape.length >= NOISY.stroke_length and self.shape.elongation >= NOISY.stroke_elongation:
-            return True
-        return self.shape.area / self.thickness >= max(NOISY.branched_length, NOISY.stroke_elongation * self.thickness)
-
-    @property
-    def is_line(self) -> bool:
-        """Whether it is a thin straight line, however faint, on asphalt: between dark seams asphalt itself is brighter than what lies beside it."""
-        thin = self.shape.width <= NOISY.faint_line_width and self.shape.elongation >= NOISY.faint_line_elongation
-        return self.is_elongated and thin and self.shape.length >= NOISY.faint_line_length and self.fading >= -NOISY.max_fading
-
-
-@dataclass(frozen=True)
 class ViewSamples:
     """The N points of a window: flat number of the cell, brightness, whether an object is above, and the vehicle's place, None where unknown."""
 
@@ -147,86 +118,73 @@ def views(points: Points, frame: RoadFrame) -> np.ndarray | None:
 
 
 def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamples, threshold: float) -> np.ndarray:
-    """(rows, columns) bool, cells of paint; `rim` is their distance from the rim of the road, m, and `threshold` the spreads that paint reaches."""
-    # holes that noise left in strokes are closed
-    mask = ndimage.binary_closing(_stroke_cells(averages, rim, samples, threshold), np.ones((3, 3), bool), iterations=2)
-    for piece in _dashes_of_rows(averages, rim, samples, threshold):
-        mask[piece.cells] = True
-    return mask
+    """(rows, columns) bool, cells of paint: of pieces that are more likely paint than anything else, by themselves or as a row.
 
-
-def _stroke_cells(averages, rim, samples, threshold):
-    """Cells of clear strokes and of thin straight lines, which may be fainter."""
-    z, contrast = averages.z, averages.contrast
+    `rim` : distance of cells from the rim of the road, m; `threshold` : spreads at which brightness speaks neither for paint nor against it.
+    """
     with np.errstate(invalid="ignore"):
-        bright, faint = z > NOISY.piece_brightness * threshold, z > NOISY.piece_brightness * NOISY.faint_line * threshold
+        bright, faint = (averages.z > share * threshold for share in (NOISY.bright, NOISY.faint))
+        tops = ndimage.maximum_filter(np.where(faint, averages.contrast, 0.0), 2 * NOISY.half_maximum_reach + 1)
+        # the average joins neighbouring pieces: they are parted at half maximum
+        parted = faint & (averages.contrast > NOISY.half_maximum * tops)
     mask = np.zeros(rim.shape, bool)
-    strokes = [piece for piece in _bright_pieces(bright, averages, rim, threshold) if piece.is_elongated
-               and (piece.z >= NOISY.clear_brightness * threshold or piece.shape.length >= NOISY.clear_length)]
-    lines = [piece for piece in _bright_pieces(faint, averages, rim, NOISY.faint_line * threshold) if piece.is_line]
-    # a stroke may be the clear part of a line
-    for piece in (piece for group in (strokes, lines)
-                  for piece in _without_artefacts([candidate for candidate in group if np.hypot(*candidate.slope) < NOISY.max_slope],
-                                                  samples, rim.shape)):
-        row, column = piece.cells
-        # beside a broad stroke the average is darker than asphalt
-        inner = contrast[row, column] > NOISY.half_maximum * piece.top * (1.0 + min(piece.fading, 0.0))
-        mask[row[inner], column[inner]] = True
-    return mask
+    for cells in (bright, parted):
+        label = _pieces(cells, averages)
+        shapes, tops, odds = _weighed(label, averages, rim, samples, threshold)
+        alone = odds.min(axis=1, initial=np.inf) > 0.0
+        with np.errstate(invalid="ignore"):
+            mask |= averages.contrast > NOISY.half_maximum * np.r_[np.inf, np.where(alone, tops, np.inf)][label]
+    # holes that noise left in strokes are closed
+    mask = ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2)
+    in_row = np.zeros(len(shapes) + 1, bool)
+    for row in likely_rows(shapes, odds[:, 0] + NOISY.noise):
+        # all of a row is of one kind, and spots rarely stand in rows
+        in_row[row + 1] = (odds[row, 1:].sum(axis=0) + [NOISY.next_spot * (len(row) - 2), 0.0, 0.0, 0.0, 0.0] > 0.0).all()
+    return mask | in_row[label]
 
 
-def _dashes_of_rows(averages, rim, samples, threshold):
-    """Pieces that follow on each other as dashes do, and fainter ones where these rows lead."""
-    with np.errstate(invalid="ignore"):
-        dashes = _dashes(averages, rim, samples, averages.z > NOISY.piece_brightness * threshold, NOISY.faint_dash * threshold)
-    rows = []
-    for row in rows_of_dashes([piece.shape for piece in dashes]):
-        clear = sum(dashes[k].z >= threshold for k in row)
-        if clear >= max(ROWS.min_dashes_in_row, len(row) / 2) and np.hypot(*np.mean([dashes[k].slope for k in row], axis=0)) < NOISY.max_slope:
-            rows.append([dashes[k] for k in row])
-    if not rows:
-        return []
-    with np.errstate(invalid="ignore"):
-        worn = _dashes(averages, rim, samples, averages.z > NOISY.piece_brightness * NOISY.worn_dash * threshold, NOISY.worn_dash * threshold)
-    shapes = [piece.shape for piece in worn]
-    return [piece for row in rows for piece in row + [worn[k] for k in dashes_beyond([piece.shape for piece in row], shapes)]]
+def _pieces(mask, averages):
+    """(rows, columns) int, number of the connected piece of a mask that each cell is of, 0 of none and of the smallest."""
+    label, count = ndimage.label(mask, np.ones((3, 3), bool))
+    known = np.bincount(label.ravel(), np.isfinite(averages.slope).all(axis=0).ravel(), count + 1)
+    large = (np.bincount(label.ravel(), minlength=count + 1) * CELL_SIZE**2 >= NOISY.least_area) & (known > 0)
+    large[0] = False
+    return np.where(large, np.cumsum(large), 0)[label]
 
 
-def _dashes(averages, rim, samples, bright, threshold):
-    """Pieces that may be dashes: the average joins neighbouring ones, so they are searched for in the mask cut at half maximum."""
-    contrast = averages.contrast
-    tops = ndimage.maximum_filter(np.where(bright, contrast, 0.0), 2 * NOISY.half_maximum_reach + 1)
-    with np.errstate(invalid="ignore"):
-        cut = bright & (contrast > NOISY.half_maximum * tops)
-    pieces = [piece for piece in _bright_pieces(cut, averages, rim, threshold)
-              if piece.shape.length >= NOISY.dash_length and piece.shape.width <= NOISY.dash_width
-              and np.hypot(*piece.slope) < NOISY.dash_slope_factor * NOISY.max_slope]
-    return _without_artefacts(pieces, samples, rim.shape)
+def _weighed(label, averages, rim, samples, threshold):
+    """Shapes of N pieces, (N,) contrast of their bright cells, and (N, 6) nats by which each is more likely paint than something else.
 
-
-def _bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, threshold: float) -> list[_BrightPiece]:
-    """Connected pieces whose brightest tenth reaches the threshold, spreads above asphalt, away from the road's rim; the smallest are left out."""
-    labels, count = ndimage.label(mask, np.ones((3, 3), bool))
-    large = np.bincount(labels.ravel(), minlength=count + 1) * CELL_SIZE**2 >= NOISY.dash_area
-    z, pieces = averages.z, []
-    for number, box in enumerate(ndimage.find_objects(labels), start=1):
-        if not large[number]:
-            continue
-        inside = labels[box] == number
-        row, column = (a + side.start for a, side in zip(np.nonzero(inside), box))
+    That is noise, a spot, the face of a curb, a patch, glare, and what shines beneath an object.
+    """
+    shapes, measured, z_of_cells = [], [], averages.z
+    for number, box in enumerate(ndimage.find_objects(label), start=1):
+        inside = label[box] == number
+        row, column = (k + side.start for k, side in zip(np.nonzero(inside), box))
+        shapes.append(measure(row * CELL_UNITS, column * CELL_UNITS))
+        thickness = 2.0 * CELL_SIZE * ndimage.distance_transform_edt(np.pad(inside, 1)).max()
+        top, highest = np.percentile(averages.contrast[row, column], [NOISY.usual_percentile, NOISY.top_percentile]).tolist()
+        fading = _beside(inside & (averages.contrast[box] > NOISY.half_maximum * highest), box, averages.contrast) / highest
         tilt = averages.slope[:, row, column]
-        tilt = tilt[:, np.isfinite(tilt[0])]
-        reached = float(np.percentile(z[row, column], NOISY.top_percentile))
-        if reached < threshold or np.median(rim[row, column]) <= NOISY.min_rim_distance or not tilt.size:
-            continue
-        contrast = averages.contrast[row, column]
-        top, highest = np.percentile(contrast, [NOISY.usual_percentile, NOISY.top_percentile]).tolist()
-        pieces.append(_BrightPiece((row, column), measure(row * CELL_UNITS, column * CELL_UNITS),
-                                   2.0 * CELL_SIZE * ndimage.distance_transform_edt(np.pad(inside, 1)).max(), tilt.mean(axis=1),
-                                   float(np.median(rim[row, column])), top,
-                                   _beside(inside & (averages.contrast[box] > NOISY.half_maximum * highest), box, averages.contrast) / highest,
-                                   reached))
-    return pieces
+        measured.append((np.percentile(z_of_cells[row, column], NOISY.top_percentile), thickness, shapes[-1].area / thickness,
+                         np.hypot(*tilt[:, np.isfinite(tilt).all(axis=0)].mean(axis=1)), np.median(rim[row, column]), fading,
+                         # beside a broad stroke the average is darker than asphalt
+                         top * (1.0 + min(fading, 0.0))))
+    z, thickness, stroke, slope, from_rim, fading, tops = np.array(measured).reshape(-1, 7).T
+    length, elongation = (np.array([getattr(shape, name) for shape in shapes]) for name in ("length", "elongation"))
+    # branched, like hatching, it is as long as its area over its thickness
+    length, elongation = np.maximum(length, stroke), np.maximum(elongation, stroke / np.maximum(thickness, CELL_SIZE))
+    covered, sigmas = _seen(label, samples, len(shapes))
+    bright = NOISY.brightness * (np.minimum(z / threshold, 2.0) - 1.0)
+    seen = np.clip(sigmas, 0.0, 2 * NOISY.usual_sigmas) - NOISY.usual_sigmas
+    longer = length - NOISY.usual_length
+    return shapes, tops, np.stack([
+        bright + NOISY.seen_often * seen + NOISY.per_length * np.clip(longer, 0.0, NOISY.most_length) - NOISY.noise,
+        np.maximum(NOISY.per_elongation * (elongation - NOISY.elongation_of_spots) + NOISY.per_length * longer, NOISY.round),
+        NOISY.flat - NOISY.per_slope * slope - NOISY.at_rim * np.exp(-from_rim / NOISY.rim_reach),
+        NOISY.sharp + bright - NOISY.per_fading * fading - NOISY.per_width * np.maximum(thickness - NOISY.usual_width, 0.0),
+        sigmas - NOISY.sigmas_of_glare,
+        NOISY.uncovered - NOISY.per_cover * covered], axis=1)
 
 
 def _beside(inside, box, contrast):
@@ -241,33 +199,23 @@ def _beside(inside, box, contrast):
     return float(values.mean()) if len(values) else 0.0
 
 
-def _without_artefacts(found: list[_BrightPiece], samples: ViewSamples, shape: tuple[int, ...]) -> list[_BrightPiece]:
-    """The pieces that no object covers, and that are brighter than their surroundings in all views together.
+def _seen(label, samples, count):
+    """Of N pieces (N,) shares of their points beneath an object, and (N,) standard errors by which all views together saw them brighter than around.
 
-    The contrast of each view is one observation, weighted by its points; the mean must be 3 of its standard errors above zero.
+    The contrast of each view is one observation, weighted by its points.
     """
-    if not found:
-        return found
-    number = np.full(shape, -1)
-    for k, piece in enumerate(found):
-        number[piece.cells] = k
-    of = number.ravel()[samples.cell]
-    on_piece = of >= 0
-    points = np.bincount(of[on_piece], minlength=len(found))
-    genuine = np.bincount(of[on_piece], samples.covered[on_piece], len(found)) <= NOISY.max_covered * points
-    if samples.view is not None:
-        genuine &= _bright_in_all_views(number, samples, len(found))
-    return [piece for piece, is_genuine in zip(found, genuine) if is_genuine]
-
-
-def _bright_in_all_views(number, samples, count):
-    apart, nearest = ndimage.distance_transform_edt(number < 0, return_indices=True)
-    inner = number >= 0
+    of = label.ravel()[samples.cell]
+    points = np.maximum(np.bincount(of, minlength=count + 1), 1)
+    covered = (np.bincount(of, samples.covered, count + 1) / points)[1:]
+    if samples.view is None or not count:
+        return covered, np.full(count, NOISY.usual_sigmas)
+    apart, nearest = ndimage.distance_transform_edt(label == 0, return_indices=True)
+    inner = label > 0
     used = inner | (apart >= NOISY.view_ring[0]) & (apart <= NOISY.view_ring[1])
     rows = np.flatnonzero(used.ravel()[samples.cell])
     cell, value = samples.cell[rows], np.rint(samples.value[rows].astype(float) * BRIGHTNESS_STEPS)
     view, view_index = np.unique(samples.view[rows], return_inverse=True)
-    key = number[tuple(nearest)].ravel()[cell] * len(view) + view_index
+    key = (label[tuple(nearest)].ravel()[cell] - 1) * len(view) + view_index
     inside = inner.ravel()[cell]
     (n, total), (around, around_total) = (
         (np.bincount(key[side], minlength=count * len(view)), np.bincount(key[side], value[side], count * len(view)) / BRIGHTNESS_STEPS)
@@ -278,4 +226,6 @@ def _bright_in_all_views(number, samples, count):
         views, total_weight = (weight > 0).sum(axis=1), weight.sum(axis=1)
         mean = (weight * above).sum(axis=1) / total_weight
         error = np.sqrt(((weight * (above - mean[:, None])) ** 2).sum(axis=1) * views / (views - 1)) / total_weight
-        return (views >= NOISY.min_views) & (mean > NOISY.min_view_sigmas * error)
+        # Student's distribution of a scatter that few views told is wider than the normal one
+        sigmas = mean / error * np.sqrt(np.maximum(views - 3, 0) / np.maximum(views - 1, 1))
+    return covered, np.nan_to_num(sigmas, posinf=0.0)

@@ -1,8 +1,11 @@
 """Lines for the design office: elements that a LandXML reader adds up to the line again, and polylines by class."""
 
+import sys
+
 import numpy as np
 import pytest
 import shapely
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import DRIVING_LINES, Features
 from lanewright.products.cad import NAMESPACE, alignments_of, dxf_lines, elements_without_reversal, landxml_text, write_dxf
 from lanewright.products.export.opendrive.geometry import PlanElement, PlanView
@@ -88,6 +91,16 @@ def test_a_dxf_has_every_line_in_3d_in_the_layer_of_its_class(tmp_path):
     assert len(found["LANE_BORDER_DRIVING"]) == 3 and len(found["DRIVING_LINE"]) == 2
     border = min(found["LANE_BORDER_DRIVING"], key=lambda points: np.abs(points[0] - lanes.left[0]).sum())
     np.testing.assert_allclose(border, lanes.borders(0)[0], atol=1e-6)
+
+
+@pytest.mark.parametrize("without", ["the module", "the driver"])
+def test_without_a_gdal_that_writes_dxf_landxml_is_named(tmp_path, monkeypatch, without):
+    if without == "the module":
+        monkeypatch.setitem(sys.modules, "osgeo", None)
+    else:
+        monkeypatch.setattr(pytest.importorskip("osgeo.gdal"), "GetDriverByName", lambda name: None)
+    with pytest.raises(RoadExtractionError, match="there is no GDAL that does.*FORMAT = landxml"):
+        write_dxf([], str(tmp_path / "map.dxf"))
 
 
 def test_lines_that_no_elements_follow_are_irregular(tmp_path):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.intensity.correction import correct_intensity
-from lanewright.core.markings.objects.repeating import dashes_beyond, rows_of_dashes
+from lanewright.core.markings.objects.repeating import likely_rows, rows_of_dashes
 from lanewright.core.markings.objects.shape import measure
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.markings.paint.noisy import CellAverages, ViewSamples, noisy_paint_cells
@@ -35,17 +35,17 @@ SPOT = dashes(1, first=32.0, y=2.0)
 LINE, STOP_LINE = strip(8.0, 20.0, -2.5, -2.35), strip(28.0, 28.3, -3.0, 0.0)
 CURB_FACE, BENEATH_A_CAR = strip(30.0, 42.0, 5.0, 5.15), strip(33.0, 39.0, -5.0, -4.7)
 STREAK, PATCH = strip(10.0, 16.0, -6.0, -5.7), strip(35.0, 41.0, 0.5, 2.5)
-LED_ON, ALONE = dashes(4, first=14.0, y=3.5), dashes(4, first=14.0, y=-1.0)
+LED_ON, ALONE, PAIR = dashes(4, first=14.0, y=3.5), dashes(4, first=14.0, y=-1.0), dashes(2, first=33.0, y=-2.0)
 WORN = 2.4   # of 256 levels that a worn dash is brighter than asphalt: a tenth of fresh paint
 FRESH = (ALONG, OBLIQUE, ACROSS, LINE, STOP_LINE)
-PAINTED = (*FRESH, LED_ON)
+PAINTED = (*FRESH, LED_ON, ALONE)
 BRIGHT = FRESH + (SPOT, CURB_FACE, BENEATH_A_CAR)
 
 
 def glare(x, y, turn):
     """A streak that shines at the vehicle as it passes, a patch of lighter asphalt that fades out, and worn dashes."""
     patch = 14 * np.exp(-0.5 * (((x - 38) / 1.5) ** 2 + ((y - 1.5) / 0.4) ** 2))
-    return np.where(STREAK(x, y) & (turn >= 25) & (turn < 28), 220, 0) + patch + np.where(LED_ON(x, y) | ALONE(x, y), WORN, 0)
+    return np.where(STREAK(x, y) & (turn >= 25) & (turn < 28), 220, 0) + patch + np.where(LED_ON(x, y) | ALONE(x, y) | PAIR(x, y), WORN, 0)
 
 
 def everything_and_found(section_length=20.0):
@@ -107,23 +107,44 @@ def test_a_patch_of_lighter_asphalt_that_fades_out_is_no_paint(street):
     assert found_of(PATCH, street) == 0
 
 
-def test_worn_dashes_are_found_where_they_lead_on_a_row_that_is_sure_and_nowhere_else(street):
-    assert found_of(LED_ON, street) > 0.3 and found_of(ALONE, street) == 0
+def test_worn_dashes_are_found_where_they_lead_on_a_row_or_are_one_and_two_of_them_are_not(street):
+    assert found_of(LED_ON, street) > 0.3 and found_of(ALONE, street) > 0.3 and found_of(PAIR, street) == 0
 
 
 @pytest.mark.parametrize(("rows", "columns", "is_paint"), [(slice(40, 140), slice(60, 64), True), (slice(60, 64), slice(20, 120), True),
                                                             (slice(40, 65), slice(60, 64), False), (slice(40, 140), slice(60, 72), False)])
 def test_a_long_thin_piece_is_a_line_though_it_is_faint_and_a_short_or_broad_one_is_none(rows, columns, is_paint):
-    rng, shape = np.random.default_rng(3), (180, 140)
-    mark = np.zeros(shape, bool)
+    mark = np.zeros((180, 140), bool)
     mark[rows, columns] = True
-    noise = gaussian_filter(rng.normal(size=shape), NOISY.spot_sigma)
-    contrast = (0.4 * noise / noise.std() + gaussian_filter(2.2 * mark, NOISY.spot_sigma)).astype(np.float32)
-    averages = CellAverages(contrast, np.full(shape, 50.0), np.ones(shape, np.float32), np.zeros((2, *shape), np.float32))
-    cell = np.arange(contrast.size)
-    found = noisy_paint_cells(averages, np.full(shape, 3.0), ViewSamples(cell, contrast.ravel(), np.zeros(contrast.size, bool)), threshold=3.0)
+    found = found_in_averages(mark, 2.2)
     assert (found[mark].mean() > 0.7) == is_paint
     assert found.any() == is_paint and found[~mark].mean() < 0.02
+
+
+def found_in_averages(mark, brightness, rim=3.0, slope=0.0):
+    """Cells of paint where a mark is so many spreads brighter than asphalt, at so many metres from the rim, and steep in metres per metre."""
+    rng = np.random.default_rng(3)
+    noise = gaussian_filter(rng.normal(size=mark.shape), NOISY.spot_sigma)
+    contrast = (0.4 * noise / noise.std() + gaussian_filter(brightness * mark, NOISY.spot_sigma)).astype(np.float32)
+    tilt = np.stack([np.where(mark, slope, 0.0), np.zeros(mark.shape)])
+    averages = CellAverages(contrast, np.full(mark.shape, 50.0), np.ones(mark.shape, np.float32), tilt.astype(np.float32))
+    samples = ViewSamples(np.arange(contrast.size), contrast.ravel(), np.zeros(contrast.size, bool))
+    return noisy_paint_cells(averages, np.full(mark.shape, rim), samples, threshold=3.0)
+
+
+@pytest.mark.parametrize(("rim", "slope", "is_paint"), [(0.16, 0.0, True), (0.16, 0.05, False), (0.04, 0.0, False), (3.0, 0.05, False)])
+def test_a_stroke_near_the_rim_of_the_road_is_paint_if_it_is_flat_and_not_at_the_very_rim(rim, slope, is_paint):
+    mark = np.zeros((180, 140), bool)
+    mark[40:100, 60:64] = True
+    assert (found_in_averages(mark, 8.0, rim, slope)[mark].mean() > 0.7) == is_paint
+
+
+@pytest.mark.parametrize("count", [1, 6])
+def test_blocks_as_broad_as_long_are_paint_in_a_row_and_one_of_them_is_none(count):
+    mark = np.zeros((180, 140), bool)
+    for row in range(30, 30 + 14 * count, 14):
+        mark[row:row + 7, 60:67] = True
+    assert (found_in_averages(mark, 4.0)[mark].mean() > 0.7) == (count == 6)
 
 
 @pytest.mark.slow
@@ -156,16 +177,23 @@ def test_a_dash_worn_away_does_not_end_a_row_and_dashes_beside_each_other_are_no
     assert rows_of_dashes([shape_of(0.0, d) for d in (0.0, 1.0, 2.0, 3.0)]) == []
 
 
-def test_a_row_leads_on_to_dashes_in_line_one_or_two_steps_ahead_at_either_end():
-    row = [shape_of(s, 0.1 * s) for s in (3.0, 1.0, 2.0, 4.0)]
-    beyond = [shape_of(s, 0.1 * s) for s in (6.0, 7.0, 0.0, 10.0)]
-    assert dashes_beyond(row, beyond) == [0, 1, 2]
-    assert dashes_beyond(row, row) == [] and dashes_beyond(row, []) == []
+def test_a_row_leads_on_to_dim_dashes_one_or_two_steps_ahead_at_either_end_and_not_past_three():
+    shapes = [shape_of(s, 0.1 * s) for s in (3.0, 1.0, 2.0, 4.0, 6.0, 7.0, 0.0, 10.0)]
+    dim = np.array([2.0, 2.0, 2.0, 2.0, -1.0, -1.0, -1.0, -1.0])
+    assert [sorted(row.tolist()) for row in likely_rows(shapes, dim)] == [[0, 1, 2, 3, 4, 5, 6]]
 
 
 def test_a_row_does_not_lead_on_to_what_lies_beside_its_line_or_is_no_dash_of_its_length():
-    row = [shape_of(s, 0.0) for s in (1.0, 2.0, 3.0, 4.0)]
-    assert dashes_beyond(row, [shape_of(5.0, 0.2), shape_of(5.0, 0.0, length=1.6), shape_of(4.4, 0.0), shape_of(5.0, 0.0, width=0.48)]) == []
+    shapes = [shape_of(s, 0.0) for s in (1.0, 2.0, 3.0, 4.0)]
+    others = [shape_of(5.0, 0.2), shape_of(5.0, 0.0, length=1.6), shape_of(4.4, 0.0), shape_of(5.0, 0.0, width=0.48)]
+    rows = likely_rows(shapes + others, np.array([2.0] * 4 + [-1.0] * 4))
+    assert [sorted(row.tolist()) for row in rows] == [[0, 1, 2, 3]]
+
+
+def test_two_dashes_are_no_row_however_bright_and_four_dim_ones_at_an_even_pace_are():
+    assert likely_rows([shape_of(s, 0.0) for s in (1.0, 2.0)], np.array([9.0, 9.0])) == []
+    assert [len(row) for row in likely_rows([shape_of(s, 0.0) for s in (1.0, 2.0, 3.0, 4.0)], np.zeros(4))] == [4]
+    assert likely_rows([shape_of(s, d) for s, d in ((1.0, 0.0), (1.7, 0.1), (3.3, 0.0), (4.0, 0.1))], np.zeros(4)) == []
 
 
 def test_spots_strewn_about_are_no_row():
