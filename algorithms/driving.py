@@ -258,7 +258,7 @@ class RoadMap(Algorithm):
             road_map.survey_facts["trajectory"] = estimated.summary()
         if call.wants("ROAD_POINTS"):
             write_road_points(road_map.road_points, call.new_file("ROAD_POINTS"), progress.part(0.95, 1.0))
-        if road_map.image is None:
+        if road_map.markings is None:
             call.drop_file("INTENSITY_IMAGE")
         layers = {}
         for name, attribute, geometry, fields, _ in LAYERS:

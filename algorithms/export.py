@@ -439,6 +439,8 @@ class PrintSheets(Algorithm):
     DRAWS = True
 
     def declare(self):
+        # what is printed on every sheet comes first: the layers are chosen already
+        self.add_settings(SHEET_SETTINGS)
         for name, label, geometry in DRAWN:
             text = tr("Drawn on the sheets, if given.") if geometry == "PolygonZ" else tr("Drawn on the sheets, and leads the axis if given.")
             if name == "CROSS_SECTIONS":
@@ -450,7 +452,6 @@ class PrintSheets(Algorithm):
         self.add_input("painted", "BELOW", tr("Layer below (orthoimage, web map)"), tr(
             "Drawn below all others and left out of the legend. Lanes and Road surface cover it where they are given."),
                        optional=True)
-        self.add_settings(SHEET_SETTINGS)
         self.add_input("choice", "LANGUAGE", tr("Language of the sheets"), tr("automatic is the language of the program."), default="automatic",
                        choices=("automatic", *languages()))
         self.add_input("flag", "KEEP", tr("Keep the layout in the project"),

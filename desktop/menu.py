@@ -8,10 +8,9 @@ from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
 
 from ..core.pipeline.kept_run import WINDOW
-from ..processing_provider.reports import last_report
 from ..processing_provider.results.layer_tree import NAMES_ONLY, REPLACES_LAST_RUN
 from ..processing_provider.results.road_maps import clouds_of, road_maps
-from ..processing_provider.results.run_table import last_run
+from ..processing_provider.results.run_table import last_report, last_run
 from ..processing_provider.texts import tr
 from .layout.shown import sheet_values
 from .manual import ManualWindow
@@ -114,8 +113,8 @@ class Menu(QObject):
             return
         self._section_dock().show()
         self.section.pick.click()
-        if self.doubts is not None and self.doubts.isVisible() and self.doubts.place is not None:
-            self._show_section(self.doubts.place)
+        if self.doubts is not None and self.doubts.isVisible() and self.doubts.seen is not None:
+            self._show_section(self.doubts.seen)
 
     def _section_dock(self):
         if self.section is None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsCsException, QgsProject, QgsRectangle, QgsSettings
-from qgis.gui import QgsMapCanvas
+from qgis.gui import QgsMapCanvas, QgsMapTool
+from qgis.PyQt import sip
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFileDialog, QHBoxLayout, QLabel, QPushButton, QWidget
 
 from ..processing_provider.texts import tr
@@ -83,6 +84,22 @@ def show_extent(canvas: QgsMapCanvas, extent: QgsRectangle, crs: QgsCoordinateRe
     if not shown.isEmpty():
         canvas.setExtent(shown)
         canvas.refresh()
+
+
+def take_map(canvas: QgsMapCanvas, tool: QgsMapTool) -> None:
+    """Give the clicks on a map to a tool of ours, until `give_map_back`."""
+    before = canvas.mapTool()
+    if before is not tool:
+        tool.before = getattr(before, "before", before)  # another one of ours gives it back as well
+        canvas.setMapTool(tool)
+
+
+def give_map_back(canvas: QgsMapCanvas, tool: QgsMapTool) -> None:
+    """Take up the tool that a map had before one of ours, such as the hand; without any, a map could not even be moved."""
+    if canvas.mapTool() is tool:
+        canvas.unsetMapTool(tool)
+        if tool.before is not None and not sip.isdeleted(tool.before):
+            canvas.setMapTool(tool.before)
 
 
 def say(iface, text: str, level: Qgis.MessageLevel = Qgis.MessageLevel.Info) -> None:

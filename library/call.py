@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ..algorithms.call import Call
+from ..algorithms.call import Call, existing_file
 from ..algorithms.destinations import destination_path
 from ..algorithms.provenance import provenance_now
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import gdal_exceptions, open_raster
-from .gdal_module import check_gdal
 from .layer_files import DRIVERS, LayerFile, file_and_table, first_table, write_layer
-from .measured_lines import check_format
+from .measured_lines import check_format, check_gdal
 from .values import checked_values
 
 
@@ -53,7 +52,7 @@ class FileCall(Call):
             raise RoadExtractionError(f"{self.label(name)}: the CRS {text} is not known. Give it as EPSG:number.") from problem
 
     def raster(self, name):
-        return existing_raster(self.value(name), self.label(name))
+        return existing_file(self.value(name), self.label(name))
 
     def source(self, name):
         value = self.value(name)
@@ -64,7 +63,7 @@ class FileCall(Call):
         path, table = file_and_table(value)
         if table or Path(path).suffix.lower().lstrip(".") in DRIVERS:
             return LayerFile(value, label), "", ""
-        existing_raster(path, label)
+        existing_file(path, label)
         check_gdal(f"{label} ({name}) is a raster")
         try:
             with gdal_exceptions():
@@ -119,9 +118,3 @@ class FileCall(Call):
 
     def values(self):
         return {spec.name: self.value(spec.name) for spec in self.algorithm.inputs()}
-
-
-def existing_raster(path, label):
-    if not Path(path).is_file():
-        raise RoadExtractionError(f"{label}: there is no file {path}. Check the name and the folder.")
-    return path

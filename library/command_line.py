@@ -24,7 +24,6 @@ from .run import algorithm_named, algorithms, speak
 # What a value looks like in the help
 METAVARS = {"layer": "LAYER", "folder": "FOLDER", "crs": "EPSG:NUMBER", "flag": "true|false", "expression": "CONDITION", "text": "TEXT",
             "columns": "TEXT", "whole": "NUMBER", "number": "NUMBER"}
-JSON, LANG = "--json", "--lang"
 DEMO = {"LENGTH": 100}  # m, of the simulated street
 
 
@@ -41,44 +40,31 @@ class Parser(argparse.ArgumentParser):
 
 def main(arguments=None):
     """Run the program; its exit code: 0, 1 after one sentence on stderr (with --json on stdout too), 130 after Ctrl-C."""
-    arguments = sys.argv[1:] if arguments is None else list(arguments)
+    common = Parser(prog="lanewright", add_help=False, allow_abbrev=False)
+    common.add_argument("--json", action="store_true")
+    common.add_argument("--lang", nargs="?", default="", const="")
+    asked = argparse.Namespace(json=False, lang="")
     # CRSs are compared by their projections' words, which leave out names that do not matter
     warnings.filterwarnings("ignore", "You will likely lose important projection information", UserWarning)
-    as_json = JSON in arguments
-    arguments = [argument for argument in arguments if argument != JSON]
-    language, arguments = asked_language(arguments)
     try:
-        if language:
-            speak(language)
+        _, arguments = common.parse_known_args(sys.argv[1:] if arguments is None else list(arguments), asked)
+        if asked.lang:
+            speak(asked.lang)
         missing = [name for name in ("numpy", "scipy", "laspy", "lazrs", "shapely", "pyproj", "fiona", "cv2", "jinja2") if find_spec(name) is None]
         if missing:
             raise RoadExtractionError(f"These Python packages are missing: {', '.join(missing)}. pip install lanewright brings them.")
-        return _main(arguments, as_json)
+        return _main(arguments, asked.json)
     except RoadExtractionError as error:
-        _tell_failure(told(str(error)), as_json)
+        _tell_failure(told(str(error)), asked.json)
     except (Cancelled, KeyboardInterrupt):
-        _tell_failure(tr("Cancelled"), as_json)
+        _tell_failure(tr("Cancelled"), asked.json)
         return 128 + signal.SIGINT
     except BrokenPipeError:  # whoever read the output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     finally:
-        if language:
+        if asked.lang:
             speak("en")
     return 1
-
-
-def asked_language(arguments):
-    """(language of --lang de or --lang=de, "" without; the other arguments)."""
-    rest, language = [], ""
-    words = iter(arguments)
-    for word in words:
-        if word == LANG:
-            language = next(words, "")
-        elif word.startswith(f"{LANG}="):
-            language = word.partition("=")[2]
-        else:
-            rest.append(word)
-    return language, rest
 
 
 def _tell_failure(sentence, as_json):

@@ -10,9 +10,16 @@ from pathlib import Path
 from ..algorithms.vector_source import crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import open_vector
-from .gdal_module import check_gdal
 
 DRIVERS = {".gpkg": "GPKG", ".shp": "ESRI Shapefile"}  # formats that keep measures
+
+
+def check_gdal(why):
+    """Raise RoadExtractionError, with what to install, where GDAL's Python module is missing; `why` it is needed begins the sentence."""
+    if find_spec("osgeo") is None:
+        raise RoadExtractionError(
+            f"{why[0].upper()}{why[1:]}, which needs GDAL's Python module (osgeo), and it is not installed. Install lanewright[gdal] with pip, which "
+            "needs GDAL's own library and headers before Python 3.12, or gdal (conda-forge), or python3-gdal (Debian, Ubuntu).")
 
 
 def may_have_measures(path, table):

@@ -21,7 +21,6 @@ from .database import add_tables
 from .embedded_style import embed_style
 from .input_files import close_database, input_files, layer_file, written_over
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
-from .reports import note_report
 from .results.layer_tree import NAMES_ONLY
 from .results.runs import run_of
 from .styling import style_on_load
@@ -161,7 +160,6 @@ class QgisCall(Call):
         schemas = {name: features.schema for name, features in self._layers}
         run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.processing.group_of_inputs)
         for name, dest in self._results.items():
-            note_report(dest)
             look = self.algorithm.LOOKS.get(name, name)
             embed_style(look, dest, self.label(name), schemas.get(name, ()), provenance)
             style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run)

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-TITLES = ("LAS", "LAZ", "COPC", "trajectory text", "receiver log", "GPX", "SBET", "smrmsg", "control points", "image tags", "OpenDRIVE", "Lanelet2",
-          "GeoPackage", "GeoJSON")
+TITLES = ("LAS", "LAZ", "COPC", "VPC", "trajectory text", "receiver log", "GPX", "SBET", "smrmsg", "control points", "image tags", "OpenDRIVE",
+          "Lanelet2", "GeoPackage", "GeoJSON")
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "streets"))
 
@@ -40,7 +40,8 @@ def kinds(folder: Path) -> dict[str, Kind]:
 
 def _clouds(folder):
     import laspy
-    from copc_files import write_copc
+    from copc_files import write_copc, write_vpc
+    from lanewright.algorithms.survey_files import cloud_files
     from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
     from lanewright.core.survey.las.reader import read_blocks, read_header
     from pyproj import CRS
@@ -70,8 +71,10 @@ def _clouds(folder):
             las.write(str(path))
             contents.append(path.read_bytes())
     copc = Path(write_copc(folder / "seed_1.4_6.laz", folder / "seed.copc.laz", in_a_node=20)).read_bytes()
+    named = Path(write_vpc(folder / "all.vpc", ["./a.laz", "b.laz"])).read_bytes()
     return {"LAS": Kind("cloud.las", made["las"], cloud), "LAZ": Kind("cloud.laz", made["laz"], cloud),
-            "COPC": Kind("cloud.copc.laz", [copc], cloud)}
+            "COPC": Kind("cloud.copc.laz", [copc], cloud),
+            "VPC": Kind("all.vpc", [named], lambda path: cloud_files([str(path)], ""))}
 
 
 def _trajectories(folder):

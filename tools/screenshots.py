@@ -6,7 +6,7 @@ import tempfile
 import traceback
 from pathlib import Path
 
-from lanewright.processing_provider.reports import last_report
+from lanewright.processing_provider.results.run_table import last_report
 from lanewright.processing_provider.texts import tr
 from qgis.core import QgsCoordinateTransform, QgsPointXY, QgsProject
 from qgis.PyQt.QtCore import Qt, QTimer
@@ -130,6 +130,10 @@ def doubts():
     corrections(places)
     iface.messageBar().clearWidgets()
     dock.hide()
+    action_of(tr("Steps of the road map")).trigger()
+    places.steps.tree.topLevelItem(len(places.steps.steps) - 1).setExpanded(True)
+    needed(len({step.state for step in places.steps.steps}) == 2, "corrections make some of the steps stale")
+    keep(window, "window_steps")
     places.hide()
 
 

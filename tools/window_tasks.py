@@ -183,6 +183,13 @@ def orthoimage():
         project.layerTreeRoot().findLayer(result(output).id()).setItemVisibilityChecked(False)
     show_map("ROAD_EDGES")
     keep(iface.mainWindow(), "window_orthoimage")
+    action_of(tr("Compare two images")).trigger()
+    swipe = plugins["lanewright"].menu.swipe
+    needed(wait(60, swipe.halves.isVisible), "the two images are not shown")
+    swipe.halves.divide(swipe.halves.width() // 2)
+    iface.messageBar().clearWidgets()
+    keep(iface.mainWindow(), "window_swipe")
+    swipe.end()
 
 
 def database():

@@ -9,6 +9,7 @@ import struct
 import zlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -61,7 +62,7 @@ class Phase:
     """One step of the work, the same for all sections of road.
 
     function : public function of a module of the package, called as `function(source, item, *arguments)`. It changes nothing; its
-        result, an item and the arguments are plain values (see plain.py)
+        result, an item and the arguments are plain values (see `write_plain`)
     source : what it reads from, open in this process; its `recipe(folder)` puts into the folder what another process needs, unless it is
         there, and gives the Recipe
     together : so many items, one after the other along the road, are best given to one worker, which keeps what they share
@@ -146,6 +147,7 @@ def name_of(function: Any) -> str:
     return f"{module}:{function.__qualname__}"
 
 
+@cache
 def named(name: str) -> Any:
     module, _, attribute = name.partition(":")
     return getattr(import_module(f"{PACKAGE}.{module}"), attribute)

@@ -35,7 +35,6 @@ from ..intensity.correction import AsphaltLook, IntensitySettings, correct_inten
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..intensity.tiled_image import TiledImage
 from ..io.crs import check_projected
-from ..io.geotiff import IntensityImage
 from ..markings.lines.curvature import marking_curvature
 from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
@@ -103,7 +102,6 @@ class RoadMap:
     boundary_differences: RoadEdges | None = None   # RoadEdges, where the two boundary methods disagree; None if one method was used
     length_by_method: dict = field(default_factory=dict)   # {method: metres of measured curb}
     intensity_report: Any = None   # of the correction, None without it
-    image: Any = None   # IntensityImage, None without intensity or where no file was asked for
     markings: Features | None = None   # layers; None where not made
     marking_lines: Features | None = None
     driving_lines: Features | None = None
@@ -264,7 +262,6 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     executor.forget()
     if stages.kept is None:
         image.close()
-    result.image = IntensityImage.open(image_path) if image_path else None
     result.counts["marking_points"] = len(points)
     if len(points):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers,

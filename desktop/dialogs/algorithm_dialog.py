@@ -20,9 +20,10 @@ from ..widgets import button, folder_for_results
 from .batch_dialog import BatchAlgorithmDialog
 from .database_dialog import DatabaseDialog, database_destinations
 from .destinations import destinations, outputs_by_default
-from .stage_inputs import SETTINGS, name_by_survey, presets
+from .stage_inputs import name_by_survey, presets
 
 PRESETS = "lanewright/presets"
+SETTINGS = ("number", "enum", "boolean", "string", "crs", "expression", "distance")  # what a preset holds: no data, no destination
 FEWEST_OUTPUTS = 3  # that are worth one place for all
 
 

@@ -13,7 +13,6 @@ from ...processing_provider.results.origin import origin_of
 from ...processing_provider.results.road_maps import CLOUDS, RoadMap, clouds_of, road_map_of, road_maps, runs_of
 
 TRAJECTORY = "TRAJECTORY"
-SETTINGS = ("number", "enum", "boolean", "string", "crs", "expression", "distance")  # what is neither data nor a destination
 LAYER_INPUTS = ("source", "vector", "raster", "layer")
 # The stage that makes a result of the whole chain; of what a stage made, it is that stage
 STAGES = {"CURB_POINTS": "detectcurbs", "ROAD_EDGES": "detectboundaries", "ROAD_SURFACE": "extractroadsurface", "INTENSITY_IMAGE": "intensityimage",

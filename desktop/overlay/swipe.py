@@ -9,6 +9,7 @@ from qgis.PyQt.QtGui import QColor, QImage, QKeyEvent, QPainter, QPaintEvent, QP
 from qgis.PyQt.QtWidgets import QWidget
 
 from ...processing_provider.results.origin import output_of
+from ..widgets import give_map_back, take_map
 
 INTENSITY = "INTENSITY_IMAGE"
 
@@ -41,7 +42,7 @@ class Swipe(QgsMapTool):
     def begin(self, images: list[QgsMapLayer]) -> None:
         """Compare two images."""
         self.images = images
-        self.canvas().setMapTool(self)
+        take_map(self.canvas(), self)
         self.canvas().setFocus()  # for Esc
         self._draw()
 
@@ -85,7 +86,7 @@ class Swipe(QgsMapTool):
 
     def end(self) -> None:
         """Show the map as it is."""
-        self.canvas().unsetMapTool(self)
+        give_map_back(self.canvas(), self)
 
     def deactivate(self) -> None:
         self._cancel()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -27,7 +28,7 @@ from ...core.corrections.corrections import taken_reading
 from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
 from ...processing_provider.texts import tr
-from ..widgets import button, choices, row, say, show_extent, wrapped
+from ..widgets import button, choices, give_map_back, row, say, show_extent, take_map, wrapped
 from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .photos import PhotoButton, photo_of
@@ -35,6 +36,7 @@ from .smart_pick import evidence, pick, snap
 from .steps import StepsPanel
 
 ARRIVED = 700   # ms after the last layer of a run that came into the project
+LONG_PLACE = 80.0   # m: of a longer place the map shows the selected piece alone, or it would be too small to judge
 LEAST_VIEW = 30.0   # m of ground shown about a place
 FILE = "corrections.gpkg"
 CHOSEN = "#6eff00c8"  # pieces that the buttons are about
@@ -58,6 +60,7 @@ class DoubtDock(QDockWidget):
         self.iface = iface
         self.places: list[Doubt] = []
         self.at = -1
+        self.seen: Doubt | None = None   # what map and section show
         self.road_map: RoadMap | None = None
         self._of = self._pending = None
         self.looks: list[QgsTask] = []  # under way; QGIS keeps no reference
@@ -95,6 +98,7 @@ class DoubtDock(QDockWidget):
         self.list.setWordWrap(True)
         self.list.setToolTip(tr("What is doubtful here. The buttons are about what is selected."))
         self.list.itemSelectionChanged.connect(self._selected)
+        self.list.itemClicked.connect(lambda item: self._look_at())
         self.photo = PhotoButton()
         self.note = QLineEdit()
         self.note.setPlaceholderText(tr("Note, kept with the correction"))
@@ -110,7 +114,8 @@ class DoubtDock(QDockWidget):
         for target, title in (("edge", tr("Road edge…")), ("marking", tr("Marking line…")), ("lane", tr("Lane, in the direction of travel…"))):
             menu.addAction(title, lambda target=target: self.begin_draw(target))
         self.draw_button.setMenu(menu)
-        self.snap = QCheckBox(tr("Lay drawn lines onto curbs and paint"))
+        self.snap = QCheckBox(tr("Snap to curb and paint"))   # short: the widest row takes its width from the map
+        self.snap.setToolTip(tr("Lay drawn lines onto curbs and paint"))
         self.snap.setChecked(True)
         self.hint = wrapped()  # in the message bar it would lie on the map, and clicks on it would be lost
         self.hint.setStyleSheet("background: #fff3c4; color: #222222; padding: 4px")
@@ -226,10 +231,7 @@ class DoubtDock(QDockWidget):
             self._stop_drawing()  # a piece of the place before was to be moved
         self._fill()
         self.list.setFocus()  # for the keys
-        self.photo.show_photo(None if self.place is None else photo_of(QgsProject.instance(), self.place.middle, self.place.crs))
-        if self.place is not None:
-            self._zoom(self.place)
-            self.shown.emit(self.place)
+        self._look_at(again=True)
 
     def _list_places(self):
         kind = self.kinds.currentData()
@@ -279,6 +281,19 @@ class DoubtDock(QDockWidget):
 
     def _seen(self):
         return str(self.road_map.layers[0].customProperty(SEEN) or "").split("\n")
+
+    def _look_at(self, again=False):
+        """Let map, section and photo show the place; of a long one, the piece that is selected."""
+        place, seen = self.place, self.seen
+        self.seen = place
+        if place is not None and len(self.chosen) == 1 and max(place.extent.width(), place.extent.height()) > LONG_PLACE:
+            line = self.chosen[0].line
+            self.seen = place if line.isEmpty() else replace(place, extent=line.boundingBox(), middle=line.interpolate(line.length() / 2).asPoint())
+        if self.seen is None or self.seen == seen and not again:
+            return
+        self.photo.show_photo(photo_of(QgsProject.instance(), self.seen.middle, place.crs))
+        self._zoom(self.seen)
+        self.shown.emit(self.seen)
 
     def _zoom(self, place):
         extent = QgsRectangle(place.extent)
@@ -371,6 +386,7 @@ class DoubtDock(QDockWidget):
         place, count = self.place, len(self.place.pieces)
         left = [row % count for row in range(last + 1, last + 1 + count) if not self._decision(place.pieces[row % count])]
         self._fill(left[0] if left else last)
+        self._look_at()
         if not left and len(self.places) > 1:
             self.go(self.road_map)
 
@@ -389,7 +405,7 @@ class DoubtDock(QDockWidget):
         if self._pending != (action, target, piece):
             self.tool.clear()
         self._pending = action, target, piece
-        self.iface.mapCanvas().setMapTool(self.tool)
+        take_map(self.iface.mapCanvas(), self.tool)
         self.iface.mapCanvas().setFocus()  # for Backspace and Esc
         self._hint("")
 
@@ -427,7 +443,7 @@ class DoubtDock(QDockWidget):
     def begin_pick(self) -> None:
         """Wait for clicks near what is missing."""
         if self._layer_to_write() is not None:
-            self.iface.mapCanvas().setMapTool(self.pick_tool)
+            take_map(self.iface.mapCanvas(), self.pick_tool)
             self._say(tr("Click near a curb or a painted line that the map lacks."))
 
     def pick_at(self, point: QgsPointXY) -> None:
@@ -460,7 +476,7 @@ class DoubtDock(QDockWidget):
         for task in self.looks:
             task.cancel()
         self.looks = []
-        self.iface.mapCanvas().unsetMapTool(self.pick_tool)
+        give_map_back(self.iface.mapCanvas(), self.pick_tool)
 
     def _say(self, text):
         self.hint.setText(text)
@@ -470,7 +486,7 @@ class DoubtDock(QDockWidget):
         self._pending = None
         self.hint.hide()
         self.tool.clear()
-        self.iface.mapCanvas().unsetMapTool(self.tool)
+        give_map_back(self.iface.mapCanvas(), self.tool)
         self.list.setFocus()  # for the keys
 
     def undo(self) -> None:

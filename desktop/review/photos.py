@@ -26,6 +26,7 @@ from qgis.PyQt.QtWidgets import QPushButton
 from ...processing_provider.texts import tr
 
 SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
+NETWORK = ("//", "\\\\")   # what a layer names on another computer is not asked for
 DIRECTIONS = ("direction", "heading", "yaw", "azimuth")   # names of fields, degrees clockwise from north; QGIS's own is the first
 FARTHEST = 30.0   # m from a photo to what it shows: a curb farther off is a few pixels high
 HALF_VIEW = 60.0  # degrees to either side of the direction
@@ -59,7 +60,8 @@ def _photos_near(layer, project, place, crs):
     try:
         for feature in layer.getFeatures(QgsFeatureRequest().setFilterRect(to_layer.transformBoundingBox(area))):
             taken = to_place.transform(feature.geometry().centroid().asPoint())
-            path = next((path for name in names if (path := folder / str(feature[name])).suffix.lower() in SUFFIXES and path.is_file()), None)
+            files = [folder / text for name in names if not (text := str(feature[name])).startswith(NETWORK)]
+            path = next((path for path in files if path.suffix.lower() in SUFFIXES and path.is_file()), None)
             if path is not None:
                 east, north = place.x() - taken.x(), place.y() - taken.y()
                 turned = [(math.degrees(math.atan2(east, north)) - feature[name] + 180.0) % 360.0 - 180.0

@@ -30,7 +30,8 @@ def with_points(title: str, clouds: Sequence[str], place: Sequence[float], radiu
         problem = told(str(error)) if isinstance(error, RoadExtractionError) else tr("No points were read.") if result is None else ""
         ready(task, None if result is None else result["result"], problem)
 
-    task = QgsTask.fromFunction(title, _worked, clouds, place, radius, work, on_finished=ended)
+    # silent: a message about its end would lie on the map where the next click goes
+    task = QgsTask.fromFunction(title, _worked, clouds, place, radius, work, on_finished=ended, flags=QgsTask.Flag.CanCancel | QgsTask.Flag.Silent)
     QgsApplication.taskManager().addTask(task)
     return task
 

@@ -14,7 +14,7 @@ from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QFileDialog, QLabel
 from ...core.road.scanlines.section_planes import slice_lines
 from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clouds_of, road_maps
 from ...processing_provider.texts import tr
-from ..widgets import button, row
+from ..widgets import button, give_map_back, row, take_map
 from .points_task import with_points
 from .section import HALF_WIDTH, Section, corners, crossings, middle_of, section_at
 from .section_view import SectionView
@@ -38,7 +38,7 @@ class SectionDock(QDockWidget):
         self.section = self.road_map = self.task = None
         self._asked: set[str] = set()  # road maps whose user was asked where the point clouds are
         self._kept, self._kept_at = np.empty((0, 4)), None  # points about a place: (clouds, x, y)
-        self.pick = button(tr("Click in the map"), lambda: iface.mapCanvas().setMapTool(self.tool))
+        self.pick = button(tr("Click in the map"), lambda: take_map(iface.mapCanvas(), self.tool))
         back = button("◀", lambda: self.step(-STEP), tr("A metre back along the road"))
         ahead = button("▶", lambda: self.step(STEP), tr("A metre ahead along the road"))
         for arrow in (back, ahead):
@@ -63,8 +63,7 @@ class SectionDock(QDockWidget):
     def remove(self) -> None:
         """Take the window and its line out of QGIS."""
         QgsProject.instance().layersWillBeRemoved.disconnect(self._forget)
-        if self.iface.mapCanvas().mapTool() is self.tool:
-            self.iface.mapCanvas().unsetMapTool(self.tool)
+        give_map_back(self.iface.mapCanvas(), self.tool)
         self._hide_line(False)
         self.iface.removeDockWidget(self)
 

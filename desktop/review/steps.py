@@ -10,11 +10,12 @@ from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
-from ...algorithms.survey_input import SURVEY_SETTINGS
+from ...algorithms.algorithm import SettingSpec
+from ...algorithms.survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS
 from ...processing_provider.results.origin import origin_of
 from ...processing_provider.results.road_maps import CLOUDS, RoadMap
 from ...processing_provider.texts import tr
-from ..dialogs.stage_inputs import SETTINGS, STAGES, TRAJECTORY, stage_again
+from ..dialogs.stage_inputs import STAGES, TRAJECTORY, stage_again
 from ..widgets import button, row, wrapped
 from .corrections_layer import NAME, changed_at
 
@@ -73,12 +74,13 @@ def steps_of(road_map: RoadMap, corrections: QgsVectorLayer | None) -> list[Step
 
 
 def _settings(algorithm, values):
-    common = {spec.name for spec in SURVEY_SETTINGS}
-    for definition in algorithm.parameterDefinitions():
-        if definition.type() in SETTINGS and definition.name() not in common:
-            value = values.get(definition.name(), definition.defaultValue())
-            text = {True: tr("yes"), False: tr("no")}[value] if isinstance(value, bool) else "–" if value in (None, "") else str(value)
-            yield definition.description(), text, value not in (None, definition.defaultValue())
+    """(label, value, whether it is not the default) of what is decided in this step alone."""
+    for spec in algorithm.declaration.parameters:
+        if isinstance(spec, SettingSpec) and spec not in (*SURVEY_SETTINGS, *EXECUTION_SETTINGS):
+            default = algorithm.parameterDefinition(spec.name).defaultValue()
+            value = values.get(spec.name, default)
+            text = (tr("yes") if value else tr("no")) if isinstance(value, bool) else f"{value:g}" if isinstance(value, (int, float)) else str(value)
+            yield spec.label, text, value != default
 
 
 def values_again(road_map: RoadMap) -> dict[str, object]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from pathlib import Path
 from typing import Any
 
 from ..texts import tr
@@ -14,7 +15,7 @@ MOST_RUNS = 1000  # kept; a batch of more is read from its reports
 
 @dataclass(frozen=True)
 class RunRecord:
-    """One run: its algorithm's title, survey, begin, seconds, numbers by label, why it failed ("" if it did not), and its warnings."""
+    """One run: its algorithm's title, survey, begin, seconds, numbers by label, why it failed ("" if it did not), warnings, and report or ""."""
 
     title: str
     survey: str
@@ -23,6 +24,7 @@ class RunRecord:
     numbers: Mapping[str, float]
     failure: str = ""
     warnings: tuple[str, ...] = ()
+    report: str = ""
 
 
 _runs: list[RunRecord] = []
@@ -43,13 +45,20 @@ def note_run(declaration: Any, survey: str, began: datetime, results: Mapping[st
     """
     numbers = {number.label: results[number.name] for number in declaration.numbers if results is not None and number.name in results}
     seconds = (datetime.now() - began).total_seconds()
-    _runs.append(RunRecord(declaration.title(), survey, began, seconds, numbers, failure, tuple(warnings)))
+    report = next((path for path in map(str, (results or {}).values()) if path.lower().endswith((".html", ".htm"))), "")
+    _runs.append(RunRecord(declaration.title(), survey, began, seconds, numbers, failure, tuple(warnings), report))
     del _runs[:-MOST_RUNS]
 
 
 def last_run() -> RunRecord | None:
     """The run that ended last; None where there was none."""
     return _runs[-1] if _runs else None
+
+
+def last_report() -> str:
+    """Path of the last report since QGIS was started; "" where there was none, or it is gone."""
+    path = next((run.report for run in reversed(_runs) if run.report), "")
+    return path if Path(path).is_file() else ""
 
 
 def run_tables() -> list[tuple[str, list[str], list[list[Any]]]]:

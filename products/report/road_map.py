@@ -39,7 +39,7 @@ def road_map_report(road_map: Any, image_path: str | None = None) -> str:
 
 
 def _overview(road_map, image_path):
-    background = grey_background(image_path) if image_path and road_map.image is not None else None
+    background = grey_background(image_path) if image_path and road_map.markings is not None else None
     names = ("boundary_differences", "markings", "edges", "marking_lines", "driving_lines")
     return draw_map({name.removeprefix("boundary_"): road_map.layer(name) for name in names}, background)
 

@@ -62,6 +62,21 @@ def test_it_says_where_it_is_and_what_is_doubtful_there_and_shows_it(at_first):
     assert at_first.iface.mapCanvas().extent().contains(QgsPointXY(EAST + 15, NORTH))
 
 
+def test_of_a_long_place_the_map_and_the_section_show_the_piece_that_is_selected(window):
+    piece = lambda at, length, **row: (f"LINESTRING Z ({at} 0 100, {at + length} 0 100)", dict(  # noqa: E731
+        road=0, station_m=float(at), length_m=float(length), side="left", **row))
+    added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, piece(0, 200, status="bridged"), piece(4, 8, status="bridged"), run=run_at(9))
+    shown = []
+    window.shown.connect(shown.append)
+    window.go(road_maps(QgsProject.instance())[0])
+    row = next(row for row, piece in enumerate(window.place.pieces) if piece.line.length() < 10)
+    window.list.setCurrentRow(row)
+    window.list.itemClicked.emit(window.list.item(row))
+    extent = window.iface.mapCanvas().extent()
+    assert extent.width() < 80 and extent.contains(QgsPointXY(EAST + 8, NORTH))
+    assert shown[-1].middle.x() == pytest.approx(EAST + 8), "the section is that of the piece"
+
+
 def test_it_goes_forward_and_back_and_begins_again_after_the_last(at_first):
     at_first.go(at_first.road_map)
     assert at_first.place.station == 80
@@ -104,6 +119,9 @@ def test_who_decides_otherwise_has_one_correction_not_two(at_first):
 
 
 def test_a_drawn_line_is_kept_with_its_target_and_can_be_taken_back(at_first):
+    hand = QgsMapToolPan(at_first.iface.mapCanvas())
+    at_first.iface.mapCanvas().setMapTool(hand)
+    at_first.begin_pick()
     at_first.begin_draw("edge")
     assert at_first.iface.mapCanvas().mapTool() is at_first.tool
     for x in (20.0, 25.0, 31.0):
@@ -111,7 +129,7 @@ def test_a_drawn_line_is_kept_with_its_target_and_can_be_taken_back(at_first):
     at_first.tool.finish()
     (action, target, *_, length), = corrections()
     assert (action, target, length) == ("draw", "edge", pytest.approx(11.0))
-    assert at_first.iface.mapCanvas().mapTool() is not at_first.tool
+    assert at_first.iface.mapCanvas().mapTool() is hand, "the map can be moved again"
     at_first.undo_button.click()
     assert corrections() == [] and not at_first.undo_button.isEnabled()
 
@@ -357,8 +375,8 @@ def test_a_doubtful_place_shows_the_photo_that_looks_at_it(window, tmp_path):
 
 def test_a_list_of_photos_with_names_beside_it_is_enough(window, tmp_path):
     photos(tmp_path, ("a.jpg", 500, 500, None))
-    (tmp_path / "list.csv").write_text(f"name,x,y\na.jpg,{EAST + 8},{NORTH + 1}\n", encoding="utf-8")
+    (tmp_path / "list.csv").write_text(f"name,x,y\n/{tmp_path}/a.jpg,{EAST + 14},{NORTH}\na.jpg,{EAST + 8},{NORTH + 1}\n", encoding="utf-8")
     QgsProject.instance().addMapLayer(QgsVectorLayer(
         f"file://{tmp_path}/list.csv?type=csv&xField=x&yField=y&crs=EPSG:32650", "list", "delimitedtext"))
     window.go(road_maps(QgsProject.instance())[0])
-    assert window.photo.photo.path == tmp_path / "a.jpg"
+    assert window.photo.photo.path == tmp_path / "a.jpg" and window.photo.photo.distance > 5, "the nearer one lies on another computer"

@@ -69,6 +69,18 @@ def test_how_a_missing_package_is_installed_can_be_read(window, monkeypatch):
     assert "pip install laspy" in shown.findChild(QTextEdit).toPlainText()
 
 
+def test_the_last_report_is_that_of_the_last_run_that_wrote_one_and_is_there(qgis_app, monkeypatch, tmp_path):
+    monkeypatch.setattr(run_table, "_runs", [])
+    assert run_table.last_report() == ""
+    report, declaration = tmp_path / "r.HTML", SimpleNamespace(title=lambda: "Road map", numbers=[])
+    report.touch()
+    for results in ({"LANES": "memory:x", "REPORT": str(report)}, {"LANES": "lanes.gpkg"}, None):
+        run_table.note_run(declaration, "B12", datetime(2026, 6, 1, 8), results)
+    assert run_table.last_report() == str(report)
+    report.unlink()
+    assert run_table.last_report() == ""
+
+
 def test_the_table_of_the_runs_opens_in_qgis(qgis_app, monkeypatch):
     monkeypatch.setattr(run_table, "_runs", [])
     declaration = SimpleNamespace(title=lambda: "Road map", numbers=[SimpleNamespace(name="L", label="Length (m)")])

@@ -13,7 +13,7 @@ import fiona
 import pytest
 from lanewright.algorithms.catalogue import ALGORITHMS
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
-from lanewright.library import Progress, algorithms, call, command_line, gdal_module, run
+from lanewright.library import Progress, algorithms, call, command_line, measured_lines, run
 
 ROOT = Path(__file__).resolve().parents[2]
 SMALL = {"LENGTH": 20, "PULSE_RATE": 20000}
@@ -106,8 +106,8 @@ def test_what_cannot_work_is_said_in_one_sentence(survey, tmp_path, monkeypatch,
 
 
 def test_without_gdal_rasters_are_refused_with_what_to_install(survey, tmp_path, monkeypatch):
-    find = gdal_module.find_spec
-    monkeypatch.setattr(gdal_module, "find_spec", lambda name: None if name == "osgeo" else find(name))
+    find = measured_lines.find_spec
+    monkeypatch.setattr(measured_lines, "find_spec", lambda name: None if name == "osgeo" else find(name))
     for name, outputs in (("roadmap", {"INTENSITY_IMAGE": tmp_path / "i.tif"}), ("inspectsurvey", {"REPORT": tmp_path / "r.html",
                                                                                             "DENSITY": tmp_path / "d.tif"})):
         with pytest.raises(RoadExtractionError, match=r"raster, which needs GDAL's Python module.*lanewright\[gdal\].*python3-gdal"):
@@ -146,8 +146,8 @@ def test_scanlines_are_refused_before_the_work_where_they_cannot_be_written(surv
     inputs = {"POINT_CLOUDS": [survey / "s.laz"], "TRAJECTORY": survey / "drive.gpkg"}
     with pytest.raises(RoadExtractionError, match="lines with measures. Write a GeoPackage"):
         run("normalizedscanlines", **inputs, SCANLINES=tmp_path / "s.fgb")
-    find = gdal_module.find_spec
-    monkeypatch.setattr(gdal_module, "find_spec", lambda name: None if name == "osgeo" else find(name))
+    find = measured_lines.find_spec
+    monkeypatch.setattr(measured_lines, "find_spec", lambda name: None if name == "osgeo" else find(name))
     with pytest.raises(RoadExtractionError, match="Normalized scanlines are lines with measures, which needs GDAL's"):
         run("normalizedscanlines", **inputs, SCANLINES=tmp_path / "s.gpkg")
 
@@ -175,7 +175,8 @@ def test_json_holds_the_results_or_the_reason_of_a_failure(survey, tmp_path, cap
 
 
 @pytest.mark.parametrize("arguments, says", [
-    (["roadmaps"], "There is no algorithm roadmaps"), (["roadmap", "--NO=1"], "Unrecognized arguments: --NO=1. Try: lanewright roadmap --help"),
+    (["roadmaps"], "There is no algorithm roadmaps"), (["list", "--json=1"], "Argument --json: ignored explicit argument"),
+    (["roadmap", "--NO=1"], "Unrecognized arguments: --NO=1. Try: lanewright roadmap --help"),
     (["fitroadedges"], "was not given and fitroadedges needs it"), (["samplesurvey", "--LENGTH=x", "--POINT_CLOUD=a.laz", "--TRAJECTORY=b.gpkg"],
                                                                     "must be a number from"),
 ])

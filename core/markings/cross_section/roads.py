@@ -13,6 +13,7 @@ from ...common.parallel import check_cancelled, ordered_map
 from ...common.progress import Progress
 from ...countries.neutral import NEUTRAL
 from ...countries.traffic_side import side_of_traffic
+from ...curves.robust import median
 from ...io.crs import horizontal_part, parse_crs, place_on_ground
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
@@ -221,13 +222,18 @@ def _usual_width(known, estimates, usual):
     widths, lengths = [], []
     for number, estimate in estimates.items():
         boundaries, candidates, _ = known[number]
+        lines = boundaries.painted
         for span in lane_spans(estimate):
             check_cancelled()
             rows = slice(candidates.first[span.interval], candidates.last[span.interval] + 1)
-            painted = boundaries.painted[[span.left, span.right]]
+            if span.place:
+                continue
+            painted = lines[[span.left, span.right]]
             edge = [np.mean(boundaries.patterns[row, rows] == PAVEMENT) > 0.5 for row in (span.left, span.right)]
-            if span.place == 0 and (painted | edge).all():
-                width = float(np.nanmedian(boundaries.d[span.left, rows] - boundaries.d[span.right, rows])) / span.count
+            if (painted | edge).all():
+                apart = boundaries.d[span.left, rows] - boundaries.d[span.right, rows]
+                apart = apart[~np.isnan(apart)]
+                width = median(apart) / span.count if len(apart) else np.nan
                 # beside the edge of the pavement a lane may be narrower than the strip
                 widths.append(width if painted.all() else min(width, usual))
                 lengths.append(STATION_STEP * (rows.stop - rows.start))

@@ -78,9 +78,7 @@ class _LineShape:
     wanted: bool   # whether the curve is of the wanted kind, not the automatic one
     s: np.ndarray
     station_to_u: tuple[np.ndarray, np.ndarray]
-    height: Profile   # above the trajectory
-
-    # its height is smoothed as the difference to the trajectory, so that it goes on along the road's slope
+    height: Profile   # above the trajectory, so that it goes on along the road's slope
 
     def u(self, s: np.ndarray) -> np.ndarray:
         """Arc length on the curve at stations s, going on evenly beyond the ends."""
@@ -104,11 +102,8 @@ def _shapes_of_lines(source: NoSource, courses: Sequence[_Course], curve: str, d
     curve, degree : as of MarkingLineSettings
     """
     measured = [(course.x[course.own], course.y[course.own]) for course in courses]
-    fits = _fitted(measured, curve, degree)
-    wanted = [fit is not None for fit in fits]
-    lacking = [k for k, fit in enumerate(fits) if fit is None]
-    for k, fit in zip(lacking, fit_curves([measured[k] for k in lacking])):
-        fits[k] = fit
+    fitted = [(fit, True) for fit in fit_curves(measured)] if curve == "automatic" else [_fitted(x, y, curve, degree) for x, y in measured]
+    fits, wanted = (list(parts) for parts in zip(*fitted))
     # splines once more with the guides, which are no measurements and count in no choice
     curved = [k for k, fit in enumerate(fits) if fit.curve.kind == "b-spline"]
     along, guesses = [courses[k].along for k in curved], [None] * len(courses)
@@ -143,8 +138,7 @@ def _courses(selected, road, trend, edges, track_height):
     places = [_places(chosen.line, trend, edges, chosen.span) for chosen in selected]
     if not places:
         return []
-    s, d = (np.concatenate(parts) for parts in list(zip(*places))[:2])
-    own = np.concatenate([own for _, _, own, _ in places])
+    s, d, own = (np.concatenate(parts) for parts in list(zip(*places))[:3])
     bounds = np.cumsum([len(stations) for stations, *_ in places])[:-1]
     track = np.split(track_height(s[own]), np.cumsum([len(z) for *_, z in places])[:-1])
     return [_Course(of_s, x, y, _along(road, of_s, of_d), of_own, z - below)
@@ -164,17 +158,12 @@ def _places(line, trend, edges, span):
     return np.concatenate([s, guide_s])[order], np.concatenate([d, guide_d])[order], order < len(s), z
 
 
-def _fitted(places, curve, degree):
-    """Fits to a list of (x, y), None where the wanted curve cannot be taken."""
-    if curve == "automatic":
-        return fit_curves(places)
-    fits = []
-    for x, y in places:
-        try:
-            fits.append(fit_curve(x, y, curve, degree))
-        except RoadExtractionError:
-            fits.append(None)
-    return fits
+def _fitted(x, y, curve, degree):
+    """The fit of the wanted curve, or the automatic one of places that cannot take it, and whether it is the wanted one."""
+    try:
+        return fit_curve(x, y, curve, degree), True
+    except RoadExtractionError:
+        return fit_curve(x, y), False
 
 
 def _guides(s, d, trend, edges, span):

@@ -318,7 +318,7 @@ def _scanning_distance(records, line, frame):
 
 # The phases: what is computed of some clusters or windows apart from all others; their items hold the columns that they need.
 
-TASK_POINTS = 20_000   # derived: of paint, that a worker process is given together at least: about a tenth of a second of its time
+TASK_POINTS = 20_000   # derived: of paint, that a worker process is given together on average: about a tenth of a second of its time
 PHASE_POINTS = 500_000   # derived: of paint, whose columns are held for tasks at a time
 
 
@@ -436,7 +436,7 @@ class ApartWork:
         batches, results = _cuts(bounds, PHASE_POINTS), []
         for begin, end in zip(batches[:-1].tolist(), batches[1:].tolist()):
             batch_bounds = bounds[begin:end + 1]
-            cuts = _cuts(batch_bounds, TASK_POINTS)
+            cuts = _lasting_cuts(batch_bounds, TASK_POINTS)
             batch_columns = columns(begin, end)
             items = [_item(batch_columns, batch_bounds[a:b + 1] - batch_bounds[0], None if looks is None else list(looks[begin + a:begin + b]))
                      for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist())]
@@ -449,6 +449,17 @@ def _cuts(bounds, points):
     """Ascending numbers of clusters, from the first to the end, with so many points between two of them at least."""
     total = bounds[-1] - bounds[0]
     return np.unique(np.r_[0, np.searchsorted(bounds - bounds[0], np.arange(points, total, points)), len(bounds) - 1])
+
+
+def _lasting_cuts(bounds, points):
+    """The same with so many points on average: a cut lies where the sizes of the clusters beside it say so, whatever comes before them.
+
+    What is asked of a task is then remembered where other clusters changed.
+    """
+    size = np.diff(bounds).astype(np.uint64)
+    # a hash of two sizes is below a share of its range in as many cases: Knuth's multiplicative one, by 2**32 over the golden ratio
+    mixed = (size[1:] * np.uint64(31) + size[:-1]) * np.uint64(2654435761) % np.uint64(2**32)
+    return np.unique(np.r_[0, np.flatnonzero(mixed * float(points) < size[1:] * 2.0**32) + 1, len(bounds) - 1])
 
 
 def _columns_at(records, rows, names):

@@ -20,7 +20,7 @@ from ..weights import GROUPS
 
 LINKING_WINDOW_CELLS = 1250   # derived: cells of 4 cm: 50 m of station are linked at a time
 LINKING_COLUMNS = ("s", "d", "spacing", "half_width")   # of a point, that linking looks at
-LINKED_POINTS = 50_000   # derived: of paint, that are linked together at least: about 50 ms
+LINKED_POINTS = 50_000   # derived: of paint, that are linked together at most, on average: about 50 ms
 PHASE_POINTS = 500_000   # derived: of paint, whose columns are held for tasks at a time
 # of a point of paint that clustering looks at
 PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
@@ -63,19 +63,21 @@ def _linked_windows(marking_points, road, distance, progress, executor):
     """What `links_of_windows` finds in each window of a road, in their order."""
     phase = Phase(links_of_windows, NoSource(), (distance,), lambda item: f"markings of road {road}")
     first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in marking_points.store.span(road))
-    items, size, total, begin = [], LINKED_POINTS, 0, first
+    points = sum(marking_points.store.size(road, number) for number in marking_points.sections(road))
+    # a power of two, so that windows stay together where others change
+    together = 2 ** max(int(np.log2(LINKED_POINTS * (last + 1 - first) / max(points, 1))), 0)
+    items, total, begin = [], 0, first
     for number in range(first, last + 1):
         check_cancelled()
         window = _points_to_link(marking_points, road, distance, number)
-        if size >= LINKED_POINTS:
+        if not items or number % together == 0:
             items.append([])
-            size = 0
         items[-1].append(window)
-        size, total = size + len(window[0]), total + len(window[0])
+        total += len(window[0])
         if total >= PHASE_POINTS or number == last:
             part = progress.part((begin - first) / (last + 1 - first), (number + 1 - first) / (last + 1 - first))
             yield from (links for batch in executor.run(phase, items, part) for links in batch)
-            items, size, total, begin = [], LINKED_POINTS, 0, number + 1
+            items, total, begin = [], 0, number + 1
 
 
 def _points_to_link(marking_points, road, distance, number):

@@ -18,6 +18,7 @@ from numpy.polynomial import Polynomial
 
 from ...common.arrays import ROUNDING_TOLERANCE, linked_groups, stretch_of
 from ...common.parallel import check_cancelled
+from ...curves.robust import median, percentiles
 from ..weights import CURBS
 from .corners import CurbSteps
 from .curb_limits import CurbLimits
@@ -133,9 +134,9 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
 def _as_curb(steps, members, length, limits):
     """A dense chain as StepChain, and 2 where it is a curb by itself, 1 where it is one if it continues another, else 0."""
     s = steps.s[members]
-    height, noise, scanner_noise = (np.median(v[members]) for v in (steps.height, steps.noise, steps.scanner_noise))
+    height, noise, scanner_noise = (median(v[members]) for v in (steps.height, steps.noise, steps.scanner_noise))
     # blur widens a face and never narrows it, so the sharper profiles show its width
-    slope = np.arctan2(height, max(np.quantile(steps.run[members], 0.3) - 2 * scanner_noise, 0.0))
+    slope = np.arctan2(height, max(percentiles(steps.run[members], (30.0,))[0] - 2 * scanner_noise, 0.0))
     least, scatter = limits.clear_height, _chain_scatter(s, steps.u[members])
     allowance = min(scanner_noise, CURBS.max_noise_allowance * least) if scanner_noise > CURBS.noisy_share * least else 0.0
     chain = StepChain(members, float(s[0]), float(s[-1]), bool(height < least - allowance), bool(slope < limits.clear_slope), scatter)
@@ -162,7 +163,7 @@ def is_clean(noise: float, scanner_noise: float, behind: np.ndarray, scatter: fl
 def is_road(roughness: np.ndarray) -> bool:
     """Is ground as even as a road? `roughness` : (N,) of places on it in units of the road's, NaN where it is not known."""
     known = roughness[np.isfinite(roughness)]
-    return not len(known) or bool(np.median(known) <= CURBS.max_road_ratio)
+    return not len(known) or median(known) <= CURBS.max_road_ratio
 
 
 def _continuing(chains, weak, steps):
@@ -283,7 +284,8 @@ class _Paths:
         cost = CURBS.jump_cost * jump + CURBS.climb_cost * climb
         costly = np.flatnonzero((jump > 0.0) & (known != c))
         if self.look is not None and len(costly):
-            cost[costly] = np.fmin(cost[costly], self._across_the_road(np.minimum(a, self.ends[known]), *at.T, a, u, h, gap, jump)[costly])
+            cost[costly] = np.fmin(cost[costly], self._across_the_road(np.minimum(a, self.ends[known[costly]]), *at[costly].T, a, u, h,
+                                                                       gap[costly], jump[costly]))
         cost = np.where(known == c, 0.0, np.minimum(cost, CURBS.max_jump_cost))
         # beside the end of one method's chain another method goes on only where that is worth the change
         cost[(self.method[known] != self.method[c]) & (gap <= CURBS.max_link_length)] += CURBS.method_change_cost
@@ -481,7 +483,7 @@ def pieces_between(before: CurbSteps, after: CurbSteps, others: _StepsByStation,
     if len(rows) < CURBS.min_piece_steps:
         return []
     line = GapLine(np.array(to_plan(before.s, before.u)), np.array(to_plan(after.s, after.u)))
-    (s0, h0, height0), (s1, h1, height1) = ([np.median(v) for v in (end.s, end.h, end.height)] for end in (before, after))
+    (s0, h0, height0), (s1, h1, height1) = ([median(v) for v in (end.s, end.h, end.height)] for end in (before, after))
     s = steps.s[rows]
     share = (s - s0) / (s1 - s0)
     off = line.off(*to_plan(s, steps.u[rows]))
@@ -502,11 +504,11 @@ def pieces_between(before: CurbSteps, after: CurbSteps, others: _StepsByStation,
 
 def _is_curb(piece, off, across, height):
     """Is a run of steps near a line a piece of the curb of that line? `off` : m, from the line; `across` : m that it may lead away from it."""
-    ratio = np.median(piece.height / height)
+    ratio = median(piece.height / height)
     s = piece.s - piece.s.mean()
     turn = s @ off / (s @ s)
     return bool(1 / CURBS.max_height_ratio <= ratio <= CURBS.max_height_ratio and abs(turn) * np.ptp(s) <= across
-                and is_clean(np.median(piece.noise), np.median(piece.scanner_noise), piece.behind, np.std(off - turn * s)))
+                and is_clean(median(piece.noise), median(piece.scanner_noise), piece.behind, np.std(off - turn * s)))
 
 
 class GapLine:

@@ -69,6 +69,21 @@ def test_worker_processes_find_what_threads_find(monkeypatch):
     assert found_by(WorkerProcesses(find_interpreter(), 2)) == known
 
 
+def test_where_a_cluster_changes_the_tasks_of_others_stay_as_they_were():
+    """A corrected curb at the beginning of a road changes few tasks of the whole road."""
+    sizes = np.random.default_rng(3).integers(20, 900, 5000)
+
+    def tasks(sizes):
+        cuts = phases._lasting_cuts(np.cumsum([7, *sizes]), 20_000)
+        assert cuts[0] == 0 and cuts[-1] == len(sizes)
+        return [sizes[a:b].tobytes() for a, b in zip(cuts[:-1], cuts[1:])]
+
+    known, changed = tasks(sizes), sizes.copy()
+    changed[10:14] -= 9
+    assert sizes.sum() / 30_000 < len(known) < sizes.sum() / 14_000
+    assert len(set(tasks(changed)) - set(known)) <= 3
+
+
 def test_where_there_is_no_paint_there_is_nothing_to_do():
     empty = np.empty(0, np.int32)
     work = ApartWork(Threads(1), 0)
