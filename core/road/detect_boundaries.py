@@ -167,7 +167,7 @@ def _drawn(found, frame, settings, executor, progress):
     edges, differences = measure_agreement(edges, *(found[method] for method in METHODS), frame)
     lengths = {method: _measured_length(found[method]) for method in METHODS}
     if any(lengths.values()):
-        progress.info(f"Profiles measured {lengths['profiles']:.0f} m of curb and scanlines {lengths['scanlines']:.0f} m; "
+        progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                      f"they lie more than 5 cm apart along {differences.length.sum():.0f} m.")
     return RoadBoundaries(points, edges, differences, lengths)
 
