@@ -28,7 +28,7 @@ class LanewrightPlugin:
         if self.iface is None:
             return
         from .desktop.menu import Menu
-        from .desktop.messages import all_is_there
+        from .desktop.widgets import all_is_there
 
         self.menu = Menu(self.iface)
         all_is_there(self.iface)

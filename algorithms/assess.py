@@ -68,7 +68,7 @@ def _read(source):
     """(AssessedLayer, place of each of its rows among those of the source)."""
     import shapely
 
-    from ..products.assess.inputs import AssessedLayer
+    from ..products.assess.layers import AssessedLayer
 
     layer, indices = AssessedLayer(source.label, [], [], source.crs), []
     for k, (wkb, values) in enumerate(source.rows()):
@@ -81,7 +81,7 @@ def _read(source):
 
 def compared_lines(result, reference, progress):
     """(result, reference, their CRS) of two layers of lines, in one CRS and without stray vertices; refused where they do not overlap."""
-    from ..products.assess.inputs import check_kind, check_overlap, common_crs, in_crs, without_stray_vertices
+    from ..products.assess.layers import check_kind, check_overlap, common_crs, in_crs, without_stray_vertices
 
     for layer in (result, reference):
         check_kind(layer, ("LineString", "Polygon"), tr("lines"))
@@ -96,7 +96,7 @@ def painted_of(call, name, progress):
     import shapely
 
     from ..core.io.crs import in_metres
-    from ..products.assess.inputs import AssessedLayer, polygons_of_raster
+    from ..products.assess.layers import AssessedLayer, polygons_of_raster
 
     source, path, crs = call.painted(name)
     if source is not None:
@@ -124,7 +124,7 @@ def area_of(call, crs, warn):
     """The union of AREA's polygons in the CRS; None where it was not given."""
     import shapely
 
-    from ..products.assess.inputs import check_kind, in_crs
+    from ..products.assess.layers import check_kind, in_crs
 
     layer = layer_of(call, "AREA")
     if layer is None:
@@ -147,7 +147,7 @@ def shares_of(numbers, names):
     return ", ".join(shares)
 
 
-BOUNDARY = "products.assess.boundaries:BoundaryAccuracySettings"
+BOUNDARY = "products.assess.lines:BoundaryAccuracySettings"
 
 EDGES = ("automatic", "all", "curbs")
 BOUNDARY_SETTINGS = (
@@ -197,9 +197,8 @@ class AssessBoundaries(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.assess.boundaries import assess_boundaries
-        from ..products.assess.inputs import along_the_road_only, bottoms_only, check_reference, edges_that_compare
-        from ..products.assess.layers import boundary_layer
+        from ..products.assess.layers import along_the_road_only, bottoms_only, boundary_layer, check_reference, edges_that_compare
+        from ..products.assess.lines import assess_boundaries
         from ..products.report.assessment import boundary_report
 
         settings = call.settings(BOUNDARY_SETTINGS, tolerances=tolerances(call))
@@ -301,8 +300,7 @@ class AssessMarkings(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.assess.inputs import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_polygons
-        from ..products.assess.layers import marking_layer
+        from ..products.assess.layers import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_layer, marking_polygons
         from ..products.assess.markings import OutcomeRaster, assess_markings
 
         settings = call.settings(MARKING_SETTINGS, tolerances=tolerances(call))
@@ -351,7 +349,7 @@ def _marking_numbers(accuracy):
     }
 
 
-LINES = "products.assess.driving_lines:LineAccuracySettings"
+LINES = "products.assess.lines:LineAccuracySettings"
 WIDTHS = ("half-width", "total-width")
 
 LINE_SETTINGS = (
@@ -399,9 +397,8 @@ class AssessDrivingLines(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.assess.driving_lines import match_lines
-        from ..products.assess.inputs import check_reference
-        from ..products.assess.layers import driving_line_layer
+        from ..products.assess.layers import check_reference, driving_line_layer
+        from ..products.assess.lines import match_lines
         from ..products.assess.matching import stations_of_match
         from ..products.report.assessment import driving_report
 
@@ -434,7 +431,7 @@ class AssessDrivingLines(Algorithm):
 
 
 def _line_numbers(accuracy, tolerance):
-    from ..products.assess.metrics import f1_of
+    from ..products.assess.matching import f1_of
 
     complete, correct = 100 * accuracy.completeness[tolerance], 100 * accuracy.correctness[tolerance]
     return {

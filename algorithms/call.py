@@ -282,12 +282,7 @@ class Call:
 def run(call, progress):
     """Run the algorithm of a call; its results by name.
 
-    Raises
-    ------
-    RoadExtractionError
-        If there are none, in one sentence on why.
-    Cancelled
-        If the user stopped it.
+    Raises RoadExtractionError if there are none, in one sentence on why. Cancelled if the user stopped it.
     """
     counted = CountedWarnings(progress)
     try:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_EDGES
-from ..core.common.setting import check_limits, setting
+from ..core.common.setting import Limited, setting
 from .algorithm import Algorithm, SettingSpec
 from .call import existing_file
 from .survey_input import road_points_of
@@ -97,8 +97,7 @@ def road_map_source(call, progress):
 
 def lanes_with_borders(call, progress):
     """The same with ways through junctions, and borders that neighbours share."""
-    from ..products.export.inferred_ways import with_inferred_ways
-    from ..products.export.shared_borders import with_shared_borders
+    from ..products.export.shared_borders import with_inferred_ways, with_shared_borders
 
     return with_shared_borders(with_inferred_ways(road_map_source(call, progress)))
 
@@ -154,10 +153,9 @@ class ExportOpenDrive(Algorithm):
         from pathlib import Path
 
         from ..products.export.check.roads import check_opendrive
-        from ..products.export.map_layers import border_misses, driving_line_misses, reference_of_crs
         from ..products.export.opendrive.exporter import draft_opendrive
-        from ..products.export.opendrive.layers import layers_of_opendrive
-        from ..products.export.opendrive.xodr import opendrive_text, read_opendrive
+        from ..products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+        from ..products.export.sources import border_misses, driving_line_misses, reference_of_crs
 
         source = lanes_with_borders(call, progress.part(0.0, 0.2))
         settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
@@ -214,7 +212,7 @@ def _report(call, whole, found, shown, misses, notes):
     return map_export_report(tr("OpenDRIVE map"), call.layer_name("LANES"), facts, tables + fault_table(found), notes, shown)
 
 
-LANELETS = "products.export.lanelet_export:LaneletSettings"
+LANELETS = "products.export.lanelet_map:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
 LANELET_SETTINGS = (
     SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
@@ -250,8 +248,7 @@ class ExportLanelet2(Algorithm):
         from pathlib import Path
 
         from ..products.export.check.lanelets import check_lanelets
-        from ..products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-        from ..products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
+        from ..products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
         from ..products.report.hd_map import map_export_report
 
         source = lanes_with_borders(call, progress.part(0.0, 0.2))
@@ -381,7 +378,7 @@ DRAWN = (("DRIVING_LINES", tr("Driving lines"), "LineStringZ"), ("ROAD_EDGES", t
 
 
 @dataclass(frozen=True)
-class SheetSettings:
+class SheetSettings(Limited):
     """What the user chose; what is "" is filled in by the program."""
 
     title: str = ""
@@ -394,9 +391,6 @@ class SheetSettings:
     scale: str = "automatic"
     profile: bool = True
     section_interval: float = setting(20.0, 0.0, 10_000.0, "Interval of the cross-sections", "m")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
 
 
 SHEET_SETTINGS = (
@@ -479,9 +473,8 @@ class ImportOpenDrive(Algorithm):
         add_map_layers(self)
 
     def work(self, call, progress):
-        from ..products.export.map_layers import crs_of_reference
-        from ..products.export.opendrive.layers import layers_of_opendrive
-        from ..products.export.opendrive.xodr import read_opendrive
+        from ..products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
+        from ..products.export.sources import crs_of_reference
 
         road_map = read_opendrive(map_file(call), progress.part(0.0, 0.5))
         crs, note = crs_of_reference(road_map.reference, call.crs())
@@ -578,8 +571,8 @@ def _is_lanelet2(path):
 
 def _roads(path, crs, progress):
     from ..products.export.check.roads import check_opendrive
-    from ..products.export.map_layers import crs_of_reference
     from ..products.export.opendrive.xodr import read_opendrive
+    from ..products.export.sources import crs_of_reference
 
     whole = read_opendrive(path, progress.part(0.0, 0.4))
     crs, note = crs_of_reference(whole.reference, crs)

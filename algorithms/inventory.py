@@ -44,7 +44,7 @@ def survey_with_borders(call, progress, above_road):
     return survey, BorderLayers(*layers.values())
 
 
-SECTIONS = "products.inventory.settings:CrossSectionSettings"
+SECTIONS = "products.inventory.borders:CrossSectionSettings"
 ABOVE_SECTIONS = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
 
 SECTION_SETTINGS = (
@@ -131,7 +131,7 @@ def _numbers(table, count):
     return {**counts, **({"LARGEST_RUT": max(ruts)} if ruts else {}), **({"LEAST_CLEARANCE": min(clear)} if clear else {})}
 
 
-ROADSIDE_OF = "products.inventory.settings:RoadsideSettings"
+ROADSIDE_OF = "products.inventory.borders:RoadsideSettings"
 ABOVE_ROADSIDE = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
 
 ROADSIDE_SETTINGS = (

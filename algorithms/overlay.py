@@ -10,12 +10,9 @@ from .vector_source import LINE, POINT, POLYGON, vertices_of
 def read_control_point_layer(source, image, crs=""):
     """ControlPoints of a layer.
 
-    Parameters
-    ----------
     source : VectorSource, points with the fields pixel and line, or a table
     image : SourceImage that the points belong to
     crs : WKT where the layer carries none
-
     Raises RoadExtractionError if the layer holds lines or polygons, or lacks a field.
     """
     from ..products.overlay.control_points import control_points
@@ -90,9 +87,9 @@ class ProposeControlPoints(Algorithm):
 
     def work(self, call, progress):
         from ..core.io.geotiff import IntensityImage
+        from ..products.overlay.control_points import open_image
         from ..products.overlay.matching.propose import propose_control_points
         from ..products.overlay.rough_place import rough_place
-        from ..products.overlay.source_image import open_image
         from ..products.report.overlay import proposed_points_report
 
         image = open_image(call.raster("IMAGE"))
@@ -191,9 +188,8 @@ class GeoreferenceImage(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.overlay.georeference import georeference, residual_vectors
-        from ..products.overlay.source_image import open_image
-        from ..products.overlay.warp import draw_image
+        from ..products.overlay.control_points import open_image
+        from ..products.overlay.georeference import draw_image, georeference, residual_vectors
         from ..products.report.overlay import georeferencing_report
 
         image = open_image(call.raster("IMAGE"))

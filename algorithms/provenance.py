@@ -199,8 +199,6 @@ def sign_report(path: str, facts: Callable[[], list[tuple[str, str]]]) -> None:
 def run_facts(algorithm: Algorithm, survey: str, clouds: Sequence[str], crs: str, provenance: Provenance) -> list[tuple[str, str]]:
     """(name, value) of what tells a run from others; names of files without their folders, since a report is handed on.
 
-    Parameters
-    ----------
     algorithm : that ran
     survey : name of the survey
     clouds : paths of its point clouds

@@ -20,12 +20,9 @@ COPC, VIRTUAL = ".copc.laz", ".vpc"
 def cloud_files(given: Iterable[str], label: str) -> list[str]:
     """The files of a survey.
 
-    Parameters
-    ----------
     given : files, virtual point clouds (for the files that they name), folders (their LAS and LAZ files, without those of folders inside; the
         virtual point clouds where there are none) and names with the wildcards * ? [ ]
     label : what messages call the parameter
-
     Returns list of paths, each once, those of a folder or wildcard by name. A file that is named is not looked for. Of a folder or wildcard,
     `a.copc.laz` is left out where `a.laz` or `a.las` is among it, and `a-overview.copc.laz` where `a.vpc` is: QGIS makes such copies of clouds
     that it shows, and no point shall count twice.

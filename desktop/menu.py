@@ -10,14 +10,13 @@ from qgis.PyQt.QtWidgets import QMenu
 from ..core.pipeline.kept_run import WINDOW
 from ..processing_provider.results.layer_tree import NAMES_ONLY, REPLACES_LAST_RUN
 from ..processing_provider.results.road_maps import clouds_of, road_maps
-from ..processing_provider.results.run_table import last_report, last_run
+from ..processing_provider.results.runs import last_report, last_run
 from ..processing_provider.texts import tr
+from .background import SampleRun
 from .layout.shown import sheet_values
 from .manual import ManualWindow
-from .messages import all_is_there
 from .runs_window import RunsWindow
-from .sample_run import SampleRun
-from .widgets import say
+from .widgets import all_is_there, say
 
 PROVIDER = "lanewright"
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"

@@ -9,7 +9,7 @@ from qgis.PyQt.QtCore import Qt, QUrl
 from qgis.PyQt.QtGui import QDesktopServices
 from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QTableWidget, QTableWidgetItem, QTabWidget, QVBoxLayout, QWidget
 
-from ..processing_provider.results.run_table import run_table, run_tables
+from ..processing_provider.results.runs import run_table, run_tables
 from ..processing_provider.texts import tr
 
 SIZE = (1000, 420)  # px

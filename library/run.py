@@ -31,21 +31,13 @@ def algorithm_named(name):
 def run(name, progress=None, **parameters):
     """Run an algorithm on files, as QGIS Processing would.
 
-    Parameters
-    ----------
     name : the algorithm's id, such as "roadmap"; with or without "lanewright:" before it
     progress : Progress that listens, and may raise Cancelled
     parameters : by the names of the algorithm's parameters. Files and layers are paths, one layer of a GeoPackage is `map.gpkg|layername=lanes`;
         POINT_CLOUDS is a list. Outputs that are not named are not made; what is not given keeps its default.
-
     Returns dict, name of each result to its path or number
-
-    Raises
-    ------
-    RoadExtractionError
-        If a parameter is wrong or the data cannot be worked with; no result is written then.
-    Cancelled
-        If `progress` said so; no result is written then.
+    Raises RoadExtractionError if a parameter is wrong or the data cannot be worked with; no result is written then. Cancelled if `progress` said
+    so; no result is written then.
     """
     progress = progress or Progress()
     return run_call(FileCall(algorithm_named(name), parameters, progress), progress)

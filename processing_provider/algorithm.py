@@ -22,13 +22,12 @@ from ..algorithms.catalogue import toolbox_number
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.parallel import lack_of_memory
 from ..core.io.local_files import offline
-from .call import QgisCall
+from .call import FeedbackProgress, QgisCall
 from .dependencies import missing_packages
 from .input_files import asks_servers, check_files
 from .parameters import qgis_parameter, retired_parameter
-from .progress import FeedbackProgress
 from .results.road_maps import road_map_of
-from .results.run_table import note_run
+from .results.runs import note_run
 from .texts import told, tr
 
 ICONS = Path(__file__).resolve().parents[1] / "resources" / "icons"

@@ -1,4 +1,4 @@
-"""One run of an algorithm in QGIS: its parameters, layers and destinations."""
+"""One run of an algorithm in QGIS: its parameters, layers, destinations and progress."""
 
 from pathlib import Path
 
@@ -13,18 +13,17 @@ from qgis.core import (
     QgsVectorFileWriter,
 )
 
-from ..algorithms.call import Call, existing_file
+from ..algorithms.call import Call, existing_file, time_left
 from ..algorithms.destinations import at_path, destination_path
 from ..algorithms.vector_source import crs_to_write
-from ..core.common.errors import RoadExtractionError
-from .database import add_tables
-from .embedded_style import embed_style
-from .input_files import close_database, input_files, layer_file, written_over
+from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.common.progress import Progress, RemainingTime
+from .input_files import add_tables, close_database, input_files, layer_file, written_over
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
 from .results.layer_tree import NAMES_ONLY
 from .results.runs import run_of
-from .styling import style_on_load
-from .texts import tr
+from .styling import embed_style, style_on_load
+from .texts import told, tr
 
 READERS = {"number": "parameterAsDouble", "whole": "parameterAsInt", "flag": "parameterAsBool", "choice": "parameterAsEnumString"}
 
@@ -205,3 +204,30 @@ class QgisCall(Call):
         redirected = QgsProcessingOutputLayerDefinition(output)
         redirected.sink = QgsProperty.fromValue(value)
         return redirected
+
+
+# QGIS's progress bar and log as the listener that the core speaks to.
+
+class FeedbackProgress(Progress):
+    """Moves the bar, prints, tells how long it will still take, and raises Cancelled once the user pressed Cancel."""
+
+    def __init__(self, feedback, remaining=None):
+        self.feedback = feedback
+        self._remaining = remaining or RemainingTime()
+
+    def check_cancelled(self):
+        if self.feedback.isCanceled():
+            raise Cancelled
+
+    def report(self, fraction):
+        self.check_cancelled()
+        self.feedback.setProgress(100.0 * fraction)
+        left = self._remaining.after(fraction)
+        if left is not None:
+            self.feedback.setProgressText(time_left(left))
+
+    def info(self, text):
+        self.feedback.pushInfo(told(text))
+
+    def warn(self, text):
+        self.feedback.pushWarning(told(text))

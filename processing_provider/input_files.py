@@ -1,4 +1,4 @@
-"""Which files a run reads, so that none of them is written over."""
+"""Which files a run reads, so that none of them is written over; and tables put into a database that programs have open."""
 
 import os
 from pathlib import Path
@@ -6,7 +6,9 @@ from pathlib import Path
 from qgis.core import QgsDataSourceUri, QgsMapLayer, QgsProcessingFeatureSourceDefinition, QgsProcessingUtils, QgsProviderRegistry
 
 from ..algorithms.destinations import destination_path
-from ..core.io.local_files import check_local
+from ..core.common.errors import RoadExtractionError
+from ..core.io.local_files import check_local, gdal_exceptions
+from .texts import tr
 
 OPENED_BY_QGIS = ("source", "vector", "raster", "layer")
 READ = ("source", "vector", "raster", "layer", "multilayer", "file", "pointcloud")
@@ -111,3 +113,26 @@ def _first_table(path):
     """The table that is read where a database is named alone."""
     tables = QgsProviderRegistry.instance().querySublayers(str(path))
     return tables[0].name() if tables else ""
+
+
+# Tables of one GeoPackage put into another that stays where it is, since programs have it open.
+
+def add_tables(written, path):
+    """Put all tables of a database into another, in one transaction: whatever ends the program leaves those of before or these.
+
+    Tables of the same names are replaced. Programs that have the database open, this QGIS too, read the new tables from then on.
+
+    written, path : Path
+    Raises RoadExtractionError if another program keeps the database locked, or there is no room; then the tables of before stand.
+    """
+    from osgeo import gdal
+
+    try:
+        with gdal_exceptions():
+            target = gdal.OpenEx(str(path), gdal.OF_VECTOR | gdal.OF_UPDATE)
+            # one transaction from the first table to the last, and none in between
+            gdal.VectorTranslate(target, str(written), accessMode="overwrite", options=["-preserve_fid", "-gt", "unlimited"])
+            target = None
+    except RuntimeError as problem:
+        raise RoadExtractionError(
+            tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?").format(reason=problem)) from problem

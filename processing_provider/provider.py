@@ -1,13 +1,13 @@
-"""Lanewright in the Processing toolbox."""
+"""Lanewright in the Processing toolbox: its algorithms and models."""
 
 from pathlib import Path
 
-from qgis.core import QgsApplication, QgsProcessingProvider
+from qgis.core import Qgis, QgsApplication, QgsProcessingModelAlgorithm, QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
 from ..algorithms.catalogue import ALGORITHMS
 from .algorithm import LanewrightAlgorithm
-from .models import read_model
+from .texts import tr
 
 RESOURCES = Path(__file__).resolve().parents[1] / "resources"
 
@@ -38,3 +38,93 @@ class LanewrightProvider(QgsProcessingProvider):
                 self.addAlgorithm(model)
                 # by which scripts and models called it before ids had no spaces
                 QgsApplication.processingRegistry().addAlgorithmAlias(f"{self.id()}:{OLD_NAMES.get(model.name(), '')}", f"{self.id()}:{model.name()}")
+
+
+# The models that come along, as the toolbox lists them: their inputs and results explained in the words of their stages.
+
+MANUAL_PAGE = "lanewright:models"
+
+
+class LanewrightModel(QgsProcessingModelAlgorithm):
+    """A model of the plugin: its id has no spaces, its title is in the user's language."""
+
+    def createInstance(self):
+        model = LanewrightModel()
+        model.loadVariant(self.toVariant())
+        return model
+
+    def name(self):
+        return model_id(super().name())
+
+    def displayName(self):
+        return tr(super().name())
+
+    def createCustomParametersWidget(self, parent=None):
+        from ..desktop.dialogs.algorithm_dialog import LanewrightDialog
+
+        return LanewrightDialog(self, self.displayName(), parent)
+
+
+def model_id(title):
+    """The id of a model: "Road map stages" -> "roadmapstages"."""
+    return "".join(letter for letter in title.lower() if letter.isalnum())
+
+
+def read_model(path):
+    """The model of a .model3; None where QGIS cannot read it."""
+    model = LanewrightModel()
+    if not model.fromFile(str(path)):
+        return None
+    explain(model)
+    return model
+
+
+def explain(model):
+    """Give a model the labels, the help and the widgets of the parameters it hands its own on to.
+
+    Those texts are written once, on the parameters of the stages, and are translated there.
+    Results keep their names: a model's results are called by them.
+    """
+    texts = model.helpContent()
+    texts["ALG_DESC"] = tr(texts.get("ALG_DESC", ""))
+    texts["HELP_URL"] = MANUAL_PAGE
+    for name, parameter in asked_for(model).items():
+        texts[name] = parameter.help()
+        definition = model.parameterDefinition(name).clone()
+        definition.setDescription(parameter.description())
+        definition.setHelp(parameter.help())
+        definition.setMetadata(parameter.metadata())  # which names the widget of the dialog
+        model.updateModelParameter(definition)
+    texts.update(handed_back(model))
+    model.setHelpContent(texts)
+    for stage in model.childAlgorithms().values():
+        stage.setDescription(tr(stage.description()))  # the boxes in the designer, and the lines of the log
+        model.setChildAlgorithm(stage)
+    model.setGroup(tr("Models"))
+
+
+def asked_for(model):
+    """{input of the model: the parameter it goes to}, of the first stage that takes it."""
+    parameters = {}
+    for child in model.childAlgorithms().values():
+        algorithm = child.algorithm()
+        if algorithm is None:  # before the provider is registered
+            continue
+        for name, sources in child.parameterSources().items():
+            for source in sources:
+                if source.source() == Qgis.ProcessingModelChildParameterSource.ModelParameter:
+                    # a copy: the stage may go before its parameter is asked
+                    parameters.setdefault(source.parameterName(), algorithm.parameterDefinition(name).clone())
+    return parameters
+
+
+def handed_back(model):
+    """{result of the model: help of the stage's result}."""
+    names = {definition.description(): definition.name() for definition in model.destinationParameterDefinitions()}
+    help_by_result = {}
+    for child in model.childAlgorithms().values():
+        algorithm = child.algorithm()
+        if algorithm is not None:
+            for output in child.modelOutputs().values():
+                help_by_result[names[output.description()]] = algorithm.parameterDefinition(output.childOutputName()).help()
+    return help_by_result

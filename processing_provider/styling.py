@@ -1,59 +1,43 @@
-"""Names, order, group and style of the layers a run puts into the project."""
+"""Names, order, group and styles of the layers a run puts into the project or into files."""
 
+from __future__ import annotations
+
+import json
 from pathlib import Path
 
 from qgis.core import (
+    Qgis,
+    QgsApplication,
+    QgsCategorizedSymbolRenderer,
     QgsContrastEnhancement,
+    QgsDataSourceUri,
+    QgsGraduatedSymbolRenderer,
     QgsProcessingLayerPostProcessorInterface,
+    QgsProviderConnectionException,
+    QgsProviderRegistry,
     QgsRasterLayer,
     QgsRasterMinMaxOrigin,
+    QgsRendererCategory,
+    QgsRendererRange,
+    QgsRuleBasedRenderer,
     QgsSingleBandGrayRenderer,
+    QgsSymbol,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtXml import QDomDocument
 
-from .results.attributes import explain_attributes
+from ..algorithms.destinations import destination_path
+from .results.attributes import WORDS, explain_attributes
 from .results.layer_tree import place_layer
-from .results.ready_styles import add_ready_styles, load_look
+from .results.origin import describe_origin
 from .results.runs import GROUP
+from .texts import tr
 
 STYLES = Path(__file__).resolve().parents[1] / "resources" / "styles"
 
 # Output name -> (style, place in the group: small is drawn below)
-LOOKS = {
-    "INTENSITY_IMAGE": ("intensity_image", 10),
-    "DENSITY": ("density", 11),
-    "ROAD_SURFACE": ("road_surface", 20),
-    "SCANLINES": ("scanlines", 25),
-    "MARKINGS": ("markings", 30),
-    "TRUTH_MARKINGS": ("truth_markings", 31),
-    "MARKING_LINES": ("marking_lines", 40),
-    "CROSS_SECTIONS": ("cross_sections", 45),
-    "ROADSIDE": ("roadside", 55),
-    "ROADSIDE_OBJECTS": ("roadside_objects", 61),
-    "ROAD_EDGES": ("road_edges", 50),
-    "BOUNDARIES": ("road_edges", 52),
-    "TRUTH_BOUNDARIES": ("truth_boundaries", 51),
-    "CURB_POINTS": ("curb_points", 60),
-    "DRIVING_LINES": ("driving_lines", 70),
-    "TRUTH_DRIVING_LINES": ("truth_driving_lines", 71),
-    "TRUTH_SURFACE": ("truth_surface", 21),
-    "LANES": ("lanes", 23),
-    "TRUTH_LANES": ("truth_lanes", 22),
-    "TRUTH_ROADSIDE": ("truth_roadside", 56),
-    "TRAJECTORY": ("trajectory", 80),
-    "PASSES": ("passes", 65),
-    "CORRECTIONS": ("corrections", 95),
-    "ASSESSED_CELLS": ("assessed_cells", 15),
-    "ASSESSED_POLYGONS": ("assessed_polygons", 35),
-    "ASSESSED_LINES": ("assessed_lines", 75),
-    "OUTPUT": ("trajectory", 80),
-    "ORTHOIMAGE": (None, 8),
-    "UAV_IMAGE": (None, 7),
-    "RESIDUALS": ("residuals", 90),
-    "FINDINGS": ("findings", 92),
-    "UAV_GCPS": ("control_points", 89),
-    "CONTROL_POINTS": ("proposed_points", 89),
-}
+LOOKS = json.loads((STYLES / "looks.json").read_text(encoding="utf-8"))
 TABLES = 5  # tables lie below what is drawn
 
 
@@ -109,3 +93,150 @@ def style_on_load(name, dest, title, context, schema=(), run=None):
     details.layerSortKey = order
     qml = STYLES / f"{look}.qml"
     details.setPostProcessor(Styler.make(qml, schema, name, run))
+
+
+# Looks of a layer: the road plan at first; by class, by status, by confidence and by uncertainty to switch to.
+
+STATUS = (("measured", "#1a9850"), ("bridged", "#fdae61"), ("inferred", "#d73027"), ("occluded", "#7b3294"), ("grown", "#b8860b"),
+          ("accepted", "#4393c3"), ("drawn", "#2166ac"))
+CONFIDENCE = ((0.0, 0.5, "#d73027"), (0.5, 0.8, "#fdae61"), (0.8, 1.0, "#1a9850"))
+UNCERTAINTY = ((0.0, 0.02, "#1a9850"), (0.02, 0.05, "#a6d96a"), (0.05, 0.15, "#fdae61"), (0.15, 100.0, "#d73027"))   # m, one sigma
+LINE_WIDTH = 0.7  # mm
+
+
+def load_look(layer, qml):
+    """Give a layer the look of a QML file, with its legend in the user's language: the styles are written in English."""
+    # loadNamedStyle would look into the layer's database first and bring yesterday's style back
+    document = QDomDocument()
+    document.setContent(Path(qml).read_text(encoding="utf-8"))
+    layer.importNamedStyle(document)
+    if not isinstance(layer, QgsVectorLayer):
+        return
+    renderer = layer.renderer()
+    if isinstance(renderer, QgsCategorizedSymbolRenderer):
+        for number, category in enumerate(renderer.categories()):
+            renderer.updateCategoryLabel(number, tr(category.label()))
+    elif isinstance(renderer, QgsRuleBasedRenderer):
+        for rule in renderer.rootRule().descendants():
+            rule.setLabel(tr(rule.label()))
+    layer.rendererChanged.emit()  # a layer tree that shows the layer already reads its legend again
+
+
+def add_ready_styles(layer: QgsVectorLayer, qml: str) -> None:
+    """Further styles beside the one that a layer has, which stays in force: by class where that one is the road plan, and by fields it has.
+
+    qml : file of the style in force; the folder `by_class` beside it holds the same layer by class
+    """
+    names = {field.name() for field in layer.fields()}
+    looks = (("status", tr("By status"), _by_status), ("confidence", tr("By confidence"), _by_confidence),
+             ("sigma_m", tr("By uncertainty"), _by_uncertainty))
+    further = [(title, renderer) for field, title, renderer in looks if field in names]
+    by_class = Path(qml).parent / "by_class" / Path(qml).name
+    manager = layer.styleManager()
+    if not further and not by_class.exists() or len(manager.styles()) > 1 or not layer.isSpatial():
+        return
+    in_force = tr("Road plan") if by_class.exists() else tr("By class")
+    manager.renameStyle(manager.currentStyle(), in_force)
+    if by_class.exists():
+        manager.addStyleFromLayer(tr("By class"))
+        manager.setCurrentStyle(tr("By class"))
+        layer.setScaleBasedVisibility(False)
+        layer.setLabelsEnabled(False)
+        load_look(layer, by_class)
+    for name, renderer in further:
+        manager.addStyleFromLayer(name)
+        manager.setCurrentStyle(name)
+        layer.setRenderer(renderer(layer))
+    manager.setCurrentStyle(in_force)
+
+
+def _by_status(layer):
+    statuses = layer.uniqueValues(layer.fields().lookupField("status"))
+    return QgsCategorizedSymbolRenderer("status", [QgsRendererCategory(value, _symbol(layer, colour), WORDS["status"][value])
+                                                   for value, colour in STATUS if value in statuses or not statuses])
+
+
+def _by_confidence(layer):
+    return QgsGraduatedSymbolRenderer("confidence", [QgsRendererRange(low, high, _symbol(layer, colour), f"{low:g} – {high:g}")
+                                                     for low, high, colour in CONFIDENCE])
+
+
+def _by_uncertainty(layer):
+    return QgsGraduatedSymbolRenderer("sigma_m", [
+        QgsRendererRange(low, high, _symbol(layer, colour), f"{100 * low:g} – {100 * high:g} cm" if high < 100 else f"> {100 * low:g} cm")
+        for low, high, colour in UNCERTAINTY])
+
+
+def _symbol(layer, colour):
+    symbol = QgsSymbol.defaultSymbol(layer.geometryType())
+    symbol.setColor(QColor(colour))
+    if layer.geometryType() == Qgis.GeometryType.Line:
+        symbol.setWidth(LINE_WIDTH)
+    return symbol
+
+
+# Styles that travel with a result, so that a file made without a window opens styled anywhere.
+
+NAME = "default"
+POSTGIS = "postgres://"
+
+
+def embed_style(name, dest, title, schema=(), provenance=None):
+    """Give the result `dest` of the output `name` its style, and the note of where it comes from: in the database, or beside the raster.
+
+    Other formats have no room for one. A style that cannot be kept costs a look, not the result, so nothing is raised.
+    """
+    path = destination_path(dest)
+    look, _ = LOOKS.get(name, (None, None))
+    qml = STYLES / f"{look}.qml"
+    if dest.startswith(POSTGIS):
+        _in_the_database(QgsVectorLayer(dest.removeprefix(POSTGIS), title, "postgres"), title, qml, schema, name, provenance)
+    if path is None or look is None or not qml.exists():
+        return
+    if path.suffix.lower() in (".tif", ".tiff"):
+        _beside_the_raster(path, qml)
+    elif path.suffix.lower() == ".gpkg":
+        _in_the_database(QgsVectorLayer(_layer_uri(dest, path), title, "ogr"), title, qml, schema, name, provenance)
+
+
+def _beside_the_raster(path, qml):
+    layer = QgsRasterLayer(str(path), path.stem)
+    if layer.isValid():
+        apply_style(layer, qml)
+        layer.saveNamedStyle(str(path.with_suffix(".qml")))  # QGIS looks for it under this name
+
+
+def _in_the_database(layer, title, qml, schema, output, provenance):
+    if not layer.isValid():
+        return
+    if provenance is not None and layer.providerType() == "postgres":
+        _comment_on_table(layer, "\n".join(provenance.history(output)))
+    elif provenance is not None:
+        describe_origin(layer, provenance, output)
+        layer.saveDefaultMetadata()  # into the package
+    apply_style(layer, qml, schema, output)
+    # The style of an earlier run into the same table would win
+    count, ids, names, _, _ = layer.listStylesInDatabase()
+    for number in range(max(count, 0)):
+        if names[number] == NAME:
+            layer.deleteStyleFromDatabase(ids[number])
+    save = getattr(layer, "saveStyleToDatabaseV2", None) or layer.saveStyleToDatabase
+    save(NAME, title, True, "")
+
+
+def _comment_on_table(layer, text):
+    """What PostgreSQL keeps of a table, and QGIS shows as its abstract. QGIS's own way makes a table of its own in every schema."""
+    uri = QgsDataSourceUri(layer.source())
+    name, quoted = uri.quotedTablename(), text.replace("'", "''")
+    try:
+        connection = QgsProviderRegistry.instance().providerMetadata("postgres").createConnection(uri.connectionInfo(True), {})
+        connection.executeSql(f"COMMENT ON TABLE {name} IS '{quoted}'")
+    except QgsProviderConnectionException as problem:
+        QgsApplication.messageLog().logMessage(str(problem), "Lanewright", Qgis.MessageLevel.Warning, False)
+
+
+def _layer_uri(dest, path):
+    """The layer of a destination as the OGR provider opens it."""
+    if dest.startswith("ogr:"):
+        return f"{path}|layername={QgsDataSourceUri(dest.removeprefix('ogr:')).table()}"
+    return dest if "|" in dest else f"{path}|layername={Path(path).stem}"

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.progress import Progress
-from ..core.common.setting import check_limits, setting
+from ..core.common.setting import Limited, setting
 from ..core.io.crs import check_projected, crs_note, place_raster
 from ..core.io.local_files import gdal_exceptions
 from ..core.survey.blocks import sensor_height_of
@@ -35,14 +35,11 @@ PROFILE_STEP = 2.0         # m driven between the heights of the profile
 
 
 @dataclass(frozen=True)
-class InspectionSettings:
+class InspectionSettings(Limited):
     """Edges of the cells that density is counted in, metres."""
 
     cell_size: float = setting(1.0, 0.05, 100.0, "The density cell", "m")
     cube_size: float = setting(1.0, 0.05, 100.0, "The density cube", "m")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
 
 
 @dataclass

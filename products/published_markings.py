@@ -47,8 +47,6 @@ class IntensityPeaks:
     def paint_of(self, road_points: RoadPoints, road: int, progress: Progress) -> Iterator[Columns]:
         """Yield the records of one road's points that lie on painted lines, window by window; points corrected or not.
 
-        Notes
-        -----
         Profile-based after Chen et al. (2009) as summarised in the driving-line thesis: I(d) of each profile is smoothed by a running median of 5;
         peaks of a minimum prominence and of the width of a line are linked along the road. The numbers, and the rule that a chain needs a peak in
         three of five of its profiles, are our own: they leave a road without paint empty.
@@ -181,8 +179,6 @@ class PointSegments:
     def paint_of(self, road_points: RoadPoints, road: int, progress: Progress) -> Iterator[Columns]:
         """Yield the records of one road's points that are paint, segment row by segment row; points corrected or not.
 
-        Notes
-        -----
         Point-based after Yu et al. (2015) without its learned part (small markings), as summarised in the driving-line thesis: Otsu's threshold
         per segment across the road, then a threshold after Otsu on the counts of neighbours. Our own are the sizes, the rule that leaves a
         segment without paint empty, and the rule that half of the neighbours usual inside of paint are enough, as its rim has no more.

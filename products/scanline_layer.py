@@ -13,7 +13,7 @@ import shapely
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import SCANLINES, Features, Field
 from ..core.common.progress import Progress
-from ..core.common.setting import check_limits, setting
+from ..core.common.setting import Limited, setting
 from ..core.road.scanlines.grid import Scanlines
 from ..core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
 from ..core.survey.frame.road_frame import RoadFrame
@@ -32,16 +32,13 @@ WKB_HEADER = np.dtype([("order", "u1"), ("type", "<u4"), ("count", "<u4")])
 
 
 @dataclass(frozen=True)
-class ScanlineLayerSettings:
+class ScanlineLayerSettings(Limited):
     """How scanlines are written.
 
     simplify : m by which a simplified line may deviate from the measured one; 0 = not simplified
     """
 
     simplify: float = setting(0.002, 0.0, 1.0, "The simplification", "m")
-
-    def __post_init__(self):
-        check_limits(self)
 
 
 def write_scanlines(survey: Survey, settings: ScanlineSettings = ScanlineSettings(), layer: ScanlineLayerSettings | None = None,
@@ -213,13 +210,10 @@ SCANLINE_DIMENSIONS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pas
 
 
 @dataclass(frozen=True)
-class ResamplingSettings:
+class ResamplingSettings(Limited):
     """Points along scanlines."""
 
     spacing: float = setting(0.05, 0.005, 5.0, "The point spacing", "m")   # m between points along a scanline
-
-    def __post_init__(self):
-        check_limits(self)
 
 
 def resample_scanlines(lines: Scanlines, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

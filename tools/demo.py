@@ -92,7 +92,7 @@ def percent(share):
 def accuracy():
     """Print how far the result is from the truth of the sample survey."""
     load()
-    from lanewright.products.assess.driving_lines import compare_lines
+    from lanewright.products.assess.lines import compare_lines
     from lanewright.products.assess.markings import assess_markings
 
     area = road_area()

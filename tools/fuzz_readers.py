@@ -110,9 +110,8 @@ def _trajectories(folder):
 
 
 def _images(folder):
-    from lanewright.products.overlay.control_points import read_control_points
+    from lanewright.products.overlay.control_points import SourceImage, open_image, read_control_points
     from lanewright.products.overlay.rough_place import read_position_tags
-    from lanewright.products.overlay.source_image import SourceImage, open_image
     from osgeo import gdal
 
     def points(path):

@@ -93,7 +93,7 @@ def add_stages(model, stages):
 
 def build(recipe):
     """Write one model; its inputs and results by name."""
-    from lanewright.processing_provider.models import explain
+    from lanewright.processing_provider.provider import explain
     from qgis.core import QgsProcessingModelAlgorithm
 
     model = QgsProcessingModelAlgorithm(recipe.name, GROUP)

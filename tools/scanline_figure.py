@@ -51,7 +51,7 @@ def measure(survey, sample, interval):
     from lanewright.core.road.edges.fit import fit_road_edges
     from lanewright.core.road.scanlines.detect import SurveyScanlines, curbs_from_scanlines
     from lanewright.core.road.scanlines.section_planes import ScanlineSettings
-    from lanewright.products.assess.boundaries import assess_boundaries
+    from lanewright.products.assess.lines import assess_boundaries
 
     edges = fit_road_edges(curbs_from_scanlines(SurveyScanlines(survey, ScanlineSettings(interval=interval))), survey.frame)
     truth, dropped = [], []

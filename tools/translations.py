@@ -18,6 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
 TEMPLATES = ROOT / "products" / "report" / "templates"
 SCHEMAS = ROOT / "core" / "common" / "features.py"
+VOCABULARY, FAULTS = ROOT / "core" / "common" / "words.txt", ROOT / "products" / "export" / "check" / "faults.txt"   # lines of name: text
 FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "products", "simulator", "library")
 FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
 FEWEST_WORDS = 3  # of a phrase of the core that is put into a sentence elsewhere
@@ -28,7 +29,7 @@ NO_SENTENCES = ("products/report", "core/common/features.py", "core/common/texts
 # Patterns, XML, CRSs, names of columns, commands
 NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
                       r"^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit|^SELECT |lanewright [A-Z{l]")
-NAMED = {"FAULTS", "title", "signed"}  # tables and attributes of the core whose shortest texts are shown too
+NAMED = {"title", "signed"}  # attributes of the core whose shortest texts are shown too
 UNSAID = {"_WORDS"}  # tables of the core that hold what other software says
 # Texts that stand in a class or a table and are translated where they are shown
 IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS", "CHOICES"}
@@ -46,6 +47,8 @@ def texts():
             found.setdefault(text, path.relative_to(ROOT).as_posix())
     for text in aliases():
         found.setdefault(text, SCHEMAS.relative_to(ROOT).as_posix())
+    for _, text in table(VOCABULARY):
+        found.setdefault(text, VOCABULARY.relative_to(ROOT).as_posix())
     for recipe in RECIPES:
         found.setdefault(recipe.name, "tools/models.py")
         found.setdefault(recipe.description, "tools/models.py")
@@ -53,6 +56,11 @@ def texts():
         for text in legend(path):
             found.setdefault(text, path.relative_to(ROOT).as_posix())
     return found
+
+
+def table(path):
+    """(name, text) of every line of a table that is a file."""
+    return [line.split(": ", 1) for line in path.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
 
 
 def texts_of(tree):
@@ -117,6 +125,7 @@ def core_messages():
                 said[text] = file
         if not file.startswith(NO_SENTENCES):
             phrases |= dict.fromkeys(phrases_of(tree), file)
+    phrases |= dict.fromkeys((text for row in table(FAULTS) for text in row), FAULTS.relative_to(ROOT).as_posix())
     return {**said, **{text: file for text, file in phrases.items() if text not in said}}
 
 

@@ -22,8 +22,8 @@ def lanes_in_the_image(image_path, control_points):
     """
     from lanewright.core.common.features import Features
     from lanewright.products.overlay.control_points import control_points as points_of
+    from lanewright.products.overlay.control_points import open_image
     from lanewright.products.overlay.georeference import georeference
-    from lanewright.products.overlay.source_image import open_image
     from lanewright.simulator.survey import make_sample_survey
 
     survey = make_sample_survey()
@@ -45,7 +45,7 @@ def _as_seen(places, survey, polynomial):
 
 def comparison(result, reference, truth, area):
     """Lines of text: recall and miscoding within each tolerance, against what the image shows and against the truth."""
-    from lanewright.products.assess.driving_lines import compare_lines
+    from lanewright.products.assess.lines import compare_lines
 
     over_image, exact = (compare_lines(result, lines, TOLERANCES, area=area) for lines in (reference, truth))
     image_alone = compare_lines(reference, truth, TOLERANCES)

@@ -35,7 +35,7 @@ class Limits:
 
 
 def setting(default: Any, minimum: float, maximum: float, name: str, unit: str = "", zero: str = "") -> Any:
-    """A dataclass field of a Settings class with Limits; call `check_limits` in its `__post_init__`."""
+    """A dataclass field of a Settings class with Limits; the class is Limited, or calls `check_limits` in its `__post_init__`."""
     return field(default=default, metadata={_KEY: Limits(minimum, maximum, name, unit, zero)})
 
 
@@ -49,3 +49,10 @@ def check_limits(settings: Any) -> None:
     for entry in fields(settings):
         if _KEY in entry.metadata:
             entry.metadata[_KEY].check(getattr(settings, entry.name))
+
+
+class Limited:
+    """A Settings class that refuses values beyond their limits when it is made."""
+
+    def __post_init__(self) -> None:
+        check_limits(self)

@@ -98,14 +98,10 @@ class Corrections:
 def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "") -> Corrections:
     """Read the layer CORRECTIONS.
 
-    Parameters
-    ----------
     features : Features of points, lines or rows without geometry, in map coordinates. `action` and `target` are needed; a row without
         geometry lies at its `road`, `station_m` and `offset_m`; `note`, `kind` and `pattern` are used where they are
     crs : WKT of the survey; corrections in another CRS are brought there, those that say none are taken to be in it
-
     Returns Corrections
-
     Raises RoadExtractionError if an action or target is unknown, a row has no place, or what is moved or drawn has no line.
     """
     result = Corrections()

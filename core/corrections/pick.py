@@ -61,8 +61,6 @@ class _Mark:
 def pick_line(points: np.ndarray, x: float, y: float, azimuth: float, targets: Sequence[str] = ("edge", "marking")) -> Seen | None:
     """The curb or painted line at a click, followed both ways for as long as it is seen; None where there is none within a metre.
 
-    Parameters
-    ----------
     points : (N, 4) x, y, z and intensity about the click, m
     x, y : of the click
     azimuth : of the road there, degrees clockwise from north; the line may run otherwise

@@ -206,28 +206,40 @@ def _contents(value):
 def read_plain(path: Path) -> Any:
     """The value that `write_plain` wrote.
 
-    Raises OSError if the file cannot be read, is none of these, or ends early.
+    Raises OSError if the file cannot be read, is none of these, or not as it was written.
     """
-    with open(path, "rb") as file:
-        if file.read(len(FORMAT)) != FORMAT:
-            raise OSError(f"{path} is no file of ours")
-        _read_bytes(file, CHECKSUM.size)
-        (length,) = TEXT_LENGTH.unpack(_read_bytes(file, TEXT_LENGTH.size))
-        tree, layouts = json.loads(_read_bytes(file, length))
-        arrays = {f"a{k}": _read_array(file, *layout) for k, layout in enumerate(layouts)}
+    content = _content(path)
+    (length,) = TEXT_LENGTH.unpack_from(content)
+    place = TEXT_LENGTH.size + length
+    tree, layouts = json.loads(content[TEXT_LENGTH.size:place])
+    arrays = {}
+    for k, (kind, shape, last) in enumerate(layouts):
+        dtype = np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
+        if dtype.hasobject:
+            raise TypeError("An array of objects is no plain value.")
+        array = np.ndarray(shape[::-1] if last else shape, dtype, content, place).copy()
+        arrays[f"a{k}"], place = array.T if last else array, place + array.nbytes
     return _value(tree, arrays)
 
 
 def is_whole(path: Path) -> bool:
     """Whether a file is there as `write_plain` wrote it, which it may not be after the power failed."""
     try:
-        with open(path, "rb") as file:
-            if file.read(len(FORMAT)) != FORMAT:
-                return False
-            (check,) = CHECKSUM.unpack(_read_bytes(file, CHECKSUM.size))
-            return checksum(file) == check
+        _content(path)
     except OSError:
         return False
+    return True
+
+
+def _content(path):
+    """What follows the checksum in a file."""
+    with open(path, "rb") as file:
+        if file.read(len(FORMAT)) != FORMAT:
+            raise OSError(f"{path} is no file of ours")
+        check, content = file.read(CHECKSUM.size), file.read()
+    if check != CHECKSUM.pack(zlib.crc32(content)):
+        raise OSError(f"{path} ends early, or was changed")
+    return content
 
 
 def checksum(file: BinaryIO, count: int = -1) -> int:
@@ -238,27 +250,9 @@ def checksum(file: BinaryIO, count: int = -1) -> int:
     return check
 
 
-def _read_bytes(file, count):
-    content = file.read(count) if 0 <= count <= os.fstat(file.fileno()).st_size else b""
-    if len(content) != count:
-        raise OSError(f"{file.name} ends early")
-    return content
-
-
 def _bytes_of(array):
     """(B,) uint8, a view of a contiguous array."""
     return array.reshape(-1).view(np.uint8)
-
-
-def _read_array(file: BinaryIO, kind: Any, shape: list[int], last: bool) -> np.ndarray:
-    """The next array; `last` tells that its last index runs slowest."""
-    dtype = np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
-    if dtype.hasobject:
-        raise TypeError("An array of objects is no plain value.")
-    array = np.empty(shape[::-1] if last else shape, dtype)
-    if array.nbytes and file.readinto(_bytes_of(array)) != array.nbytes:   # type: ignore[attr-defined]
-        raise OSError(f"{file.name} ends early")
-    return array.T if last else array
 
 
 def digest(value: Any, without: str = "") -> str:

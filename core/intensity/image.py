@@ -16,7 +16,7 @@ from ..common.arrays import order_by, quantiles
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ScratchBuffers
 from ..common.progress import Progress
-from ..common.setting import check_limits, setting
+from ..common.setting import Limited, setting
 from ..execution.phase import THREADS, Executor, Phase, digest
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage, new_geotiff
 from ..lazy import cv2
@@ -37,16 +37,13 @@ _thread = threading.local()   # the kernels of each thread
 
 
 @dataclass(frozen=True)
-class ImageSettings:
+class ImageSettings(Limited):
     """How the image is interpolated."""
 
     cell_size: float = setting(0.04, 0.005, 10.0, "The cell size", "m")   # m; paint of 0.15 m survives at 0.04
     power: float = setting(2.0, 0.1, 10.0, "The power of the distance")   # of the distance
     beta: float = setting(0.5, 0.0, 1.0, "The weight of brightness")   # share of the weight that follows brightness; 0 is plain inverse distance
     radius_cells: float = setting(2.0, 0.71, 10.0, "The search radius", "cells")   # search radius, in cells
-
-    def __post_init__(self) -> None:
-        check_limits(self)
 
 
 @dataclass

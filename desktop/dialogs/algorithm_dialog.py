@@ -12,14 +12,12 @@ from qgis.PyQt.QtWidgets import QDialogButtonBox, QInputDialog, QMenu, QTextBrow
 
 from ...algorithms.survey_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
-from ...processing_provider.results.run_table import last_run
+from ...processing_provider.results.runs import last_run
 from ...processing_provider.texts import tr
-from ..messages import tell_result
 from ..review.corrections_layer import SURVEY, corrections_layers
-from ..widgets import button, folder_for_results
+from ..widgets import button, folder_for_results, tell_result
 from .batch_dialog import BatchAlgorithmDialog
-from .database_dialog import DatabaseDialog, database_destinations
-from .destinations import destinations, outputs_by_default
+from .database_dialog import DatabaseDialog, database_destinations, destinations, outputs_by_default
 from .stage_inputs import name_by_survey, presets
 
 PRESETS = "lanewright/presets"

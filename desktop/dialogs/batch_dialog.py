@@ -16,7 +16,7 @@ from ...core.common.errors import RoadExtractionError
 from ...processing_provider.texts import tr
 from ..trajectory_widget import trajectory_beside
 from ..widgets import LAST_INPUT, button, folder_for_results
-from .destinations import destinations, outputs_by_default
+from .database_dialog import destinations, outputs_by_default
 
 CLOUDS = "POINT_CLOUDS"
 PATH_WIDTH = 330  # px

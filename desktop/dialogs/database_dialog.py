@@ -1,14 +1,23 @@
-"""Asks for the place of results in PostGIS: a connection that QGIS knows, a schema, and what the names of the tables begin with."""
+"""Where the results of an algorithm go when they all go to one place: a folder, or PostGIS, whose connection and schema a dialog asks for."""
 
 from __future__ import annotations
 
-from qgis.core import Qgis, QgsDataSourceUri, QgsProcessingAlgorithm, QgsProviderConnectionException, QgsProviderRegistry
+from pathlib import Path
+
+from qgis.core import (
+    Qgis,
+    QgsDataSourceUri,
+    QgsProcessingAlgorithm,
+    QgsProcessingParameterDefinition,
+    QgsProviderConnectionException,
+    QgsProviderRegistry,
+)
 from qgis.gui import QgsProviderConnectionComboBox
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLineEdit, QWidget
 
+from ...algorithms.destinations import table_of
 from ...processing_provider.texts import tr
 from ..widgets import answers, button, wrapped
-from .destinations import outputs_by_default, table_name
 
 PROVIDER = "postgres"
 GEOMETRY = "geom"
@@ -85,3 +94,31 @@ def database_destinations(algorithm: QgsProcessingAlgorithm, connection: str, sc
 def _connection(name):
     """A connection that QGIS keeps."""
     return QgsProviderRegistry.instance().providerMetadata(PROVIDER).createConnection(name)
+
+
+# Where the results of an algorithm go when they all go to one place.
+
+def outputs_by_default(algorithm: QgsProcessingAlgorithm) -> list[QgsProcessingParameterDefinition]:
+    """The results that are made unless one is left out."""
+    return [definition for definition in algorithm.destinationParameterDefinitions() if definition.createByDefault()]
+
+
+def table_name(definition: QgsProcessingParameterDefinition) -> str:
+    """What a result is called in a database, and as a file."""
+    return definition.name().split(":")[-1].lower()
+
+
+def destinations(algorithm: QgsProcessingAlgorithm, folder: str, survey: str = "") -> dict[str, str]:
+    """Where each result goes: layers into one GeoPackage called like the algorithm, other files under their own names.
+
+    Where several surveys share the folder, the GeoPackage is called like the survey, and names of other files begin with that.
+    """
+    result = {}
+    for definition in outputs_by_default(algorithm):
+        table = table_name(definition)
+        if definition.type() == "sink":
+            result[definition.name()] = table_of(Path(folder) / f"{survey or algorithm.name()}.gpkg", table)
+        else:
+            name = f"{survey}_{table}" if survey else table
+            result[definition.name()] = str(Path(folder) / f"{name}.{definition.defaultFileExtension()}")
+    return result

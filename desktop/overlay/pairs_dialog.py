@@ -42,11 +42,10 @@ from ...core.common.errors import RoadExtractionError
 from ...core.io.geotiff import IntensityImage
 from ...processing_provider.results.road_maps import runs_of
 from ...processing_provider.texts import tr
-from ...products.overlay.control_points import REQUIRED_COLUMNS
-from ...products.overlay.matching.placement import highest_order, left_out_residuals
+from ...products.overlay.control_points import REQUIRED_COLUMNS, SourceImage, open_image
+from ...products.overlay.matching.places import highest_order, left_out_residuals
 from ...products.overlay.matching.propose import AMBIGUOUS, AWAY, REPEATS, WEAK
-from ...products.overlay.pair_cutouts import pair_cutouts
-from ...products.overlay.source_image import SourceImage, open_image
+from ...products.overlay.rough_place import pair_cutouts
 from ..background import BackgroundRun
 from ..widgets import answers, button, row, show_extent, wrapped
 

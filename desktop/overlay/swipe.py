@@ -36,7 +36,7 @@ class Swipe(QgsMapTool):
         self.jobs: list[QgsMapRendererParallelJob] = []
         self.halves = _Halves(canvas.viewport())
         canvas.mapCanvasRefreshed.connect(self._draw)
-        canvas.extentsChanged.connect(self.halves.clear)
+        canvas.extentsChanged.connect(self.halves.hide)  # until the maps are drawn at the new place
         QgsProject.instance().layersWillBeRemoved.connect(self._forget)
 
     def begin(self, images: list[QgsMapLayer]) -> None:
@@ -64,7 +64,7 @@ class Swipe(QgsMapTool):
 
     def _ready(self):
         if self.jobs and not any(job.isActive() for job in self.jobs):
-            self.halves.show_images([job.renderedImage() for job in self.jobs], [image.name() for image in self.images])
+            self.halves.show_images([(job.renderedImage(), image.name()) for job, image in zip(self.jobs, self.images)])
 
     def _cancel(self):
         for job in self.jobs:
@@ -100,37 +100,32 @@ class _Halves(QWidget):
     def __init__(self, parent: QWidget):
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.drawn: list[QImage] = []
-        self.names: list[str] = []
+        self.drawn: list[tuple[QImage, str]] = []
         self.at = parent.width() // 2
         self.hide()
 
-    def show_images(self, images: list[QImage], names: list[str]) -> None:
-        self.drawn, self.names = images, names
+    def show_images(self, drawn: list[tuple[QImage, str]]) -> None:
+        """Show two images with their names."""
+        self.drawn = drawn
         self.setGeometry(self.parent().rect())
         self.show()
         self.update()
 
-    def clear(self) -> None:
-        """Until the map is drawn at its new place."""
-        self.hide()
-
     def divide(self, at: int) -> None:
+        """Move the line, pixels from the left."""
         self.at = at
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
-        sides = QRect(0, 0, self.at, self.height()), QRect(self.at, 0, self.width() - self.at, self.height())
-        for image, name, side, alignment in zip(self.drawn, self.names, sides, (Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight)):
+        for (image, name), side in zip(self.drawn, (QRect(0, 0, self.at, self.height()), QRect(self.at, 0, self.width() - self.at, self.height()))):
             painter.setClipRect(side)
             painter.drawImage(0, 0, image)
             room = painter.fontMetrics().boundingRect(name).adjusted(-6, -3, 6, 3)
-            room.moveTopLeft(side.topLeft() if alignment == Qt.AlignmentFlag.AlignLeft else side.topRight() - room.topRight() + room.topLeft())
+            room.moveTo(side.left() if side.left() == 0 else side.right() - room.width(), 0)
             painter.fillRect(room, QColor(255, 255, 255, 200))
             painter.drawText(room, Qt.AlignmentFlag.AlignCenter, name)
         painter.setClipping(False)
-        painter.setPen(QPen(QColor("#ffffff"), 3))
-        painter.drawLine(self.at, 0, self.at, self.height())
-        painter.setPen(QPen(QColor("#202020"), 1))
-        painter.drawLine(self.at, 0, self.at, self.height())
+        for colour, width in (("#ffffff", 3), ("#202020", 1)):
+            painter.setPen(QPen(QColor(colour), width))
+            painter.drawLine(self.at, 0, self.at, self.height())

@@ -9,10 +9,10 @@ from __future__ import annotations
 from ...core.lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "boundaries": ("BoundaryAccuracy", "BoundaryAccuracySettings", "assess_boundaries"),
-    "driving_lines": ("LineAccuracy", "LineAccuracySettings", "LineMatch", "compare_lines", "match_lines"),
-    "inputs": ("AssessedLayer", "polygons_of_raster"),
-    "layers": ("boundary_layer", "driving_line_layer", "marking_layer"),
+    "layers": ("AssessedLayer", "boundary_layer", "driving_line_layer", "marking_layer", "polygons_of_raster"),
+    "lines": (
+        "BoundaryAccuracy", "BoundaryAccuracySettings", "LineAccuracy", "LineAccuracySettings", "LineMatch", "assess_boundaries",
+        "compare_lines", "match_lines"),
     "markings": ("MarkingAccuracy", "MarkingAccuracySettings", "OutcomeRaster", "assess_markings"),
-    "metrics": ("Rates", "f1_of"),
+    "matching": ("Rates", "f1_of"),
 })

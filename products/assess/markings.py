@@ -15,7 +15,7 @@ from ...core.common.setting import check_limits, setting
 from ...core.io.crs import NO_PLACE, place_of_raster, place_raster
 from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.lazy import cv2
-from .metrics import Rates
+from .matching import Rates
 
 HIT, MISSED, FALSE, MISSED_BESIDE, FALSE_BESIDE = 1, 2, 3, 4, 5  # values of the outcome raster
 CHART_BLOCK = 16  # cells, side of the blocks summed up for the chart along the road
@@ -98,8 +98,6 @@ def assess_markings(result: Sequence[Any], reference: Sequence[Any], settings: M
                     seen: str | None = None, outcome_raster: Any = None, progress: Progress = Progress()) -> MarkingAccuracy:
     """Assess painted polygons cell by cell and object by object.
 
-    Parameters
-    ----------
     result, reference : lists of shapely polygons in one metric CRS (`inputs` makes them from lines and rasters)
     result_classes, reference_classes : class of every polygon, or None
     area : shapely polygon; what lies outside is not judged, or None

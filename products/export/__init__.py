@@ -7,11 +7,12 @@ ours; findings on a map.
 from ...core.lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "inferred_ways": ("with_inferred_ways",),
-    "lanelet_export": ("Degrees", "LaneletDraft", "LaneletSettings", "draft_lanelets", "lanelet2_text", "to_degrees"),
-    "lanelet_map": ("Lanelet", "LaneletMap", "LaneletNetwork", "Way", "layers_of_lanelets", "read_lanelet2"),
-    "map_layers": ("MapLayers", "MapLine", "Misses", "border_misses", "driving_line_misses"),
-    "shared_borders": ("SharedBorders", "meet_lanes", "share_borders", "with_shared_borders"),
-    "sources": ("RoadMapSource", "checked", "stop_lines", "walked_crossings", "with_surface_heights"),
+    "lanelet_map": (
+        "Degrees", "Lanelet", "LaneletDraft", "LaneletMap", "LaneletNetwork", "LaneletSettings", "Way", "draft_lanelets", "lanelet2_text",
+        "layers_of_lanelets", "read_lanelet2", "to_degrees"),
+    "shared_borders": ("SharedBorders", "meet_lanes", "share_borders", "with_inferred_ways", "with_shared_borders"),
+    "sources": (
+        "MapLayers", "MapLine", "Misses", "RoadMapSource", "border_misses", "checked", "driving_line_misses", "stop_lines",
+        "walked_crossings", "with_surface_heights"),
     "xml_tree": ("XmlElement", "read_xml", "xml_text"),
 })

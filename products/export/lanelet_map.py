@@ -1,17 +1,34 @@
-"""A map of Lanelet2: its nodes, ways and lanelets as objects, read from a file, and as layers like ours."""
+"""A map of Lanelet2: its nodes, ways and lanelets as objects, read from a file and written, from lanes and as layers like ours."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field
+from html import escape
 
 import numpy as np
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
+from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
-from ...core.io.crs import parse_crs
-from .map_layers import LOCAL_CRS, MapLayers, MapLine, metric_wkt, utm_of, without_repeats
+from ...core.io.crs import as_in_file, horizontal_part, parse_crs
+from .shared_borders import cuts_beside, numbered
+from .sources import (
+    LEAST_CURB,
+    LOCAL_CRS,
+    MapLayers,
+    MapLine,
+    NearestValues,
+    RoadMapSource,
+    is_stated,
+    metric_wkt,
+    sigma_of_lanes,
+    stop_lines,
+    utm_of,
+    walked_crossings,
+    without_repeats,
+)
 from .xml_tree import XmlElement, read_xml
 
 
@@ -258,16 +275,11 @@ LANE_TYPE_OF_LANELET = {"bicycle_lane": "bicycle", "emergency_lane": "shoulder",
 def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
     """The nodes in metres.
 
-    Parameters
-    ----------
     crs : WKT or EPSG:n to compute them in; "" takes the UTM zone of the map
-
     Returns
-    -------
-    places : (N, 3) metres; a height of 0 where a node has none. A map without latitudes, or with all of them about 0, where there is nothing
-        but sea, has local coordinates: local_x and local_y, or metres from latitude and longitude 0
-    crs : WKT, "" where coordinates are local
-
+        places : (N, 3) metres; a height of 0 where a node has none. A map without latitudes, or with all of them about 0, where there is nothing
+            but sea, has local coordinates: local_x and local_y, or metres from latitude and longitude 0
+        crs : WKT, "" where coordinates are local
     Raises RoadExtractionError if the CRS is not in metres, or nodes have neither latitude nor local coordinates.
     """
     from pyproj import Transformer
@@ -352,3 +364,249 @@ def _border(tags, turned):
     kind = {"curbstone": "curb", "road_border": "pavement"}.get(named, "edge" if named in EDGE_WAYS else "lane")
     pattern = PATTERN_OF_WAY.get(tags.get("subtype", ""), "") if named in PAINTED_WAYS else ""
     return kind, "-".join(pattern.split("-")[::-1]) if turned and "-" in pattern and not pattern.startswith("double") else pattern
+
+
+# Lanes of a road map as lanelets, nodes and ways that neighbours share, written as Lanelet2.
+
+SAME_RISE = 0.1         # m in height between vertices at one place that are one node
+HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
+THICK_LINE = 0.18       # m of paint from which a line is thick: above the narrow and below the broad lines of most countries
+NEAREST_EDGE = 0.5      # m from a border within which a road edge tells its height
+SUBTYPE_OF_LANE = {"driving": "road", "connector": "road", "bicycle": "bicycle_lane", "shoulder": "emergency_lane"}
+PARTICIPANTS = {"bicycle": "participant:bicycle", "shoulder": "participant:vehicle:emergency"}
+SUBTYPE_OF_PATTERN = {"solid": "solid", "dashed": "dashed", "double-solid": "solid_solid", "double-dashed": "dashed_dashed", "double": "solid_solid",
+                      "solid-dashed": "solid_dashed", "dashed-solid": "dashed_solid"}
+TURN = 0.5              # rad from which a way through a junction is a turn
+
+
+@dataclass(frozen=True)
+class LaneletSettings(Limited):
+    """speed_limit : km/h, 0 writes none; location : urban or nonurban."""
+
+    speed_limit: int = setting(0, 5, 200, "Speed limit", "km/h", zero="for none")
+    location: str = "urban"
+
+
+@dataclass
+class _MadeWay:
+    """nodes : numbers; tags : what it is."""
+
+    nodes: tuple[int, ...]
+    tags: dict[str, str]
+
+
+@dataclass
+class _MadeLanelet:
+    """left, right, centre : numbers of ways, centre -1 for none; tags; name : lane_id of the lane that it is a part of, "" for crossings."""
+
+    left: int
+    right: int
+    centre: int
+    tags: dict[str, str]
+    name: str = ""
+
+
+@dataclass
+class LaneletDraft:
+    """A map before it gets ids and degrees."""
+
+    nodes: np.ndarray   # (N, 3) metres in the CRS of the survey
+    ways: list[_MadeWay] = field(default_factory=list)
+    lanelets: list[_MadeLanelet] = field(default_factory=list)
+    skipped: dict[str, int] = field(default_factory=dict)   # type of lane -> pieces that are no lanelets
+
+
+def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSettings()) -> LaneletDraft:
+    """Lanelets of the lanes that are driven, with crossings and stop lines of the markings.
+
+    A border between neighbours is one way. Where a lane begins or ends beside another, that other one is cut too, at the same place, so
+    that every lanelet has one way left and one right.
+
+    source : RoadMapSource, checked
+    """
+    return _Drafting(source, settings).run()
+
+
+class _Drafting:
+    def __init__(self, source: RoadMapSource, settings: LaneletSettings) -> None:
+        self.source, self.settings, self.lanes = source, settings, source.lanes
+        lanes = source.lanes
+        places = np.concatenate([lanes.left, lanes.right])
+        numbers, first = numbered(places, LEAST_CURB if is_stated(lanes) else SAME_RISE)
+        self.draft = LaneletDraft(places[first])
+        self.left, self.right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
+        self.way_of: dict[tuple[int, ...], int] = {}
+        # beside a double line the bounds meet in its middle, and the line to drive on stays between the stripes
+        self.middles = source.middles if source.middles is not None else (lanes.left + lanes.right) / 2
+        self.curb_heights = NearestValues(source.road_edges, "height_m")
+        self.sigma = sigma_of_lanes(lanes, source.driving_lines)
+
+    def run(self) -> LaneletDraft:
+        lanes = self.lanes
+        used = [k for k in range(len(lanes)) if lanes.type[k] in SUBTYPE_OF_LANE]
+        for k in range(len(lanes)):
+            if lanes.type[k] not in SUBTYPE_OF_LANE:
+                self.draft.skipped[lanes.type[k]] = self.draft.skipped.get(lanes.type[k], 0) + 1
+        cuts = cuts_beside(lanes, self.left, self.right, np.repeat(np.isin(np.arange(len(lanes)), used), np.diff(lanes.start)))
+        for k in used:
+            first = lanes.start[k]
+            bounds = [first, *(row for row in range(first + 1, lanes.start[k + 1] - 1) if self.left[row] in cuts or self.right[row] in cuts),
+                      lanes.start[k + 1] - 1]
+            for a, b in zip(bounds[:-1], bounds[1:]):
+                self._lanelet(k, slice(a, b + 1))
+        self._objects()
+        return self.draft
+
+    def _lanelet(self, k: int, rows: slice) -> None:
+        lanes = self.lanes
+        left, right = (_without_repeats(side[rows]) for side in (self.left, self.right))
+        if len(left) < 2 or len(right) < 2:   # where a lane tapers away, one border may stand still
+            return
+        tags = {"type": "lanelet", "subtype": SUBTYPE_OF_LANE[lanes.type[k]], "location": self.settings.location, "one_way": "yes"}
+        tags[PARTICIPANTS.get(lanes.type[k], "participant:vehicle")] = "yes"
+        if self.settings.speed_limit and lanes.type[k] not in PARTICIPANTS:
+            tags["speed_limit"] = str(int(self.settings.speed_limit))
+        if lanes.type[k] == "connector":
+            tags["turn_direction"] = _turn((lanes.left[rows] + lanes.right[rows]) / 2)
+        if np.isfinite(self.sigma[k]):
+            tags["lanewright:sigma_m"] = f"{self.sigma[k]:.3f}"
+        if lanes.status[k] != "measured":
+            tags |= {"lanewright:status": lanes.status[k], "lanewright:confidence": f"{lanes.confidence[k]:.2f}"}
+        centre = self._new_nodes(self.middles[rows])
+        ways = [self._way(nodes, kind, pattern, line) for nodes, kind, pattern, line in (
+            (left, lanes.left_kind[k], lanes.left_pattern[k], lanes.left_line[k]),
+            (right, lanes.right_kind[k], lanes.right_pattern[k], lanes.right_line[k]))]
+        self.draft.ways.append(_MadeWay(centre, {"type": "centerline"}))
+        self.draft.lanelets.append(_MadeLanelet(ways[0], ways[1], len(self.draft.ways) - 1, tags, lanes.lane_id[k]))
+
+    def _way(self, nodes: tuple[int, ...], kind: str, pattern: str, line: str) -> int:
+        """The number of the way along these nodes, which neighbours share; one that says more about it takes precedence."""
+        key = min(nodes, nodes[::-1])
+        number = self.way_of.get(key)
+        if number is None:
+            number = self.way_of[key] = len(self.draft.ways)
+            self.draft.ways.append(_MadeWay(nodes, {"type": "virtual"}))
+        way = self.draft.ways[number]
+        turned = way.nodes != nodes
+        if way.tags["type"] == "virtual":
+            mirrored = turned and "-" in pattern and "double" not in pattern
+            way.tags = self._tags(nodes, kind, "-".join(pattern.split("-")[::-1]) if mirrored else pattern, line)
+        return number
+
+    def _tags(self, nodes, kind, pattern, line):
+        places = self.draft.nodes[list(nodes)]
+        if kind == "curb":
+            heights = self.curb_heights.at(places[:, :2], NEAREST_EDGE)
+            height = float(np.nanmedian(heights)) if np.isfinite(heights).any() else np.nan
+            tags = {"type": "curbstone", "subtype": "low" if height < HIGH_CURB else "high"}
+            return tags | ({} if np.isnan(height) else {"height": f"{height:.2f}"})
+        if pattern in SUBTYPE_OF_PATTERN:
+            width = self.source.paint_width(line)
+            return {"type": "line_thick" if width > THICK_LINE else "line_thin", "subtype": SUBTYPE_OF_PATTERN[pattern]} | (
+                {} if np.isnan(width) else {"width": f"{width:.2f}"})
+        return {"type": "road_border"} if kind in ("edge", "pavement") else {"type": "virtual"}
+
+    def _new_nodes(self, places: np.ndarray) -> tuple[int, ...]:
+        first = len(self.draft.nodes)
+        self.draft.nodes = np.concatenate([self.draft.nodes, places])
+        return tuple(range(first, first + len(places)))
+
+    def _objects(self) -> None:
+        for line in stop_lines(self.source.markings):
+            self.draft.ways.append(_MadeWay(self._new_nodes(line), {"type": "stop_line", "subtype": "solid"}))
+        for left, right in walked_crossings(self.source.markings):
+            for side in (left, right):
+                self.draft.ways.append(_MadeWay(self._new_nodes(side), {"type": "pedestrian_marking", "subtype": "dashed"}))
+            self.draft.lanelets.append(_MadeLanelet(len(self.draft.ways) - 2, len(self.draft.ways) - 1, -1, {
+                "type": "lanelet", "subtype": "crosswalk", "location": self.settings.location, "one_way": "no", "participant:pedestrian": "yes"}))
+
+
+def _without_repeats(nodes: np.ndarray) -> tuple[int, ...]:
+    return tuple(int(node) for k, node in enumerate(nodes) if not k or node != nodes[k - 1])
+
+
+def _turn(middle: np.ndarray) -> str:
+    """left, right or straight, as Autoware calls the ways through a junction."""
+    first, last = middle[1] - middle[0], middle[-1] - middle[-2]
+    turn = (np.arctan2(last[1], last[0]) - np.arctan2(first[1], first[0]) + np.pi) % (2 * np.pi) - np.pi
+    return "left" if turn > TURN else "right" if turn < -TURN else "straight"
+
+
+# Writing in the XML of OpenStreetMap, with latitude and longitude.
+
+NO_VERTICAL = "not stated by the survey; heights are written as they are"
+SQUARE = 100_000.0     # m: local coordinates of Autoware are those within a square of this size
+
+
+@dataclass(frozen=True)
+class Degrees:
+    """How the map's places became latitude and longitude."""
+
+    lonlat: np.ndarray   # (N, 2) degrees of WGS 84
+    way: str   # name of the transformation
+    accuracy: float   # metres as its authors say, -1 where they do not;
+    vertical: str   # what the heights are
+    local: bool = False   # whether the map lies nowhere on the earth
+
+
+def to_degrees(places: np.ndarray, crs: str) -> Degrees:
+    """Latitude and longitude of (N, 2+) places; those without CRS about the origin of their coordinates become a local map about 0, 0.
+
+    Raises RoadExtractionError if the CRS is unknown and the coordinates are not local, or the places lie outside of the CRS.
+    """
+    from pyproj.transformer import Transformer, TransformerGroup
+
+    parsed = parse_crs(crs)
+    if parsed is None and np.abs(places[:, :2]).max(initial=0.0) < SQUARE:
+        lon, lat = Transformer.from_crs(LOCAL_CRS, "EPSG:4326", always_xy=True).transform(places[:, 0], places[:, 1])
+        return Degrees(np.c_[lon, lat], "local coordinates about latitude and longitude 0", -1.0, NO_VERTICAL, True)
+    if parsed is None:
+        raise RoadExtractionError("The layer of lanes has no CRS, so its latitude and longitude are unknown. Set the CRS of the layer and run again.")
+    transformer = TransformerGroup(horizontal_part(parsed), "EPSG:4326", always_xy=True).transformers[0]
+    lon, lat = transformer.transform(places[:, 0], places[:, 1])
+    if not (np.isfinite(lon).all() and np.isfinite(lat).all()):
+        raise RoadExtractionError(f"The lanes do not lie where their CRS {horizontal_part(parsed).name} holds. Check the CRS of the layer.")
+    vertical = parsed.sub_crs_list[-1].name if parsed.is_compound else NO_VERTICAL
+    if as_in_file(crs)[1].up != 1.0:
+        vertical += ", in metres"
+    return Degrees(np.c_[lon, lat], transformer.description, transformer.accuracy if transformer.accuracy is not None else -1.0, vertical)
+
+
+def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) -> str:
+    """The file as text, of a draft and the degrees of its nodes.
+
+    `local`: also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them.
+    """
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<osm version="0.6" generator="Lanewright" upload="false">']
+    if local := local or degrees.local:
+        lines.append('  <MetaInfo format_version="1" map_version="1"/>')
+    used = sorted(set().union(*(way.nodes for way in draft.ways)))
+    ids = {node: k for k, node in enumerate(used, start=1)}
+    square = np.floor(draft.nodes[used, :2].min(0) / SQUARE) * SQUARE if used and not degrees.local else np.zeros(2)
+    for node in used:
+        lon, lat = degrees.lonlat[node]
+        x, y, z = draft.nodes[node]
+        tags = {"ele": f"{z:.4f}"}
+        if local:
+            tags |= {"local_x": f"{x - square[0]:.4f}", "local_y": f"{y - square[1]:.4f}"}
+        lines.append(f'  <node id="{ids[node]}" visible="true" version="1" lat="{lat:.11f}" lon="{lon:.11f}">{_tags_as_xml(tags)}</node>')
+    first_way = len(used) + 1
+    for number, way in enumerate(draft.ways):
+        places = "".join(map('<nd ref="{}"/>'.format, map(ids.__getitem__, way.nodes)))
+        lines.append(f'  <way id="{first_way + number}" visible="true" version="1">{places}{_tags_as_xml(way.tags)}</way>')
+    first_lanelet = first_way + len(draft.ways)
+    for number, lanelet in enumerate(draft.lanelets):
+        lines.append(f'  <relation id="{first_lanelet + number}" visible="true" version="1">{_content(lanelet, first_way)}</relation>')
+    return "\n".join([*lines, "</osm>", ""])
+
+
+def _content(lanelet, first_way):
+    """The members and tags of a lanelet."""
+    tags = lanelet.tags | ({"lanewright:lane_id": lanelet.name} if lanelet.name else {})
+    members = {"left": lanelet.left, "right": lanelet.right, "centerline": lanelet.centre}
+    ways = (f'<member type="way" ref="{first_way + member}" role="{role}"/>' for role, member in members.items() if member >= 0)
+    return "".join(ways) + _tags_as_xml(tags)
+
+
+def _tags_as_xml(tags):
+    return "".join(f'<tag k="{escape(key)}" v="{escape(str(value))}"/>' for key, value in tags.items())

@@ -121,14 +121,10 @@ def _write(element, indent, lines):
 def read_xml(path: str, root_tag: str, kind: str, progress: Progress = Progress()) -> XmlElement:
     """Read a file whole, within limits.
 
-    Parameters
-    ----------
     path : of the file
     root_tag : name that its first element must have
     kind : what the file should be, for messages
-
     Returns XmlElement, the root
-
     Raises RoadExtractionError if it is no XML, not of this kind, in an encoding that is not known or that it is not written in, declares a document
     type or entities (no map needs them), or is larger, deeper or emptier than a map is.
     """

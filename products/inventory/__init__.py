@@ -6,7 +6,6 @@ In: an open `Survey` and the layers of its road map. Out: `RoadSections`, and th
 from ...core.lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "borders": ("BorderLayers",),
+    "borders": ("BorderLayers", "CrossSectionSettings", "RoadsideSettings"),
     "cross_sections": ("RoadSections", "measure_cross_sections", "sections_to_features"),
-    "settings": ("CrossSectionSettings", "RoadsideSettings"),
 })

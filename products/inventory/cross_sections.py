@@ -19,8 +19,7 @@ from ...core.curves.robust import MAD_TO_SIGMA
 from ...core.survey.frame.road_frame import RoadFrame
 from ...core.survey.store.records import Points
 from ...core.survey.survey import Survey
-from .borders import BorderLayers, RoadBorders, Strip
-from .settings import CrossSectionSettings
+from .borders import BorderLayers, CrossSectionSettings, RoadBorders, Strip
 from .surface_grid import (
     CROSS_CELL,
     SLICE_LENGTH,
@@ -92,11 +91,8 @@ def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers()
                            progress: Progress = Progress()) -> RoadSections:
     """Measure sections across every road.
 
-    Parameters
-    ----------
     survey : Survey, opened with enough height above the road for the clearance
     layers : BorderLayers, of which any may be missing. Without edges and lines a lane of the country's usual width about the track is measured
-
     Raises RoadExtractionError if no section lies on the survey.
     """
     borders = RoadBorders(layers, survey.frame, country(settings.country))
@@ -471,10 +467,9 @@ def sections_to_features(sections: RoadSections) -> tuple[Features, Features]:
     """The layer CROSS_SECTIONS, and its rows as a table.
 
     Returns
-    -------
-    lines : Features of lines with Z from the left border to the right one, one row for every carriageway and lane of every section;
-        a strip whose surface was not seen is drawn straight between the heights known
-    table : the same rows without geometry
+        lines : Features of lines with Z from the left border to the right one, one row for every carriageway and lane of every section;
+            a strip whose surface was not seen is drawn straight between the heights known
+        table : the same rows without geometry
     """
     lines, table = Features("LineStringZ", CROSS_SECTIONS, crs=sections.crs), Features("None", CROSS_SECTIONS, crs=sections.crs)
     limits = sections.settings.limits()

@@ -291,13 +291,10 @@ def rut_depths(d: np.ndarray, profiles: np.ndarray, lane: tuple[float, float], c
     The edge is laid over the profile everywhere within the lane. It rests on the upper convex hull of what is under it. Noise lifts the
     largest of n distances by about ``sigma sqrt(2 ln n)``, with sigma that of a smoothed cell, which is subtracted.
 
-    Parameters
-    ----------
     d : (J,) m, offsets of the cells, CROSS_CELL apart, ascending
     profiles : (I, J) m, heights of I profiles; NaN where the road was not seen
     lane, carriageway : (right, left) m, between whose borders the edge is laid
     sigma : (I,) m, of the height of one cell
-
     Returns (2, I) m, >= 0, of the right and the left wheel path, seen along the road; NaN where the profile has gaps
 
     References

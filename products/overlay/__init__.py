@@ -8,9 +8,7 @@ In: an image and ground control points. Out: a polynomial, its residuals, and th
 from ...core.lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "control_points": ("ControlPoints", "read_control_points"),
-    "georeference": ("GeoreferenceSettings", "Georeferencing", "residual_vectors"),
+    "control_points": ("ControlPoints", "SourceImage", "open_image", "read_control_points"),
+    "georeference": ("GeoreferenceSettings", "Georeferencing", "draw_image", "residual_vectors"),
     "rough_place": ("PositionTags", "RoughPlace", "read_position_tags"),
-    "source_image": ("SourceImage", "open_image"),
-    "warp": ("draw_image",),
 })

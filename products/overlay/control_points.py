@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from ...core.common.errors import RoadExtractionError
-from ...core.io.crs import in_metres
+from ...core.io.crs import NO_PLACE, in_metres, place_of_raster
+from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.io.text_table import as_number
-from .source_image import SourceImage
 
 MAX_DEPARTURE = 0.1  # of the image's size: what a tilted camera over hilly ground differs from an image that is turned and scaled
 CONTROL, CHECK, DISABLED = "control", "check", "disabled"  # roles of a point
@@ -75,14 +75,11 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
                    crs: str = "") -> ControlPoints:
     """Control points of a table.
 
-    Parameters
-    ----------
     names : of the columns, or None where the table has no header
     rows : of texts or numbers
     image : SourceImage that the points belong to
     what : name of the table for error messages
     crs : WKT of the map coordinates in the table, "" where unknown
-
     Raises RoadExtractionError if a needed column is missing, no row is of this image or has numbers, or the points lie outside the image.
     """
     if not rows:
@@ -277,13 +274,10 @@ UTM_WORDS = re.compile(r"^(?P<datum>[a-z]+[ _]?\d+)[\s_/,-]*utm[\s_/,-]*(zone)?[
 def read_control_points(path: str | Path, image: SourceImage, crs: str = "") -> ControlPoints:
     """Control points of a file.
 
-    Parameters
-    ----------
     path : `.points` of the QGIS georeferencer (with or without a line "#CRS: ..."; mapX, mapY, sourceX, sourceY or pixelX, pixelY; commas or, from
         QGIS 1, tabs), `gcp_list.txt` (the CRS in its first line, then x, y, z, pixel, line and image in each row), or a CSV or TXT table
     image : SourceImage that the points belong to; rows that name another image are passed over
     crs : WKT of the map coordinates where the file names none
-
     Raises RoadExtractionError if the file cannot be read, its columns or its CRS are not recognised, or no row is of this image.
     """
     lines, named = _lines(path)
@@ -350,3 +344,70 @@ def _wkt(named, path):
     except RoadExtractionError as problem:
         raise RoadExtractionError(f"{path} names a CRS that is not understood: {named[:60]!r}. Correct that line (EPSG:number) or remove it "
                                   "and give the CRS.") from problem
+
+
+# The image to be georeferenced: any raster that GDAL reads, with or without a position on the map.
+
+@dataclass(frozen=True)
+class SourceImage:
+    """What is known about an image without reading its pixels."""
+
+    path: str   # of the file
+    width: int   # width, height: pixels
+    height: int
+    geotransform: tuple[float, ...] | None = None   # six numbers as in GDAL, or None where the image has no position on the map
+    crs: str = ""   # WKT, "" where the image has none
+    bands: int = 1   # count, including an alpha band
+    has_alpha: bool = False   # whether the last band is an alpha band
+    palette: bool = False   # whether the values are indices of a colour table
+    kind: str = "byte"   # "byte", "integer" or "real", type of the values
+    nodata: float | None = None   # value of pixels without data, or None
+
+    def pixel_of(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pixel and line of map coordinates, by the position of the image itself.
+
+        x, y : (N,) m
+        Returns pixel, line: (N,)
+        Raises ValueError if the image has no position.
+        """
+        if self.geotransform is None:
+            raise ValueError("the image has no position")
+        x0, xp, xl, y0, yp, yl = self.geotransform
+        turn = np.linalg.inv(np.array([[xp, xl], [yp, yl]]))
+        pixel, line = turn @ np.stack([np.asarray(x, float) - x0, np.asarray(y, float) - y0])
+        return pixel, line
+
+    def holds(self, pixel: np.ndarray, line: np.ndarray, margin: float = 0.0) -> np.ndarray:
+        """Whether places lie in the image.
+
+        pixel, line : (N,)
+        margin : pixels around the image that count as inside
+        Returns (N,) bool
+        """
+        return ((pixel >= -margin) & (pixel <= self.width + margin) & (line >= -margin) & (line <= self.height + margin))
+
+
+@gdal_exceptions()
+def open_image(path: str | Path) -> SourceImage:
+    """Read the description of an image.
+
+    path : of a file that GDAL reads
+    Raises RoadExtractionError if there is no such file, or it is no raster with bands.
+    """
+    from osgeo import gdal
+
+    if not Path(path).is_file():
+        raise RoadExtractionError(f"There is no file {path}. Give the image itself (TIFF, JPEG or PNG).")
+    dataset = open_raster(path)
+    if dataset.RasterCount == 0:
+        raise RoadExtractionError(f"{path} is a container of several images. Give one of them, or export it as a TIFF.")
+    transform, crs = place_of_raster(dataset)
+    transform = None if transform == NO_PLACE else transform
+    first, last = dataset.GetRasterBand(1), dataset.GetRasterBand(dataset.RasterCount)
+    kind = ("byte" if first.DataType == gdal.GDT_Byte else
+            "real" if first.DataType in (gdal.GDT_Float32, gdal.GDT_Float64) else "integer")
+    return SourceImage(
+        str(path), dataset.RasterXSize, dataset.RasterYSize, transform,
+        crs, dataset.RasterCount,
+        dataset.RasterCount > 1 and last.GetColorInterpretation() == gdal.GCI_AlphaBand,
+        first.GetColorTable() is not None and dataset.RasterCount == 1, kind, first.GetNoDataValue())

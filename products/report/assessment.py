@@ -11,13 +11,10 @@ import shapely
 from ...core.common.features import Features
 from ...core.common.texts import told, tr, word
 from ...core.lazy import cv2
-from ..assess.boundaries import BoundaryAccuracy
-from ..assess.driving_lines import MAX_MATCH_DISTANCE, MIN_REFERENCE_GAP, LineAccuracy, LineAccuracySettings, LineMatch
+from ..assess.lines import MAX_MATCH_DISTANCE, MIN_REFERENCE_GAP, BoundaryAccuracy, LineAccuracy, LineAccuracySettings, LineMatch
 from ..assess.markings import MarkingAccuracy
-from ..assess.metrics import Errors
-from .figures import Chart
-from .map_figure import MAP_MARGIN, draw_map, grey_background
-from .page import html_page, percent
+from ..assess.matching import Errors
+from .page import MAP_MARGIN, Chart, draw_map, grey_background, html_page, percent
 
 OUTCOME_COLOURS = {"correct": "#009e73", "missed": "#d55e00", "false": "#a33ea1", "excluded": "#9a9a9a"}
 BAR_COLOUR, CURVE_COLOUR = "#4a7fb5", "#333333"

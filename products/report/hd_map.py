@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.common.texts import told, tr, word
 from ..export.check.findings import FAULTS, Findings, SameFindings
-from ..export.map_layers import MapLayers
+from ..export.sources import MapLayers
 from .page import html_page
 
 COLOUR_OF_LANE = {"driving": "#8a9299", "connector": "#c9b27c", "shoulder": "#b7bfc5", "bicycle": "#c47f6a", "parking": "#9fb4c9"}

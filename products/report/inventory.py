@@ -12,8 +12,7 @@ from ...core.common.features import Features
 from ...core.common.texts import language, tr, word
 from ..inventory.cross_sections import RoadSections
 from ..inventory.roadside.find import Roadside
-from .figures import Chart
-from .page import html_page
+from .page import Chart, html_page
 
 LANE_COLOURS = ("#2b6ca3", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9", "#7f3fbf", "#444444")
 EXCEEDED_COLOUR, KEPT_COLOUR, LIMIT_COLOUR = "#f6c6c6", "#cfe3cf", "#b00020"

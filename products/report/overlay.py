@@ -9,10 +9,9 @@ from ...core.io.crs import NO_PLACE, horizontal_part, parse_crs, place_of_raster
 from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.lazy import cv2
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
-from ..overlay.georeference import Georeferencing
+from ..overlay.georeference import Georeferencing, drawn_area, output_grid
 from ..overlay.matching.propose import Proposal
-from ..overlay.pair_cutouts import pair_cutouts
-from ..overlay.warp import drawn_area, output_grid
+from ..overlay.rough_place import pair_cutouts
 from .page import html_page
 
 RESIDUAL_PICTURE_SIDE = 1300  # px, longer side of the picture

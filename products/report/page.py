@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Sequence
+import html
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
 
 from ...core.common.texts import language, told, tr, word
+from ...core.io.crs import NO_PLACE, place_of_raster
+from ...core.io.geotiff import GEOTIFF_TILE, filled_tiles
+from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.lazy import cv2
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -91,3 +97,247 @@ def _pick(row: Any, names: str) -> list[Any]:
 def _base64_png(image: np.ndarray) -> str:
     """A picture (H, W, 3) uint8, blue, green, red, as the text of a PNG file."""
     return base64.b64encode(cv2.imencode(".png", image)[1].tobytes()).decode("ascii")
+
+
+# Charts as SVG: bars, curves and levels over common axes.
+#
+# Written by hand: matplotlib takes a second per chart and three to load, keeps the settings of its SVG files in global state (not safe in worker
+# threads), and shows no text when the pointer rests on a bar.
+
+CHART_WIDTH = 900  # px
+LEFT_MARGIN, RIGHT_MARGIN, TOP_MARGIN, BOTTOM_MARGIN = 58, 22, 12, 40  # px
+PLOT_END = CHART_WIDTH - RIGHT_MARGIN
+GRID_COLOUR, TEXT_COLOUR = "#dddddd", "#444444"
+MIN_LABEL_DISTANCE = 12  # px between the labels of two levels
+
+
+class Chart:
+    """A chart; its parts are drawn in the order of the calls.
+
+    x_range, y_range : (lowest, highest) of the axes
+    x_label, y_label : with units
+    height : pixels
+    """
+
+    def __init__(self, x_range: tuple[float, float], y_range: tuple[float, float], x_label: str, y_label: str, height: int = 220) -> None:
+        self.height = height
+        self.x0, self.x1 = _nonzero_range(x_range)
+        self.y0, self.y1 = _nonzero_range(y_range)
+        self.parts: list[str] = []
+        self.levels: list[float] = []
+        self.labels = x_label, y_label
+
+    @property
+    def _clip(self) -> str:
+        return f"plot{self.height}"
+
+    def _x(self, x):
+        return LEFT_MARGIN + (np.asarray(x, float) - self.x0) / (self.x1 - self.x0) * (CHART_WIDTH - LEFT_MARGIN - RIGHT_MARGIN)
+
+    def _y(self, y):
+        inner = self.height - TOP_MARGIN - BOTTOM_MARGIN
+        return TOP_MARGIN + inner - (np.clip(y, self.y0, self.y1) - self.y0) / (self.y1 - self.y0) * inner
+
+    def bars(self, left: np.ndarray | Sequence[float], right: np.ndarray | Sequence[float], values: np.ndarray | Sequence[float], colour: str,
+             base: float | np.ndarray = 0.0, title: str = "") -> np.ndarray:
+        """Draw bars between (N,) left and right, of (N,) heights above `base`, none where NaN; `title` is shown under the pointer.
+
+        Returns the (N,) y of their upper ends, on which further bars can be stacked.
+        """
+        base = np.broadcast_to(np.asarray(base, float), np.shape(values))
+        for a, b, low, high in zip(self._x(left), self._x(right), base, np.asarray(values, float) + base):
+            if np.isfinite(high) and high != low:
+                top, foot = sorted((float(self._y(high)), float(self._y(low))))
+                self.parts.append(f'<rect x="{a:.1f}" y="{top:.1f}" width="{max(b - a - 0.6, 0.6):.1f}" height="{foot - top:.1f}" '
+                                  f'fill="{colour}">{_title(title)}</rect>')
+        return np.nan_to_num(values) + base
+
+    def curve(self, x: np.ndarray, y: np.ndarray, colour: str, title: str = "", width: float = 1.6) -> None:
+        """Draw a line of some width, px, through points (N,); NaN interrupts it."""
+        finite = np.isfinite(x) & np.isfinite(y)
+        rows = np.flatnonzero(finite)
+        for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
+            if len(run):
+                points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(self._x(np.asarray(x)[run]), self._y(np.asarray(y)[run])))
+                self.parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}" '
+                                  f'clip-path="url(#{self._clip})">{_title(title)}</polyline>')
+
+    def level(self, y: float, colour: str, label: str = "") -> None:
+        """Draw a dashed line across the plot, with its label unless that would lie over another one."""
+        pixel = float(self._y(y))
+        self.parts.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{pixel:.1f}" y2="{pixel:.1f}" stroke="{colour}" stroke-dasharray="5 4"/>')
+        if label and all(abs(pixel - drawn) > MIN_LABEL_DISTANCE for drawn in self.levels):
+            self.levels.append(pixel)
+            self.parts.append(f'<text x="{PLOT_END - 4}" y="{pixel - 4:.1f}" text-anchor="end" font-size="11" fill="{colour}">'
+                              f'{html.escape(label)}</text>')
+
+    def svg(self) -> str:
+        """The chart as an SVG element."""
+        # charts of one page may share the name of the clip path: it is the same rectangle for all of one height
+        clip = (f'<clipPath id="{self._clip}"><rect x="{LEFT_MARGIN}" y="0" width="{PLOT_END - LEFT_MARGIN}" '
+                f'height="{self.height}"/></clipPath>')
+        inner = "".join([clip, self._grid(), *self.parts])
+        return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{CHART_WIDTH}" height="{self.height}" viewBox="0 0 {CHART_WIDTH} {self.height}" '
+                f'font-family="DejaVu Sans, Segoe UI, Helvetica, Arial, sans-serif" font-size="12">'
+                f'<rect width="{CHART_WIDTH}" height="{self.height}" fill="white"/>{inner}</svg>')
+
+    def _grid(self):
+        parts, foot = [], self.height - BOTTOM_MARGIN
+        for x in ticks(self.x0, self.x1, 10):
+            pixel = float(self._x(x))
+            parts.append(f'<line x1="{pixel:.1f}" x2="{pixel:.1f}" y1="{TOP_MARGIN}" y2="{foot}" stroke="{GRID_COLOUR}"/>'
+                         f'<text x="{pixel:.1f}" y="{foot + 15}" text-anchor="middle" fill="{TEXT_COLOUR}">{_number(x)}</text>')
+        for y in ticks(self.y0, self.y1, 5):
+            pixel = float(self._y(y))
+            parts.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{pixel:.1f}" y2="{pixel:.1f}" stroke="{GRID_COLOUR}"/>'
+                         f'<text x="{LEFT_MARGIN - 6}" y="{pixel + 4:.1f}" text-anchor="end" fill="{TEXT_COLOUR}">{_number(y)}</text>')
+        middle = TOP_MARGIN + (foot - TOP_MARGIN) / 2
+        style = f'text-anchor="middle" fill="{TEXT_COLOUR}"'
+        parts.append(f'<text x="{(LEFT_MARGIN + PLOT_END) / 2}" y="{self.height - 6}" {style}>{html.escape(self.labels[0])}</text>')
+        parts.append(f'<text x="14" y="{middle}" {style} transform="rotate(-90 14 {middle})">{html.escape(self.labels[1])}</text>')
+        return "".join(parts)
+
+
+def ticks(low: float, high: float, count: int) -> np.ndarray:
+    """About `count` round values from low to high: steps of 1, 2 or 5 times a power of ten."""
+    rough = (high - low) / count
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = power * next(m for m in (1, 2, 5, 10) if m * power >= rough * 0.999)
+    return np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1) * step
+
+
+def _nonzero_range(pair):
+    low, high = float(pair[0]), float(pair[1])
+    return (low, high) if high > low else (low - 0.5, low + 0.5)
+
+
+def _number(value):
+    return f"{value:.10g}" if abs(value) > 1e-12 else "0"
+
+
+def _title(text):
+    return f"<title>{html.escape(text)}</title>" if text else ""
+
+
+# A small map as a picture: a grey raster with lines and polygons over it.
+#
+# For reports only; a map to print is made by QGIS. Drawn by OpenCV, which the core needs anyway: matplotlib takes three times as long for such a
+# picture and seconds to load. Colours are blue, green, red, as OpenCV takes them.
+
+MAP_LONGEST_SIDE = 1800      # px
+MAX_AVERAGED_SIDE = 500_000  # px; GDAL averages rasters up to this size, empty tiles included; larger ones are read by tile
+MAP_MARGIN = 3.0             # m around the layers
+
+# What is drawn, from the bottom up: layer, condition (field, value) or None, colour, width (px), filled
+MAP_STYLE = (
+    ("markings", None, (80, 220, 255), 1, True),
+    ("edges", ("status", "measured"), (60, 60, 230), 3, False),
+    ("edges", ("status", "bridged"), (60, 150, 255), 3, False),
+    ("differences", None, (255, 60, 230), 7, False),
+    ("marking_lines", None, (230, 200, 60), 2, False),
+    ("driving_lines", ("status", "measured"), (90, 220, 60), 3, False),
+    ("driving_lines", ("status", "bridged"), (60, 255, 190), 3, False),
+    ("driving_lines", ("status", "inferred"), (220, 120, 200), 3, False),
+)
+
+
+@gdal_exceptions()
+def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndarray, tuple[float, float, float, float]]:
+    """((H, W) uint8 grey, 0 where there is no data; its (min x, min y, max x, max y)) of a raster file, small, with stretched contrast."""
+    from osgeo import gdal
+
+    dataset = open_raster(path)
+    width, height = dataset.RasterXSize, dataset.RasterYSize
+    scale = min(1.0, longest / max(width, height))
+    columns, rows = max(int(width * scale), 1), max(int(height * scale), 1)
+    band = dataset.GetRasterBand(1)
+    nodata = band.GetNoDataValue()
+    if max(width, height) > MAX_AVERAGED_SIDE:
+        values = _averaged(dataset, columns, rows, nodata)
+    else:
+        data = band.ReadRaster(0, 0, width, height, columns, rows, gdal.GDT_Float32, resample_alg=gdal.GRIORA_Average)
+        values = np.frombuffer(data, np.float32).reshape(rows, columns)
+    empty = ~np.isfinite(values)
+    if nodata is not None and np.isfinite(nodata):
+        empty |= values == np.float32(nodata)
+    x0, dx, _, y0, _, dy = place_of_raster(dataset)[0] or NO_PLACE
+    extent = (x0, y0 + dy * height, x0 + dx * width, y0)
+    grey = np.zeros(values.shape, np.uint8)
+    if not empty.all():
+        low, high = np.percentile(values[~empty], [1, 99.5])
+        stretched = 1 + 254 * np.clip((values - low) / max(high - low, 1e-9), 0, 1)
+        grey = np.where(empty, 0, np.nan_to_num(stretched)).astype(np.uint8)
+    return grey, extent
+
+
+def _averaged(dataset, columns, rows, nodata):
+    """(rows, columns) means of the values of a raster, read tile by tile; NaN where there are none."""
+    from osgeo import gdal
+
+    band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
+    total, count = np.zeros((2, rows, columns))
+    for left, top in filled_tiles(dataset):
+        size = min(GEOTIFF_TILE, width - left), min(GEOTIFF_TILE, height - top)
+        values = np.frombuffer(band.ReadRaster(left, top, *size, buf_type=gdal.GDT_Float32), np.float32).reshape(size[::-1])
+        filled = np.isfinite(values) if nodata is None else np.isfinite(values) & (values != np.float32(nodata))
+        column, row = (np.arange(first, first + n) * target // source for first, n, target, source in
+                       ((left, size[0], columns, width), (top, size[1], rows, height)))
+        window = slice(row[0], row[-1] + 1), slice(column[0], column[-1] + 1)
+        cells = total[window].shape
+        cell = ((row - row[0])[:, None] * cells[1] + (column - column[0]))[filled]
+        total[window] += np.bincount(cell, values[filled], cells[0] * cells[1]).reshape(cells)
+        count[window] += np.bincount(cell, minlength=cells[0] * cells[1]).reshape(cells)
+    return np.divide(total, count, out=np.full((rows, columns), np.nan), where=count > 0)
+
+
+def draw_map(layers: Mapping[str, Any], background: tuple[np.ndarray, Sequence[float]] | None = None, bounds: Sequence[float] | None = None,
+             longest: int = MAP_LONGEST_SIDE, style: Sequence[tuple[Any, ...]] = MAP_STYLE, paper: int = 28) -> np.ndarray | None:
+    """(H, W, 3) uint8 picture of layers over an image, None if there is nothing to draw.
+
+    layers : Features by the names in `style`, which is like MAP_STYLE; missing ones are left out
+    background : (grey image (H, W) uint8 with 0 where empty, (min x, min y, max x, max y)) or None
+    bounds : (min x, min y, max x, max y); by default those of the layers with a margin of 3 m
+    longest : pixels of the longer side
+    paper : grey level where neither a layer nor the image covers the map
+    """
+    shapes = [g for features in layers.values() if features is not None for g in features.geometries if g is not None]
+    if bounds is None:
+        if not shapes:
+            return None
+        bounds = shapely.total_bounds(np.array(shapes, object)) + MAP_MARGIN * np.array([-1, -1, 1, 1])
+    scale = longest / max(bounds[2] - bounds[0], bounds[3] - bounds[1])
+    width, height = (max(int(np.ceil(side * scale)), 2) for side in (bounds[2] - bounds[0], bounds[3] - bounds[1]))
+    canvas = np.full((height, width, 3), paper, np.uint8)
+    if background is not None:
+        _paste(canvas, *background, bounds, scale)
+    for name, rule, colour, thickness, filled in style:
+        for geometry, row in layers.get(name) or ():
+            if geometry is not None and (rule is None or row.get(rule[0]) == rule[1]):
+                _draw(canvas, geometry, bounds, scale, colour, thickness, filled)
+    return canvas
+
+
+def _paste(canvas, grey, extent, bounds, scale):
+    """Put an image where it belongs on the canvas."""
+    height, width = canvas.shape[:2]
+    column = (bounds[0] + (np.arange(width) + 0.5) / scale - extent[0]) / (extent[2] - extent[0]) * grey.shape[1]
+    row = (extent[3] - bounds[3] + (np.arange(height) + 0.5) / scale) / (extent[3] - extent[1]) * grey.shape[0]
+    column_inside, row_inside = (column >= 0) & (column < grey.shape[1]), (row >= 0) & (row < grey.shape[0])
+    part = grey[np.ix_(row[row_inside].astype(int), column[column_inside].astype(int))]
+    target = canvas[np.ix_(row_inside, column_inside)]
+    canvas[np.ix_(row_inside, column_inside)] = np.where(part[..., None] > 0, part[..., None], target)
+
+
+def _draw(canvas, geometry, bounds, scale, colour, thickness, filled):
+    shift = 4  # bits of sub-pixel position
+    for part in getattr(geometry, "geoms", [geometry]):
+        rings = [part.exterior, *part.interiors] if part.geom_type == "Polygon" else [part]
+        drawn = []
+        for ring in rings:
+            xy = shapely.get_coordinates(ring)
+            xy = np.c_[(xy[:, 0] - bounds[0]) * scale, (bounds[3] - xy[:, 1]) * scale]
+            drawn.append(np.rint(xy * 2**shift).astype(np.int32))
+        if filled:
+            cv2.fillPoly(canvas, drawn, colour, cv2.LINE_AA, shift)
+        else:
+            cv2.polylines(canvas, drawn, part.geom_type == "Polygon", colour, thickness, cv2.LINE_AA, shift)

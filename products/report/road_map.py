@@ -10,9 +10,7 @@ import shapely
 
 from ...core.common.texts import tr, word
 from ...core.countries.catalogue import country
-from .figures import Chart
-from .map_figure import draw_map, grey_background
-from .page import html_page
+from .page import Chart, draw_map, grey_background, html_page
 
 MAX_DIAGRAMS = 16         # of curvature; further driving lines are not drawn
 CURVATURE_STEP = 1.0      # m between the values of a curvature diagram

@@ -12,8 +12,7 @@ from ...core.io.crs import horizontal_part, parse_crs
 from ...core.lazy import cv2
 from ...core.survey.estimation.estimate import WAYS, EstimatedTrajectory
 from ..inspection import Inspection
-from .figures import Chart
-from .page import html_page
+from .page import Chart, html_page
 
 DENSITY_PICTURE_SIDE = 1400  # px
 NO_DATA_COLOUR = (28, 28, 30)  # blue, green, red

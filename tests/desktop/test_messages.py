@@ -4,10 +4,10 @@ from datetime import datetime
 from types import SimpleNamespace
 
 import pytest
-from lanewright.desktop import messages
-from lanewright.desktop.messages import tell_result
+from lanewright.desktop import widgets as messages
 from lanewright.desktop.runs_window import RunsWindow
-from lanewright.processing_provider.results import run_table
+from lanewright.desktop.widgets import tell_result
+from lanewright.processing_provider.results import runs as run_table
 from qgis.core import QgsCoordinateReferenceSystem, QgsFeature, QgsGeometry, QgsRectangle, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMessageBar, QgsMessageViewer
 from qgis.PyQt.QtWidgets import QMainWindow, QPushButton, QTextEdit

@@ -12,7 +12,7 @@ application = start_app()
 sys.path.insert(0, {tests!r})
 import conftest
 from lanewright import classFactory
-from lanewright.desktop.sample_run import SampleRun
+from lanewright.desktop.background import SampleRun
 from qgis.core import QgsApplication
 from qgis.gui import QgsMessageBar
 

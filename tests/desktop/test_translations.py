@@ -186,7 +186,7 @@ def test_nearly_all_that_the_core_says_has_a_translation_with_its_places():
 
 
 def test_the_stages_of_a_model_have_german_names_in_the_designer(german, provider):
-    from lanewright.processing_provider.models import read_model
+    from lanewright.processing_provider.provider import read_model
 
     model = read_model(ROOT / "resources" / "models" / "road_map.model3")
     stages = [stage.description() for stage in model.childAlgorithms().values()]

@@ -19,13 +19,14 @@ def test_cross_sections_of_a_mapped_street(street, street_map, tmp_path):
     import processing
 
     survey = {"POINT_CLOUDS": [street["POINT_CLOUD"]], "TRAJECTORY": street["TRAJECTORY"]}
-    sections, table, report = (str(tmp_path / name) for name in ("sections.gpkg", "table.gpkg", "report.html"))
+    sections, table, drawing, report = (str(tmp_path / name) for name in ("sections.gpkg", "table.gpkg", "sections.dxf", "report.html"))
     found = processing.run("lanewright:crosssections", {**survey, "ROAD_EDGES": street_map["ROAD_EDGES"], "INTERVAL": 5, "COUNTRY": "germany",
-                                                        "OUTPUT": sections, "TABLE": table, "REPORT": report})
+                                                        "OUTPUT": sections, "TABLE": table, "DRAWING": drawing, "REPORT": report})
     rows = rows_of(sections)
     assert found["SECTIONS"] == len({row["station_m"] for row in rows}) >= 5
     assert rows_of(table)[0]["width_m"] == pytest.approx(rows[0]["width_m"])
     assert all(row["curb_l_m"] > 0.05 for row in rows if row["part"] == "carriageway" and row["curb_l_m"] is not None)
+    assert {row["Layer"] for row in rows_of(drawing)} >= {"SECTION_GROUND", "SECTION_TEXT"}
     assert "Cross-sections" in open(report, encoding="utf-8").read()
 
 

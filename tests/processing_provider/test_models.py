@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from lanewright.processing_provider.models import model_id
+from lanewright.processing_provider.provider import model_id
 from qgis.core import Qgis, QgsApplication
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))

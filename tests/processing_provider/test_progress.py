@@ -6,7 +6,7 @@ import weakref
 import pytest
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import RemainingTime
-from lanewright.processing_provider.progress import FeedbackProgress, time_left
+from lanewright.processing_provider.call import FeedbackProgress, time_left
 from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingFeedback
 
 

@@ -18,10 +18,9 @@ from lanewright.core.common.features import (
     ROADSIDE_OBJECTS,
 )
 from lanewright.core.driving.layers import LANE_TYPES
-from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.results.runs import Run
-from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, style_on_load
+from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, embed_style, style_on_load
 from lanewright.processing_provider.texts import speak
 from osgeo import gdal
 from qgis.core import (

@@ -1,8 +1,7 @@
 """Images whose place on the map is known: a chequered ground, seen by a tilted camera."""
 
 import numpy as np
-from lanewright.products.overlay.control_points import control_points
-from lanewright.products.overlay.source_image import SourceImage
+from lanewright.products.overlay.control_points import SourceImage, control_points
 from osgeo import gdal
 
 gdal.UseExceptions()

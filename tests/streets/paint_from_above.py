@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from lanewright.core.io.geotiff import IntensityImage, new_geotiff
+from lanewright.products.overlay.control_points import open_image
 from lanewright.products.overlay.rough_place import RoughPlace
-from lanewright.products.overlay.source_image import open_image
 from osgeo import gdal
 from pyproj import CRS
 
@@ -118,9 +118,14 @@ class Overhead:
         return self.x + u * cos - v * sin, self.y + u * sin + v * cos
 
 
-def about(camera, dx=6.0, dy=-5.0, turn=0.15, size=1.06, reach=15.0, loose=0.35):
+def about(camera, dx=6.0, dy=-5.0, turn=0.15, size=1.06, reach=15.0, loose=0.35, size_range=0.15):
     """A rough place such as a drone's tags give: metres, a tenth of a radian and some percent off."""
-    return RoughPlace(camera.x + dx, camera.y + dy, reach, camera.turn + turn, loose, camera.size * size, 0.15, "position tags")
+    return RoughPlace(camera.x + dx, camera.y + dy, reach, camera.turn + turn, loose, camera.size * size, size_range, "position tags")
+
+
+def near(camera, size=1.005):
+    """A place such as a world file gives, for tests of what follows the search: decimetres, a degree and half a percent off."""
+    return about(camera, 0.6, -0.5, 0.015, size, 3.0, 0.05, 0.03)
 
 
 def errors(proposal, camera):

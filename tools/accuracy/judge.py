@@ -1,8 +1,7 @@
 """How right a result is: products/assess with one set of settings for everything."""
 
-from lanewright.products.assess.boundaries import BoundaryAccuracySettings, assess_boundaries
-from lanewright.products.assess.driving_lines import compare_lines
-from lanewright.products.assess.inputs import polygons_of_raster
+from lanewright.products.assess.layers import polygons_of_raster
+from lanewright.products.assess.lines import BoundaryAccuracySettings, assess_boundaries, compare_lines
 from lanewright.products.assess.markings import assess_markings
 
 BUFFERS = (0.05, 0.10, 0.15, 0.20)   # m, half-widths

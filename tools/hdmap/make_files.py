@@ -26,12 +26,11 @@ def main():
 def write(folder, name, one):
     """The files of one road map, and the JSON with what must be found in them."""
     from lanewright.products.cad import dxf_lines, write_dxf
-    from lanewright.products.export.inferred_ways import with_inferred_ways
-    from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-    from lanewright.products.export.map_layers import reference_of_crs
+    from lanewright.products.export.lanelet_map import draft_lanelets, lanelet2_text, to_degrees
     from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
     from lanewright.products.export.opendrive.xodr import opendrive_text
-    from lanewright.products.export.shared_borders import with_shared_borders
+    from lanewright.products.export.shared_borders import with_inferred_ways, with_shared_borders
+    from lanewright.products.export.sources import reference_of_crs
 
     source = with_shared_borders(with_inferred_ways(one.source))
     lanes, crs = source.lanes, source.lanes.crs or SOME_CRS

@@ -63,14 +63,10 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
     With times, and a mirror that turns, every return must lie on the ray that the mirror had at its time: an adjustment of all
     of them gives place and attitude. Without, the track is the ridge of the points' density, which is rough.
 
-    Parameters
-    ----------
     paths : LAS, LAZ or COPC files in any order
     crs : WKT for clouds that carry none
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
-
     Returns EstimatedTrajectory, on the clock of the points
-
     Raises RoadExtractionError if a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a
     road.
     """

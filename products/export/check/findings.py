@@ -5,73 +5,14 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 import shapely
 
 from ....core.common.features import MAP_FINDINGS, Features
 
-# what may be found -> what it means
-FAULTS = {
-    "unreadable": "a part of the file cannot be read, or an id is not a number",
-    "id twice": "two elements have one id",
-    "station": "a geometry does not begin where the one before it ends along the road",
-    "gap": "a geometry does not begin where the one before it ends in plan",
-    "kink": "the direction jumps between two geometries",
-    "road length": "the length of a road is not the sum of its geometries",
-    "height step": "the height of a road jumps",
-    "crossfall step": "the crossfall of a road jumps",
-    "width below zero": "a lane is narrower than nothing",
-    "width step": "the border of a lane jumps",
-    "border folds": "a border lies beyond the centre of the curve and folds back",
-    "lane order": "lanes are not numbered without gaps from the middle, or not in that order in the file",
-    "centre lane": "a section has no lane 0, or lane 0 has a width",
-    "section order": "sections do not begin at 0 and go on from there within the road",
-    "lane type": "a type of lane that the format does not have",
-    "road mark type": "a type of road mark that the format does not have",
-    "traffic rule": "a traffic rule that is neither RHT nor LHT",
-    "lane link": "a lane is linked to one that is not there",
-    "one-sided link": "a lane or road is linked to another that is not linked back",
-    "road link": "a road is linked to a road or junction that is not there, or to no end of it",
-    "gap at a link": "linked lanes do not touch in plan",
-    "kink at a link": "the direction jumps between linked lanes",
-    "height step at a link": "the height jumps between linked lanes",
-    "direction at a link": "linked lanes are driven against each other",
-    "connection": "a connection of a junction names a road or lane that is not there or not part of it",
-    "unused junction road": "a road belongs to a junction that has no connection to it",
-    "dead end": "a driven lane ends although its road goes on",
-    "no way in": "a driven lane begins although its road comes from somewhere",
-    "two at one place": "two roads or lanes lie on each other",
-    "object off the road": "an object lies beyond the end of its road",
-    "value": "a word or number that the format does not have",
-    "record order": "records do not begin at the start, go back, or lie beyond the end",
-    "two at once": "an element states two things that exclude each other",
-    "reference": "the geoReference is no CRS in metres",
-    "bounds": "the bounds of the header are not those of the roads",
-    "missing node": "a way has a node that is not there",
-    "missing member": "a relation has a member that is not there",
-    "short way": "a way has fewer than two nodes",
-    "repeated node": "a way has one node twice in a row, or two at one place",
-    "way type": "a way has no type, or one that the format does not have",
-    "way subtype": "a painted line or curb has no subtype, or one that the format does not have",
-    "lanelet tag": "a tag of a lanelet is missing or has a value that the format does not have",
-    "border missing": "a lanelet has not one left and one right border",
-    "border crosses": "a border crosses itself or the other border",
-    "sides swapped": "left and right of a lanelet look swapped",
-    "head on": "two lanelets end, or begin, at the same place, driven against each other",
-    "not joined": "a lanelet begins where another ends, but they do not share their nodes",
-    "border twice": "neighbours have two ways at one place instead of a shared one",
-    "lane width": "a lane is narrower or wider than any lane",
-    "centre line outside": "the centre line of a lanelet leaves it",
-    "spike": "one node of a border lies beside it, or above or below it",
-    "centre line": "a centre line runs against its lanelet, or there is more than one",
-    "regulatory element": "a rule of traffic has no kind or no members that it needs, or nobody obeys it",
-    "way tag": "a tag of a way has a value that the format does not have",
-    "id not positive": "ids of 0 or below, which other programs give out anew",
-    "local coordinates": "some nodes have local_x and local_y, others not",
-    "open area": "the outline of an area does not come back to its beginning",
-    "missing height": "a node has no height although others have",
-}
+FAULTS: dict[str, str] = dict(re.findall("(.+?): (.+)", Path(__file__).with_name("faults.txt").read_text(encoding="utf-8")))   # name: meaning
 
 
 @dataclass(frozen=True)

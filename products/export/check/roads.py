@@ -15,10 +15,9 @@ import shapely
 
 from ....core.common.errors import RoadExtractionError
 from ....core.common.progress import Progress
-from ..map_layers import metric_wkt
 from ..opendrive.model import DRIVEN_TYPES, MARK_TYPES, OPEN_END, ROAD_LANE_TYPES, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, RoadLink, travel
 from ..opendrive.xodr import GEOMETRIES
-from ..sources import wrapped
+from ..sources import metric_wkt, wrapped
 from ..xml_tree import XmlElement
 from .findings import Findings, metres
 

@@ -8,8 +8,7 @@ from ....core.lazy import public
 __getattr__, __all__ = public(__name__, {
     "exporter": ("OpenDriveDraft", "OpenDriveSettings", "draft_opendrive"),
     "geometry": ("Cubics", "PlanElement", "PlanView"),
-    "layers": ("layers_of_opendrive",),
     "model": ("Connection", "Junction", "LaneSection", "MapLane", "MapRoad", "OpenDriveMap", "RoadLink", "RoadMark", "RoadSurface"),
     "reference_line": ("fit_reference", "polynomial_reference"),
-    "xodr": ("opendrive_text", "read_opendrive"),
+    "xodr": ("layers_of_opendrive", "opendrive_text", "read_opendrive"),
 })

@@ -12,13 +12,13 @@ import shapely
 
 from ....core.common.features import Features
 from ....core.common.progress import Progress
-from ....core.common.setting import check_limits, setting
+from ....core.common.setting import Limited, setting
 from ..shared_borders import with_driven_middles
 from ..sources import NearestValues, RoadMapSource, sigma_of_lanes, stop_lines, walked_crossings
 from .geometry import Cubics
 from .model import OPEN_END, STEP, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
+from .reference_line import side_by_side
 from .road_shape import RoadShape, add_heights, add_lanes, centre_of, fit_borders, heights_above_road, shape_steps
-from .side_by_side import side_by_side
 from .strips import (
     Cell,
     Slice,
@@ -49,16 +49,13 @@ USUAL_DASH = (3.0, 6.0)   # m of a dash and a gap where the country is not known
 
 
 @dataclass(frozen=True)
-class OpenDriveSettings:
+class OpenDriveSettings(Limited):
     """tolerance : metres that borders may be missed; version : 1.7 or 1.8; traffic_side : automatic, right or left."""
 
     tolerance: float = setting(0.02, 0.002, 0.5, "Tolerance", "m")
     version: str = "1.7"
     traffic_side: str = "automatic"
     dash: tuple[float, float] = USUAL_DASH
-
-    def __post_init__(self) -> None:
-        check_limits(self)
 
 
 @dataclass
@@ -79,8 +76,6 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     Lanes that share borders lie side by side in one road; it goes on while one slice of lanes follows another. Connectors, and the lanes that
     go straight on beside them, are the roads of a junction, one for each lane.
 
-    Parameters
-    ----------
     source : RoadMapSource, checked
     """
     source = with_driven_middles(source, MIDDLES_SHARE * settings.tolerance)

@@ -260,10 +260,7 @@ def fit_cubics(bundles: Sequence[LineBundle]) -> list[list[Cubics]]:
     The functions follow the lines between their places too. Where even the shortest cubics miss them, as at a corner or a step, straight pieces
     lead from place to place. All bundles are fitted at once: pieces that miss are halved until none does, with one system of equations a round.
 
-    Parameters
-    ----------
     bundles : of any number of sections and roads
-
     Returns for each bundle a list of Cubics, its `start` counted as 0
     """
     fitted: dict[int, list[Cubics]] = {}

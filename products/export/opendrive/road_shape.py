@@ -11,8 +11,7 @@ import numpy as np
 from ..sources import LEAST_CURB
 from .geometry import LEAST_STEP, STEP_RUN, Cubics, LineBundle, PlanView, difference, fit_cubics, risen, simplified
 from .model import LaneSection, MapLane, MapRoad, shape_height
-from .reference_line import polynomial_reference, reference_steps
-from .side_by_side import Steps
+from .reference_line import Steps, polynomial_reference, reference_steps
 from .strips import MOST_TURN, SLOPE_REACH, Slice
 
 NEAREST_POINTS = 0.005   # m within which two places of a guide line are one
@@ -66,8 +65,6 @@ def shape_steps(strip: list[Slice], centres: list[int], tolerance: float) -> Ste
 
     Where lane 0 jumps aside, as where a lane for the opposite traffic begins, the reference line goes on beside it.
 
-    Parameters
-    ----------
     strip : slices end to end
     centres : number of a border in each
     tolerance : metres that the centre border may lie beside the reference line; what is missed is made up by the lane offset
@@ -287,12 +284,9 @@ def fit_borders(roads: Sequence[tuple[RoadShape, list[Slice], list[int]]], toler
                 directions: dict[int, float]) -> list[list[list[Cubics]]]:
     """The borders of all sections of roads as functions of the metres from the start of the section.
 
-    Parameters
-    ----------
     roads : the shape of each, its slices, and the number of the border in each at which lane 0 lies
     tolerance : metres that a border may be missed
     directions : {number of a vertex: radians} of the borders where roads meet others
-
     Returns for each road and each of its sections the functions from left to right
     """
     bundles = [bundle for shape, strip, _ in roads for bundle in _border_bundles(shape, strip, tolerance, directions)]

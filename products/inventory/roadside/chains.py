@@ -240,14 +240,11 @@ def gaps_by_window(gaps: Gaps, length: float) -> dict[int, list[int]]:
 def pulses_at(gaps: Gaps, side: int, s: np.ndarray, d: np.ndarray, h: np.ndarray, across: np.ndarray, up: np.ndarray) -> np.ndarray:
     """Pulses that reached the places of gaps, or would have.
 
-    Parameters
-    ----------
     gaps : Gaps, of one side of a road
     side : 1 left, -1 right
     s, d, h : (N,) m, station (rising), offset and height of points of that side, which count as those of the gaps
     across : (2, N) m from the point to the scanner, ahead and left along the road
     up : (N,) m that the scanner is higher above the road
-
     Returns (3, K) pulses that passed each slice of all gaps, one after the other, that met something there, and that something before it stopped
     """
     length = gaps.last - gaps.first + 1

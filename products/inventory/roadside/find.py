@@ -14,12 +14,23 @@ from ....core.common.progress import Progress
 from ....core.countries.catalogue import country
 from ....core.survey.frame.road_frame import RoadFrame
 from ....core.survey.survey import Survey
-from ..borders import BorderLayers, RoadBorders
-from ..settings import RoadsideSettings
+from ..borders import BorderLayers, RoadBorders, RoadsideSettings
 from ..surface_grid import SLICE_LENGTH
 from .chains import Chain, along_the_chain, find_chains, gaps_by_window, judged, pulses_at, things_of
-from .ground import GROUND_CELL, find_gutters, level_views, lines_of_sight, local_ground
-from .uprights import FIRST_BIN, HEIGHT_BIN, UPRIGHT_SLICE, Pole, Uprights, find_poles, find_uprights
+from .uprights import (
+    FIRST_BIN,
+    GROUND_CELL,
+    HEIGHT_BIN,
+    UPRIGHT_SLICE,
+    Pole,
+    Uprights,
+    find_gutters,
+    find_poles,
+    find_uprights,
+    level_views,
+    lines_of_sight,
+    local_ground,
+)
 
 ROADSIDE_WINDOW = 20.0            # m of road looked at at a time; results do not depend on it
 ROADSIDE_MARGIN = 5.0      # m before and after it, for the ground

@@ -11,14 +11,23 @@ import numpy as np
 from ....core.common.errors import RoadExtractionError
 from ....core.common.features import PROPOSED_POINTS, Features
 from ....core.common.progress import Progress
-from ....core.common.setting import check_limits, setting
+from ....core.common.setting import Limited, setting
 from ....core.io.geotiff import IntensityImage
 from ....core.lazy import cv2
+from ..control_points import SourceImage
 from ..rough_place import RoughPlace
-from ..source_image import SourceImage
-from .coarse import find_places, paint_about
-from .photo import Photo, SurveyedPaint, read_photo, reduced
-from .placement import Placement, highest_order, left_out_residuals, robust_placement
+from .places import (
+    Photo,
+    Placement,
+    SurveyedPaint,
+    find_places,
+    highest_order,
+    left_out_residuals,
+    paint_about,
+    read_photo,
+    reduced,
+    robust_placement,
+)
 
 _CORNERS = 400          # corners looked for
 _CANDIDATES = 4         # places of the search that are followed up
@@ -34,11 +43,8 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     at last the surroundings of single corners are compared. A pair is accepted where the two look alike, nothing nearby looks
     the same, and the other pairs place it where it is. None is accepted where the whole image fits another place about as well.
 
-    Parameters
-    ----------
     intensity : IntensityImage in a projected CRS in metres
     rough : RoughPlace in that CRS
-
     Raises RoadExtractionError if the image does not lie over the intensity image, covers too much ground, or shows other paint.
     """
     settings = settings or ProposalSettings()
@@ -259,7 +265,7 @@ def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
 # What is proposed: pairs of places, which of them are accepted, what is known of the whole, and whether the paint allows another place.
 
 @dataclass(frozen=True)
-class ProposalSettings:
+class ProposalSettings(Limited):
     """How pairs are found and accepted.
 
     tolerance : m, largest distance of a pair that is accepted from where the others place it
@@ -271,10 +277,6 @@ class ProposalSettings:
     min_score: float = setting(0.6, 0.3, 0.99, "The smallest score")   # smallest correlation of the two cut-outs of a pair that is accepted
     count: int = setting(40, 6, 400, "The number of pairs")   # most pairs that are accepted
     pixel_size: float = setting(0.0, 0.001, 1.0, "The pixel size", "m", zero="as the image says")
-
-    def __post_init__(self) -> None:
-        """Check the limits of all settings."""
-        check_limits(self)
 
 
 @dataclass(frozen=True)
@@ -427,15 +429,12 @@ class Found(NamedTuple):
 def _find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float, search: float) -> Found:
     """Find patches of the intensity image in the photo drawn on the same cells.
 
-    Parameters
-    ----------
     paint : (H, W) contrast of the intensity image, 0 where unknown, its corner at local 0, 0
     drawn : (H, W) contrast of the photo on the same cells
     cell : m
     x, y : (N,) middles of the patches, m, local
     half : m, half the side of a patch
     search : m, how far off it may be
-
     Returns Found, without patches that lie too near the border, hold no paint, or were found at the border of their window
     """
     margin = max(2, round(search / cell))

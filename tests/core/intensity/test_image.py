@@ -277,7 +277,7 @@ def test_the_display_image_shows_paint_brighter_than_asphalt_and_nothing_as_noth
 
 
 def test_an_image_of_two_towns_a_thousand_kilometres_apart_is_only_as_large_as_the_towns(tmp_path):
-    from lanewright.products.report.map_figure import grey_background
+    from lanewright.products.report.page import grey_background
 
     here = painted_street(length=10.0)
     kind = point_dtype(ROAD_POINT, 1e6)
@@ -302,7 +302,7 @@ def test_an_image_of_two_towns_a_thousand_kilometres_apart_is_only_as_large_as_t
 
 
 def test_a_report_shows_the_same_background_when_only_tiles_with_data_are_read(tmp_path, monkeypatch):
-    from lanewright.products.report import map_figure as background
+    from lanewright.products.report import page as background
 
     image_of(painted_street(length=40.96), tmp_path / "i.tif", ImageSettings(cell_size=0.02))
     whole, extent = background.grey_background(tmp_path / "i.tif", longest=100)

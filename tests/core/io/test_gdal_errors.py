@@ -8,7 +8,7 @@ import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.geotiff import IntensityImage, new_geotiff
 from lanewright.core.io.local_files import gdal_exceptions
-from lanewright.products.report.map_figure import grey_background
+from lanewright.products.report.page import grey_background
 
 gdal = pytest.importorskip("osgeo.gdal")
 ogr = pytest.importorskip("osgeo.ogr")

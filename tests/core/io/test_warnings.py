@@ -9,7 +9,7 @@ import shapely
 from lanewright.core.intensity.asphalt_model import _mixed
 from lanewright.core.io.crs import parse_crs, same_crs
 from lanewright.core.io.text_table import _parse
-from lanewright.products.assess.inputs import AssessedLayer, in_crs
+from lanewright.products.assess.layers import AssessedLayer, in_crs
 
 
 @contextmanager

@@ -9,7 +9,7 @@ import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.pipeline.road_map import make_road_map
 from lanewright.core.survey.trajectory.trajectory import clean_trajectory
-from lanewright.products.assess.driving_lines import compare_lines
+from lanewright.products.assess.lines import compare_lines
 
 pytestmark = pytest.mark.slow
 

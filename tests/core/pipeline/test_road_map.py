@@ -12,7 +12,7 @@ from lanewright.core.pipeline import road_map as chain
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.core.survey.trajectory.trajectory import Trajectory
-from lanewright.products.assess.driving_lines import compare_lines
+from lanewright.products.assess.lines import compare_lines
 from lanewright.products.assess.markings import assess_markings
 
 pytestmark = pytest.mark.slow

@@ -10,7 +10,7 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.road.detect_boundaries import BoundarySettings
 from lanewright.core.road.scanlines.detect import SurveyScanlines
 from lanewright.core.survey.open_survey import open_survey
-from lanewright.products.assess.boundaries import assess_boundaries
+from lanewright.products.assess.lines import assess_boundaries
 from road_layers import drawn_boundaries
 
 pytestmark = pytest.mark.slow

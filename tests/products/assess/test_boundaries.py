@@ -7,7 +7,7 @@ import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
-from lanewright.products.assess.boundaries import BoundaryAccuracySettings, assess_boundaries, interval_lines
+from lanewright.products.assess.lines import BoundaryAccuracySettings, assess_boundaries, interval_lines
 from shapely import MultiLineString, reverse
 from shapely.affinity import translate
 from shapely.geometry import LineString, box

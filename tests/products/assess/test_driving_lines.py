@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.products.assess.driving_lines import compare_lines, match_lines
+from lanewright.products.assess.lines import compare_lines, match_lines
 from shapely import reverse
 from shapely.geometry import LineString, MultiLineString, box
 

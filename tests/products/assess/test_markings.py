@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.products.assess.inputs import polygons_of_raster, widened_lines
+from lanewright.products.assess.layers import polygons_of_raster, widened_lines
 from lanewright.products.assess.markings import FALSE, FALSE_BESIDE, HIT, MISSED, MarkingAccuracySettings, assess_markings
 from osgeo import gdal
 from shapely.affinity import translate

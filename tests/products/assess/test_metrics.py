@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.products.assess.metrics import Errors, Rates, f1_of
+from lanewright.products.assess.matching import Errors, Rates, f1_of
 
 # Published recall, precision and F1, per cent, of the driving-line thesis (tables 4.13 and 4.14)
 THESIS = [

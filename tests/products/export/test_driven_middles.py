@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import DRIVING_LINES, Features
-from lanewright.products.export.map_layers import border_misses, driving_line_misses
 from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
-from lanewright.products.export.opendrive.layers import layers_of_opendrive
-from lanewright.products.export.opendrive.xodr import opendrive_text, read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
 from lanewright.products.export.shared_borders import with_driven_middles, with_shared_borders
-from lanewright.products.export.sources import RoadMapSource, checked
+from lanewright.products.export.sources import RoadMapSource, border_misses, checked, driving_line_misses
 from made_lanes import double_line, street
 from map_files import written
 

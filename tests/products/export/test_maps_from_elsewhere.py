@@ -8,19 +8,15 @@ import shapely
 from lanewright.core.common.progress import Progress
 from lanewright.core.driving.layers import Lanes
 from lanewright.products.export.check.lanelets import check_lanelets
-from lanewright.products.export.inferred_ways import with_inferred_ways
-from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
-from lanewright.products.export.map_layers import border_misses
+from lanewright.products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
 from lanewright.products.export.opendrive import geometry as fits
 from lanewright.products.export.opendrive.exporter import draft_opendrive
 from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
-from lanewright.products.export.opendrive.layers import layers_of_opendrive
 from lanewright.products.export.opendrive.model import shape_height
 from lanewright.products.export.opendrive.reference_line import fit_reference
-from lanewright.products.export.opendrive.xodr import opendrive_text, read_opendrive
-from lanewright.products.export.shared_borders import with_shared_borders
-from lanewright.products.export.sources import RoadMapSource, checked
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.shared_borders import with_inferred_ways, with_shared_borders
+from lanewright.products.export.sources import RoadMapSource, border_misses, checked
 from map_files import geometry, lane, opendrive, road, street_section, written
 
 TOLERANCE = 0.02   # m

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 from lanewright.products.export.check.roads import check_opendrive
-from lanewright.products.export.map_layers import border_misses
 from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.layers import layers_of_opendrive
-from lanewright.products.export.opendrive.xodr import opendrive_text, read_opendrive
-from lanewright.products.export.sources import RoadMapSource, checked
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.sources import RoadMapSource, border_misses, checked
 from made_lanes import CRS, Axis, LaneScene, kinds, parting
 from map_files import written
 

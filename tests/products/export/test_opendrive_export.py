@@ -7,13 +7,11 @@ import pytest
 import shapely
 from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.products.export.check.roads import check_opendrive
-from lanewright.products.export.map_layers import border_misses, crs_of_reference, driving_line_misses, reference_of_crs
 from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
 from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
-from lanewright.products.export.opendrive.layers import layers_of_opendrive
 from lanewright.products.export.opendrive.reference_line import fit_reference, polynomial_reference
-from lanewright.products.export.opendrive.xodr import opendrive_text, read_opendrive
-from lanewright.products.export.sources import RoadMapSource, checked
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.sources import RoadMapSource, border_misses, checked, crs_of_reference, driving_line_misses, reference_of_crs
 from made_lanes import CRS, Axis, LaneScene, crossing, kinds, roundabout, s_curve, split, street, widening
 from map_files import written
 

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.products.export.map_layers import crs_of_reference
 from lanewright.products.export.opendrive.geometry import Cubics, PlanElement
-from lanewright.products.export.opendrive.layers import layers_of_opendrive
-from lanewright.products.export.opendrive.xodr import read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
+from lanewright.products.export.sources import crs_of_reference
 from map_files import geometry, lane, opendrive, road, street_section, written
 
 

@@ -7,12 +7,10 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.products.export.check.roads import check_opendrive
-from lanewright.products.export.map_layers import border_misses
 from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.layers import layers_of_opendrive
-from lanewright.products.export.opendrive.xodr import opendrive_text, read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
 from lanewright.products.export.shared_borders import SHARED_FADE, meet_lanes, share_borders, with_shared_borders
-from lanewright.products.export.sources import RoadMapSource, checked, with_surface_heights
+from lanewright.products.export.sources import RoadMapSource, border_misses, checked, with_surface_heights
 from made_lanes import CRS, Axis, LaneScene, crossing, double_line, kinds, parting, street
 from map_files import written
 

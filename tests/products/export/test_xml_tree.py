@@ -84,7 +84,7 @@ except Exception as problem:
     print(type(problem).__name__, problem)
 print(next(int(line.split()[1]) // 1024 for line in open("/proc/self/status") if line.startswith("VmHWM")))
 """
-LARGE = {"blanks": (b"<OpenDRIVE>", b" ", 1000), "blanks in a tag": (b"<OpenDRIVE ", b"\n", 300), "an endless number": (b'<OpenDRIVE a="', b"9", 300),
+LARGE = {"blanks": (b"<OpenDRIVE>", b" ", 250), "blanks in a tag": (b"<OpenDRIVE ", b"\n", 250), "an endless number": (b'<OpenDRIVE a="', b"9", 250),
          "small tags": (b"<OpenDRIVE>", b"<road/>", 100), "text": (b"<OpenDRIVE>", b"la", 200)}
 
 

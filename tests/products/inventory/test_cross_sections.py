@@ -5,10 +5,10 @@ import re
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.countries.catalogue import COUNTRIES
 from lanewright.products.cad import section_drawing, write_dxf
-from lanewright.products.inventory.borders import BorderLayers
+from lanewright.products.inventory.borders import BorderLayers, CrossSectionSettings
 from lanewright.products.inventory.cross_sections import measure_cross_sections, sections_to_features
-from lanewright.products.inventory.settings import CrossSectionSettings
 from lanewright.products.report.inventory import cross_section_report
 from measured_streets import GROUND, HALF, Drive, edges_of, lanes_of, markings_of, measured_road
 
@@ -206,6 +206,12 @@ def test_the_drawing_of_the_sections_has_the_ground_true_to_scale_with_its_limit
     texts = {layer: [text for kind, text, _ in rows if text and kind == layer] for layer, _, _ in rows}
     assert any("10 mm [ZTV ZEB-StB, warning value]" in text for text in texts["SECTION_EXCEEDED"])
     assert any(text.startswith(f"0: {sections.sections[0].station:.2f} m") for text in texts["SECTION_TEXT"])
+
+
+@pytest.mark.parametrize("name", COUNTRIES)
+def test_every_limit_of_a_country_names_its_rule(name):
+    limits = CrossSectionSettings(country=name).limits()
+    assert set(limits.rules) == {limit for limit in limits.NAMES if getattr(limits, limit) is not None}
 
 
 def test_a_limit_left_at_0_is_the_countrys():

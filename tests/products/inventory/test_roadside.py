@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import Features
-from lanewright.products.inventory.borders import BorderLayers
+from lanewright.products.inventory.borders import BorderLayers, RoadsideSettings
 from lanewright.products.inventory.roadside import find as finding
 from lanewright.products.inventory.roadside.chains import find_chains, things_of
 from lanewright.products.inventory.roadside.find import find_roadside, roadside_to_features
 from lanewright.products.inventory.roadside.uprights import TOP_BINS, Uprights, find_poles
-from lanewright.products.inventory.settings import RoadsideSettings
 from lanewright.products.report.inventory import roadside_report
 from measured_streets import GROUND, SENSOR, Drive, edges_of, measured_road
 from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, hidden_by, points_of, pole_points, road_with, vans

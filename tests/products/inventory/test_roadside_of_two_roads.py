@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from drives import drive, joined, straight
 from lanewright.core.survey.frame.road_frame import build_frame
+from lanewright.products.inventory.borders import RoadsideSettings
 from lanewright.products.inventory.roadside.chains import Chain
 from lanewright.products.inventory.roadside.find import Roadside, SideEdges, SideLine, told_once
 from lanewright.products.inventory.roadside.uprights import LOW_BINS, UPRIGHT_SLICE, Pole, Uprights
-from lanewright.products.inventory.settings import RoadsideSettings
 
 APART, HALF, LENGTH = 20.0, 4.0, 100.0   # m between the tracks, from each to its edges
 

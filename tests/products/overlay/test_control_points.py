@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from flown_images import EAST, NORTH, image
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.products.overlay.control_points import control_points, read_control_points
-from lanewright.products.overlay.source_image import SourceImage
+from lanewright.products.overlay.control_points import SourceImage, control_points, read_control_points
 
 PIXEL, LINE = [10.5, 590.0, 300.25, 20.0], [20.25, 30.0, 380.0, 390.5]
 EASTING, NORTHING = [EAST + p / 20 for p in PIXEL], [NORTH - q / 20 for q in LINE]

@@ -1,8 +1,8 @@
 """Position tags of images."""
 
 import pytest
+from lanewright.products.overlay.control_points import open_image
 from lanewright.products.overlay.rough_place import read_position_tags
-from lanewright.products.overlay.source_image import open_image
 
 
 @pytest.mark.parametrize("damaged, found", [("EXIF_Make", (48.5, 9.25)), ("EXIF_GPSLongitude", (48.5, 9.25))])

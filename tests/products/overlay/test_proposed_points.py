@@ -4,16 +4,14 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.products.overlay.control_points import control_points
+from lanewright.products.overlay.control_points import control_points, open_image
 from lanewright.products.overlay.georeference import georeference
 from lanewright.products.overlay.matching.propose import AMBIGUOUS, ProposalSettings, propose_control_points
-from lanewright.products.overlay.pair_cutouts import pair_cutouts
-from lanewright.products.overlay.rough_place import rough_place
-from lanewright.products.overlay.source_image import open_image
+from lanewright.products.overlay.rough_place import pair_cutouts, rough_place
 from lanewright.products.report.overlay import proposed_points_report
 from lanewright.simulator.orthophoto import uav_control_points, write_uav_image
-from lanewright.simulator.survey import make_sample_survey
-from paint_from_above import EAST, NORTH, Ground, Overhead, about, arrow, bar, dashes, errors, street, zebra
+from lanewright.simulator.survey import SampleSettings, make_sample_survey
+from paint_from_above import EAST, NORTH, Ground, Overhead, about, arrow, bar, dashes, errors, near, street, zebra
 
 pytestmark = pytest.mark.slow
 
@@ -26,7 +24,7 @@ def surveyed(tmp_path_factory):
 
 def proposal(tmp_path, intensity, camera, ground=None, rough=None, settings=None, **seen):
     photo = (ground or Ground(street())).photo(tmp_path / "photo.png", camera, **seen)
-    return propose_control_points(photo, intensity, rough or about(camera), settings)
+    return propose_control_points(photo, intensity, rough or near(camera), settings)
 
 
 UPSIDE_DOWN = Overhead(turn=2.2, size=0.03, width=2400, height=800)
@@ -34,13 +32,13 @@ UPSIDE_DOWN = Overhead(turn=2.2, size=0.03, width=2400, height=800)
 
 @pytest.fixture(scope="module")
 def found_upside_down(tmp_path_factory, surveyed):
-    return proposal(tmp_path_factory.mktemp("upside_down"), surveyed, UPSIDE_DOWN)
+    return proposal(tmp_path_factory.mktemp("upside_down"), surveyed, UPSIDE_DOWN, rough=about(UPSIDE_DOWN))
 
 
 @pytest.mark.parametrize("camera", [Overhead(), UPSIDE_DOWN, Overhead(turn=-0.4, tilt=0.03)],
                          ids=["along the road", "upside down and finer", "tilted"])
 def test_pairs_lie_where_the_camera_saw_them(tmp_path, surveyed, found_upside_down, camera):
-    found = found_upside_down if camera is UPSIDE_DOWN else proposal(tmp_path, surveyed, camera)
+    found = found_upside_down if camera is UPSIDE_DOWN else proposal(tmp_path, surveyed, camera, rough=near(camera) if camera.tilt else about(camera))
     off = errors(found, camera)[found.accepted]
     assert found.accepted.sum() >= 25
     assert off.max() < 0.05 and np.sqrt(np.mean(off**2)) < 0.02
@@ -78,7 +76,7 @@ def test_paint_that_repeats_gives_no_accepted_pair_that_is_false(tmp_path, paint
     """The photo shows less than the survey: a period farther on it would look the same."""
     ground, camera = Ground(paint), Overhead(width=700, height=400)
     try:
-        found = proposal(tmp_path, ground.intensity_image(tmp_path / "intensity.tif"), camera, ground)
+        found = proposal(tmp_path, ground.intensity_image(tmp_path / "intensity.tif"), camera, ground, about(camera))
     except RoadExtractionError as refused:
         assert "do not fit each other" in str(refused)
     else:
@@ -88,7 +86,7 @@ def test_paint_that_repeats_gives_no_accepted_pair_that_is_false(tmp_path, paint
 def test_a_long_zebra_crossing_is_said_to_repeat(tmp_path):
     ground = Ground([bar(20 + 1.0 * k, -15, 4.0, 0.5, 90) for k in range(40)])
     camera = Overhead(width=600, height=300)
-    found = proposal(tmp_path, ground.intensity_image(tmp_path / "intensity.tif"), camera, ground)
+    found = proposal(tmp_path, ground.intensity_image(tmp_path / "intensity.tif"), camera, ground, about(camera))
     assert not found.accepted.any() and AMBIGUOUS in found.why
     assert "The paint repeats" in found.notes[0]
 
@@ -102,7 +100,7 @@ def test_other_paint_of_another_year_gives_no_pair(tmp_path, surveyed):
 def test_a_wrong_scale_and_a_bare_road_are_told(tmp_path, surveyed):
     camera = Overhead(width=800, height=400)
     with pytest.raises(RoadExtractionError, match="another scale"):
-        proposal(tmp_path, surveyed, camera, rough=about(camera, size=1.6))
+        proposal(tmp_path, surveyed, camera, rough=near(camera, size=1.6))
     with pytest.raises(RoadExtractionError, match="do not fit each other"):
         proposal(tmp_path, surveyed, camera, Ground([]))
 
@@ -141,7 +139,7 @@ def test_both_cut_outs_of_a_pair_show_the_same_paint(surveyed, found_upside_down
 
 def test_the_sample_image_finds_its_place_by_its_tags_to_three_centimetres(tmp_path):
     """Cars, trees, their shadows, a tilted camera and its lens; check points that a surveyor measured judge the result."""
-    survey = make_sample_survey()
+    survey = make_sample_survey(SampleSettings(length=70.0))
     write_uav_image(survey, tmp_path / "uav.tif")
     image = open_image(tmp_path / "uav.tif")
     edges = shapely.union_all(survey.truth_surface.geometries).bounds

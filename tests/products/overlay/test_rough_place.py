@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.products.overlay.control_points import control_points
+from lanewright.products.overlay.control_points import SourceImage, control_points
 from lanewright.products.overlay.rough_place import position_tags, rough_place
-from lanewright.products.overlay.source_image import SourceImage
 from lanewright.simulator.camera_tags import camera_tags
 from lanewright.simulator.survey import SampleSettings, make_sample_survey
 from paint_from_above import EAST, NORTH, UTM

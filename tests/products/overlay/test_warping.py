@@ -5,10 +5,8 @@ import pytest
 from flown_images import HEIGHT, WIDTH, chequered, ground, measured
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.products.overlay.control_points import control_points
-from lanewright.products.overlay.georeference import GeoreferenceSettings, georeference
-from lanewright.products.overlay.source_image import open_image
-from lanewright.products.overlay.warp import draw_image, output_grid
+from lanewright.products.overlay.control_points import control_points, open_image
+from lanewright.products.overlay.georeference import GeoreferenceSettings, draw_image, georeference, output_grid
 from osgeo import gdal
 
 RIMS = [(p, q) for p in (0, 150, 300, 450, 600) for q in (0, 130, 270, 400)]
@@ -82,7 +80,7 @@ def test_images_of_any_kind_get_an_alpha_band_of_their_own(driver, suffix, bands
 
 
 def test_a_large_image_stored_by_lines_is_drawn_like_any_other(tmp_path, monkeypatch):
-    from lanewright.products.overlay import warp as warping
+    from lanewright.products.overlay import georeference as warping
 
     before = gdal.GetCacheMax()
     monkeypatch.setattr(warping, "GDAL_CACHE", 500_000)

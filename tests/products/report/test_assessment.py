@@ -4,10 +4,10 @@ import re
 
 import numpy as np
 import pytest
-from lanewright.products.assess.boundaries import assess_boundaries
 from lanewright.products.assess.layers import boundary_layer
+from lanewright.products.assess.lines import assess_boundaries
 from lanewright.products.report.assessment import bins_of, boundary_report
-from lanewright.products.report.figures import Chart, ticks
+from lanewright.products.report.page import Chart, ticks
 from shapely.geometry import LineString
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from jinja2 import nodes
 from lanewright.core.common.texts import set_translation, word
-from lanewright.products.assess.boundaries import assess_boundaries
 from lanewright.products.assess.layers import boundary_layer
+from lanewright.products.assess.lines import assess_boundaries
 from lanewright.products.export.check.findings import FAULTS, Finding, Findings
 from lanewright.products.report import boundary_report, map_check_report
 from lanewright.products.report.page import templates

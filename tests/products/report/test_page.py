@@ -5,8 +5,7 @@ import pytest
 from jinja2 import UndefinedError
 from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.pipeline.road_map import STAGE_NAMES
-from lanewright.products.report.map_figure import draw_map
-from lanewright.products.report.page import html_page, number, templates
+from lanewright.products.report.page import draw_map, html_page, number, templates
 from shapely.geometry import LineString
 
 

@@ -1,0 +1,560 @@
+"""Where a photo lies: read as contrast of paint, laid over the intensity image to about a metre, then placed by pairs that agree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy import fft
+
+from ....core.common.errors import RoadExtractionError
+from ....core.common.progress import Progress
+from ....core.io.geotiff import GEOTIFF_TILE, IntensityImage
+from ....core.io.local_files import gdal_exceptions, open_raster
+from ....core.lazy import cv2
+from ..control_points import SourceImage
+from ..georeference import (
+    COLLINEAR_RATIO,
+    MIN_CONTROL_POINTS,
+    MIN_INVERSE_CONDITION,
+    ImagePolynomial,
+    fit_image_polynomial,
+    inverse_condition,
+    principal_extents,
+)
+from ..rough_place import RoughPlace
+
+FINEST_CELL = 0.04        # m: smaller cells show the gaps between laser points rather than paint
+MOST_PIXELS = 60_000_000  # of either image in memory, 240 MB
+_LUMINANCE = (0.299, 0.587, 0.114)  # of red, green and blue (ITU-R BT.601)
+
+
+@dataclass(frozen=True)
+class SurveyedPaint:
+    """Contrast of a part of the intensity image, north up."""
+
+    contrast: np.ndarray   # (H, W) float32, 0 where unknown
+    values: np.ndarray   # (H, W) float32 intensity, NaN where unknown
+    cell: float   # m
+    left: float   # left, top: map coordinates of its outer corner, the origin of local coordinates
+    top: float
+
+    @property
+    def known(self) -> np.ndarray:
+        """(H, W) bool."""
+        return np.isfinite(self.values)
+
+
+@dataclass(frozen=True)
+class Photo:
+    """Contrast of the photo."""
+
+    contrast: np.ndarray   # (H, W) float32
+    luminance: np.ndarray   # (H, W) float32, NaN where there is none
+    factor: int   # pixels of the image side by side in a pixel here
+
+
+def _read_paint(image: IntensityImage, box: tuple[float, float, float, float] | None = None) -> SurveyedPaint:
+    """The part of an intensity image within a box of map coordinates, its cells made no finer than FINEST_CELL.
+
+    box : west, south, east, north, m; None: the whole image
+    Returns SurveyedPaint; empty where the box lies outside the image
+    """
+    cell = image.cell_size
+    first, last = (0, 0), (image.width, image.height)
+    if box is not None:
+        (c0, c1), (r0, r1) = image.pixel_of(np.array([box[0], box[2]]), np.array([box[3], box[1]]))
+        first = max(0, int(np.floor(c0))), max(0, int(np.floor(r0)))
+        last = min(image.width, int(np.ceil(c1))), min(image.height, int(np.ceil(r1)))
+    width, height = max(0, last[0] - first[0]), max(0, last[1] - first[1])
+    step = max(1, round(FINEST_CELL / cell), int(np.ceil(np.sqrt(width * height / MOST_PIXELS))))
+    values = np.full((height // step, width // step), np.nan, np.float32)
+    strip = max(1, GEOTIFF_TILE // step)
+    for row in range(0, len(values), strip):
+        count = min(strip, len(values) - row)
+        pixels = image.read_pixels(first[0], first[1] + row * step, values.shape[1] * step, count * step)
+        values[row:row + count] = pixels if step == 1 else _means(pixels, step)
+    left, top = image.geotransform[0] + first[0] * cell, image.geotransform[3] - first[1] * cell
+    return SurveyedPaint(_paint_contrast(values, cell * step), values, cell * step, left, top)
+
+
+def _means(pixels, step):
+    """Means of step x step pixels over those that are known."""
+    blocks = pixels.reshape(len(pixels) // step, step, pixels.shape[1] // step, step)
+    finite = np.isfinite(blocks)
+    count = finite.sum(axis=(1, 3))
+    total = np.where(finite, blocks, 0.0).sum(axis=(1, 3))
+    return np.divide(total, count, out=np.full(count.shape, np.nan, np.float32), where=count > 0)
+
+
+@gdal_exceptions()
+def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
+    """The luminance and contrast of an image, in pixels about as large as a cell of the intensity image or as they are.
+
+    size : m of a pixel, roughly
+    cell : m of a cell of the intensity image
+    Raises RoadExtractionError if the image cannot be read.
+    """
+    from osgeo import gdal
+
+    width, height = image.width, image.height
+    factor = max(1, int(cell / size + 0.25), int(np.ceil(np.sqrt(width * height / MOST_PIXELS))))
+    columns, rows = max(1, width // factor), max(1, height // factor)
+    try:
+        dataset = open_raster(image.path)
+        if image.palette:
+            dataset = gdal.Translate("", dataset, format="VRT", rgbExpand="rgb")
+        colours = (1, 2, 3) if dataset.RasterCount - image.has_alpha >= 3 else (1,)
+        weights = _LUMINANCE if len(colours) == 3 else (1.0,)
+
+        def read(band, resampling, kind=gdal.GDT_Float32, dtype=np.float32):
+            data = band.ReadRaster(0, 0, columns * factor, rows * factor, columns, rows, kind, resample_alg=resampling)
+            return np.frombuffer(data, dtype).reshape(rows, columns)
+
+        luminance = np.zeros((rows, columns), np.float32)
+        for number, weight in zip(colours, weights):
+            luminance += np.float32(weight) * read(dataset.GetRasterBand(number), gdal.GRIORA_Average)
+        mask = read(dataset.GetRasterBand(1).GetMaskBand(), gdal.GRIORA_NearestNeighbour, gdal.GDT_Byte, np.uint8)
+    except RuntimeError as problem:
+        raise RoadExtractionError(f"{image.path} cannot be read as an image ({problem}). Export it anew as a TIFF or JPEG.") from problem
+    luminance[(mask < 128) | ~np.isfinite(luminance)] = np.nan
+    return Photo(_paint_contrast(luminance, size * factor), luminance, factor)
+
+
+# Paint against its surroundings, made comparable between a photo and an intensity image.
+
+SURROUNDINGS = 1.0   # m, standard deviation of the Gaussian window of the local mean; paint is at most half a metre wide
+FULL_CONTRAST = 0.6  # difference of logarithms between fresh paint and asphalt that counts as 1
+_DARKEST = 0.1       # of the range of values, added before the logarithm: black is not infinitely dark
+_RANGE = (1.0, 99.5)  # percentiles of the values taken for black and white
+
+
+def _paint_contrast(values: np.ndarray, pixel_size: float) -> np.ndarray:
+    """How much brighter each pixel is than its surroundings, -1 to 1, as a logarithm, so that sun and shadow look alike; 0 where unknown."""
+    finite = np.isfinite(values)
+    if not finite.any():
+        return np.zeros(values.shape, np.float32)
+    low, high = np.percentile(values[finite][:: max(1, int(finite.sum()) // 1_000_000)], _RANGE)
+    share = (np.where(finite, values, low) - low) / max(float(high - low), 1e-9)
+    logarithm = np.log(np.clip(share, 0.0, 1.0) + _DARKEST).astype(np.float32)
+    weight = finite.astype(np.float32)
+    around = SURROUNDINGS / pixel_size
+    mean = _smooth(logarithm * weight, around) / np.maximum(_smooth(weight, around), 1e-3)
+    return np.clip((logarithm - mean) / FULL_CONTRAST, -1.0, 1.0) * weight
+
+
+def _smooth(values, deviation):
+    """Gaussian smoothing; a wide window works on a reduced copy, which is as exact as the smoothing needs."""
+    step = max(1, int(deviation // 6))
+    if step == 1:
+        return cv2.GaussianBlur(values, (0, 0), deviation, borderType=cv2.BORDER_REPLICATE)
+    height, width = values.shape
+    small = cv2.resize(values, (max(1, width // step), max(1, height // step)), interpolation=cv2.INTER_AREA)
+    small = cv2.GaussianBlur(small, (0, 0), deviation / step, borderType=cv2.BORDER_REPLICATE)
+    return cv2.resize(small, (width, height), interpolation=cv2.INTER_LINEAR)
+
+
+def reduced(contrast: np.ndarray, factor: int) -> np.ndarray:
+    """The contrast in pixels that are `factor` times as wide, each the mean of those it covers.
+
+    contrast : (H, W)
+    factor : at least 1; the last columns and rows that fill no pixel are left out
+    Returns (H // factor, W // factor) float32
+    """
+    if factor == 1:
+        return contrast
+    height, width = (n // factor for n in contrast.shape)
+    if not height or not width:
+        return contrast[:1, :1]
+    return cv2.resize(contrast[:height * factor, :width * factor], (width, height), interpolation=cv2.INTER_AREA)
+
+
+# Where a photo lies, to about a metre: its paint correlated with that of the intensity image over shift, turn and scale.
+
+_CELLS = (0.64, 0.32)     # m, of the two rounds: the lines of a road, 0.15 m wide, still stand out in cells of half a metre
+_SLACK = 2.0              # cells by which the ends of the photo may be off between two turns or scales that are tried
+_PEAKS = 4                # places kept of each turn and scale
+_KEPT = 12                # places that go into the second round
+_APART = 3.0              # m between two places that count as different
+_WORTH = 0.4              # of the best correlation so far, below which a place is not kept
+_FINER = (0.5, 0.25)      # of a step, tried about each place in the second round
+
+
+class Place(NamedTuple):
+    """A similarity from the photo's middle to the map."""
+
+    x: float   # x, y: m, local, of the photo's middle
+    y: float
+    turn: float   # radians, counter-clockwise, from the rows of the photo to east
+    size: float   # m of a pixel
+    sign: int   # 1, or -1 where paint is darker than the road
+    score: float   # 0 to 1, correlation of the contrasts where both are known
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What is tried."""
+
+    x: float   # x, y: m, local, about where the photo's middle lies
+    y: float
+    reach: float   # m, how far off that may be; infinite where nothing is known
+    turns: tuple[float, float]   # (from, to) radians
+    sizes: tuple[float, float]   # (from, to) m of a pixel
+
+    def of_pixels(self, factor: int) -> Bounds:
+        """The same for a photo whose pixels are `factor` times as wide."""
+        return replace(self, sizes=(self.sizes[0] * factor, self.sizes[1] * factor))
+
+
+def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bounds, sign: int = 1,
+                progress: Progress = Progress()) -> list[Place]:
+    """The places where the paint of a photo fits that of the intensity image best, the best first.
+
+    photo : (H, W) contrast of the photo, in pixels of `bounds.sizes`
+    paint : (h, w) contrast of the intensity image, north up, its outer corner at local 0, 0 and y negative below it
+    cell : m, pixel of the intensity image
+    bounds : Bounds, of the pixels of `photo`
+    sign : 1, or -1 where paint is darker than the road
+    Returns list of Place, each some metres or a turn away from the others
+    """
+    middle_size = float(np.sqrt(bounds.sizes[0] * bounds.sizes[1]))
+    half = 0.5 * max(photo.shape) * middle_size
+    step = _SLACK * _CELLS[0] / half
+    turns = _steps(*bounds.turns, step)
+    sizes = np.exp(_steps(float(np.log(bounds.sizes[0])), float(np.log(bounds.sizes[1])), step))
+    rough: list[Place] = []
+    first = _Round(photo, paint, cell, middle_size, _CELLS[0])
+    for number, turn in enumerate(turns):
+        progress.report(0.7 * number / len(turns))
+        for size in sizes:
+            rough += first.peaks(turn, size, bounds, _PEAKS, sign)
+    rough = _distinct(rough, step * half, _KEPT)
+    second = _Round(photo, paint, cell, middle_size, _CELLS[1])
+    refined: list[Place] = []
+    for number, place in enumerate(rough):
+        progress.report(0.7 + 0.3 * number / len(rough))
+        for span in _FINER:
+            place = second.best_about(place, span * step)
+        refined.append(place)
+    return _distinct(refined, half, len(refined))
+
+
+def _steps(start, end, step):
+    """Values from start to end, evenly, at most a step apart."""
+    return np.linspace(start, end, int(np.ceil((end - start) / step)) + 1) if end > start else np.array([0.5 * (start + end)])
+
+
+def _distinct(places, half, count):
+    """The best `count` places of which no two are the same within some metres, at the ends of the photo too."""
+    kept: list[Place] = []
+    for place in sorted(places, key=lambda one: -one.score):
+        if all(np.hypot(place.x - better.x, place.y - better.y) + half * abs(np.angle(np.exp(1j * (place.turn - better.turn)))) > _APART
+               for better in kept):
+            kept.append(place)
+        if len(kept) == count:
+            break
+    return kept
+
+
+class _Round:
+    """Correlations at one cell size."""
+
+    def __init__(self, photo, paint, cell, size, wanted):
+        step = max(1, round(wanted / cell))
+        self.cell, self.paint = cell * step, reduced(paint, step)
+        self.factor = max(1, int(0.5 * self.cell / size))  # of the photo, half a cell: the warp below takes the rest
+        self.photo = cv2.GaussianBlur(reduced(photo, self.factor), (0, 0), 0.8)
+        self._transforms: dict[tuple[int, int], np.ndarray] = {}
+        self._places: tuple[Any, Any] | None = None
+        self._best = 0.0
+
+    def warped(self, turn, size):
+        """The photo, turned and scaled, on a square canvas of cells about its middle."""
+        scale = size * self.factor / self.cell
+        height, width = self.photo.shape
+        side = int(np.ceil(np.hypot(height, width) * scale)) + 2
+        cos, sin = np.cos(turn) * scale, np.sin(turn) * scale
+        matrix = np.array([[cos, sin, 0.0], [-sin, cos, 0.0]])
+        matrix[:, 2] = side / 2 - 0.5 - matrix[:, :2] @ [width / 2 - 0.5, height / 2 - 0.5]
+        return cv2.warpAffine(self.photo, matrix, (side, side), flags=cv2.INTER_LINEAR)
+
+    def peaks(self, turn, size, bounds, count, sign):
+        """The places of the largest correlations, not yet comparable between rounds."""
+        canvas = self.warped(turn, size)
+        side = len(canvas)
+        shape = tuple(fft.next_fast_len(n + side, real=True) for n in self.paint.shape)
+        if shape not in self._transforms:
+            self._transforms = {shape: fft.rfft2(self.paint, shape)}
+        product = fft.irfft2(self._transforms[shape] * np.conj(fft.rfft2(canvas, shape)), shape)
+        norm = float(np.sqrt((canvas * canvas).sum())) or 1.0
+        across, down, far = self._middles(shape, side, bounds)
+        product[far] = 0.0
+        peaks = []
+        values = product if sign > 0 else -product
+        around = int(np.ceil(_APART / self.cell))
+        for _ in range(count):
+            row, column = divmod(int(values.argmax()), shape[1])
+            score = float(values[row, column]) / norm
+            if not score > _WORTH * self._best:
+                break
+            self._best = max(self._best, score)
+            peaks.append(Place(float(across[column]), float(down[row]), float(turn), float(size), sign, score))
+            values[max(0, row - around):row + around + 1, max(0, column - around):column + around + 1] = 0.0
+        return peaks
+
+    def best_about(self, place, span):
+        """The best place of those turned and scaled by a span or not at all, with the correlation where both are known as its score."""
+        near = Bounds(place.x, place.y, 2.5 * _CELLS[0], (0.0, 0.0), (0.0, 0.0))
+        self._best = 0.0
+        tried = [one for turn in (-span, 0.0, span) for size in (-span, 0.0, span)
+                 for one in self.peaks(place.turn + turn, place.size * np.exp(size), near, 1, place.sign)]
+        return max((self.judged(one) for one in tried), key=lambda one: one.score, default=self.judged(place))
+
+    def _middles(self, shape, side, bounds):
+        """(x and y of the photo's middle for every column and row of a product, those too far away as (H, W) bool)."""
+        key = (shape, side, bounds)
+        if self._places is None or self._places[0] != key:
+            across, down = ((_shifts(n, n - side) + side / 2) * self.cell for n in shape[::-1])
+            far = (across[None, :] - bounds.x) ** 2 + (-down[:, None] - bounds.y) ** 2 > bounds.reach**2
+            self._places = key, (across, -down, far)
+        return self._places[1]
+
+    def judged(self, place):
+        """The place with the correlation of both contrasts where both are known as its score."""
+        canvas = self.warped(place.turn, place.size)
+        side = len(canvas)
+        column, row = round(place.x / self.cell - side / 2), round(-place.y / self.cell - side / 2)
+        height, width = self.paint.shape
+        rows, columns = slice(max(row, 0), min(row + side, height)), slice(max(column, 0), min(column + side, width))
+        paint = self.paint[rows, columns]
+        photo = canvas[rows.start - row:rows.stop - row, columns.start - column:columns.stop - column]
+        photo = np.where(paint == 0, 0.0, photo)
+        norm = float(np.sqrt((paint * paint).sum() * (photo * photo).sum()))
+        return place._replace(score=place.sign * float((paint * photo).sum()) / norm if norm else 0.0)
+
+
+def _shifts(length, most):
+    """Shifts of a circular correlation, those beyond `most` being negative ones."""
+    shifts = np.arange(length)
+    return np.where(shifts > most, shifts - length, shifts)
+
+
+# What is searched: the part of the intensity image where a photo may lie.
+
+MOST_GROUND = 500.0     # m, longest side of an image: beyond, every turn of a fraction of a degree would have to be tried
+MOST_SEARCHED = 1000.0  # m, longest side of an intensity image that is searched without any position
+
+
+def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace) -> tuple[SurveyedPaint, Bounds]:
+    """The paint where an image may lie, and what is to be tried there.
+
+    rough : RoughPlace in its CRS
+    Returns SurveyedPaint, Bounds in its local coordinates, for the pixels of the image itself
+    Raises RoadExtractionError if the image covers too much ground, the intensity image has nothing there, or too much would have to be searched.
+    """
+    ground = max(image.width, image.height) * rough.size
+    if ground > MOST_GROUND:
+        raise RoadExtractionError(f"{image.path} covers {ground:.0f} m by its pixel size of {rough.size:.3g} m; images of up to {MOST_GROUND:.0f} m "
+                                  "are matched. Give the single photo or a part of the mosaic, or the right pixel size.")
+    placed = bool(np.isfinite(rough.reach))
+    far = 0.5 * float(np.hypot(image.width, image.height)) * rough.size * (1.0 + rough.size_range) + (rough.reach if placed else 0.0)
+    sides = intensity.width * intensity.cell_size, intensity.height * intensity.cell_size
+    if not placed and max(sides) > MOST_SEARCHED:
+        raise RoadExtractionError(f"The intensity image is {max(sides):.0f} m long; without any position an image is looked for within "
+                                  f"{MOST_SEARCHED:.0f} m. Give two points or a world file, or cut the intensity image.")
+    paint = _read_paint(intensity, (rough.x - far, rough.y - far, rough.x + far, rough.y + far) if placed else None)
+    if not paint.known.any():
+        raise RoadExtractionError(_no_overlap(image, intensity, rough, sides))
+    turns = (rough.turn - rough.turn_range, rough.turn + rough.turn_range)
+    sizes = (rough.size / (1.0 + rough.size_range), rough.size * (1.0 + rough.size_range))
+    x, y = (rough.x - paint.left, rough.y - paint.top) if placed else (0.0, 0.0)
+    return paint, Bounds(float(x), float(y), rough.reach, turns, sizes)
+
+
+def _no_overlap(image, intensity, rough, sides):
+    west, north = intensity.geotransform[0], intensity.geotransform[3]
+    x = np.clip(rough.x, west, west + sides[0]) - rough.x
+    y = np.clip(rough.y, north - sides[1], north) - rough.y
+    distance = float(np.hypot(x, y))
+    text = f"{distance / 1000:,.1f} km" if distance >= 1000 else f"{distance:.0f} m"
+    return (f"{image.path} and the intensity image do not overlap: by {rough.source} the middle of the image lies at {rough.x:.0f}, {rough.y:.0f}, "
+            f"{text} from the intensity image's border, and no road was surveyed there. Is it an image of another road, or its position in "
+            "another CRS?")
+
+
+# Where each place of the map lies in the photo, by a polynomial, the photo drawn onto the map by it, and RANSAC.
+
+_NODE = 16  # cells between places whose pixels are computed; between them they are interpolated
+
+
+@dataclass(frozen=True)
+class Placement:
+    """From local map coordinates to pixel and line."""
+
+    polynomial: ImagePolynomial   # ImagePolynomial whose input is x and y, m, and whose output is pixel and line
+    sign: int = 1   # -1 where paint is darker than the road
+
+    @classmethod
+    def fitted(cls, x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray, order: int, sign: int = 1) -> Placement:
+        """The least-squares placement of (N,) places; N at least MIN_CONTROL_POINTS[order], not on a line."""
+        return cls(fit_image_polynomial(x, y, pixel, line, order).polynomial, sign)
+
+    @classmethod
+    def similarity(cls, x: float, y: float, turn: float, size: float, middle: tuple[float, float], sign: int = 1) -> Placement:
+        """From a place (m) that lies at a `middle` (pixel and line), the turn (radians) and the size (m) of the pixels."""
+        along, up = np.array([-1.0, 1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0, 1.0])
+        across, down = middle[0] + along / size, middle[1] - up / size
+        cos, sin = np.cos(turn), np.sin(turn)
+        return cls.fitted(x + along * cos - up * sin, y + along * sin + up * cos, across, down, 1, sign)
+
+    def pixels(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pixel and line, (N,) each, of (N,) places."""
+        return self.polynomial.to_map(x, y)
+
+    def metres(self, x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
+        """How far on the map pixels lie from those of places.
+
+        x, y, pixel, line : (N,)
+        Returns (N, 2) m, to first order
+        """
+        placed = np.column_stack(self.pixels(x, y))
+        slope = self.polynomial.jacobian(x, y)
+        return np.linalg.solve(slope, (np.column_stack([pixel, line]) - placed)[..., None])[..., 0]
+
+    def drawn(self, values: np.ndarray, photo: Photo, cell: float, shape: tuple[int, ...], corner: tuple[int, int] = (0, 0),
+              reduction: int = 1) -> np.ndarray:
+        """The photo on cells of the map.
+
+        values : (h, w) float32, contrast or luminance of the photo
+        photo : Photo that they belong to
+        cell : m
+        shape : rows and columns of cells
+        corner : first column and row, counted from local 0, 0 to the east and to the south
+        reduction : pixels of the photo that are averaged first, where cells are larger than they
+        Returns (H, W) float32, 0 outside the photo
+        """
+        height, width = shape
+        across = np.linspace(0, width, max(2, -(-width // _NODE) + 1))
+        down = np.linspace(0, height, max(2, -(-height // _NODE) + 1))
+        x, y = np.meshgrid((corner[0] + across) * cell, -(corner[1] + down) * cell)
+        pixel, line = (axis.reshape(x.shape) for axis in self.pixels(x.ravel(), y.ravel()))
+        factor = photo.factor * reduction
+        nodes = [(position / factor - 0.5).astype(np.float32) for position in (pixel, line)]
+        # of the middles of the cells: linear between the nodes
+        grid = np.meshgrid((np.arange(width) + 0.5) * (len(across) - 1) / width, (np.arange(height) + 0.5) * (len(down) - 1) / height)
+        maps = [cv2.remap(node, *(axis.astype(np.float32) for axis in grid), cv2.INTER_LINEAR) for node in nodes]
+        return cv2.remap(reduced(values, reduction), *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0.0)
+
+    def reduction(self, photo: Photo, cell: float) -> int:
+        """Pixels of a photo that a cell (m) covers side by side, at least 1."""
+        centre = self.polynomial.centre
+        per_metre = np.sqrt(abs(np.linalg.det(self.polynomial.jacobian(centre[:1], centre[1:])[0])))
+        return max(1, int(cell * per_metre / photo.factor + 0.25))
+
+
+# A placement that most pairs of places agree on, whatever the others say (RANSAC).
+
+_DRAWS = 500          # of three pairs: with half of them false, all three are true in one of eight draws
+_ROUNDS = 10          # of fitting to the pairs that agree and looking again which these are
+_SMALLEST_FRAME = 0.02  # of the largest triangle or distance drawn
+_PAIRS_PER_TERM = 2   # an order is fitted to at least so many times the pairs that it needs
+
+
+def agreeing(x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float, weights: np.ndarray) -> np.ndarray:
+    """The pairs whose displacements one affine transformation explains, as many as can be found together.
+
+    Where the places lie on a line, as large patches of a straight road do, the transformation is a similarity.
+
+    x, y : (N,) m, places on the map
+    moved : (N, 2) m, their displacements
+    tolerance : m, from the displacement that the transformation gives
+    weights : (N,) what each pair counts
+    Returns (N,) bool; none where there are too few places
+    """
+    if len(x) < MIN_CONTROL_POINTS[1]:
+        return np.zeros(len(x), dtype=bool)
+    order = np.random.default_rng(1).random((_DRAWS, len(x))).argsort(axis=1)
+    if _lie_on_a_line(x, y):
+        # as complex numbers a similarity is linear: d = a + b z, from two places
+        terms, target, drawn = np.column_stack([np.ones(len(x)), x + 1j * y]), (moved[:, 0] + 1j * moved[:, 1])[:, None], order[:, :2]
+    else:
+        terms, target, drawn = np.column_stack([np.ones(len(x)), x - x.mean(), y - y.mean()]), moved, order[:, :3]
+    frames = terms[drawn]
+    # distance of the two places, or twice the area of the triangle: near ones say nothing about what lies beside them
+    extent = np.abs(np.linalg.det(frames))
+    usable = extent > _SMALLEST_FRAME * extent.max()
+    if not usable.any():
+        return np.zeros(len(x), dtype=bool)
+    solved = np.linalg.solve(frames[usable], target[drawn[usable]])
+    misfit = np.sqrt((np.abs(np.einsum("nk,dkc->dnc", terms, solved) - target) ** 2).sum(axis=2))
+    within = misfit <= tolerance
+    # a smooth count: the best of many draws is the one whose pairs lie near it
+    votes = (np.where(within, 1.0 - 0.5 * (misfit / tolerance) ** 2, 0.0) * weights).sum(axis=1)
+    return within[int(votes.argmax())]
+
+
+def _lie_on_a_line(x, y):
+    along, across = principal_extents(np.column_stack([x, y]))
+    return across <= COLLINEAR_RATIO * along
+
+
+def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float, weights: np.ndarray,
+                     order: int) -> tuple[Placement, np.ndarray] | None:
+    """A new placement from places of the map that were found displaced in the photo as drawn by an old one.
+
+    placement : Placement by which the photo was drawn
+    x, y : (N,) m, places on the map
+    moved : (N, 2) m, from there to where the drawn photo has them
+    tolerance : m, largest residual of a pair that is used
+    weights : (N,) what each pair counts
+    order : of the polynomial, 1 or 2; lowered where there are too few pairs for it
+    Returns placement, used: Placement and (N,) bool; None where no three pairs agree
+    """
+    pixel, line = placement.pixels(x + moved[:, 0], y + moved[:, 1])
+    used = agreeing(x, y, moved, tolerance * 1.5, weights)
+    fitted = placement
+    for _ in range(_ROUNDS):
+        if used.sum() < MIN_CONTROL_POINTS[1]:
+            return None
+        degree = highest_order(x[used], y[used], order)
+        fitted = (Placement.fitted(x[used], y[used], pixel[used], line[used], degree, placement.sign) if degree else
+                  _turned(placement, x[used], y[used], moved[used]))
+        before, used = used, np.hypot(*fitted.metres(x, y, pixel, line).T) <= tolerance
+        if (used == before).all():
+            break
+    return (fitted, used) if used.sum() >= MIN_CONTROL_POINTS[1] else None
+
+
+def _turned(placement, x, y, moved):
+    """The placement after the similarity that fits the displacements best: places on a line say no more."""
+    terms = np.column_stack([np.ones(len(x)), x + 1j * y])
+    a, b = np.linalg.lstsq(terms, moved[:, 0] + 1j * moved[:, 1], rcond=None)[0]
+    reach = max(np.ptp(x), np.ptp(y), 1.0) / 2
+    across, down = (axis.ravel() for axis in np.meshgrid(*np.array([[-1.0], [1.0]]).T.repeat(2, 0) * reach))
+    at_x, at_y = x.mean() + across, y.mean() + down
+    shift = a + b * (at_x + 1j * at_y)
+    return Placement.fitted(at_x, at_y, *placement.pixels(at_x + shift.real, at_y + shift.imag), 1, placement.sign)
+
+
+def highest_order(x: np.ndarray, y: np.ndarray, most: int) -> int:
+    """The highest order up to `most` that (N,) places determine well; 0 where they lie on a line or are too few."""
+    for order in range(most, 0, -1):
+        if len(x) >= _PAIRS_PER_TERM * MIN_CONTROL_POINTS[order] or (order == 1 and len(x) > MIN_CONTROL_POINTS[1]):
+            if not _lie_on_a_line(x, y) and (order == 1 or inverse_condition(x, y, order) > 10 * MIN_INVERSE_CONDITION):
+                return order
+    return 0
+
+
+def left_out_residuals(x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray, used: np.ndarray, order: int) -> np.ndarray:
+    """Residuals of pairs on the map against a polynomial from pixel and line to the map that was fitted without each.
+
+    x, y, pixel, line : (N,)
+    used : (N,) bool, pairs that are fitted
+    order : of the polynomial
+    Returns (N,) m
+    """
+    fit = fit_image_polynomial(pixel[used], line[used], x[used], y[used], order)
+    residuals = np.column_stack([x, y]) - np.column_stack(fit.polynomial.to_map(pixel, line))
+    residuals[used] = fit.left_out
+    return np.hypot(*residuals.T)
