@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
-from heapq import heapify, heappop, heappush
+from heapq import heappop, heappush
 from typing import Any
 
 import numpy as np
@@ -280,30 +280,15 @@ def _draw_to(element, places, station):
 
 
 def without_short_status(status: np.ndarray) -> np.ndarray:
-    """Status along a lane without changes shorter than 5 m: these take the worse of their neighbours."""
-    status = status.copy()
-    cuts = [0, *(np.flatnonzero(np.diff(status)) + 1).tolist(), len(status)]
-    ends = dict(zip(cuts[:-1], cuts[1:]))       # of the pieces, by where they begin,
-    begins = dict(zip(cuts[1:], cuts[:-1]))     # and the other way
-    # the shortest first; a piece that has grown since is there again
-    queue = [(end - begin, begin) for begin, end in ends.items()]
-    heapify(queue)
-    while len(ends) > 1:
-        length, begin = heappop(queue)
-        if ends.get(begin, -1) - begin != length:
-            continue
-        if length >= int(ALIGNMENT.min_status_length / STATION_STEP):
-            break
-        end = ends.pop(begin)
-        neighbours = [status[k] for k in (begin - 1, end) if 0 <= k < len(status)]
-        status[begin:end] = max(neighbours)
-        if begin and status[begin - 1] == status[begin]:
-            begin = begins[begin]
-        if end < len(status) and status[end] == status[begin]:
-            end = ends.pop(end)
-        ends[begin], begins[end] = end, begin
-        heappush(queue, (end - begin, begin))
-    return status
+    """Status along a lane without changes shorter than 5 m: these take the worse of their neighbours, the shortest first."""
+    begins = np.flatnonzero(np.r_[True, np.diff(status) != 0])
+    codes, lengths = status[begins], np.diff(np.r_[begins, len(status)])
+    while len(codes) > 1 and lengths.min() < int(ALIGNMENT.min_status_length / STATION_STEP):
+        k = int(np.argmin(lengths))
+        codes[k] = max(codes[i] for i in (k - 1, k + 1) if 0 <= i < len(codes))
+        begins = np.flatnonzero(np.r_[True, np.diff(codes) != 0])
+        codes, lengths = codes[begins], np.add.reduceat(lengths, begins)
+    return np.repeat(codes, lengths)
 
 
 def track_pieces(track: LaneTrack, s: np.ndarray) -> list[tuple[int, float, float]]:

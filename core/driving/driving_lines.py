@@ -104,18 +104,11 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
 def _road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
     """The lanes of one road as a list of LaneTrack, by first station, then from right to left; `lane_width` where only one line is painted."""
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
-    tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, _shown(road.boundaries))
+    tracks = connect(tracks, settings.max_bridge)
     clear = [track.without_doubtful_ends() for track in laid_out(tracks)]
     tracks = [replace(track, confidence=track.said_confidence()) for track in clear
               if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
-
-
-def _shown(boundaries):
-    """(K,) bool, whether any line is seen at a grid station."""
-    spans, shown = boundaries.d.spans, np.zeros(len(boundaries.s), bool)
-    shown[spans.station[boundaries.seen.values & boundaries.painted[spans.owner]]] = True
-    return shown
 
 
 def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Element], road_lines: CrossSections,

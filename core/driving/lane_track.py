@@ -11,7 +11,7 @@ import numpy as np
 
 from ..common.arrays import mask_runs
 from ..common.parallel import check_cancelled
-from ..markings.cross_section.sections import STATION_STEP, CrossSections
+from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.weights import SAME_LANE, EstimateWeights, Reading, confidence_of
 from ..survey.frame.row_table import RowSpans
 from .weights import TRACKS
@@ -166,143 +166,56 @@ def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
     return result
 
 
-def _between(a, b, d, width):
-    """A bridged LaneTrack between two others."""
-    nothing = np.full(len(d), -1)
+def _between(a, b):
+    """The bridged LaneTrack between two others; the road's own shape is in the frame."""
+    count = b.first - a.last - 1
+    share = np.arange(1, count + 1) / (count + 1)
+    # it is moved as far as either, and as doubtful
+    d, width, aside = (before + (after - before) * share for before, after in (
+        (a.d[-1], b.d[0]), (a.end_width(False), b.end_width(True)), (a.aside[-1], b.aside[0])))
     ends = (a.probability, b.probability), (a.confidence, b.confidence)
-    sure = (np.full(len(d), TRACKS.bridged_trust * min(before[-1], after[0])) for before, after in ends)
-    directed = np.full(len(d), min(a.directed[-1], b.directed[0]))
-    # what leads from one to the other is moved as far as either, and as doubtful
-    aside = a.aside[-1] + (b.aside[0] - a.aside[-1]) * np.arange(1, len(d) + 1) / (len(d) + 1)
-    second = np.full(len(d), None, object)
+    sure = (np.full(count, TRACKS.bridged_trust * min(before[-1], after[0])) for before, after in ends)
+    directed = np.full(count, min(a.directed[-1], b.directed[0]))
+    second = np.full(count, None, object)
     second[:] = [min((reading for reading in (a.second[-1], b.second[0]) if reading is not None),
-                     key=lambda reading: reading.nats, default=None)] * len(d)
-    return LaneTrack(a.last + 1, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, *sure, directed, a.direction, second,
-                     aside)
+                     key=lambda reading: reading.nats, default=None)] * count
+    return LaneTrack(a.last + 1, d, width, np.full(count, BRIDGED), np.ones(count, bool), *[np.full(count, -1)] * 4, *sure, directed, a.direction,
+                     second, aside)
 
 
-def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, most_inferred: float, shown: np.ndarray) -> list[LaneTrack]:
-    """Join lanes end to start, one to one.
-
-    Without a gap they are joined where they meet; across a gap where one lane faces exactly one other: never across a split or merge. Where a
-    measured line or another lane leads through the gap its course is followed (inferred, or as the other lane was found), elsewhere the gap is
-    bridged. `most_bridged`, `most_inferred` : m, the longest gap without and with such a guide; `shown` : (K,) bool, whether any line is seen.
-    """
-    while True:
-        count = len(tracks)
-        tracks = _connected(tracks, lines, most_bridged, most_inferred, shown)
-        # a lane that is whole now may guide another
-        if len(tracks) == count:
-            return tracks
-
-
-def _connected(tracks, lines, most_bridged, most_inferred, shown):
-    tracks = sorted(tracks, key=lambda t: (t.first, float(t.d[0])))
-    reach, margin = int(max(most_bridged, most_inferred) / STATION_STEP), int(TRACKS.gap_neighbourhood / STATION_STEP)
-    spans = spans_of(tracks)
-    firsts = np.array([track.first for track in tracks])
-    pairs = []
+def connect(tracks: list[LaneTrack], longest: float) -> list[LaneTrack]:
+    """Lanes joined end to start over gaps of all lines up to `longest`, m, where one faces exactly one other: never across a split or merge."""
+    tracks = sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
+    firsts, reach = np.array([track.first for track in tracks], int), int((longest + TRACKS.gap_neighbourhood) / STATION_STEP)
+    ahead: list[list[int]] = []
+    behind: list[list[int]] = [[] for _ in tracks]
     for i, a in enumerate(tracks):
         check_cancelled()
-        low, high = np.searchsorted(firsts, [a.last + 1, a.last + 1 + reach + 1])
-        for j in range(low, high):
-            around = [tracks[k] for k in spans.near(a.last - margin, tracks[j].first + margin).tolist()]
-            join = _join(a, tracks[j], around, lines, most_bridged, most_inferred, shown)
-            if join is not None:
-                pairs.append((tracks[j].first - a.last, abs(join[0]), i, j, join[1]))
-    after, before, fill = {}, set(), {}
-    for _, _, i, j, middle in sorted(pairs, key=lambda p: p[:4]):
-        if i not in after and j not in before:
-            after[i], fill[i] = j, middle
-            before.add(j)
+        window = range(*np.searchsorted(firsts, [a.last + 1, a.last + 2 + reach]).tolist())
+        facing = [j for j in window if abs(tracks[j].d[0] - a.d[-1]) < max(a.end_width(False), tracks[j].end_width(True)) / 2 + SAME_LANE]
+        # what begins beyond the end of the next one is faced by that
+        ahead.append([j for j in facing if tracks[j].first <= tracks[facing[0]].last])
+        for j in ahead[-1]:
+            behind[j].append(i)
+    after = {i: of[0] for i, of in enumerate(ahead) if len(of) == 1 and behind[of[0]] == [i] and _goes_on(tracks[i], tracks[of[0]], longest)}
     joined = []
-    for i in range(len(tracks)):
-        if i in before:
-            continue
+    for i in sorted(set(range(len(tracks))) - set(after.values())):
         parts = [tracks[i]]
         while i in after:
-            parts += ([] if fill[i] is None else [fill[i]]) + [tracks[after[i]]]
+            parts += [_between(tracks[i], tracks[after[i]]), tracks[after[i]]]
             i = after[i]
         joined.append(LaneTrack.joined(parts))
     return joined
+
+
+def _goes_on(a, b, longest):
+    """Whether one lane goes on as another: it leads the same way, is about as wide and lies about where the other one does."""
+    wa, wb = a.end_width(False), b.end_width(True)
+    return a.direction == b.direction and (b.first - a.last - 1) * STATION_STEP <= longest \
+        and abs(b.d[0] - a.d[-1]) <= TRACKS.max_lane_jump_share * min(wa, wb) and abs(wa - wb) <= 2 * TRACKS.max_lane_jump_share * max(wa, wb)
 
 
 def spans_of(tracks: Sequence[LaneTrack]) -> RowSpans:
     """The stations that each track runs over, to ask which are near a place."""
     return RowSpans(np.array([track.first for track in tracks], int), np.array([len(track) for track in tracks], int),
                     max((track.last + 1 for track in tracks), default=0))
-
-
-def _join(a, b, tracks, lines, most_bridged, most_inferred, shown):
-    """(lateral jump, the LaneTrack between or None), or None where a and b are not one lane; `tracks` are those about the gap, by station."""
-    if a.direction != b.direction:
-        return None
-    count = b.first - a.last - 1
-    wa, wb = a.end_width(False), b.end_width(True)
-    course, status = _guide(a, b, lines, [t for t in tracks if t is not a and t is not b]) if count else (None, None)
-    # where lines are seen and no lane was found among them there is none, but for short gaps
-    lines_seen = count > 0 and shown[a.last + 1:b.first].mean() > TRACKS.min_shown_share
-    if count * STATION_STEP > (most_bridged if course is None or lines_seen else most_inferred):
-        return None
-    path = course if course is not None else np.zeros(count + 2)
-    jump = (b.d[0] - path[-1]) - (a.d[-1] - path[0])
-    if abs(jump) > TRACKS.max_lane_jump_share * min(wa, wb) or abs(wa - wb) > 2 * TRACKS.max_lane_jump_share * max(wa, wb):
-        return None
-    if not _one_to_one(a, b, wa, wb, tracks):
-        return None
-    if not count:
-        return jump, None
-    share = np.arange(1, count + 1) / (count + 1)
-    # the road's own shape is in the frame; a bridge only has to leave and arrive smoothly
-    d = _hermite(a, b, count) if course is None else a.d[-1] - path[0] + jump * share + path[1:-1]
-    between = _between(a, b, d, wa + (wb - wa) * share)
-    if course is not None:
-        between.status[:] = status[1:-1]
-    if any(_crowded(between, t) for t in tracks if t is not a and t is not b):
-        return None
-    return jump, between
-
-
-def _hermite(a, b, count):
-    rows = int(TRACKS.end_width_length / STATION_STEP)
-    slopes = [np.polyfit(np.arange(len(v)), v, 1)[0] if len(v) > 4 else 0.0 for v in (a.d[-rows:], b.d[:rows])]
-    span = count + 1
-    t = np.arange(1, count + 1) / span
-    return (a.d[-1] * (1 + 2 * t) * (1 - t) ** 2 + b.d[0] * t**2 * (3 - 2 * t)
-            + span * (slopes[0] * t * (1 - t) ** 2 - slopes[1] * t**2 * (1 - t)))
-
-
-def _guide(a, b, lines, others):
-    """Course (N,) and status (N,) of what leads through a gap: the nearest measured line, else the nearest lane; or None."""
-    window, spans = slice(a.last, b.first + 1), lines.d.spans
-    through = spans.near(a.last, b.first)
-    through = through[(spans.first[through] <= a.last) & (spans.end[through] > b.first)]
-    through = through[(np.isfinite(lines.d[through, window]) & lines.seen[through, window]).all(1)]
-    if len(through):
-        nearest = through[np.argmin(np.abs(lines.d[through, a.last] - a.d[-1]))]
-        return lines.d[nearest, window], np.full(b.first + 1 - a.last, INFERRED)
-    through = [t for t in others if t.first <= a.last and t.last >= b.first]
-    if not through:
-        return None, None
-    nearest = min(through, key=lambda t: abs(t.at(a.last)[0] - a.d[-1]))
-    rows = slice(a.last - nearest.first, b.first + 1 - nearest.first)
-    return nearest.d[rows], np.maximum(nearest.status[rows], INFERRED)
-
-
-def _one_to_one(a, b, wa, wb, tracks):
-    margin = int(TRACKS.gap_neighbourhood / STATION_STEP)
-    starts = [t.d[max(b.first - t.first, 0)] for t in tracks
-              if t is not a and a.last < t.first <= b.first + margin and t.last >= b.first]
-    ends = [t.d[min(a.last - t.first, len(t) - 1)] for t in tracks
-            if t is not b and a.last - margin <= t.last < b.first and t.first <= a.last]
-    faced = sum(abs(d - a.d[-1]) < 0.5 * wa + 0.2 for d in starts)
-    facing = sum(abs(d - b.d[0]) < 0.5 * wb + 0.2 for d in ends)
-    return faced == 1 and facing == 1
-
-
-def _crowded(track, other):
-    a, b = max(track.first, other.first), min(track.last, other.last)
-    if a > b:
-        return False
-    apart = np.abs(track.d[a - track.first:b - track.first + 1] - other.d[a - other.first:b - other.first + 1])
-    return bool((apart < TRACKS.min_lane_separation_share * track.width[a - track.first:b - track.first + 1]).any())

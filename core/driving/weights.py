@@ -92,8 +92,6 @@ class _TrackWeights:
 
     max_lane_jump_share: float = 0.35   # share of a lane's width by which it may jump from one stretch to the next
     gap_neighbourhood: float = 10.0   # m around a gap within which other lanes tell of a split or merge
-    min_lane_separation_share: float = 0.6   # share of a lane's width that lanes keep from each other
-    min_shown_share: float = 0.5   # of a gap in which lines are seen
     near_doubt: float = 20.0   # m between two stretches in doubt that are one: what neighbouring metres show is not independent
     bridged_trust: float = 0.7   # share of the probability at both ends of a gap that is left between them
     least_probability_of_end: tuple[float, float] = 0.25, 0.8   # of a lane at its end, between two borders and beside one: else it is mostly wrong

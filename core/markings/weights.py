@@ -235,7 +235,7 @@ class _StrandWeights:
     place_step_units: int = 2500   # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
     run_gap_units: int = 600   # 6 cm across without paint separate two runs ...
     max_worn_line_width_units: int = 3300   # ... unless together they are no wider than one worn line
-    max_line_width_units: int = 3600   # 36 cm: wider is no line, or it is a double line whose middle is hazy
+    max_line_width_units: int = 3600   # 36 cm: wider is no line
     max_mixed_width_units: int = 6000   # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
     min_mixed_strand: float = 2.0   # m of paint in a strand of a mixed marking
     min_mixed_marking: float = 9.0   # m: no arrow or letter is this long; a longer mixed marking has a line in it
@@ -313,7 +313,6 @@ class _SelectionWeights:
     min_shared_paint: float = 0.6   # of a line's paint that must have its twin beside it in a double line
     min_twin_paint: float = 4.0   # m of paint: a shorter line beside another is its ragged edge, however short the other is there
     max_ragged_share: float = 0.35   # of a line's length: less paint beside a line than this is no second line but its ragged edge
-    min_bounding_paint: float = 15.0   # m of paint: enough to bound a road by
     max_neighbour_offset: float = 8.0   # m across: a line this near starts and ends where this one does
     max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it
     max_bar_end_offset: float = 0.35   # m between the end of a bar and the outline

@@ -11,7 +11,7 @@ from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
 from ...curves.robust import median
 from ..objects.marking_objects import MarkingObjects
-from ..weights import CLASSES, LINKS, SELECTION
+from ..weights import LINKS, SELECTION
 from .linking import CommonTrend, StretchLookup, lines_beside
 from .strands import LinkedLine
 
@@ -60,12 +60,11 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
     level = np.array([_level(line, trend) for line in lines])
     painted = min(line.first for line in lines), max(line.last for line in lines)
     ragged, double = _beside(lines, neighbours, trend, longest_dash)
-    outside = _beyond_the_edge(lines, neighbours)
     selected = []
     for k, line in enumerate(lines):
         check_cancelled()
         dashed = any(stretch.dashes for stretch in parts[k])
-        if ragged[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or dashed):
+        if ragged[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or dashed):
             continue
         drawn = _extended(_line_pieces(parts[k]), parts[k], painted, partial(strands.near, level, k), line)
         selected.append(SelectedLine(line, bool(double[k]), drawn))
@@ -136,30 +135,6 @@ def _painted_there(line, other):
     return sum(strand.length for strand in line.strands_between(other.first, other.last) if strand.last > other.first and strand.first < other.last)
 
 
-def _beyond_the_edge(lines, beside):
-    """(N,) whether a fragment lies farther out than a long line that bounds the road there: gutter, verge or yard.
-
-    With less than a lane's room between the two all along, what is much shorter than the edge line is no line of its own; where it leaves the edge
-    line, as behind a gore, or lies farther out, what is short.
-    """
-    result = np.zeros(len(lines), bool)
-    bounds = {j for j, line in enumerate(lines)
-              if line.painted >= SELECTION.min_bounding_paint and _votes(line).get("edge", 0.0) > 0.3 * line.painted}
-    for k, line in enumerate(lines):
-        s, d = line.by_station
-        for j in beside.between(line.first, line.last).tolist():
-            if j not in bounds:
-                continue
-            # the vehicle drove between the edge lines
-            farther = (np.sign(lines[j].middle) * (d - np.interp(s, *lines[j].by_station))).max()
-            shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
-            min_paint = SELECTION.max_ragged_share * lines[j].painted if farther < CLASSES.lane_clearance else 0.0
-            if j != k and farther > LINKS.double_line_spacing[0] and shared > 0.5 * (line.last - line.first) \
-                    and line.painted < max(min_paint, SELECTION.min_bounding_paint):
-                result[k] = True
-    return result
-
-
 class _Bars:
     """Bars of hatched areas, (K, 4) as `hatching_bars` gives them, by the station of their middle."""
 
@@ -183,15 +158,6 @@ def _frames_hatching(line, bars):
         return False
     steps = np.diff(np.sort(touching))
     return steps[steps < SELECTION.max_bar_pitch].sum() + SELECTION.max_bar_pitch > SELECTION.min_shared_paint * (line.last - line.first)
-
-
-def _votes(line):
-    """Metres of paint by the class of its markings."""
-    votes = {}
-    for strand in line.strands:
-        for name, length in strand.classes.items():
-            votes[name] = votes.get(name, 0.0) + length
-    return votes
 
 
 def _extended(drawn, parts, painted, painted_beside, line):

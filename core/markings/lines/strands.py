@@ -204,31 +204,9 @@ def _runs(bins, across):
         if not joins.any():
             break
         starts = np.delete(starts, np.flatnonzero(joins) + 1)
-    starts = _part_hazy_doubles(bins, across, starts)
     run = np.zeros(len(bins), np.int32)
     run[starts[1:]] = 1
     return np.cumsum(run, out=run)
-
-
-def _part_hazy_doubles(bins, across, starts):
-    """Where a run is as wide as a double line and thin in its middle, cut it there."""
-    last = np.r_[starts[1:], len(bins)] - 1
-    wide = np.flatnonzero(across[last] - across[starts] > 2600)
-    cuts = []
-    for k in wide:
-        check_cancelled()
-        values = across[starts[k]:last[k] + 1]
-        if len(values) < 4 * STRANDS.min_points_per_run:
-            continue
-        low, high = values[len(values) // 20], values[-1 - len(values) // 20]
-        third = (high - low) / 3
-        counts = [np.count_nonzero((values >= low + j * third) & (values < low + (j + 1) * third)) for j in range(3)]
-        if counts[1] < 0.5 * min(counts[0], counts[2]):
-            middle = values[(values >= low + third) & (values < low + 2 * third)]
-            edges = np.r_[low + third, middle, low + 2 * third]
-            gap = int(np.argmax(np.diff(edges)))
-            cuts.append(starts[k] + int(np.searchsorted(values, edges[gap], "right")))
-    return np.unique(np.r_[starts, cuts]).astype(np.int64)
 
 
 def _middle_and_width(across, starts):

@@ -47,7 +47,7 @@ def lanes_of(blocks):
 
 def test_two_streets_end_to_end_give_the_lanes_of_each():
     def lanes(blocks):
-        driving, _, _ = make_driving_lines(*painted(blocks), DrivingSettings(max_bridge=0.0, max_inferred=0.0))
+        driving, _, _ = make_driving_lines(*painted(blocks), DrivingSettings(max_bridge=0.0))
         return np.array(sorted(zip(driving.station, driving.end, driving.direction)))
 
     one, two = lanes(1), lanes(2)
@@ -71,9 +71,8 @@ def test_lanes_are_compared_with_those_beside_them():
     """Four times the lanes take four times the calls."""
     lines, frame = painted(MANY)
     sections = sections_of_lines(lines)[0]
-    shown = np.ones(len(sections.s), bool)
     work = dict(
-        joined=lambda tracks: connect(tracks, sections, 20.0, 60.0, shown), tapers=laid_out,
+        joined=lambda tracks: connect(tracks, 20.0), tapers=laid_out,
         curves=lambda tracks: fitted_lanes([LanesOfRoad(tracks, sections.s, frame.roads[0])], Threads(1)))
     for name, function in work.items():
         few, many = (calls(lambda tracks=lanes_of(blocks): function(tracks)) for blocks in (FEW // 2, MANY // 2))
