@@ -217,7 +217,7 @@ def read_plain(path: Path) -> Any:
         dtype = np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
         if dtype.hasobject:
             raise TypeError("An array of objects is no plain value.")
-        array = np.ndarray(shape[::-1] if last else shape, dtype, content, place).copy()
+        array: np.ndarray = np.ndarray(shape[::-1] if last else shape, dtype, content, place).copy()
         arrays[f"a{k}"], place = array.T if last else array, place + array.nbytes
     return _value(tree, arrays)
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from qgis import utils
 from qgis.core import Qgis, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsTask, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapMouseEvent, QgsMapTool, QgsMapToolEmitPoint, QgsRubberBand
 from qgis.PyQt.QtCore import Qt, QTimer, pyqtSignal
@@ -33,7 +34,7 @@ from .corrections_layer import add_correction, correction_at, corrections_of_sur
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .photos import PhotoButton, photo_of
 from .smart_pick import evidence, pick, snap
-from .steps import StepsPanel
+from .steps import STALE, StepsPanel, steps_of
 
 ARRIVED = 700   # ms after the last layer of a run that came into the project
 LONG_PLACE = 80.0   # m: of a longer place the map shows the selected piece alone, or it would be too small to judge
@@ -72,7 +73,6 @@ class DoubtDock(QDockWidget):
         self.pick_tool = QgsMapToolEmitPoint(iface.mapCanvas())
         self.pick_tool.canvasClicked.connect(lambda point, button: self.pick_at(point))
         self._build()
-        # beside the Results Viewer, which opens with the first report: below it the list had room for three lines
         iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self, [], True)
         self.visibilityChanged.connect(lambda visible: self._highlight() if visible else self._unlight())
         QgsProject.instance().layersWillBeRemoved.connect(self._forget)
@@ -192,6 +192,16 @@ class DoubtDock(QDockWidget):
             self._stop_drawing()
             self._take(newer)
             self._fill()
+            if not self.isHidden():
+                self._come_to_front()
+
+    def _come_to_front(self):
+        """Stand before the Results Viewer, which opens with the first report: below it the list has room for three lines."""
+        main, results = self.iface.mainWindow(), getattr(utils.plugins.get("processing"), "resultsDock", None)
+        if results is not None and results.isVisible() and results not in main.tabifiedDockWidgets(self) \
+                and main.dockWidgetArea(results) == main.dockWidgetArea(self) and not self.isFloating() and not results.isFloating():
+            main.tabifyDockWidget(results, self)
+        self.raise_()
 
     def show_steps(self, road_map: RoadMap) -> None:
         """The steps of a road map."""
@@ -199,7 +209,7 @@ class DoubtDock(QDockWidget):
         self._fill()
         self.tabs.setCurrentWidget(self.steps)
         self.show()
-        self.raise_()
+        self._come_to_front()
 
     def _take(self, road_map):
         """Be about a road map; from the first place, where it is another one or has changed."""
@@ -222,7 +232,7 @@ class DoubtDock(QDockWidget):
         self._take(road_map)
         self.tabs.setCurrentIndex(0)
         self.show()
-        self.raise_()
+        self._come_to_front()
         for _ in self.places:
             self.at = (self.at + step) % len(self.places) if self.at >= 0 else 0 if step > 0 else len(self.places) - 1
             if not self.undecided.isChecked() or not self._is_done(self.place):
@@ -501,9 +511,10 @@ class DoubtDock(QDockWidget):
         count = 0 if (layer := self.layer) is None else layer.featureCount()
         self.undo_button.setEnabled(count > 0)
         self.run_button.setEnabled(count > 0)
-        self.kept.setText(tr("No corrections yet.") if not count else
-                          tr("Corrections in {file}: {count}. They come into the map when it is made again.").format(
-                              count=count, file=Path(layer.source().split("|")[0]).name))
+        waits = count and any(step.colour == STALE for step in steps_of(self.road_map, layer))
+        text = tr("No corrections yet.") if not count else tr("Corrections in {file}: {count}. They come into the map when it is made again.") \
+            if waits else tr("Corrections in {file}: {count}. They are in this map.")
+        self.kept.setText(text.format(count=count, file="" if layer is None else Path(layer.source().split("|")[0]).name))
 
 
 # A map tool that draws one line.

@@ -1,13 +1,18 @@
 """The steps of a road map: which of them still hold, their settings, and running them again."""
 
+from types import SimpleNamespace
+
 import pytest
 from lanewright.core.common.features import DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from lanewright.desktop.review.corrections_layer import add_correction, new_corrections_layer, take_back
 from lanewright.desktop.review.doubt_dock import ARRIVED
 from lanewright.desktop.review.steps import steps_of, values_again
 from lanewright.processing_provider.results.road_maps import road_maps
+from qgis import utils
 from qgis.core import QgsGeometry, QgsProject
+from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QDockWidget
 from road_map_layers import EAST, NORTH, added, run_at
 from test_doubt_dock import window  # noqa: F401
 
@@ -77,6 +82,18 @@ def test_a_step_that_was_run_again_alone_makes_those_after_it_stale_and_its_sett
     assert values_again(road_map)["CURVE"] == "spline" and values_again(road_map)["TRAFFIC_SIDE"] == "automatic"
 
 
+def test_the_window_says_whether_the_corrections_are_in_the_map(window, provider, tmp_path):  # noqa: F811
+    window.ask_for_file = lambda: str(tmp_path / "corrections.gpkg")
+    window.go(road_maps(QgsProject.instance())[0])
+    window.accept_button.click()
+    assert "when it is made again" in window.kept.text()
+    for target in ("edge", "lane"):
+        window.layer.setCustomProperty(f"lanewright/changed/{target}", "2026-06-01T08:30:00+00:00")
+    added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, LINE, run=run_at(9, CORRECTIONS="corrections.gpkg"))
+    window.show_steps(road_maps(QgsProject.instance())[0])
+    assert "1. They are in this map" in window.kept.text()
+
+
 def test_the_window_asks_for_a_run_from_a_step_or_for_the_step_alone(window, provider):  # noqa: F811
     window.show_steps(road_maps(QgsProject.instance())[0])
     panel, asked = window.steps, []
@@ -91,13 +108,19 @@ def test_the_window_asks_for_a_run_from_a_step_or_for_the_step_alone(window, pro
     assert algorithm == "lanewright:drivinglines" and "ROAD_EDGES" in values
 
 
-def test_the_window_goes_on_in_the_map_that_is_made_again(window):  # noqa: F811
+def test_the_window_goes_on_in_the_map_that_is_made_again_before_the_results_viewer(window, monkeypatch):  # noqa: F811
+    results, main = QDockWidget(window.iface.mainWindow()), window.iface.mainWindow()
+    main.addDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, results)
+    monkeypatch.setitem(utils.plugins, "processing", SimpleNamespace(resultsDock=results))
+    results.hide()
     window.go(road_maps(QgsProject.instance())[0])
     old = window.road_map
     piece = lambda at: (f"LINESTRING Z ({at} 0 100, {at + 8} 0 100)", dict(road=0, side="left", status="bridged", station_m=float(at), length_m=8.0))  # noqa: E731
+    results.show()
     added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, piece(10), run=run_at(9))
     QTest.qWait(ARRIVED + 300)
     assert window.road_map.layers != old.layers and len(window.places) == 1 and "9:00" in window.where.text()
+    assert results in main.tabifiedDockWidgets(window), "it is not squeezed below the report"
     window.go(window.road_map)
     assert "Place 1 of 1" in window.where.text()
     added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, piece(20), run=run_at(10, survey="B13", clouds=["/data/B13/a.laz"]))
