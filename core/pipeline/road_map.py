@@ -100,7 +100,7 @@ class RoadMap:
     surface: SurfaceOutlines
     road_points: Any   # RoadPoints, there until `free` is called
     boundary_differences: RoadEdges | None = None   # RoadEdges, where the two boundary methods disagree; None if one method was used
-    length_by_method: dict = field(default_factory=dict)   # {method: metres of measured edges}
+    length_by_method: dict = field(default_factory=dict)   # {method: metres of measured curb}
     intensity_report: Any = None   # of the correction, None without it
     markings: Features | None = None   # layers; None where not made
     marking_lines: Features | None = None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -19,12 +18,10 @@ from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
 from .common.occlusion import OcclusionGrid
-from .common.side_curbs import SideChains, points_of_rows
-from .common.sides import SIDE_SIGNS, expected_height, hidden_beside
-from .common.tracking import PieceInLine, StepsByStation, pieces_between
+from .common.side_curbs import SideChains, points_of_side
+from .common.sides import SIDE_SIGNS
 from .curb_returns.detect import with_curb_returns
-from .curb_returns.main_curbs import main_curbs_of
-from .edges.fit import EdgeSettings, edges_through, fit_road_edges, tell_edges
+from .edges.fit import EdgeSettings, edges_through, tell_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from .profiles.detect import detect_curbs
 from .scanlines.candidates import ScanlineBoundarySettings
@@ -72,8 +69,8 @@ class RoadBoundaries:
     ----------
     curb_points : CurbPoints
     edges : RoadEdges
-    differences : RoadEdges, where the edges of the two methods lie apart; None with one method
-    length_by_method : method -> m of measured edges; empty with one method
+    differences : RoadEdges, where the curbs of the two methods lie apart; None with one method
+    length_by_method : method -> m of measured curb; empty with one method
     """
 
     curb_points: CurbPoints
@@ -91,7 +88,7 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
     Returns
     -------
     {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
-    curbs and "both" those of the two that measure better (`select_curb_points`). Corners, side streets
+    curbs as each sees them alone, and "both" those of the best path through the chains of the two. Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
     least = settings.scanlines.limits.least_height
@@ -103,7 +100,6 @@ def _find_curb_points(decimation, settings, progress, ground):
     """`find_curb_points` with the points of a PointDecimation."""
     survey, both_methods, points = decimation.survey, settings.method == "both", {}
     occlusion: dict[int, dict[str, OcclusionGrid]] = {}
-    occlusion_of_scanlines: dict[int, dict[str, OcclusionGrid]] = {}
     chains: list[dict[tuple[int, str], SideChains]] = [{}, {}]
     if settings.method != "scanlines":
         part = progress.part(0.0, BOUNDARY.profiles_progress) if both_methods else progress
@@ -115,16 +111,10 @@ def _find_curb_points(decimation, settings, progress, ground):
                                  level=_level_for(decimation, settings.scanlines))
         corners = part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)
         points["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, corners,
-                                                   occlusion_of_scanlines if both_methods else occlusion, chains[1], ground)
+                                                   None if both_methods else occlusion, chains[1], ground)
         drawn = "both" if both_methods else "scanlines"
         if both_methods:
-            # at every place the curb points of that method which measures better
-            methods = [points[method] for method in METHODS]
-            edges = _edges_through(methods, survey.frame, survey.executor.passing(), led_across=False)
-            seen = CurbEvidence(chains[1], occlusion_of_scanlines), CurbEvidence(chains[0], occlusion)
-            chosen = select_curb_points(*methods, *edges, survey.frame, *seen)
-            occlusion_of_scanlines.clear()   # planes lie close: along a long road their grids are large
-            points["both"] = with_pieces_of_both(chosen, chains, occlusion, survey)
+            points["both"] = _points_of_both(chains[::-1], occlusion, survey)
         points[drawn] = with_curb_returns(points[drawn], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0), occlusion,
                                            ground)
     return points
@@ -136,12 +126,22 @@ def _level_for(decimation, settings):
     return LevelGround(decimation, settings.distance_across + BOUNDARY.level_strip_margin, along)
 
 
+def _points_of_both(chains, occlusion, survey):
+    """The curb points along the best path through the chains of all methods; those of the stricter model of a curb come first."""
+    parts = []
+    for road in survey.store.roads():
+        for side in SIDE_SIGNS:
+            of_side = [of_method[road, side] for of_method in chains if (road, side) in of_method]
+            if of_side:
+                parts.append(points_of_side(survey, road, side, of_side, occlusion[road][side]))
+    return CurbPoints.join(parts, survey.crs)
+
+
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
                     progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> RoadBoundaries:
     """Edges through the curb points of one method, or of two that check each other, and edges of the pavement where there is no curb.
 
-    With both methods, the one that measures better is drawn at every place
-    (`select_curb_points`), and `agree` of every piece says how far apart they lie.
+    With both methods, `agree` of every piece says how far apart they lie.
 
     Parameters
     ----------
@@ -157,273 +157,82 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
     return boundaries
 
 
-def _edges_through(points, frame, executor, settings=EdgeSettings(), led_across=True):
-    """[RoadEdges] through the curb points of each method."""
-    return list(executor.run(Phase(edges_through, NoSource(), (frame, settings, led_across), lambda item: "the edges of all roads"), points))
-
-
 def _drawn(found, frame, settings, executor, progress):
     """The edges at curbs alone."""
-    if "both" not in found:
-        points, = found.values()
-        return RoadBoundaries(points, fit_road_edges(points, frame, settings, progress))
-    scanlines, profiles, edges = _edges_through([found[method] for method in (*METHODS, "both")], frame, executor, settings)
+    points = found["both"] if "both" in found else next(iter(found.values()))
+    edges, = executor.run(Phase(edges_through, NoSource(), (frame, settings), lambda item: "the edges of all roads"), [points])
     tell_edges(edges, progress)
-    edges, differences = measure_agreement(edges, scanlines, profiles, frame)
-    lengths = {method: float(lines.length[lines.status == "measured"].sum()) for method, lines in zip(METHODS, (scanlines, profiles))}
-    differing = differences.length.sum()
+    if "both" not in found:
+        return RoadBoundaries(points, edges)
+    edges, differences = measure_agreement(edges, *(found[method] for method in METHODS), frame)
+    lengths = {method: _measured_length(found[method]) for method in METHODS}
     if any(lengths.values()):
         progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
-                     f"they lie more than 5 cm apart along {differing:.0f} m.")
-    return RoadBoundaries(found["both"], edges, differences, lengths)
+                     f"they lie more than 5 cm apart along {differences.length.sum():.0f} m.")
+    return RoadBoundaries(points, edges, differences, lengths)
 
 
-# How far apart two sets of road edges lie where both follow one curb, and which of the two to draw.
-
-MIN_RISE = CURBS.candidate_height_share * CURBS.least_height  # m from one side of a place to the other below which ground is level
-SECOND_METHOD_CHAIN_OFFSET = 100_000   # derived: more chains than a method finds; keeps those of both apart
+# How far apart the curbs of two methods lie, where both see one.
 
 
-@dataclass(frozen=True)
-class CurbEvidence:
-    """What a method saw beside the roads.
-
-    chains : (number of the road, side) -> SideChains
-    beside : number of the road -> side -> OcclusionGrid
-    """
-
-    chains: Mapping[tuple[int, str], SideChains] = field(default_factory=dict)
-    beside: Mapping[int, Mapping[str, OcclusionGrid]] = field(default_factory=dict)
+def _measured(points):
+    """The measured feet of main curbs, by road, side and station, and (N - 1,) bool, where the curb goes on from one to the next."""
+    points = points[points.of_main_curb & (points.part == "bottom") & (points.status == "measured")]
+    points = points[np.lexsort((points.station, points.side.astype(str), points.road))]
+    same = (points.road[1:] == points.road[:-1]) & (points.side[1:] == points.side[:-1])
+    return points, same & (np.diff(points.station) <= CURBS.max_joined_gap)
 
 
-@dataclass
-class _EdgeSamples:
-    """The edges of one side of a road at N places BOUNDARY.comparison_step apart.
-
-    s : (N,) m, station
-    d, z : (N,) m, offset and local height, NaN where there is no edge
-    measured : (N,) bool
-    scatter : (N,) m, of the curb points about the piece of edge
-    """
-
-    s: np.ndarray
-    d: np.ndarray
-    z: np.ndarray
-    measured: np.ndarray
-    scatter: np.ndarray
+def _measured_length(points):
+    """m of curb along the road."""
+    points, goes_on = _measured(points)
+    return float(np.diff(points.station)[goes_on].sum())
 
 
-def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> _EdgeSamples:
-    """The edges of one side of a road at regular stations.
-
-    side : "left" or "right"
-    """
-    line = frame.road(road)
-    first, last = int(np.floor(line.start / BOUNDARY.comparison_step)), int(np.ceil(line.end / BOUNDARY.comparison_step))
-    s = np.arange(first, last + 1) * BOUNDARY.comparison_step
-    samples = _EdgeSamples(s, np.full(len(s), np.nan), np.full(len(s), np.nan), np.zeros(len(s), bool), np.full(len(s), np.inf))
-    course = edges.course
-    for k in np.flatnonzero((edges.road == road) & (edges.side == side) & (edges.status != "inferred") & (edges.part == "bottom")
-                            & edges.of_main_curb):
-        vertices = course.line(k)
-        good = np.isfinite(course.s[vertices])
-        station, d, z = (values[vertices][good] for values in (course.s, course.d, course.z))
-        if len(station) < 2:
-            continue
-        order = np.argsort(station, kind="stable")
-        station, d, z = station[order], d[order], z[order]
-        inside = stretch_of(s, station[0] - BOUNDARY.comparison_step / 2, station[-1] + BOUNDARY.comparison_step / 2)
-        samples.d[inside], samples.z[inside] = np.interp(s[inside], station, d), np.interp(s[inside], station, z)
-        samples.measured[inside] = edges.status[k] == "measured"
-        samples.scatter[inside] = edges.rmse[k]
-    return samples
+def _curb_at(points, goes_on, s):
+    """(2, N) m, offset and local height of the curb of one side at N stations, NaN where it was not measured."""
+    if not goes_on.any():
+        return np.full((2, len(s)), np.nan)
+    after = np.clip(np.searchsorted(points.station, s), 1, len(goes_on))
+    seen = goes_on[after - 1] & (s >= points.station[0]) & (s <= points.station[-1])
+    return np.where(seen, [np.interp(s, points.station, values) for values in (points.offset, points.z)], np.nan)
 
 
-def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges, other_edges: RoadEdges, frame: RoadFrame,
-                       seen: CurbEvidence = CurbEvidence(), others_seen: CurbEvidence = CurbEvidence()) -> CurbPoints:
-    """At every place the curb points of that method whose edge measures better there.
-
-    Where one method alone measured, its points are taken, unless the other saw level ground
-    there: the fewer points show a curb (BOUNDARY.sure_support), the more must the ground rise that the other
-    saw, up to MIN_RISE. Where both measured one curb (BOUNDARY.max_same_curb_distance), each such stretch
-    takes the points that scatter less about their line. Where they found different curbs,
-    those of the first method are taken.
-
-    points, others : CurbPoints of two methods, the one with the stricter model of a curb first
-    edges, other_edges : RoadEdges fitted through each
-    seen, others_seen : what each method saw beside the roads
-    """
-    # the chains of both methods keep apart
-    others = replace(others, chain=np.where(others.chain < 0, others.chain, others.chain + SECOND_METHOD_CHAIN_OFFSET))
-    parts = []
-    for road in frame.roads:
-        for side in SIDE_SIGNS:
-            first, second = (sample_edges(e, frame, road.number, side) for e in (edges, other_edges))
-            take_second = _second_is_better(first, second)
-            level = [_level(measured, compared, evidence.chains.get((road.number, side)),
-                            compared_evidence.beside.get(road.number, {}).get(side), SIDE_SIGNS[side])
-                     for measured, compared, evidence, compared_evidence in ((first, second, seen, others_seen), (second, first, others_seen, seen))]
-            for curbs, better in ((points, ~take_second & ~level[0]), (others, take_second & ~level[1])):
-                of_side = curbs[(curbs.road == road.number) & (curbs.side == side)]
-                parts.append(of_side[better[_node(first.s, of_side.station)]])
-    return CurbPoints.join(parts, points.crs)
-
-
-def _node(s, station):
-    """(N,) int, the place among the samples at (N,) stations."""
-    return np.clip(np.rint((station - s[0]) / BOUNDARY.comparison_step), 0, len(s) - 1).astype(int)
-
-
-def _second_is_better(first, second):
-    """(N,) bool: is the second edge the one to draw? False where there is neither."""
-    measured_by_both = first.measured & second.measured
-    with np.errstate(invalid="ignore"):
-        one_curb = measured_by_both & (np.abs(first.d - second.d) <= BOUNDARY.max_same_curb_distance)
-    better = second.measured & ~first.measured
-    # where neither measured, the one that bridges
-    better |= ~first.measured & ~second.measured & np.isfinite(second.d) & np.isnan(first.d)
-    for a, b in mask_runs(one_curb):
-        better[a:b] = second.scatter[a:b].mean() < first.scatter[a:b].mean()
-    # no change of method for a line that begins a little before the other
-    for a, b in mask_runs(first.measured ^ second.measured):
-        if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_single_method_length:
-            if a > 0 and one_curb[a - 1]:
-                better[a:b] = better[a - 1]
-            elif b < len(better) and one_curb[b]:
-                better[a:b] = better[b]
-    return better
-
-
-def _slopes(d):
-    """(N,) m per m along of offsets at regular stations, from those of its neighbours that are known; 0 where there are none."""
-    steps = np.diff(d) / BOUNDARY.comparison_step
-    before, after = np.r_[np.nan, steps], np.r_[steps, np.nan]
-    return np.nan_to_num(np.where(np.isnan(before), after, np.where(np.isnan(after), before, 0.5 * (before + after))))
-
-
-def _level(measured, other, chains, grid, sign):
-    """(N,) bool: did one method, whose SideChains are given, measure an edge where the other, whose OcclusionGrid is given, saw level ground?"""
-    level, doubtful = np.zeros((2, len(measured.s)), bool)
-    unmatched = np.flatnonzero(measured.measured & ~other.measured)
-    if grid is None or not len(unmatched):
-        return level
-    line = measured.s[unmatched], sign * measured.d[unmatched], sign * _slopes(measured.d)[unmatched]
-    rise, support = grid.rise(*line), 0.0 if chains is None else chains.support_along(*line)
-    doubt = np.clip(1.0 - support / BOUNDARY.sure_support, 0.0, 1.0)
-    with np.errstate(invalid="ignore"):
-        level[unmatched] = np.abs(rise) < doubt * MIN_RISE   # a fall is something else: the roof of a car, say
-        doubtful[unmatched] = (doubt > 0) & ~(level[unmatched] | (rise >= CURBS.least_height))
-    # what is left beside such places is too short to be a curb on such evidence
-    for a, b in mask_runs(doubtful):
-        if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_single_method_length and (level[max(a - 1, 0)] or level[min(b, len(level) - 1)]):
-            level[a:b] = True
-    # a place alone says nothing of a curb that goes on on both sides of it
-    for a, b in mask_runs(level):
-        if b - a == 1:
-            level[a:b] = False
-    return level
-
-
-def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: RoadEdges, frame: RoadFrame) -> tuple[RoadEdges, RoadEdges]:
-    """How far apart two sets of edges lie beside every edge, and where that is much.
+def measure_agreement(edges: RoadEdges, first: CurbPoints, second: CurbPoints, frame: RoadFrame) -> tuple[RoadEdges, RoadEdges]:
+    """How far apart the curbs of two methods lie beside every edge, and where that is much.
 
     The number is the distance that 95 % of the piece does not exceed, NaN where one of the
-    two sets has no line. It is measured across the road, every BOUNDARY.comparison_step metres.
+    two saw no curb. It is measured across the road, every BOUNDARY.comparison_step metres.
 
     edges : RoadEdges that are drawn
-    first_edges, second_edges : RoadEdges of two methods
+    first, second : CurbPoints of two methods
 
     Returns
     -------
     edges : RoadEdges with `agree`
-    differences : RoadEdges, lines along the drawn edges, one for every stretch where the two lie more
+    differences : RoadEdges, lines along the curb of the first, one for every stretch where the two lie more
         than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
     """
     agree = edges.agree.copy()
     differences: list[EdgePiece] = []
+    curbs = [_measured(points) for points in (first, second)]
     for road in frame.roads:
+        s = np.arange(np.floor(road.start / BOUNDARY.comparison_step), np.ceil(road.end / BOUNDARY.comparison_step) + 1) * BOUNDARY.comparison_step
         for side in SIDE_SIGNS:
-            first, second, drawn = (sample_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
-            difference = np.abs(first.d - second.d)
+            rows = [np.flatnonzero((points.road == road.number) & (points.side == side)) for points, _ in curbs]
+            (d, z), (other, _) = (_curb_at(points[of_side], goes_on[of_side[:-1]], s) for (points, goes_on), of_side in zip(curbs, rows))
+            difference = np.abs(d - other)
             for k in np.flatnonzero((edges.road == road.number) & (edges.side == side)):
-                distances = difference[stretch_of(first.s, edges.station[k], edges.end[k])]
+                distances = difference[stretch_of(s, edges.station[k], edges.end[k])]
                 distances = distances[np.isfinite(distances)]
                 if len(distances):
                     agree[k] = round(100 * float(np.quantile(distances, BOUNDARY.agreement_quantile)), 1)
             with np.errstate(invalid="ignore"):
-                differing = (difference > BOUNDARY.min_reported_difference) & np.isfinite(drawn.d)
+                differing = difference > BOUNDARY.min_reported_difference
             for a, b in mask_runs(differing):
                 if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_reported_length:
                     continue
-                x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])
-                differences.append(EdgePiece(
-                    np.c_[x, y, z], road.number, side, "measured", len(differences), float(first.s[a]), float(first.s[b - 1]),
-                    agree=100 * float(difference[a:b].max())))
+                vertices = np.column_stack(frame.to_map(road.number, s[a:b], d[a:b], z[a:b]))
+                differences.append(EdgePiece(vertices, road.number, side, "measured", len(differences), float(s[a]), float(s[b - 1]),
+                                             agree=100 * float(difference[a:b].max())))
     return replace(edges, agree=agree), joined_pieces(differences, frame, edges.crs)
-
-
-# Pieces of curb of either method in line with what both methods chose.
-#
-# Between parked cars a curb is seen in pieces of a metre. Which method sees a piece well enough depends on where its profiles lie, so each may choose
-# the curb before a gap, behind it, or neither. Together they know more ends of curbs than each alone, and between these a piece of either of them
-# may lie.
-
-@dataclass(frozen=True)
-class _Ends:
-    """Curb points before or behind a gap: (N,) m, station, outward offset, height above the expected road and of the curb."""
-
-    s: np.ndarray
-    u: np.ndarray
-    h: np.ndarray
-    height: np.ndarray
-
-    def __getitem__(self, rows: np.ndarray | slice) -> _Ends:
-        return _Ends(self.s[rows], self.u[rows], self.h[rows], self.height[rows])
-
-
-def with_pieces_of_both(points: CurbPoints, chains: Sequence[Mapping[tuple[int, str], SideChains]],
-                        beside: Mapping[int, Mapping[str, OcclusionGrid]], survey: Survey) -> CurbPoints:
-    """The curb points, and between them pieces of chains that lie in their line, with the places beside these that are hidden.
-
-    points : CurbPoints of the main curbs
-    chains : of each method, (number of the road, side) -> SideChains
-    beside : number of the road -> side -> OcclusionGrid
-    """
-    result = [points]
-    for road in survey.store.roads():
-        main, number = main_curbs_of(points, survey, road)
-        pieces = CurbPoints.filled(0, points.crs)
-        for side in SIDE_SIGNS:
-            of_side = [of_method[road, side] for of_method in chains if (road, side) in of_method]
-            pieces = CurbPoints.join([pieces, _pieces_of_side(points, of_side, survey, road, side, number + len(pieces))], points.crs)
-        if len(pieces):
-            result += [pieces, hidden_beside(pieces[pieces.part == "bottom"], main, beside[road], survey, road)]
-    return CurbPoints.join(result, points.crs)
-
-
-def _pieces_of_side(points, chains, survey, road, side, number):
-    """CurbPoints of the pieces in the gaps of one main curb, their chains numbered from `number` on."""
-    frame, sign = survey.frame, SIDE_SIGNS[side]
-    measured = points[(points.road == road) & (points.side == side) & points.of_main_curb & (points.part == "bottom") & (points.status == "measured")]
-    measured = measured[np.argsort(measured.station, kind="stable")]
-    curb = _Ends(measured.station, sign * measured.offset, measured.z - expected_height(survey, road, measured.station), measured.height)
-    rows: list[dict] = []
-    gap = np.diff(curb.s)
-    begin = np.flatnonzero((gap > CURBS.max_joined_gap) & (gap <= CURBS.max_line_gap))
-    gaps = np.column_stack([curb.s[begin], curb.s[begin + 1]])
-    of_methods = [StepsByStation(side_chains.steps) for side_chains in chains]
-
-    def to_plan(s, u):
-        return frame.road(road).to_map(s, sign * u)
-
-    for a, b in gaps.tolist():
-        before, after = curb[stretch_of(curb.s, a - CURBS.line_fit_length, a)], curb[stretch_of(curb.s, b, b + CURBS.line_fit_length)]
-        pieces = [(side_chains, piece) for side_chains, by_station in zip(chains, of_methods)
-                  for piece in pieces_between(before, after, by_station, to_plan)]
-        # of pieces beside each other the one nearest to the line
-        chosen: list[PieceInLine] = []
-        for side_chains, piece in sorted(pieces, key=lambda found: found[1].off):
-            if all(piece.end < kept.start or piece.start > kept.end for kept in chosen):
-                chosen.append(piece)
-                rows += side_chains.points(piece.steps, number + len(rows))
-    return points_of_rows(survey, road, side, rows, points.crs)

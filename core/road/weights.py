@@ -88,8 +88,6 @@ class _CurbWeights:
     water_cells: int = 4   # before a curb whose foot lies in water, and as many behind its foot: 1 m
     least_water_step: float = 0.05   # m above the foot, from which the ground behind it is raised: dropped curbs of driveways are lower
     shadow_reach: float = 3.0   # m along the road: the scan planes are oblique, so the shadows are, too
-    rise_face_half_width: float = 0.05   # m on either side of a place between which a face lies: cells that reach into it tell neither level
-    rise_half_length: float = 0.5   # m along the road on either side over which a rise is averaged
     # pseudo scan-lines
     min_ground_layer_share: float = 0.15   # share of the points of its cell below which the lowest layer is multipath and not ground
     top_quantile: float = 0.9   # quantile of the lowest layer that stands for its highest point
@@ -146,6 +144,8 @@ class _CurbWeights:
     jump_cost: float = 4.0   # m of curb that a lateral jump of 1 m must gain
     level_jump_cost: float = 1.2   # m of curb that it must gain where road is seen all the way: the curb of a wider road behind a side street
     climb_cost: float = 60.0   # m of curb that a difference of 1 m in height must gain: ground behind a curb is higher
+    same_curb_distance: float = 0.25   # m across within which chains of two methods are one curb
+    method_change_cost: float = 1.0   # m of curb that one method must see beyond the other's chain to be drawn there
     max_jump_cost: float = 10.0   # m of curb that any jump costs at most
     distance_penalty: float = 0.03   # share of its value that a metre of curb loses for each metre farther from the track
     tracking_memory: float = 40.0   # m of road after which the best chain alone may still be continued
@@ -532,7 +532,7 @@ class _EdgeWeights:
     max_edge_jump: float = 0.25   # m across that two joined points may differ in any case
     bridge_spacing: float = 3.0   # m, about, between places on a line across a gap
     edge_vertex_spacing: float = 0.5   # m between vertices
-    min_edge_length: float = 2.0   # m of a piece with curb points
+    min_edge_length: float = 1.5   # m of a piece with curb points; the first and the last are means over a quarter of a metre inside its ends
     gap_sigma: float = 0.0005   # m per m of the longest bridged gap, least noise of the points of a curve across it
     min_point_sigma: float = 0.001   # m, least noise of a curb point
     max_stretch: float = 1.2   # length of a curve between two points over that of their chord, and
@@ -725,12 +725,9 @@ class _BoundaryWeights:
     level_strip_margin: float = 0.20   # m beyond the points from which corners are measured, in which scanlines still continue
     # comparison
     comparison_step: float = 0.5   # m along the road between places that are compared
-    max_same_curb_distance: float = 0.25   # m across within which two lines follow one curb
     min_reported_difference: float = 0.05   # m across above which a stretch is reported
     agreement_quantile: float = 0.95   # quantile of the distances that stands for a piece
     min_reported_length: float = 1.0   # m of a stretch that is reported
-    min_single_method_length: float = 2.0   # m that one line must continue beyond the other to be drawn in its place
-    sure_support: float = 80.0   # points per metre of road that show a step beyond doubt
 
 
 BOUNDARY = _BoundaryWeights()

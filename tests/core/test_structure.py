@@ -25,7 +25,7 @@ NUMBERS = {
     "core/io": 5,
     "core/curves": 9,
     "core/survey": 74,
-    "core/road": 20,
+    "core/road": 19,
     "core/intensity": 12,
     "core/markings": 69,
     "core/driving": 5,

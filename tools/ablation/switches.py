@@ -138,9 +138,9 @@ def _without_curbs(original):
 
 NO_ROWS, NO_NUMBERS = np.empty((0, 2), np.int64), np.empty(0, np.int64)
 ROWS = (
-    _set("curbs", "profiles method", "curbs", "road.profiles road:select_curb_points road:with_pieces_of_both road:SideChains",
+    _set("curbs", "profiles method", "curbs", "road.profiles road:_points_of_both",
          boundary_method="scanlines"),
-    _set("curbs", "scanlines method", "curbs", "road.scanlines road:select_curb_points road:with_pieces_of_both road:SideChains",
+    _set("curbs", "scanlines method", "curbs", "road.scanlines road:_points_of_both",
          boundary_method="profiles"),
     Switch("chains along the road (else the nearest step)", "curbs", (
         ("road.common.tracking:curb_chains", nearest_steps), ("road.common.tracking:select_along_road", _whole),
@@ -148,13 +148,11 @@ ROWS = (
         rule=("road.common.tracking:curb_chains", "road.common.tracking:select_along_road", "road.common.tracking:drop_short_curbs")),
     *_room("curbs", "road",
         ("pieces in line", "common.in_line:pieces_between", gives([]), "residential street, parked cars, half the points",
-         "common.in_line:with_pieces_in_line common.in_line:pieces_between in_line_of_both:with_pieces_of_both"),
-        ("pieces in line of both methods", "in_line_of_both:with_pieces_of_both", nth(0), "residential street, stations moved"),
+         "common.in_line:with_pieces_in_line common.in_line:pieces_between"),
         ("weak chains that continue", "common.tracking:_continuing", gives([]), "residential street, parked cars, stations moved"),
         ("chains that go on unselected", "common.tracking:_continued", Around(gives(nth(0))), "residential street"),
         ("short curbs dropped", "common.tracking:drop_short_curbs", as_list),
         ("wander of sloped chains", "common.tracking:_wander", gives(0.0), "curbs in bends"),
-        ("densely seen stretch", "common.tracking:seen_stretch", gives(slice(None)), "residential street, stations moved"),
         ("averages of noisy profiles", "profiles.detect:_steps_by_noise", _unaveraged, "many-beam scanner (Karlsruhe)",
          "profiles.averaged_steps:find_averaged_steps profiles.detect:_steps_by_noise"),
         ("profiles: ground stays up", "profiles.steps:_stays_up", all_of(3)),
@@ -163,8 +161,6 @@ ROWS = (
         ("scanlines: measured itself", "scanlines.candidates:_measured_itself", all_of(1)),
         ("scanlines: neighbours agree", "scanlines.candidates:_persistent", all_of(0)),
         ("scanlines: passes merged", "scanlines.detect:merged_corners", lambda found: type(found[0]).join(found)),
-        ("methods compared by level ground", "agreement:_level", lambda measured, *_: np.zeros(len(measured.s), bool), "residential street"),
-        ("methods compared by scatter", "agreement:_second_is_better", lambda first, second: second.measured & ~first.measured),
         ("hidden curb", "common.hidden_curb:hidden_points", gives([]), "parked cars",
          "common.hidden_curb:hidden_points common.hidden_curb:hidden_beside"),
         ("hidden curb beside later pieces", "common.hidden_curb:hidden_beside", lambda pieces, *_: CurbPoints.filled(0, pieces.crs),

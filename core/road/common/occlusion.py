@@ -103,27 +103,6 @@ class OcclusionGrid:
         tall = sums[r1, c1] - sums[r0, c1] - sums[r1, c0] + sums[r0, c0]
         return (measured.sum(1) < 2) & (tall > 0) | self._in_water(row, cell, h)
 
-    def rise(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
-        """How much higher the ground behind a line is than before it.
-
-        s, u : (N,) m, station and outward offset of places on the line
-        skew : (N,) m outward per m along, direction of the line
-
-        Returns (N,) m, the median over 2 * CURBS.rise_half_length of road; NaN where nowhere there ground was seen on both sides
-        """
-        around = int(round(CURBS.rise_half_length / self.width))
-        rows = np.floor(s / self.width).astype(np.int64)[:, None] + np.arange(-around, around + 1)
-        line = u[:, None] + skew[:, None] * ((rows + 0.5) * self.width - s[:, None])
-        rows -= self.first
-        before = np.floor((line - CURBS.rise_face_half_width) / CURBS.occlusion_cell).astype(np.int64) - 1
-        behind = np.ceil((line + CURBS.rise_face_half_width) / CURBS.occlusion_cell).astype(np.int64)
-        inside = (rows >= 0) & (rows < len(self.ground)) & (before >= 0) & (behind < self.cells)
-        rows = np.clip(rows, 0, len(self.ground) - 1)
-        low, high = (self.ground[rows, np.clip(cells, 0, self.cells - 1)] for cells in (before, behind))
-        rises = np.sort(np.where(inside, high - low, np.nan), axis=1)
-        last, index = np.maximum(np.isfinite(rises).sum(1) - 1, 0), np.arange(len(rises))
-        return 0.5 * (rises[index, last // 2] + rises[index, last - last // 2])
-
     def _in_water(self, row, cell, h):
         """(N,) bool, whether the road before a place returned nothing and the ground behind it is raised like the top of a curb."""
         offsets = cell[:, None] + np.arange(-CURBS.water_cells, CURBS.water_cells)

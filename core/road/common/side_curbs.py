@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -15,7 +15,6 @@ from .corners import CurbSteps
 from .curb_limits import CurbLimits
 from .curb_points import CurbPoints, curb_points_at
 from .occlusion import OcclusionGrid
-from .pseudo_scanlines import expand_ranges
 from .sides import SIDE_SIGNS, OutermostTrack, expected_height, hidden_points, join_sections
 from .tracking import StepChain, curb_chains, drop_short_curbs, is_road, link_steps, select_along_road, with_pieces_in_line
 
@@ -84,18 +83,17 @@ class SideChains:
     steps : CurbSteps of the side
     chains : list of StepChain of these steps
     bounds : (K,) m, stations at which blocks begin and end
+    look : SideLook of the side, None where nothing is known of the ground
     """
 
     steps: CurbSteps
     chains: list[StepChain]
     bounds: np.ndarray
+    look: SideLook | None = None
 
     @staticmethod
     def of(steps: CurbSteps, width: float, limits: CurbLimits, bounds: np.ndarray, look: SideLook | None = None) -> SideChains:
-        """The chains of steps, upright and sloped ones apart; `width` : m of road per profile.
-
-        look : SideLook of the side, None where nothing is known of the ground
-        """
+        """The chains of steps, upright and sloped ones apart; `width` : m of road per profile."""
         label = np.empty(len(steps), np.int64)
         upright = steps.upright
         label[upright] = link_steps(steps[upright], width)
@@ -103,7 +101,7 @@ class SideChains:
         chains = curb_chains(steps, label, width, limits)
         if look is not None:
             chains = [chain for chain in chains if _has_road_before(steps[chain.steps], chain.end - chain.start, look)]
-        return SideChains(steps, chains, bounds)
+        return SideChains(steps, chains, bounds, look)
 
     def points(self, members: np.ndarray, number: int) -> list[dict]:
         """Curb points of the steps with the (K,) indices, by station, of one line: one of each part per block.
@@ -124,21 +122,6 @@ class SideChains:
                                  residual=round(float(residual[k]), 4), support=int(support[k])))
                 for k in range(len(blocks)) for part, u, h in steps.PARTS]
 
-    def support_along(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
-        """Laser points that show a step on a line.
-
-        s, u : (N,) m, station and outward offset of places on the line
-        skew : (N,) m outward per m along, direction of the line
-
-        Returns (N,) points per metre of road, over CURBS.max_link_length of it, half on either side
-        """
-        order = np.argsort(self.steps.s, kind="stable")
-        by_station = self.steps.s[order]
-        index, row = expand_ranges(*(np.searchsorted(by_station, s + end) for end in (-0.5 * CURBS.max_link_length, 0.5 * CURBS.max_link_length)))
-        row = order[row]
-        near = np.abs(self.steps.u[row] - u[index] - skew[index] * (self.steps.s[row] - s[index])) <= 2 * CURBS.link_tolerance
-        return np.bincount(index[near], self.steps.support[row[near]], len(s)) / CURBS.max_link_length
-
 
 def _has_road_before(steps, length, look):
     """Does road lie before a line of steps? What goes on in one line for long enough is a curb whatever is before it."""
@@ -146,17 +129,25 @@ def _has_road_before(steps, length, look):
     return length >= CURBS.min_faint_length or is_road(look.roughness(*(v.ravel() for v in np.broadcast_arrays(steps.s, steps.u - before))))
 
 
-def points_of_side(source: Any, road: int, side: str, found: SideChains, occlusion: OcclusionGrid, look: SideLook | None = None) -> CurbPoints:
+def points_of_side(source: Any, road: int, side: str, found: Sequence[SideChains], occlusion: OcclusionGrid) -> CurbPoints:
     """Curb points of one side of one road, measured and hidden, in order of station.
 
     source : Survey, or scanlines: what has `frame` and `road_height`
-    look : SideLook of the side, None where nothing is known of the ground
+    found : SideChains of every method
     """
-    frame, sign, steps, chains = source.frame, SIDE_SIGNS[side], found.steps, found.chains
+    frame, sign = source.frame, SIDE_SIGNS[side]
+    first = np.cumsum([0, *(len(part.steps) for part in found)])   # number of the first step of each method among all of them
+    steps = CurbSteps(*(np.concatenate([getattr(part.steps, field.name) for part in found]) for field in fields(CurbSteps)))
+    chains = [replace(chain, steps=chain.steps + begin, method=method)
+              for method, (part, begin) in enumerate(zip(found, first)) for chain in part.chains]
+    chains.sort(key=lambda chain: (chain.start, chain.end))
     track = OutermostTrack(frame, road, sign)
-    selected = drop_short_curbs(select_along_road(chains, steps, track, look), chains, steps)
-    lines = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u))
-    rows = [row for number, members in enumerate(lines) for row in found.points(members, number)]
+    selected = drop_short_curbs(select_along_road(chains, steps, track, found[0].look), chains, steps)
+    lines = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u), first[1:-1].tolist())
+    rows = []
+    for number, members in enumerate(lines):
+        method = int(np.searchsorted(first, members[0], side="right")) - 1
+        rows += found[method].points(members - first[method], number)
     bottoms = np.array([(row["s"], row["u"], row["h"]) for row in rows if row["fields"]["part"] == "bottom"]).reshape(-1, 3)
     rows += hidden_points(bottoms, occlusion, track)
     return points_of_rows(source, road, side, sorted(rows, key=lambda row: (row["s"], row["fields"]["part"])))

@@ -35,6 +35,8 @@ class StepChain:
     steps : (K,) indices into the CurbSteps, sorted by station
     start, end : m, first and last station
     low, sloped : is it lower, or less steep, than what is taken for a curb wherever it is seen?
+    scatter : m, of the steps about their line
+    method : number of the method that measured the steps
     """
 
     steps: np.ndarray
@@ -42,6 +44,8 @@ class StepChain:
     end: float
     low: bool = False
     sloped: bool = False
+    scatter: float = 0.0
+    method: int = 0
 
     @property
     def faint(self) -> bool:
@@ -118,7 +122,9 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
     for members in np.split(order, np.flatnonzero(np.diff(label[order])) + 1):
         check_cancelled()
         length = (steps.profile[members[-1]] - steps.profile[members[0]] + 1) * profile_width
-        if length >= CURBS.min_chain_length - 1e-9 and len(members) * profile_width >= CURBS.min_chain_density * length:
+        # two steps do not show whether they lie in line
+        if len(members) >= CURBS.min_piece_steps and length >= CURBS.min_chain_length - 1e-9 \
+                and len(members) * profile_width >= CURBS.min_chain_density * length:
             chain, sure = _as_curb(steps, members, length, limits)
             if sure:
                 (chains if sure > 1 else weak).append(chain)
@@ -133,7 +139,7 @@ def _as_curb(steps, members, length, limits):
     slope = np.arctan2(height, max(percentiles(steps.run[members], (30.0,))[0] - 2 * scanner_noise, 0.0))
     least, scatter = limits.clear_height, _chain_scatter(s, steps.u[members])
     allowance = min(scanner_noise, CURBS.max_noise_allowance * least) if scanner_noise > CURBS.noisy_share * least else 0.0
-    chain = StepChain(members, float(s[0]), float(s[-1]), bool(height < least - allowance), bool(slope < limits.clear_slope))
+    chain = StepChain(members, float(s[0]), float(s[-1]), bool(height < least - allowance), bool(slope < limits.clear_slope), scatter)
     if not is_clean(noise, scanner_noise, steps.behind[members], scatter) \
             or chain.sloped and (length < CURBS.min_sloped_length or _wander(steps, members) > CURBS.max_wander):
         return chain, 0
@@ -228,6 +234,8 @@ class _Paths:
         self.chains, self.near, self.look = chains, near, look
         self.places = [(steps.s[c.steps], steps.u[c.steps], steps.h[c.steps]) for c in chains]
         self.tips = np.array([_end_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
+        self.method = np.array([c.method for c in chains], np.int64)
+        self.methods = len(np.unique(self.method))
         self.starts, self.ends = np.array([c.start for c in chains]), np.array([c.end for c in chains])
         self.value, self.path = np.full(len(chains), -np.inf), [None] * len(chains)
         self.waiting = np.argsort(-self.starts, kind="stable").tolist()   # the next to begin is the last
@@ -243,10 +251,15 @@ class _Paths:
         members = np.array(self.continued, np.int64)
         positions = np.array([[np.interp(a, self.places[k][0], v) for v in self.places[k][1:]] for k in members]).reshape(-1, 2)
         middle = 0.5 * (a + b)
+        offset = {c: float(np.interp(middle, *self.places[c][:2])) for c in self.active}
         steps = []
         for c in self.active:
-            farther = max(np.interp(middle, *self.places[c][:2]) - self.near(middle), 0.0)
-            gain = (b - a) * max(1.0 - CURBS.distance_penalty * farther, 0.1) * (CURBS.faint_gain if self.chains[c].faint else 1.0)
+            farther = max(offset[c] - self.near(middle), 0.0)
+            gain = (b - a) * max(1.0 - CURBS.distance_penalty * farther, 0.1)
+            # what all chains of one curb show of it: does any show it clearly, and which share of the methods see it? And how sharply this one does
+            of_curb = [k for k in self.active if abs(offset[k] - offset[c]) <= CURBS.same_curb_distance]
+            gain *= CURBS.faint_gain if all(self.chains[k].faint for k in of_curb) else 1.0
+            gain *= len({self.method[k] for k in of_curb}) / self.methods * max(1.0 - self.chains[c].scatter / CURBS.link_tolerance, 0.1)
             best, before = self._before(c, a, members, positions)
             steps.append((c, best + gain, (int(c), float(a), float(b), before)))
         for c, value, step in steps:
@@ -274,12 +287,13 @@ class _Paths:
             cost[costly] = np.fmin(cost[costly], self._across_the_road(np.minimum(a, self.ends[known[costly]]), *at[costly].T, a, u, h,
                                                                        gap[costly], jump[costly]))
         cost = np.where(known == c, 0.0, np.minimum(cost, CURBS.max_jump_cost))
+        # beside the end of one method's chain another method goes on only where that is worth the change
+        cost[(self.method[known] != self.method[c]) & (gap <= CURBS.max_link_length)] += CURBS.method_change_cost
         total = self.value[known] - cost
         if not len(known) or total.max() < 0.0:
             return 0.0, None
         k = int(np.argmax(total))
         return total[k], self.path[known[k]]
-
 
     def _across_the_road(self, s, u, h, end_s, end_u, end_h, gap, jump):
         """(N,) costs of going on from (N,) places to another one over ground that is road all the way, infinite where it is not.
@@ -374,18 +388,6 @@ def _chain_scatter(s, u):
     return np.median(np.abs(u[1:-1] - u[:-2] - f * (u[2:] - u[:-2])))
 
 
-def seen_stretch(profile: np.ndarray) -> slice:
-    """The rows of a run of steps in which it is seen densely enough: all, or those whose profiles exceed CURBS.min_chain_density by most.
-
-    profile : (N,) int, ascending, numbers of the profiles
-    """
-    excess = np.arange(len(profile)) - CURBS.min_chain_density * (profile - profile[0])
-    if excess[-1] + 1 >= CURBS.min_chain_density:
-        return slice(None)
-    last = int(np.argmax(excess - np.minimum.accumulate(excess)))
-    return slice(int(np.argmin(excess[:last + 1])), last + 1)
-
-
 def _merged(path):
     """Adjacent intervals of one chain joined."""
     merged = []
@@ -406,25 +408,33 @@ def _merged(path):
 
 
 def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequence[StepChain], steps: CurbSteps,
-                        to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[np.ndarray]:
+                        to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]], first: Sequence[int] = ()) -> list[np.ndarray]:
     """The steps of the chosen intervals and, between them, the pieces of curb that lie in their line.
 
     kept : result of `drop_short_curbs`
-    steps : CurbSteps to which they refer
+    steps : CurbSteps to which they refer, method by method
     to_plan : function, stations and outward offsets in m -> x and y in m
+    first : numbers of the first step of each method but the first one
 
     Returns a list of (K,) indices into the steps, by station, one for every interval and piece, in order along the road
     """
     pieces = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
     if not pieces:
         return []
-    chosen, all_steps = StepsByStation(steps[np.concatenate(pieces)]), StepsByStation(steps)
+    chosen = _StepsByStation(steps[np.concatenate(pieces)])
+    of_methods = [(begin, _StepsByStation(steps[begin:end])) for begin, end in zip([0, *first], [*first, len(steps)])]
     for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]):
-        if not CURBS.max_joined_gap < b - a <= CURBS.max_line_gap:
+        if not CURBS.max_link_length < b - a <= CURBS.max_line_gap:
             continue
         check_cancelled()
         before, after = (chosen.steps[chosen.rows(*ends)] for ends in ((a - CURBS.line_fit_length, a + 1e-9), (b - 1e-9, b + CURBS.line_fit_length)))
-        pieces += [piece.steps for piece in pieces_between(before, after, all_steps, to_plan)]
+        found = [(piece, begin) for begin, of_method in of_methods for piece in pieces_between(before, after, of_method, to_plan)]
+        # of pieces beside each other the one nearest to the line
+        nearest: list[PieceInLine] = []
+        for piece, begin in sorted(found, key=lambda found_piece: found_piece[0].off):
+            if all(piece.end < other.start or piece.start > other.end for other in nearest):
+                nearest.append(piece)
+                pieces.append(begin + piece.steps)
     return sorted(pieces, key=lambda members: float(steps.s[members[0]]))
 
 
@@ -432,7 +442,7 @@ def _between(steps, members, start, end):
     return members[(steps.s[members] >= start) & (steps.s[members] <= end)]
 
 
-class StepsByStation:
+class _StepsByStation:
     """CurbSteps of one side, of which those between two stations are looked up."""
 
     def __init__(self, steps: CurbSteps):
@@ -460,7 +470,7 @@ class PieceInLine:
     end: float
 
 
-def pieces_between(before: CurbSteps, after: CurbSteps, others: StepsByStation,
+def pieces_between(before: CurbSteps, after: CurbSteps, others: _StepsByStation,
                    to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[PieceInLine]:
     """The pieces of curb on the line between two runs of curb.
 
@@ -486,7 +496,7 @@ def pieces_between(before: CurbSteps, after: CurbSteps, others: StepsByStation,
     near = near[np.lexsort((np.abs(off[near]), steps.profile[rows[near]]))]
     near = near[np.r_[True, np.diff(steps.profile[rows[near]]) > 0]]
     parted = (np.diff(s[near]) > CURBS.max_link_length) | (np.abs(np.diff(off[near])) > CURBS.link_tolerance)
-    runs = [run[seen_stretch(steps.profile[rows[run]])] for run in np.split(near, np.flatnonzero(parted) + 1)]
+    runs = np.split(near, np.flatnonzero(parted) + 1)
     return [PieceInLine(rows[run], float(np.abs(off[run]).max()), float(s[run[0]]), float(s[run[-1]])) for run in runs
             if len(run) >= CURBS.min_piece_steps and np.ptp(s[run]) >= CURBS.min_piece_length
             and _is_curb(steps[rows[run]], off[run], across[run].min(), height0 + share[run] * (height1 - height0))]

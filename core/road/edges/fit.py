@@ -40,11 +40,10 @@ class EdgeSettings:
 
 
 def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
-                   progress: Progress = Progress(), led_across: bool = True) -> RoadEdges:
+                   progress: Progress = Progress()) -> RoadEdges:
     """Fit a smoothing cubic B-spline through the curb points of each side.
 
     curb_points : CurbPoints (those of part `top` are not used)
-    led_across : do even bends lead the curve across gaps? Not needed where only what is measured counts
 
     Returns RoadEdges, along the road, one piece for each stretch of one status. Pieces of one
     edge share their end vertices and `chain`.
@@ -59,7 +58,7 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
         for side in ("left", "right"):
             drawn = []
             for piece in _pieces(road_points[road_points["side"] == side], settings.max_gap):
-                drawn.append(_draw(of_road, frame, road.number, side, piece, lines, led_across))
+                drawn.append(_draw(of_road, frame, road.number, side, piece, lines))
                 lines += 1
             if settings.fallback_width:
                 lines = _draw_fallback(of_road, frame, road, side, drawn, settings.fallback_width, lines)
@@ -72,9 +71,9 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     return edges
 
 
-def edges_through(source: NoSource, curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSettings, led_across: bool) -> RoadEdges:
+def edges_through(source: NoSource, curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSettings) -> RoadEdges:
     """The phase that fits the edges of one method: `fit_road_edges`, which says nothing of them."""
-    return fit_road_edges(curb_points, frame, settings, Progress(), led_across)
+    return fit_road_edges(curb_points, frame, settings, Progress())
 
 
 def tell_edges(edges: RoadEdges, progress: Progress) -> None:
@@ -146,7 +145,7 @@ def _line_across(points, s, k):
     return best
 
 
-def _with_bridges(points, bridged, frame, road, led_across):
+def _with_bridges(points, bridged, frame, road):
     """Points of an edge with places of its bridges between them, as a GapLine leads, and the numbers that the points have among them.
 
     Also the longest bridge without such a line, m.
@@ -154,7 +153,7 @@ def _with_bridges(points, bridged, frame, road, led_across):
     parts, begin, before, longest = [], 0, np.zeros(len(points), int), 0.0
     s = np.ascontiguousarray(points["s"])
     for k in np.flatnonzero(bridged):
-        turn, line, axes = _line_across(points, s, k) if led_across else (np.inf, None, "")
+        turn, line, axes = _line_across(points, s, k)
         if turn > IN_LINE_TURN:
             longest = max(longest, s[k + 1] - s[k])
             continue
@@ -244,10 +243,10 @@ def _noise(t, values):
     return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, EDGE.min_point_sigma)
 
 
-def _draw(found, frame, road, side, piece, number, led_across):
+def _draw(found, frame, road, side, piece, number):
     """Add the pieces of one edge; returns its (start, end) station."""
     points, bridged = piece
-    with_bridges, measured, longest = _with_bridges(points, bridged, frame, road, led_across)
+    with_bridges, measured, longest = _with_bridges(points, bridged, frame, road)
     curve = EdgeCurve(with_bridges, longest, measured)
     t, residual = curve.t[measured], curve.residual[measured]
     changes = np.flatnonzero(np.diff(bridged.astype(int))) + 1

@@ -59,7 +59,7 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
             if len(steps[side]):
                 look = SideLook(road_look, SIDE_SIGNS[side])
                 side_chains[road, side] = SideChains.of(steps[side], width, settings.limits, bounds, look)
-                parts.append(points_of_side(survey, road, side, side_chains[road, side], beside[road][side], look))
+                parts.append(points_of_side(survey, road, side, [side_chains[road, side]], beside[road][side]))
     points = CurbPoints.join(parts, survey.crs)
     measured, main = np.count_nonzero(points.status == "measured"), len(points)
     if include_returns:

@@ -71,7 +71,7 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
             if len(corners[side]):
                 look = None if road_look is None else SideLook(road_look, SIDE_SIGNS[side])
                 side_chains[road, side] = SideChains.of(_with_scanner_noise(corners[side]), interval, settings.limits, bounds, look)
-                parts.append(points_of_side(source, road, side, side_chains[road, side], beside[road][side], look))
+                parts.append(points_of_side(source, road, side, [side_chains[road, side]], beside[road][side]))
     points = CurbPoints.join(parts, source.crs)
     measured, hidden = (np.count_nonzero((points.part == "bottom") & (points.status == status)) for status in ("measured", "occluded"))
     progress.info(f"Corners of curbs: {measured:,} measured on scanlines, {hidden:,} hidden by objects.")

@@ -8,17 +8,18 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.curb_points import curb_points_at
-from lanewright.core.road.common.occlusion import OcclusionGrid
-from lanewright.core.road.common.side_curbs import SideChains
+from lanewright.core.road.common.side_curbs import SideChains, points_of_side
+from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.detect_boundaries import (
     BoundarySettings,
-    CurbEvidence,
     draw_boundaries,
     find_curb_points,
     measure_agreement,
-    select_curb_points,
 )
 from lanewright.core.road.edges.fit import fit_road_edges
+from lanewright.core.road.profiles.detect import detect_curbs
+
+FOOT = -0.02   # m, height of the curb's foot above the expected road
 
 
 def boundaries(points, method):
@@ -68,53 +69,64 @@ def test_a_curb_that_only_one_method_finds_is_drawn_without_agreement():
     assert np.isnan(found.edges.agree).all()
 
 
-def test_of_two_lines_along_one_curb_the_one_with_less_scatter_is_drawn(frame):
-    calm, rough = curb_points(frame, 3.50), curb_points(frame, 3.53, scatter=0.03)
-    for first, second in ((calm, rough), (rough, calm)):
-        drawn = select_curb_points(first, second, fit_road_edges(first, frame), fit_road_edges(second, frame), frame)
-        np.testing.assert_allclose(drawn.offset, 3.50, atol=1e-6)
+def seen(*stretches):
+    """SideChains of one method on the left: (from, to, offset, scatter) of chains of 12 cm whose foot lies at the height of the road."""
+    s = [np.arange(a, b + 0.01, 0.25) for a, b, *_ in stretches]
+    u = np.concatenate([offset + scatter * np.where(np.arange(len(part)) % 2, 1, -1) for part, (_, _, offset, scatter) in zip(s, stretches)])
+    ends = np.cumsum([0, *map(len, s)])
+    ones = np.ones(len(u))
+    steps = CurbSteps(profile=np.rint(np.concatenate(s) / 0.25).astype(int), s=np.concatenate(s), u=u, h=FOOT * ones, skew=0 * ones,
+                      height=0.12 * ones, run=0 * ones, noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones.astype(int),
+                      behind=20 * ones.astype(int))
+    chains = [StepChain(np.arange(a, b), stretch[0], stretch[1], scatter=stretch[3]) for a, b, stretch in zip(ends[:-1], ends[1:], stretches)]
+    return SideChains(steps, chains, np.arange(0.0, 62.0, 2.0))
 
 
-def test_of_two_curbs_that_of_the_first_method_is_drawn_and_its_gaps_are_filled_by_the_other(frame):
-    sure, other = curb_points(frame, 3.5, np.arange(1.0, 40.0)), curb_points(frame, 5.0, np.arange(20.0, 55.0))
-    drawn = select_curb_points(sure, other, fit_road_edges(sure, frame), fit_road_edges(other, frame), frame)
-    s, d = drawn.station, drawn.offset
-    np.testing.assert_allclose(d[s < 39], 3.5)
-    np.testing.assert_allclose(d[s > 41], 5.0)
+@pytest.fixture(scope="module")
+def parked():
+    """A survey of a street with a parked car between stations 20 and 25, and what was seen on its left."""
+    survey, beside = survey_of(parked_car(street(length=60.0), start=20.0), driven(60.0)), {}
+    detect_curbs(survey, include_returns=False, beside=beside)
+    return survey, beside[0]["left"]
 
 
-def ground(rise):
-    """What a method saw of 60 m of road on the left: ground that rises at 3.5 m, by as much as a function of the station says; nowhere where NaN."""
-    grid = OcclusionGrid(0.25, 0, 240, 20.0)
-    grid.ground[:] = np.where(np.arange(grid.cells) * 0.25 >= 3.5, rise((np.arange(240) + 0.5) * 0.25)[:, None], 0.0)
-    return CurbEvidence(beside={0: {"left": grid}})
-
-
-def shown_by(points_per_step):
-    """Chains of a method whose profiles, 25 cm apart, show a step at 3.5 m on the left, each by so many points."""
-    s = np.arange(0.125, 60.0, 0.25)
-    ones = np.ones(len(s))
-    steps = CurbSteps(profile=np.arange(len(s)), s=s, u=3.5 * ones, h=0 * ones, skew=0 * ones, height=0.03 * ones, run=0 * ones, noise=0.003 * ones,
-                      scanner_noise=0.003 * ones, support=points_per_step * ones.astype(int), behind=5 * ones.astype(int))
-    return CurbEvidence(chains={(0, "left"): SideChains(steps, [], np.empty(0))})
+def drawn(parked, *methods):
+    """Points of the left curb from what several methods saw, by station: those that were measured, and those that are hidden."""
+    points = points_of_side(parked[0], 0, "left", methods, parked[1])
+    return points[points.status == "measured"], points[points.status == "occluded"]
 
 
 @pytest.mark.parametrize("swapped", [False, True])
-@pytest.mark.parametrize("rise, points, end", [(0.0, 8, 30), (0.01, 8, 30), (0.03, 8, 55), (np.nan, 8, 55), (0.01, 50, 55)],
-                         ids=["level", "nearly level", "raised", "not seen", "shown by many points"])
-def test_a_curb_that_one_method_leads_on_ends_where_the_other_saw_level_ground(frame, rise, points, end, swapped):
-    short, long = curb_points(frame, 3.5, np.arange(1.0, 30.5, 0.5)), curb_points(frame, 3.5, np.arange(1.0, 55.5, 0.5))
-    methods = [(short, ground(lambda s: np.where(s < 30, 0.12, rise))), (long, shown_by(points))]
-    (first, seen), (second, others_seen) = methods[::-1 if swapped else 1]
-    drawn = select_curb_points(first, second, fit_road_edges(first, frame), fit_road_edges(second, frame), frame, seen, others_seen)
-    assert drawn.station.max() == pytest.approx(end, abs=1.0)
+def test_of_two_lines_along_one_curb_the_one_with_less_scatter_is_drawn(parked, swapped):
+    methods = seen((1.0, 59.0, 3.50, 0.0)), seen((0.5, 59.5, 3.53, 0.02))
+    points, _ = drawn(parked, *methods[::-1 if swapped else 1])
+    np.testing.assert_allclose(points.offset, 3.50, atol=1e-6)
 
+
+def test_where_one_curb_ends_the_path_goes_on_along_the_one_that_another_method_sees(parked):
+    points, _ = drawn(parked, seen((1.0, 40.0, 3.5, 0.0)), seen((20.0, 59.0, 5.0, 0.0)))
+    np.testing.assert_allclose(points.offset[points.station < 39], 3.5)
+    np.testing.assert_allclose(points.offset[points.station > 41], 5.0)
+
+
+def test_a_step_aside_that_one_method_alone_sees_is_not_worth_the_way_there_and_one_that_both_see_is(parked):
+    curb, aside = [(1.0, 20.0, 3.5, 0.0), (46.0, 59.0, 3.5, 0.0)], (21.0, 45.0, 5.0, 0.0)
+    alone, _ = drawn(parked, seen(*curb, aside), seen(*curb))
+    both, _ = drawn(parked, seen(*curb, aside), seen(*curb, aside))
+    assert alone.offset.max() < 3.6 and both.offset.max() > 4.9
+
+
+@pytest.mark.parametrize("first", [True, False], ids=["of the first method", "of the second method"])
+def test_a_piece_in_line_with_curbs_of_different_methods_is_the_curb_and_the_car_beside_it_hides_the_rest(parked, first):
+    piece, other = seen((1.0, 19.0, 3.5, 0.0), (26.5, 28.0, 3.5, 0.0)), seen((32.0, 59.0, 3.5, 0.0))
+    points, hidden = drawn(parked, *((piece, other) if first else (other, piece)))
+    assert ((points.station > 26) & (points.station < 28.5)).any() and np.abs(points.offset - 3.5).max() < 1e-3
+    assert len(hidden) >= 8 and (np.abs(hidden.station - 22.5) < 4.5).all()
 
 
 def test_a_stretch_where_the_two_lie_eight_centimetres_apart_is_reported(frame):
-    one = fit_road_edges(curb_points(frame, 3.5), frame)
-    other = fit_road_edges(curb_points(frame, lambda s: 3.5 + 0.08 * np.exp(-((s - 30) / 6) ** 4)), frame)
-    drawn = fit_road_edges(curb_points(frame, 3.5), frame)
+    one, other = curb_points(frame, 3.5), curb_points(frame, lambda s: 3.5 + 0.08 * np.exp(-((s - 30) / 6) ** 4))
+    drawn = fit_road_edges(one, frame)
     drawn, reported = measure_agreement(drawn, one, other, frame)
     assert len(reported) == 1 and 23 < reported.station[0] < 27 and 33 < reported.end[0] < 37
     assert reported.agree[0] == pytest.approx(8.0, abs=0.5)

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 import shapely
 from curbed_streets import EAST, NORTH
-from lanewright.core.road import detect_boundaries
 from lanewright.core.road.common import tracking
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.tracking import StepChain
@@ -71,7 +70,6 @@ def test_the_offsets_of_edges_are_asked_for_where_the_edges_are(interpolated):
         interpolated[0] = 0
         found = pavement_edge.edge_offsets(edges, 0, stations)
         assert np.isfinite(found["left"][0]).mean() > 0.95
-        detect_boundaries.sample_edges(edges, frame, 0, "left")
 
     short, long = work_of(interpolated, offsets)
     assert long <= MOST * short

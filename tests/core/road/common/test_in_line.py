@@ -53,13 +53,6 @@ def test_a_piece_is_the_curb_whether_its_steps_were_linked_to_a_chain_or_not():
     assert chosen(steps, [chains[0], chains[2]]) == with_piece(30.0, 31.25)
 
 
-def test_of_steps_that_are_far_between_at_its_end_the_piece_has_the_dense_stretch_alone():
-    steps, chains = street_with_a_piece(piece=(30.0, 34.0))
-    seen = (steps.s < 30.6) | (steps.s >= 45) | np.isin(steps.s, [31.5, 32.5])
-    steps.s[~seen] += 1000.0
-    assert chosen(steps, chains) == with_piece(30.0, 30.5)
-
-
 def test_near_the_end_of_a_gap_a_piece_keeps_to_the_line_more_closely_than_far_from_it():
     # 6 cm aside
     assert chosen(*street_with_a_piece(aside=0.06, piece=(30.0, 31.5))) == with_piece(30.0, 31.25)
