@@ -411,6 +411,7 @@ class _NoisyWeights:
     least_area: float = 0.03   # m2
     usual_percentile: int = 75   # % of a piece's cells: its contrast
     top_percentile: int = 90   # % of them: its brightness
+    dashes: float = 1 / 3   # of the cells of a stroke: where dashes of a row are more, it is no stroke but these
     fading_ring: tuple[float, int] = 1.5, 3   # cells from a piece: where its fading is measured
     view_ring: tuple[int, int] = 3, 8   # cells from a piece: asphalt that it is compared with in each view
     view_length: float = 0.5   # m of the vehicle's way: points measured from farther apart are different views
@@ -462,6 +463,10 @@ class _RimWeights:
     gutter_brightness: float = 1.5   # spreads above asphalt
     paint_to_gutter: float = 1.8   # times as bright as the cells between it and the rim: paint beside the gutter
     road_gap_along: int = 15   # cells: smaller gaps between points belong to the road
+    # Rims of what is bright and broad.
+    beside: tuple[int, int] = 5, 2   # cells from a piece: what lies beside it, less what the image blurs
+    sides: tuple[float, float] = 0.25, 0.75   # shares of these cells that are no brighter than its dark side and its bright side
+    least_share: float = 0.65   # of its contrast with the dark side that is left with the bright one
     # Bright things that stand above the asphalt.
     plane_squares: int = 9   # squares, either way, that a plane is fitted to: 1.8 m
     min_plane_squares: int = 12   # of them with asphalt, for the plane to be known

@@ -127,20 +127,26 @@ def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamp
         tops = ndimage.maximum_filter(np.where(faint, averages.contrast, 0.0), 2 * NOISY.half_maximum_reach + 1)
         # the average joins neighbouring pieces: they are parted at half maximum
         parted = faint & (averages.contrast > NOISY.half_maximum * tops)
-    mask = np.zeros(rim.shape, bool)
-    for cells in (bright, parted):
-        label = _pieces(cells, averages)
-        shapes, tops, odds = _weighed(label, averages, rim, samples, threshold)
-        alone = odds.min(axis=1, initial=np.inf) > 0.0
-        with np.errstate(invalid="ignore"):
-            mask |= averages.contrast > NOISY.half_maximum * np.r_[np.inf, np.where(alone, tops, np.inf)][label]
-    # holes that noise left in strokes are closed
-    mask = ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2)
+    strokes, pieces = (_pieces(cells, averages) for cells in (bright, parted))
+    shapes, tops, odds = _weighed(pieces, averages, rim, samples, threshold)
     in_row = np.zeros(len(shapes) + 1, bool)
     for row in likely_rows(shapes, odds[:, 0] + NOISY.noise):
         # all of a row is of one kind, and spots rarely stand in rows
         in_row[row + 1] = (odds[row, 1:].sum(axis=0) + [NOISY.next_spot * (len(row) - 2), 0.0, 0.0, 0.0, 0.0] > 0.0).all()
-    return mask | in_row[label]
+    mask = _bright_half(pieces, averages, tops, odds)
+    _, tops, odds = _weighed(strokes, averages, rim, samples, threshold)
+    # a stroke that dashes are a good part of is these
+    dashes = np.bincount(strokes.ravel(), in_row[pieces].ravel(), len(odds) + 1)[1:] > NOISY.dashes * np.bincount(strokes.ravel())[1:]
+    mask |= _bright_half(strokes, averages, tops, np.where(dashes[:, None], -np.inf, odds))
+    # holes that noise left in strokes are closed
+    return ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2) | in_row[pieces]
+
+
+def _bright_half(label, averages, tops, odds):
+    """(rows, columns) bool, cells of more than half the contrast of their piece, of those that are more likely paint than anything else."""
+    least = np.where(odds.min(axis=1, initial=np.inf) > 0.0, NOISY.half_maximum * tops, np.inf)
+    with np.errstate(invalid="ignore"):
+        return averages.contrast > np.r_[np.inf, least][label]
 
 
 def _pieces(mask, averages):

@@ -34,26 +34,53 @@ def track_spacing(occupied: np.ndarray) -> np.ndarray:
     return cv2.dilate(gap.astype(np.float32), np.ones((1, 2 * TRACKS.across_reach + 1), np.uint8), borderValue=0) * np.float32(CELL_SIZE)
 
 
-def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings) -> np.ndarray:
+def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings, above: np.ndarray | None = None) -> np.ndarray:
     """(rows, columns) bool, the bright cells of a mask in pieces that are too large and too bright to be noise, and what wear left between two.
 
     A piece is what hangs together once gaps of `close` along the road are closed, and where points lie far apart those that no point was near. The
-    brightness of its cells must sum up to the `evidence` of the settings: a faint line of some length is as sure as a bright speck.
+    brightness of its cells must sum up to the `evidence` of the settings: a faint line of some length is as sure as a bright speck. It is brighter
+    than what lies on either side of it: the rim of a repair is so on one side alone, or fades out into the repair.
 
     Parameters
     ----------
     z : (rows, columns) float32 spreads above asphalt, no more than the highest threshold of each cell counts
     mask, seen : (rows, columns) bool, bright cells and those whose brightness is known
+    above : (rows, columns) float32 spreads above the asphalt of the bin, local levels not taken off; None where the sides are not compared
     """
     joined = fill_gaps(mask, int(round(settings.close / CELL_SIZE)), 0)
     for axis, limit in enumerate((TRACKS.max_gap_on_track, TRACKS.max_track_gap)):
         joined |= _unseen_gaps(mask, seen, limit, axis)
     count, labels = cv2.connectedComponents(joined.view(np.uint8), connectivity=8)
-    labels = labels[mask]
-    sums = np.bincount(labels, np.minimum(z[mask], settings.highest), count)
+    sums = np.bincount(labels[mask], np.minimum(z[mask], settings.highest), count)
+    large = sums >= settings.evidence
+    if above is not None and large.any():
+        large &= ~_one_sided(above, np.where(large[labels], labels, 0), mask & seen, count, settings.lowest)
     clear = np.zeros(mask.shape, bool)
-    clear[mask] = (sums >= settings.evidence)[labels]
+    clear[mask] = large[labels[mask]]
     return mask & (clear | _between(clear, mask)) if clear.any() else clear
+
+
+def _one_sided(above, labels, bright, count, least):
+    """(count,) bool, whether a piece is hardly brighter than the brighter side of what lies beside it: by less than `least` spreads, and than much
+    of its contrast with the darker side."""
+    known = np.isfinite(above)
+    weight = cv2.blur(known.astype(np.float32), (3, 3))
+    level = cv2.blur(np.where(known, above, np.float32(0)), (3, 3)) / np.maximum(weight, np.float32(1e-6))
+    far, near = (cv2.dilate(labels.astype(np.float32), np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)) for reach in RIMS.beside)
+    beside = np.where(known & (near == 0), far, 0).astype(np.int32)
+    low, high = (_of_pieces(level, beside, count, share) for share in RIMS.sides)
+    middle = _of_pieces(level, np.where(bright, labels, 0), count, 0.5)
+    with np.errstate(invalid="ignore"):
+        return (middle - high < least) & (middle - high < RIMS.least_share * (middle - low))
+
+
+def _of_pieces(values, labels, count, share):
+    """(count,) of each label the value that a share of its cells do not exceed; NaN where it has no cell."""
+    cells = np.flatnonzero(labels)
+    of, values = labels.ravel()[cells], values.ravel()[cells]
+    number = np.bincount(of, minlength=count)
+    place = np.cumsum(number) - number + (share * np.maximum(number - 1, 0)).astype(np.int64)
+    return np.where(number > 0, np.append(values[np.lexsort((values, of))], np.nan)[np.minimum(place, len(cells))], np.nan)
 
 
 def _unseen_gaps(mask, seen, limit, axis):

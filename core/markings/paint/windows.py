@@ -145,7 +145,7 @@ class _Window:
         z, gutter = flatten(brightness, asphalt, spread, rims)
         scale, threshold = threshold_profile(z[rows], (seen & ~gutter)[rows], offsets, bins, settings)
         with np.errstate(invalid="ignore"):
-            mask = clear_pieces(z / scale, (z > threshold * scale) & ~gutter, scanned, settings)
+            mask = clear_pieces(z / scale, (z > threshold * scale) & ~gutter, scanned, settings, (brightness - asphalt) / (spread * scale))
         mask &= ~raised_cells([self._heights(part, grid) for part in parts], mask)
         # the background that was subtracted from the cell is subtracted from the point as well
         return mask, (brightness - z * spread) + (threshold - 0.5) * (spread * scale)

@@ -94,12 +94,19 @@ def test_asphalt_without_paint_yields_nothing(tmp_path):
     assert len(found_on(street(FRAME), tmp_path)) < 20
 
 
-def test_patches_seams_and_worn_tracks_are_not_paint(tmp_path):
+@pytest.mark.parametrize("brighter", [1.35, 1.5, 1.6, 1.7])
+def test_patches_seams_and_worn_tracks_are_not_paint_nor_are_the_rims_of_patches(tmp_path, brighter):
     def level(s, d):
         patch = (s > 30) & (s < 36) & (d > -2) & (d < 1)
-        return np.where(patch, 1.35, 1.0) * (1 + 0.15 * np.cos(3 * d)) * np.where(np.abs(s - 50) < 0.03, 0.5, 1.0)
+        return np.where(patch, brighter, 1.0) * (1 + 0.15 * np.cos(3 * d)) * np.where(np.abs(s - 50) < 0.03, 0.5, 1.0)
 
-    assert len(found_on(street(FRAME, level=level), tmp_path)) < 42
+    assert len(found_on(street(FRAME, level=level), tmp_path)) == 0
+
+
+def test_a_line_along_the_rim_of_a_patch_is_paint(tmp_path):
+    line = strip(20, 50, 1.0, 1.15)
+    found = found_on(street(FRAME, [line], level=lambda s, d: np.where((s > 30) & (s < 36) & (d > -2) & (d < 1), 1.35, 1.0)), tmp_path)
+    assert all(np.ptp(found.s[(found.s > s) & (found.s < s + 2)]) > 1.9 for s in range(20, 50, 2))
 
 
 def test_an_edge_line_behind_a_band_of_water_is_paint_and_no_gutter(tmp_path):
