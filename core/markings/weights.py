@@ -389,7 +389,8 @@ ROADS = _RoadWeights()
 class _NoisyWeights:
     """Paint where single points are noisy: first their averages.
 
-    The nats are rounded from a logistic regression of what bright pieces measure on a real street with paint and one without, told apart by eye.
+    The nats are rounded from a logistic regression of what bright pieces measure on a real street with paint and one without, judged by eye, and
+    were adjusted on the same two streets; no street was kept aside.
     """
 
     spot_sigma: float = 1.25   # cells, of the average in which pieces are searched

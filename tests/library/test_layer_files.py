@@ -87,6 +87,16 @@ def test_a_layer_of_a_survey_in_feet_is_stored_in_feet_and_read_in_metres(tmp_pa
     assert same_crs(parse_crs(found.crs), parse_crs(wkt)) and found.rows[0]["station_m"] == 12.25, "fields stay in metres"
 
 
+def test_a_geojson_whose_texts_are_not_in_utf_8_is_refused_in_one_sentence(tmp_path):
+    layer = edges()
+    layer.rows[1]["status"] = "Straße"
+    path = tmp_path / "edges.geojson"
+    written(path, layer)
+    path.write_bytes(path.read_bytes().replace("ß".encode(), b"\xdf"))
+    with pytest.raises(RoadExtractionError, match="holds texts that are not in UTF-8"):
+        read_features(LayerFile(str(path), "Road edges"), ROAD_EDGES, "LineStringZ")
+
+
 def test_measures_of_lines_in_feet_stay_as_they_are(tmp_path):
     layer = LineSpool("LineStringZM", SCANLINES, in_metres("EPSG:2263")[0])
     layer.add(np.array([[300_000.0, 61_000, 3, 4], [300_001, 61_001, 4, 5]]), np.array([0, 2]), road=0)
