@@ -141,12 +141,18 @@ def corrections(dock):
     """Three decisions in the window of doubtful places, and the dialog that makes the map again with them."""
     folder = Path(tempfile.mkdtemp())
     dock.ask_for_file = lambda: str(folder / "corrections.gpkg")
+
+    def kept(count):
+        needed(wait(60, lambda: dock.layer is not None and dock.layer.featureCount() >= count), f"correction {count} was not kept")
+
     dock.accept_button.click()
+    kept(1)
     wait(1)
     # a zebra crossing has no edge lines
     dock.list.setCurrentRow(next((row for row, piece in enumerate(dock.place.pieces) if piece.target == "marking"), 0))
     dock.note.setText({"de": "Zebrastreifen"}.get(os.environ["LANEWRIGHT_LANG"], "zebra crossing"))
     dock.delete_button.click()
+    kept(2)
     wait(1)
     dock.go(dock.road_map)
     line = dock.place.pieces[0].line
@@ -156,10 +162,10 @@ def corrections(dock):
         dock.tool.add(to_map.transform(line.interpolate(share * line.length()).asPoint()))
     wait(1)
     dock.tool.finish()
+    kept(3)
     dock.at = -1
     dock.go(dock.road_map)  # the first place, with what was decided there
     wait(2)
-    needed(dock.layer is not None and dock.layer.featureCount() >= 3, "the corrections were not kept")
     keep(iface.mainWindow(), "window_corrections")
     dock.run_button.click()
     window = plugins["lanewright"].menu.dialog
