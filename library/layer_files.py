@@ -136,8 +136,8 @@ class LayerFile(VectorSource):
             with _opened(self.path, self.table) as layer:
                 yield from layer
         except (TypeError, UnicodeDecodeError) as problem:   # what fiona comes to where a text cannot be decoded
-            raise RoadExtractionError(f"{self.label}: {self.path} holds texts that are not in UTF-8, and its format has no other. Convert the file to "
-                                      "UTF-8, as a text editor does.") from problem
+            raise RoadExtractionError(f"{self.label}: {self.path} holds texts that are not in UTF-8, and its format has no other. Convert the file "
+                                      "to UTF-8, as a text editor does.") from problem
 
 
 @contextmanager
