@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from weakref import WeakKeyDictionary
 
 from qgis.core import (
     Qgis,
@@ -97,11 +98,15 @@ def show_extent(canvas: QgsMapCanvas, extent: QgsRectangle, crs: QgsCoordinateRe
         canvas.refresh()
 
 
+_tools: WeakKeyDictionary[QgsMapCanvas, tuple[QgsMapTool, QgsMapTool | None]] = WeakKeyDictionary()   # of a map: ours, and the one before
+
+
 def take_map(canvas: QgsMapCanvas, tool: QgsMapTool) -> None:
     """Give the clicks on a map to a tool of ours, until `give_map_back`."""
-    before = canvas.mapTool()
-    if before is not tool:
-        tool.before = getattr(before, "before", before)  # another one of ours gives it back as well
+    active = canvas.mapTool()
+    if active is not tool:
+        ours, before = _tools.get(canvas, (None, None))
+        _tools[canvas] = tool, before if active is ours else active   # what follows another one of ours gives back what that one would
         canvas.setMapTool(tool)
 
 
@@ -109,8 +114,9 @@ def give_map_back(canvas: QgsMapCanvas, tool: QgsMapTool) -> None:
     """Take up the tool that a map had before one of ours, such as the hand; without any, a map could not even be moved."""
     if canvas.mapTool() is tool:
         canvas.unsetMapTool(tool)
-        if tool.before is not None and not sip.isdeleted(tool.before):
-            canvas.setMapTool(tool.before)
+        _, before = _tools.pop(canvas, (None, None))
+        if before is not None and not sip.isdeleted(before):
+            canvas.setMapTool(before)
 
 
 def say(iface, text: str, level: Qgis.MessageLevel = Qgis.MessageLevel.Info) -> None:
