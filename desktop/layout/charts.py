@@ -132,7 +132,7 @@ def section_pages(axes: list[Axis], lines: list[MapLine], ground: Iterable[np.nd
     measured = [line for line in lines if line.output == SECTIONS]
     places = _measured_places(axes, measured, interval) if measured else [
         # at an end of the road just within it, so that its lines are crossed
-        (axis, float(station), (*axis.at(np.clip([station], axis.stations[0] + 1e-3, axis.stations[-1] - 1e-3))[0, :2], axis.heading(station)), (), None)
+        (axis, float(station), (*axis.at(np.clip([station], *axis.stations[[0, -1]] + [1e-3, -1e-3]))[0, :2], axis.heading(station)), (), None)
         for axis in axes for station in np.arange(math.ceil(axis.stations[0] / interval) * interval, axis.stations[-1] + 1e-6, interval)]
     if not places:
         return []
