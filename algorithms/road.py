@@ -218,8 +218,8 @@ class FitRoadEdges(Algorithm):
 METHOD_SETTING = SettingSpec(
     "BOUNDARY_METHOD", "core.road.detect_boundaries:BoundarySettings", "method", tr("Boundary method"),
     tr("Profiles looks for the curb in slices across the road; scanlines meets the planes of road, curb face and sidewalk; both "
-       "lets the two check each other: at every place the one that measures better is drawn, agree_cm says how far apart they are, "
-       "and it takes as long as the two together."),
+       "lays one path along the road through what the two see: what both see counts most, and of two lines along one curb the sharper is drawn. "
+       "agree_cm says how far apart they are; it takes as long as the two together."),
     choices=("profiles", "scanlines", "both"))
 # Both methods ask for one least height
 SCANLINE_METHOD_SETTINGS = tuple(spec for spec in BOUNDARY_SETTINGS if spec.name == "MIN_HEIGHT")

@@ -44,7 +44,7 @@ class BoundarySettings:
 
     Attributes
     ----------
-    method : "profiles", "scanlines", or "both": the two check each other
+    method : "profiles", "scanlines", or "both": one path along the road through what the two see
     curbs : settings of the profiles method
     scanlines : settings of the scanlines method
     planes : settings of the planes in which scanlines lie
@@ -139,7 +139,7 @@ def _points_of_both(chains, occlusion, survey):
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
                     progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> RoadBoundaries:
-    """Edges through the curb points of one method, or of two that check each other, and edges of the pavement where there is no curb.
+    """Edges through the curb points of one method, or of the path through those of two, and edges of the pavement where there is no curb.
 
     With both methods, `agree` of every piece says how far apart they lie.
 

@@ -59,10 +59,11 @@ def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reac
     order = np.lexsort((d, owner))
     level = weighted_medians(d[order], weight[order], starts)
     lever = s - np.repeat(middle, count)
-    squares = np.where(span < 1.0, 1.0, np.add.reduceat(weight * lever**2, starts))
+    short = span < 1.0   # m: too short to show a slope
+    squares = np.where(short, 1.0, np.add.reduceat(weight * lever**2, starts))
     slope = np.add.reduceat(weight * lever * (d - np.repeat(offset, count)), starts) / squares
-    slope = np.where(span < 1.0, 0.0, np.clip(slope, -TREND.max_line_slope, TREND.max_line_slope))
-    unknown = np.where(span < 1.0, TREND.max_line_slope * np.abs(tips - middle), 0.0) + [line.strands[0 if at_start else -1].open for line in lines]
+    slope = np.where(short, 0.0, np.clip(slope, -TREND.max_line_slope, TREND.max_line_slope))
+    unknown = np.where(short, TREND.max_line_slope * np.abs(tips - middle), 0.0) + [line.strands[0 if at_start else -1].open for line in lines]
     return [_End(*end) for end in np.column_stack([tips, level + slope * (tips - middle), slope, span, unknown]).tolist()]
 
 
