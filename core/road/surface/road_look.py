@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -23,7 +24,8 @@ class RoadLook:
     """
 
     def __init__(self, ground: MeasuredGround, road: int):
-        self.cells = ground.cells(road)
+        # the brightness of the ground tells nothing here, and workers are sent the rest
+        self.cells = replace(ground.cells(road), brightness=np.empty((0, 0)), scatter=np.empty((0, 0)))
         self.prior = ground.survey.road_height(road, self.cells.stations)
         driven = known_median(self.cells.rough[:, np.abs(self.cells.offsets) < SURFACE.track_reach], 1)
         driven = np.pad(driven, SURFACE.rows_of_look, constant_values=np.nan)
