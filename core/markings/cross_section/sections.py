@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -76,6 +76,20 @@ def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, patt
 def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
     """CrossSections of marking lines, by road number."""
     return cross_sections(lines.course, lines.line, lines.kind, lines.pattern, lines.status != "bridged", lines.width)
+
+
+class EdgeSections(NamedTuple):
+    """CrossSections of road edges by road number, as of `sections_of_edges` and `sections_of_pavement`; `curbs` is None where no edges are known."""
+
+    curbs: dict[int, CrossSections] | None
+    pavement: dict[int, CrossSections]
+
+    @classmethod
+    def of(cls, edges: RoadEdges | EdgeSections | None) -> EdgeSections:
+        """Those of RoadEdges, of which there may be none, or what was made of them before."""
+        if isinstance(edges, EdgeSections):
+            return edges
+        return cls(None, {}) if edges is None else cls(sections_of_edges(edges), sections_of_pavement(edges))
 
 
 def sections_of_edges(edges: RoadEdges) -> dict[int, CrossSections]:

@@ -15,7 +15,7 @@ from ...curves.robust import median, percentiles
 from ...road.edges.road_edges import RoadEdges
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE
-from ..cross_section.sections import CrossSections, sections_of_edges, sections_of_pavement
+from ..cross_section.sections import CrossSections, EdgeSections
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..objects.shape import middle_line
@@ -329,10 +329,10 @@ def _edges(sections):
                 yield sections.s[first + part], d[part]
 
 
-def edges_beside(edges: RoadEdges | None, roads: list[int]) -> dict[int, EdgesBeside]:
+def edges_beside(edges: RoadEdges | EdgeSections | None, roads: list[int]) -> dict[int, EdgesBeside]:
     """EdgesBeside of every road; those of a road without edges, or where none are known, are empty."""
-    kinds = [sections_of_edges(edges), sections_of_pavement(edges)] if edges is not None else []
-    return {road: EdgesBeside([sections[road] for sections in kinds if road in sections]) for road in roads}
+    kinds = EdgeSections.of(edges)
+    return {road: EdgesBeside([sections[road] for sections in kinds if sections and road in sections]) for road in roads}
 
 
 # Lines that few tracks of the scan met: each track shows such a line at one place of its width.
