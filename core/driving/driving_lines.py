@@ -275,7 +275,7 @@ def _mean_square_bias(track, course, lines):
 
 def _mean_square_guess(track):
     """(N,) m², of a place that is a guess: from where its borders show the lane, and from the lanes of a second reading, about the place drawn."""
-    square, doubt = track.aside**2, track.in_doubt()
+    square, doubt = track.aside**2, track.in_doubt
     for k in np.flatnonzero(doubt).tolist():
         second = track.second[k]
         if second is not None and second.lanes:

@@ -24,6 +24,7 @@ from ...execution.phase import THREADS, NoSource, Phase
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import LINE_VERTEX_SPACING
 from ...survey.frame.road_frame import RoadFrame
+from ...survey.store.columns import Columns
 from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..cross_section.estimate import boundary_uses
 from ..cross_section.roads import estimate_roads
@@ -31,12 +32,13 @@ from ..cross_section.sections import EdgeSections, sections_of_lines
 from ..cross_section.sequence import separated_kinds
 from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights, TakenReading
 from ..objects.classify import LINE_KINDS
+from ..objects.grouping import PHASE_POINTS
 from ..objects.marking_objects import MarkingObjects
 from ..weights import STRANDS
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
 from .painted_lines import PaintedLines, painted_lines_of
 from .selection import SelectedLine, hatching_bars, same_dash_pattern, select_lines
-from .strands import LinkedLine, edges_beside, line_paint, painted_strands
+from .strands import EdgesBeside, LinkedLine, edges_beside, line_paint, painted_strands
 
 # The course of one marking line in plan and height: places from its paint, a curve through them.
 
@@ -364,20 +366,16 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     roads = clustered_points.roads()
     edge_sections = EdgeSections.of(edges)
     edge_lines = edges_beside(edge_sections, roads)
-    for k, road in enumerate(roads):
-        part = progress.part(LINES_SHARE / 2 * k / len(roads), LINES_SHARE / 2 * (k + 1) / len(roads))
-        records, rank = line_paint(columns_of_roads(clustered_points.store, [road]), markings, road)
-        part.report(0.2)
-        strands = painted_strands(records, rank)
-        part.report(0.4)
-        lines, trend = _linked(strands, edge_lines[road], settings)
-        part.report(0.8)
-        of_road = select_lines(lines, trend, settings.min_paint, hatching_bars(markings, road), country(settings.country).longest_dash)
-        dropped += len(lines) - len(of_road)
-        courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
-        selected += [(int(road), chosen) for chosen in of_road]
-    phase = Phase(lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
     executor = THREADS if road_points is None else road_points.executor
+    phase = Phase(lines_of_road, NoSource(), (settings,), lambda item: "the marking lines of a road")
+    for batch in _roads_together(clustered_points):
+        items = [_paint_of_road(clustered_points, markings, road, edge_lines[road]) for road in batch]
+        for road, (of_road, trend, left_out) in zip(batch, executor.run(phase, items)):
+            dropped += left_out
+            courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
+            selected += [(int(road), chosen) for chosen in of_road]
+        progress.report(LINES_SHARE / 2 * (roads.index(batch[-1]) + 1) / len(roads))
+    phase = Phase(lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
     fitted = list(executor.run_together(phase, courses, STRANDS.fitted_together, progress.part(LINES_SHARE / 2, LINES_SHARE)))
     rows = [dict(row, line=number, road=road) for number, ((road, chosen), line) in enumerate(zip(selected, fitted), start=1)
             for row in _drawn_pieces(chosen, line, frame, road)]
@@ -391,6 +389,35 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         drawn = with_unseen_paint(drawn, markings, clustered_points, road_points)
     return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edge_sections, road_points, clustered_points,
                              progress.part(LINES_SHARE, 1.0), taken)
+
+
+PAINT_OF_LINES = "s", "d", "z", "cluster", "spacing"   # that strands are traced by
+
+
+def _roads_together(points):
+    """Roads in batches whose paint is in memory together."""
+    size = [sum(points.store.size(road, number) for number in points.sections(road)) for road in points.roads()]
+    batch = (np.cumsum([0, *size])[:-1] // PHASE_POINTS).tolist()
+    return [[road for road, number in zip(points.roads(), batch) if number == wanted] for wanted in sorted(set(batch))]
+
+
+def _paint_of_road(points, markings, road, edges):
+    """An item of `lines_of_road`."""
+    records, rank = line_paint(columns_of_roads(points.store, [road]), markings, road)
+    return {name: records[name] for name in PAINT_OF_LINES}, rank, edges, hatching_bars(markings, road)
+
+
+def lines_of_road(source: NoSource, item: tuple[dict[str, np.ndarray], np.ndarray, EdgesBeside, np.ndarray],
+                  settings: MarkingLineSettings) -> tuple[list[SelectedLine], CommonTrend, int]:
+    """The phase that traces and links the paint of one road: its lines, the trend that they have in common, and how many fragments were left out.
+
+    item : columns PAINT_OF_LINES of N points, and (N,) class of each, as `line_paint` gives them; the edges beside; the bars as of `hatching_bars`
+    """
+    columns, rank, edges, bars = item
+    strands = painted_strands(Columns(columns, [(name, column.dtype) for name, column in columns.items()]), rank)
+    lines, trend = _linked(strands, edges, settings)
+    selected = select_lines(lines, trend, settings.min_paint, bars, country(settings.country).longest_dash)
+    return selected, trend, len(lines) - len(selected)
 
 
 def _linked(strands, edges, settings):
