@@ -128,8 +128,7 @@ def curbs_of_side(source: Any, item: tuple[str, Mapping[str, SideSteps]], road: 
     """
     side, methods = item
     survey, beside = getattr(source, "survey", source), None if look is None else SideLook(look, SIDE_SIGNS[side])
-    chains = {method: SideChains.of(seen.steps, seen.width, seen.limits, seen.bounds, beside)
-              for method, seen in methods.items() if seen.steps is not None and len(seen.steps)}
+    chains = {method: SideChains.of(seen.steps, seen, beside) for method, seen in methods.items() if seen.steps is not None and len(seen.steps)}
     # scanlines may have been told how high the scanner is
     points = {method: points_of_side(source if method == "scanlines" else survey, road, side, [of_method], methods[method].occlusion)
               for method, of_method in chains.items()}
@@ -154,16 +153,15 @@ class SideChains:
     look: SideLook | None = None
 
     @staticmethod
-    def of(steps: CurbSteps, width: float, limits: CurbLimits, bounds: np.ndarray, look: SideLook | None = None) -> SideChains:
-        """The chains of steps, upright and sloped ones apart; `width` : m of road per profile."""
-        label = np.empty(len(steps), np.int64)
-        upright = steps.upright
-        label[upright] = link_steps(steps[upright], width)
-        label[~upright] = link_steps(steps[~upright], width) + label[upright].max(initial=-1) + 1
-        chains = curb_chains(steps, label, width, limits)
+    def of(steps: CurbSteps, seen: SideSteps, look: SideLook | None = None) -> SideChains:
+        """The chains of the steps of a SideSteps, upright and sloped ones apart."""
+        label, upright = np.empty(len(steps), np.int64), steps.upright
+        label[upright] = link_steps(steps[upright], seen.width)
+        label[~upright] = link_steps(steps[~upright], seen.width) + label[upright].max(initial=-1) + 1
+        chains = curb_chains(steps, label, seen.width, seen.limits)
         if look is not None:
             chains = [chain for chain in chains if _has_road_before(steps[chain.steps], chain.end - chain.start, look)]
-        return SideChains(steps, chains, bounds, look)
+        return SideChains(steps, chains, seen.bounds, look)
 
     def points(self, members: np.ndarray, number: int) -> list[dict]:
         """Curb points of the steps with the (K,) indices, by station, of one line: one of each part per block.
