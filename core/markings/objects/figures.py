@@ -53,10 +53,16 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
     result: list[_RecognisedFigure] = []
     groups = list(_candidates(shapes, kinds, parts))
     for first in range(0, len(groups), GROUPS_AT_ONCE):
-        batch = [[(members, *cells_of(members)) for members in group] for group in groups[first:first + GROUPS_AT_ONCE]]
-        for group, figures in zip(batch, look(batch, first / len(groups), (first + len(batch)) / len(groups))):
-            result += [_RecognisedFigure(group[k][0], kind) for k, kind in figures]
+        batch = groups[first:first + GROUPS_AT_ONCE]
+        compared = [[(_numbered_within(group, members), *cells_of(members)) for members in group] for group in batch]
+        for group, figures in zip(batch, look(compared, first / len(groups), (first + len(batch)) / len(groups))):
+            result += [_RecognisedFigure(group[k], kind) for k, kind in figures]
     return result
+
+
+def _numbered_within(group, members):
+    """Numbers of markings among those of their group: what is found in it is known again in a later run, where the road has others before it."""
+    return tuple(np.searchsorted(sorted({number for candidate in group for number in candidate}), members).tolist())
 
 
 def figures_of_group(source: NoSource, group: list[Candidate]) -> list[tuple[int, str]]:
