@@ -7,7 +7,7 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "header": ("find_damage",),
+    "near": ("points_near",),
     "parallel_reader": ("ParallelCloudReader",),
     "reader": ("CloudHeader", "cloud_crs", "crs_of_records", "open_cloud", "read_blocks", "read_header", "read_headers"),
-    "samples": ("points_near",),
 })
