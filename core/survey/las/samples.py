@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import gcd
 
 import numpy as np
 import shapely
 
-from ...common.progress import Progress
 from ..weights import LAS
 from .parallel_reader import ParallelCloudReader
-from .reader import CloudHeader, read_blocks, read_headers
+from .reader import CloudHeader, read_blocks
 
 
 @dataclass(frozen=True)
