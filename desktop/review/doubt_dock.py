@@ -33,7 +33,7 @@ from ..widgets import button, choices, give_map_back, row, say, show_extent, tak
 from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .photos import PhotoButton, photo_of
-from .smart_pick import evidence, pick, snap
+from .smart_pick import evidence, pick, prepare, snap
 from .steps import STALE, StepsPanel, steps_of
 
 ARRIVED = 700   # ms after the last layer of a run that came into the project
@@ -65,6 +65,7 @@ class DoubtDock(QDockWidget):
         self.road_map: RoadMap | None = None
         self._of = self._pending = None
         self.looks: list[QgsTask] = []  # under way; QGIS keeps no reference
+        self.reading: QgsTask | None = None   # what clicks will need
         self.bands: list[QgsRubberBand] = []
         self.tool = LineTool(iface.mapCanvas())
         self.tool.drawn.connect(self._line_drawn)
@@ -451,9 +452,11 @@ class DoubtDock(QDockWidget):
     # -- what the points show ---------------------------------------------------------------------
 
     def begin_pick(self) -> None:
-        """Wait for clicks near what is missing."""
+        """Wait for clicks near what is missing; what they need is read meanwhile."""
         if self._layer_to_write() is not None:
-            take_map(self.iface.mapCanvas(), self.pick_tool)
+            canvas = self.iface.mapCanvas()
+            take_map(canvas, self.pick_tool)
+            self.reading = prepare(self.road_map, canvas.center(), canvas.mapSettings().destinationCrs())
             self._say(tr("Click near a curb or a painted line that the map lacks."))
 
     def pick_at(self, point: QgsPointXY) -> None:

@@ -10,7 +10,7 @@ from qgis.core import QgsApplication, QgsTask
 from ...core.common.errors import Cancelled, RoadExtractionError
 from ...core.common.parallel import cancellation_scope
 from ...core.common.progress import Progress
-from ...core.survey.las.samples import points_near
+from ...core.survey.las.near import points_near
 from ...processing_provider.texts import told, tr
 
 
