@@ -101,8 +101,6 @@ def sheet_layout(project: QgsProject, layers: dict[str, QgsMapLayer], choice: Sh
                  ground: Iterable[np.ndarray] = (), progress: Progress = Progress()) -> tuple[QgsPrintLayout, dict[str, float]]:
     """All pages in one layout, which is not yet added to the project's layouts; and SHEETS, PAGES and SCALE_NUMBER.
 
-    Parameters
-    ----------
     project : QgsProject that will own the layout
     layers : result (such as ROAD_EDGES) -> its layer, from above
     below : layer drawn below these and left out of the legend: an orthoimage, a web map

@@ -229,11 +229,10 @@ def test_public_functions_say_what_types_they_take_and_give():
     assert not bare
 
 
-def documented(text, heading):
-    """Names that a numpydoc section of a docstring explains."""
-    section = re.search(rf"^{heading}\n-+\n(.*?)(?=\n\n\w[\w ]*\n-+\n|\Z)", text, re.DOTALL | re.MULTILINE)
-    lines = section.group(1).splitlines() if section else []
-    return {name.strip(" *") for line in lines if (said := re.match(r"(\*{0,2}\w+(?:, \*{0,2}\w+)*) : ", line)) for name in said.group(1).split(",")}
+def documented(text):
+    """Names that a docstring explains, each at the beginning of a line; what is returned or yielded is indented, or stands behind that word."""
+    lines = [said.group(1) for line in text.splitlines() if (said := re.match(r"(\*{0,2}\w+(?:, \*{0,2}\w+)*) : ", line))]
+    return {name.strip(" *") for names in lines for name in names.split(",")}
 
 
 def test_a_docstring_explains_no_parameter_that_is_not_there():
@@ -243,7 +242,7 @@ def test_a_docstring_explains_no_parameter_that_is_not_there():
             arguments = node.args
             there = {argument.arg for argument in [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, arguments.vararg, arguments.kwarg]
                      if argument is not None}
-            extra = documented(ast.get_docstring(node) or "", "Parameters") - there
+            extra = documented(ast.get_docstring(node) or "") - there
             if extra:
                 gone.append(f"{'/'.join(name_of(path))}.py, {name}: {', '.join(sorted(extra))}")
     assert not gone
