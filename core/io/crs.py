@@ -201,7 +201,7 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
     notes += [f"What {file.path} says about its coordinates was not used, but the parameter CRS: {file.crs_problem}."
               for file in files if file.crs_problem][:1]
     if (units := as_in_file(crs)[1]).across != units.up:
-        across, *_, up = unit_names(as_in_file(crs)[0])
+        across, *_, up = _unit_names(as_in_file(crs)[0])
         notes.append(f"The point cloud says that the unit of its heights is the {up}, and that of its x and y the {across}: what is not in "
                      "metres was converted.")
     return " ".join(note for note in notes if note)
@@ -455,7 +455,7 @@ def place_raster(dataset: Any, geotransform: Any, crs: str) -> None:
         dataset.SetProjection(wkt)
 
 
-def unit_names(wkt: str) -> list[str]:
+def _unit_names(wkt: str) -> list[str]:
     """The names of the units of x, y and, where a CRS says it, z."""
     crs = parse_crs(wkt)
     return [] if crs is None else [axis.unit_name for axis in crs.axis_info]

@@ -62,7 +62,7 @@ class BoundarySettings:
 
 
 @dataclass
-class RoadBoundaries:
+class _RoadBoundaries:
     """Curb points and the edges through them.
 
     Attributes
@@ -138,7 +138,7 @@ def _points_of_both(chains, occlusion, survey):
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
-                    progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> RoadBoundaries:
+                    progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> _RoadBoundaries:
     """Edges through the curb points of one method, or of the path through those of two, and edges of the pavement where there is no curb.
 
     With both methods, `agree` of every piece says how far apart they lie.
@@ -163,13 +163,13 @@ def _drawn(found, frame, settings, executor, progress):
     edges, = executor.run(Phase(edges_through, NoSource(), (frame, settings), lambda item: "the edges of all roads"), [points])
     tell_edges(edges, progress)
     if "both" not in found:
-        return RoadBoundaries(points, edges)
+        return _RoadBoundaries(points, edges)
     edges, differences = measure_agreement(edges, *(found[method] for method in METHODS), frame)
     lengths = {method: _measured_length(found[method]) for method in METHODS}
     if any(lengths.values()):
         progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                      f"they lie more than 5 cm apart along {differences.length.sum():.0f} m.")
-    return RoadBoundaries(points, edges, differences, lengths)
+    return _RoadBoundaries(points, edges, differences, lengths)
 
 
 # How far apart the curbs of two methods lie, where both see one.

@@ -237,8 +237,6 @@ class _ReadingWeights:
     height_peak_reach: float = 0.5   # m either side of the peak that belong to the road
     max_waiting_points: int = 4_000_000   # points held back at most until the height of the road is known
     height_samples: int = 5_000   # points on the own track from which the rough height is estimated
-    max_threads: int = 4   # threads that read; each decodes blocks with all cores (lazrs keeps the others waiting) and projects their points
-    blocks_per_thread: int = 3   # blocks begun or queued per thread: keeps threads busy while sections are written to the temporary file
     max_split_samples: int = 1_500_000   # points sampled, by which two scanners are distinguished
     part_points: int = 1_200_000   # points of a part, about: a second or two of a worker's time, some 20 MB of its file
     road_height_step: float = 0.25   # m between the stations at which points are compared with the height of the road
