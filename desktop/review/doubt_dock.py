@@ -63,6 +63,7 @@ class DoubtDock(QDockWidget):
         self.at = -1
         self.seen: Doubt | None = None   # what map and section show
         self.road_map: RoadMap | None = None
+        self.left: tuple[str | None, Doubt | None] = None, None   # survey and place of the road map whose layers went last
         self._of = self._pending = None
         self.looks: list[QgsTask] = []  # under way; QGIS keeps no reference
         self.reading: QgsTask | None = None   # what clicks will need
@@ -174,6 +175,7 @@ class DoubtDock(QDockWidget):
         if self.road_map is not None and self.road_map.has_any(removed):
             self._stop_drawing()
             self._stop_looking()
+            self.left = self.road_map.survey, self.place   # the same survey, made again in the place of the old layers
             self.road_map, self._of, self.places, self.at = None, None, [], -1
             self.photo.show_photo(None)
             self._fill()
@@ -186,12 +188,15 @@ class DoubtDock(QDockWidget):
     def _follow(self):
         """Go on in the map that has just been made again of the same survey, where a run or a stage has added layers of it."""
         arrived, self.arrived = self.arrived, set()
-        if self.road_map is None:
-            return
-        newer = next((one for one in road_maps(QgsProject.instance()) if one.survey == self.road_map.survey and one.has_any(arrived)), None)
+        survey, place = self.left if self.road_map is None else (self.road_map.survey, self.place)
+        newer = next((one for one in road_maps(QgsProject.instance()) if one.survey == survey and one.has_any(arrived)), None)
         if newer is not None:
             self._stop_drawing()
             self._take(newer)
+            if place is not None and self.places:
+                self.at = min(range(len(self.places)), key=lambda at: self.places[at].middle.distance(place.middle))
+                self.seen = self.place
+                self.shown.emit(self.seen)
             self._fill()
             if not self.isHidden():
                 self._come_to_front()
