@@ -7,8 +7,6 @@ authorities prescribe), `io` (tables, CRS, rasters), `execution` (threads, worke
 progress, layers in memory). What is made from a map stands in `products`, beside `core`; the simulated survey in `simulator`.
 """
 
-from .lazy import public
-
 # What `products` and `simulator` may use of the rooms of the chain; all else may change without a look at them
 PUBLIC = {
     "survey.survey": ("Survey", "SurveySettings"),   # points of all sections in the road frame, and how they are read
@@ -42,5 +40,3 @@ PUBLIC = {
     "markings.road_grid": ("occupied",),   # cells that hold points
     "driving.layers": ("Lanes",),   # lanes of a road map
 }
-
-__getattr__, __all__ = public(__name__, PUBLIC)
