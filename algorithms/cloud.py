@@ -29,15 +29,16 @@ CLOUD_LAYERS = {
     "ROADSIDE": (tr("Roadside"), [field for field in ROADSIDE if field.name in ("road", "kind", "height_m")], "LineStringZ",
                  tr("Made by Roadside: what stands on its lines is guard rail, barrier, wall, fence or, of hedges, vegetation.")),
     "ROADSIDE_OBJECTS": (tr("Poles, signs and trunks"),
-                         [field for field in ROADSIDE_OBJECTS if field.name in ("road", "kind", "height_m", "diam_m")], "PointZ", tr("Made by Roadside: points about them are poles and signs; trunks are vegetation.")),
+                         [field for field in ROADSIDE_OBJECTS if field.name in ("road", "kind", "height_m", "diam_m")], "PointZ",
+                         tr("Made by Roadside: points about them are poles and signs; trunks are vegetation.")),
 }
 
 
 class ClassifyCloud(Algorithm):
     ID, TITLE, GROUP = "classifycloud", "Classify point cloud", "Export"
     SUMMARY = "Gives the survey's point clouds back: every point with its class and its station, offset and height above the road."
-    HELP = ("Every input file is written to a file of the same name with all of its points in their order, and all that they had: coordinates, times, "
-            "intensity, colours, returns, extra fields and CRS. Classes are those of ASPRS (LAS 1.4): 2 ground, 3 to 5 low, medium (from 0.5 m) and "
+    HELP = ("Every input file is written to a file of the same name with all of its points in their order, and all that they had: coordinates, "
+            "times, intensity, colours, returns, extra fields and CRS. Classes are those of ASPRS (LAS 1.4): 2 ground, 3 to 5 low, medium (from 0.5 m) and "
             "high (from 2 m) vegetation, 7 noise below the road, 11 road surface. Where users may define them, they are: 64 paint, 65 curb, 66 guard "
             "rail, 67 concrete barrier, 68 wall, 69 fence, 70 pole, 71 sign. The files name these classes themselves.\n\n"
             "The layers of the map decide, so that a map that was corrected by hand can be given back. Of the rest only the ground is known, and "
