@@ -39,9 +39,8 @@ def bucket_argsort(cell: np.ndarray, count: int, own: np.ndarray | None = None) 
     cell : (N,) cell numbers, 0 to count - 1
 
     Returns
-    -------
-    rows : (M,) row numbers, ascending within each cell
-    ends : (count,) index in `rows` at which each cell ends
+        rows : (M,) row numbers, ascending within each cell
+        ends : (count,) index in `rows` at which each cell ends
     """
     kind = np.min_scalar_type(count)
     cell = cell.astype(kind)

@@ -484,7 +484,7 @@ class _MadeLanelet:
 
 
 @dataclass
-class LaneletDraft:
+class _LaneletDraft:
     """A map before it gets ids and degrees."""
 
     nodes: np.ndarray   # (N, 3) metres in the CRS of the survey
@@ -494,7 +494,7 @@ class LaneletDraft:
     skipped: dict[str, int] = field(default_factory=dict)   # type of lane -> pieces that are no lanelets
 
 
-def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSettings()) -> LaneletDraft:
+def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSettings()) -> _LaneletDraft:
     """Lanelets of the lanes that are driven, with crossings and stop lines of the markings.
 
     A border between neighbours is one way. Where a lane begins or ends beside another, that other one is cut too, at the same place, so
@@ -511,7 +511,7 @@ class _Drafting:
         lanes = source.lanes
         places = np.concatenate([lanes.left, lanes.right])
         numbers, first = numbered(places, LEAST_CURB if is_stated(lanes) else SAME_RISE)
-        self.draft = LaneletDraft(places[first])
+        self.draft = _LaneletDraft(places[first])
         self.left, self.right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
         self.way_of: dict[tuple[int, ...], int] = {}
         # beside a double line the bounds meet in its middle, and the line to drive on stays between the stripes
@@ -519,7 +519,7 @@ class _Drafting:
         self.curb_heights = NearestValues(source.road_edges, "height_m")
         self.sigma = sigma_of_lanes(lanes, source.driving_lines)
 
-    def run(self) -> LaneletDraft:
+    def run(self) -> _LaneletDraft:
         lanes = self.lanes
         used = [k for k in range(len(lanes)) if lanes.type[k] in SUBTYPE_OF_LANE]
         for k in range(len(lanes)):
@@ -682,7 +682,7 @@ def to_degrees(places: np.ndarray, crs: str) -> Degrees:
     return Degrees(np.c_[lon, lat], transformer.description, transformer.accuracy if transformer.accuracy is not None else -1.0, vertical)
 
 
-def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) -> str:
+def lanelet2_text(draft: _LaneletDraft, degrees: Degrees, local: bool = False) -> str:
     """The file as text, of a draft and the degrees of its nodes.
 
     `local`: also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them.

@@ -520,7 +520,7 @@ LEAST_CHORD = 1.0     # m of a border's end, along which it goes straight on
 BEYOND_END = 10.0     # m: a road of four lanes whose end is cut oblique by 30 degrees
 
 
-class Misses(NamedTuple):
+class _Misses(NamedTuple):
     """Metres: mean, 95th percentile, largest; at how many places; and the (3,) place of the largest."""
 
     mean: float
@@ -530,7 +530,7 @@ class Misses(NamedTuple):
     worst: np.ndarray
 
 
-def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
+def border_misses(source: Lanes, exported: Lanes) -> tuple[_Misses, _Misses]:
     """(across, in height) of the source's border vertices from the borders that are read back, and of theirs from the source's.
 
     What lies beyond the end of a border of the source is left out: an export ends lanes square to the road.
@@ -574,7 +574,7 @@ def _gone_on(line):
 
 
 def driving_line_misses(driving_lines: Features | None, exported: Lanes, measured_only: bool = True,
-                        apart_from: np.ndarray | None = None) -> Misses:
+                        apart_from: np.ndarray | None = None) -> _Misses:
     """Across, of driving lines against the middles of the lanes that are read back.
 
     apart_from : (N, 2) places; what lies within LEFT_OUT_NEAR of one is left out
@@ -631,5 +631,5 @@ def _least(count, indices, values):
 def _summary(values, places):
     values, places = values[np.isfinite(values)], places[np.isfinite(values)]
     if not len(values):
-        return Misses(np.nan, np.nan, np.nan, 0, np.full(3, np.nan))
-    return Misses(float(values.mean()), float(np.percentile(values, 95)), float(values.max()), len(values), places[np.argmax(values)])
+        return _Misses(np.nan, np.nan, np.nan, 0, np.full(3, np.nan))
+    return _Misses(float(values.mean()), float(np.percentile(values, 95)), float(values.max()), len(values), places[np.argmax(values)])

@@ -16,10 +16,10 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.common.texts import language
 from lanewright.desktop.layout.axes import axes_of, road_line
 from lanewright.desktop.layout.charts import profile_pages, section_pages
-from lanewright.desktop.layout.map_lines import accuracy_of, lines_of
+from lanewright.desktop.layout.map_lines import accuracy_of, lines_of, road_lines
 from lanewright.desktop.layout.pages import OVERLAP, sheets_along
 from lanewright.desktop.layout.print_sheets import unused_name, write_pdf
-from lanewright.desktop.layout.sheets import BY_ITSELF, PAPERS, axes_of_layers, sheet_layout
+from lanewright.desktop.layout.sheets import BY_ITSELF, PAPERS, map_crs, sheet_layout
 from lanewright.desktop.layout.shown import credit_of, sheet_values, shown_layers
 from lanewright.processing_provider.results.attributes import explain_attributes
 from lanewright.processing_provider.results.road_maps import road_maps
@@ -53,6 +53,11 @@ from qgis.PyQt.QtGui import QImage
 from road_map_layers import EAST, NORTH, added
 
 # -- axes and sheets, of numbers alone ------------------------------------------------------------
+
+
+def axes_of_layers(layers, project):
+    """The axes that sheets of these layers follow."""
+    return axes_of(road_lines(lines_of(layers, map_crs(list(layers.values()), project), project, 1.0)))
 
 
 def line_of(course, offset, first, last, rank=0, height=100.0):

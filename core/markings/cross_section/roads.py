@@ -55,8 +55,6 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                    progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> RoadEstimates:
     """Estimate lines and lanes.
 
-    Parameters
-    ----------
     lines : {number of the road: CrossSections}
     usual_width : metres, of lanes where the lines do not tell
     side : "right", "left" or "automatic"

@@ -57,7 +57,7 @@ class OpenDriveSettings(Limited):
 
 
 @dataclass
-class OpenDriveDraft:
+class _OpenDriveDraft:
     """The map, the place of every cell in it, and notes for the user.
 
     place : id of a cell -> (road, section, lane); cells : list of Cell
@@ -68,7 +68,7 @@ class OpenDriveDraft:
     notes: list[str] = field(default_factory=list)
 
 
-def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDriveSettings(), progress: Progress = Progress()) -> OpenDriveDraft:
+def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDriveSettings(), progress: Progress = Progress()) -> _OpenDriveDraft:
     """Roads with reference line, sections, widths, heights, marks, objects, links and junctions.
 
     Lanes that share borders lie side by side in one road; it goes on while one slice of lanes follows another. Connectors, and the lanes that
@@ -82,7 +82,7 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     origin = np.append(np.floor(places[:, :2].mean(0) / ROUND_ORIGIN) * ROUND_ORIGIN, 0.0)
     local = replace(source, lanes=replace(lanes, left=lanes.left - origin, right=lanes.right - origin))
     drafting = _Drafting(local, origin, settings)
-    draft = OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
+    draft = _OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
     draft.notes += drafting.notes
     strips = drafting.strips()
     directions = directions_where_met([cell for strip, _ in strips for part in strip for cell in part.cells])

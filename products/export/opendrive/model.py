@@ -104,9 +104,9 @@ class MapRoad:
     data: dict[str, str] = field(default_factory=dict)
 
     @cached_property
-    def surface(self) -> RoadSurface:
+    def surface(self) -> _RoadSurface:
         """Where its borders lie, once it is whole."""
-        return RoadSurface(self)
+        return _RoadSurface(self)
 
     def section_end(self, number: int) -> float:
         """Metres at which a section ends."""
@@ -260,7 +260,7 @@ LONGEST_FOLD = 200      # places before and after a step back among which its cr
 GAP, KINK = 1e-4, 1e-4  # m and rad between elements of the reference line from which a border jumps there: it is cut on both sides
 
 
-class RoadSurface:
+class _RoadSurface:
     """The borders of one road's lanes.
 
     """
