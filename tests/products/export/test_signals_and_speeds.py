@@ -70,7 +70,8 @@ def test_lights_signs_and_poles_stand_where_they_stood_and_say_what_they_said(tm
             np.testing.assert_allclose(found[kind][0], place, atol=1e-3)
             assert found[kind][1].get("code") == code and found[kind][1]["height_m"] == pytest.approx(height, abs=0.005)
         assert found["sign"][1]["value"] == 30 and found["sign"][1]["unit"] == "km/h" and found["sign"][1]["country"] == "DE"
-        assert found["traffic_light"][1]["heading"] == pytest.approx(90 - np.degrees(0.1), abs=0.05) and found["sign"][1]["heading"] == pytest.approx(270, abs=0.05)
+        headings = [found[kind][1]["heading"] for kind in ("traffic_light", "sign")]
+        assert headings == pytest.approx([90 - np.degrees(0.1), 270], abs=0.05)
 
 
 def test_lights_and_signs_hold_for_the_lanes_that_see_them(tmp_path):
@@ -92,11 +93,13 @@ def test_lanelets_obey_rules_that_are_whole(tmp_path):
 
 
 def test_a_reference_names_lanes_of_another_road_and_a_validity_some_of_a_road(tmp_path):
-    first = road(geometry(0, 0, 0, 0, 40), 40, "1").replace("</road>", '<signals><signal id="7" s="39" t="-4" zOffset="3" orientation="+" dynamic="yes" '
-                                                            'type="1000001" subtype="-1"><validity fromLane="0" toLane="0"/></signal></signals></road>')
-    second = road(geometry(0, 50, 0, 0, 20), 20, "2").replace("</road>", '<signals><signalReference id="7" s="1" t="-4" orientation="+"><validity '
-                                                              'fromLane="-1" toLane="-1"/></signalReference></signals></road>')
-    layers = read_in(tmp_path, opendrive([first, second]))
+    signal = ('<signals><signal id="7" s="39" t="-4" zOffset="3" orientation="+" dynamic="yes" type="1000001" subtype="-1">'
+              '<validity fromLane="0" toLane="0"/></signal></signals></road>')
+    reference = ('<signals><signalReference id="7" s="1" t="-4" orientation="+"><validity fromLane="-1" toLane="-1"/></signalReference></signals>'
+                 '</road>')
+    roads = [road(geometry(0, x, 0, 0, length), length, id).replace("</road>", more)
+             for id, x, length, more in (("1", 0, 40, signal), ("2", 50, 20, reference))]
+    layers = read_in(tmp_path, opendrive(roads))
     assert by_kind(layers)["traffic_light"][1]["lanes"] == "2.-1.0"
     assert by_kind(layers_of_opendrive(as_roads(tmp_path, layers), CRS))["traffic_light"][1]["lanes"] == "2.-1.0"
 
@@ -117,7 +120,8 @@ def test_every_crossing_and_the_stop_line_lie_where_they_lay(tmp_path):
     ("", "", (None, None))])
 def test_speed_limits_are_those_of_the_lane_else_of_its_road(tmp_path, types, more, expected):
     layers = read_in(tmp_path, street(types=types, more=more))
-    assert [layers.attributes[name].get("speed_kmh") for name in ("1.-1.0", "1.1.0")] == [limit and pytest.approx(limit, abs=0.01) for limit in expected]
+    known = [layers.attributes[name].get("speed_kmh") for name in ("1.-1.0", "1.1.0")]
+    assert known == [limit and pytest.approx(limit, abs=0.01) for limit in expected]
     for others in there_and_back(tmp_path, layers):
         limits = sorted(known["speed_kmh"] for known in others.attributes.values() if "speed_kmh" in known)
         assert limits == pytest.approx(sorted(limit for limit in expected if limit), abs=0.01)
@@ -140,7 +144,8 @@ def test_what_no_layer_holds_is_counted(tmp_path):
 
 def test_the_sign_of_a_speed_limit_is_one(tmp_path):
     rule = ('<relation id="800"><tag k="type" v="regulatory_element"/><tag k="subtype" v="speed_limit"/><tag k="sign_type" v="de274-60"/></relation>')
-    text = lanelet_street(more=rule).replace('<relation id="101">', '<relation id="101"><member type="relation" role="regulatory_element" ref="800"/>')
+    text = lanelet_street(more=rule)
+    text = text.replace('<relation id="101">', '<relation id="101"><member type="relation" role="regulatory_element" ref="800"/>')
     text = text.replace('<relation id="201">', '<relation id="201"><tag k="speed_limit" v="20 mph"/>')
     layers = layers_of_lanelets(read_lanelet2(written(tmp_path, text, "map.osm")), CRS)
     assert layers.attributes == {"101": {"speed_kmh": 60.0}, "201": {"speed_kmh": pytest.approx(32.19, abs=0.01)}}
