@@ -12,7 +12,7 @@ from ..common.errors import RoadExtractionError
 
 
 @dataclass(frozen=True)
-class DesignSpeed:
+class _DesignSpeed:
     """One row of a design code."""
 
     speed: int   # design speed, km/h
@@ -21,7 +21,7 @@ class DesignSpeed:
 
 
 @dataclass(frozen=True)
-class Dashes:
+class _Dashes:
     """Length of a dash and of the gap behind it, metres, and where it is used."""
 
     dash: float
@@ -54,9 +54,9 @@ class Country:
     usual_lane: float   # assumed where no lane of a road shows its width
     longest_dash: float   # longer paint is a solid line
     line_widths: tuple[float, ...]   # of longitudinal lines, ascending
-    dash_patterns: tuple[Dashes, ...]   # of lane and centre lines
+    dash_patterns: tuple[_Dashes, ...]   # of lane and centre lines
     design_code: str   # name of the code that curves are checked against
-    design_speeds: tuple[DesignSpeed, ...]   # its rows, slowest first
+    design_speeds: tuple[_DesignSpeed, ...]   # its rows, slowest first
     sources: tuple[str, ...]   # one sentence for each group of values above
     section_limits: SectionLimits   # what cross-sections must keep to
 
@@ -65,8 +65,8 @@ def _country(line_widths: list[float], dash_patterns: list[Any], design_speeds: 
              note: str = "", **further: Any) -> Country:
     """A country as it stands in countries.json: dashes as [dash, gap, where], speeds as [speed, radius, length], limits as {name: [value, rule]}."""
     limits = {name: value for name, (value, _) in section_limits.items()}
-    return Country(line_widths=tuple(line_widths), dash_patterns=tuple(Dashes(*row) for row in dash_patterns),
-                   design_speeds=tuple(DesignSpeed(*row) for row in design_speeds), sources=tuple(sources),
+    return Country(line_widths=tuple(line_widths), dash_patterns=tuple(_Dashes(*row) for row in dash_patterns),
+                   design_speeds=tuple(_DesignSpeed(*row) for row in design_speeds), sources=tuple(sources),
                    section_limits=SectionLimits(**limits, rules={name: rule for name, (_, rule) in section_limits.items()}), **further)
 
 
