@@ -201,14 +201,10 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
 
     The correction is our own: it needs neither the range nor the angle of incidence of a point.
 
-    Parameters
-    ----------
     frame : RoadFrame of the same trajectory
     asphalt : AsphaltLook of these points or of others of the survey, None to look at these
 
-    Returns
-    -------
-    RoadPoints with `corrected`; the raw intensity stays, and all other columns are shared with
+    Returns RoadPoints with `corrected`; the raw intensity stays, and all other columns are shared with
         `road_points`. NaN for a point measured when the vehicle's position is not known, or by a scanner with too few points to
         know its asphalt. Where nothing can be corrected, the points are returned as they were.
     _IntensityReport; its `reason` says why nothing was corrected
@@ -266,10 +262,9 @@ def levels_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequenc
     step : points in every step-th centimetre of the road are counted
 
     Returns
-    -------
-    raw, equal : counts of intensities, as they are and with equal beams (none without)
-    highest : intensity
-    lost : (2,) points without a position of the vehicle, and all points
+        raw, equal : counts of intensities, as they are and with equal beams (none without)
+        highest : intensity
+        lost : (2,) points without a position of the vehicle, and all points
     """
     histograms = IntensityHistograms(scanners)
     raw, equal, highest, lost = [], [], 0, np.zeros(2, np.int64)

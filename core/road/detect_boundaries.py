@@ -42,8 +42,6 @@ METHODS = ("scanlines", "profiles")   # in the order of trust: three planes are 
 class BoundarySettings:
     """How road boundaries are found.
 
-    Attributes
-    ----------
     method : "profiles", "scanlines", or "both": one path along the road through what the two see
     curbs : settings of the profiles method
     scanlines : settings of the scanlines method
@@ -65,8 +63,6 @@ class BoundarySettings:
 class _RoadBoundaries:
     """Curb points and the edges through them.
 
-    Attributes
-    ----------
     curb_points : CurbPoints
     edges : RoadEdges
     differences : RoadEdges, where the curbs of the two methods lie apart; None with one method
@@ -85,9 +81,7 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 
     ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
-    Returns
-    -------
-    {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
+    Returns {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
     curbs as each sees them alone, and "both" those of the best path through the chains of the two. Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
@@ -143,8 +137,6 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
 
     With both methods, `agree` of every piece says how far apart they lie.
 
-    Parameters
-    ----------
     found : result of `find_curb_points`
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
     ground : MeasuredGround of it that an earlier stage kept, or None
@@ -208,10 +200,9 @@ def measure_agreement(edges: RoadEdges, first: CurbPoints, second: CurbPoints, f
     first, second : CurbPoints of two methods
 
     Returns
-    -------
-    edges : RoadEdges with `agree`
-    differences : RoadEdges, lines along the curb of the first, one for every stretch where the two lie more
-        than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
+        edges : RoadEdges with `agree`
+        differences : RoadEdges, lines along the curb of the first, one for every stretch where the two lie more
+            than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
     """
     agree = edges.agree.copy()
     differences: list[EdgePiece] = []

@@ -39,8 +39,6 @@ def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[flo
     The mean curvature of the quadric z = f(x, y) through the neighbours of each point, in the frame of their own plane, as point cloud software
     computes it and the thesis shows it for its fitted markings. It measures how rough the markings are, not how the road curves.
 
-    Parameters
-    ----------
     points : Points on paint; of a few of them columns are read, and all others some at a time
     lines : fitted lines with Z in map coordinates
     origin : (3,) map coordinates of the local origin

@@ -26,8 +26,6 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
     Files whose bounds lie elsewhere are not opened beyond their header. A file is read as a whole for its first place alone; who cancels that and
     asks again goes on from there. Only these points, the blocks being read and those of the last places are held in memory.
 
-    Parameters
-    ----------
     paths : of point clouds
     x, y : map coordinates of the middle
     radius : m, half the side of the square

@@ -53,8 +53,6 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
                units: FileUnits = METRES) -> Any:
     """Open a LAS, LAZ or COPC file with laspy: a LasReader whose header has scales, offsets and bounds in metres.
 
-    Parameters
-    ----------
     layers : names of the layers of a LAZ 1.4 file that are decoded beside x, y and the return numbers ("z", "intensity" ...); all by default
     known : the file's header, where it was read and checked for damage before
     sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
@@ -196,8 +194,6 @@ def _bounds_of_points(path, units):
 def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], None] = lambda note: None, given: str = "") -> list[CloudHeader]:
     """The headers of several files, in the order given; a file that is given twice, by whatever path, is read once.
 
-    Parameters
-    ----------
     warn : is told what headers state otherwise than their files show
     given : WKT of the CRS of those that state none
 
