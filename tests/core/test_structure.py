@@ -20,7 +20,7 @@ ORDER = tuple(f"core/{name}" for name in ("lazy", "common", "execution", "countr
 NUMBERS = {
     "core/common": 12,
     "core/execution": 3,
-    "core/countries": 15,
+    "core/countries": 5,
     "core/io": 5,
     "core/curves": 9,
     "core/survey": 74,
