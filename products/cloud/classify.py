@@ -81,7 +81,7 @@ class CloudLayers:
         return {layer.name: getattr(self, layer.name) for layer in fields(self) if getattr(self, layer.name) is not None}
 
 
-class RoadPlaces(NamedTuple):
+class _RoadPlaces(NamedTuple):
     """Where N points lie on the road, and what they belong to."""
 
     classes: np.ndarray   # (N,) uint8 PointClass; 0 where nothing is known of a point
@@ -106,7 +106,7 @@ class PointClassifier:
         self._edges, self._lines, self._objects = (_Near(layer, frame, settings.spacing) for layer in (
             _curbs_of(layers.road_edges), layers.roadside, layers.roadside_objects))
 
-    def places(self, points: Any) -> RoadPlaces:
+    def places(self, points: Any) -> _RoadPlaces:
         """Those of a block of N laspy points, whose coordinates are in metres."""
         origin = self.survey.frame.origin
         x, y, z = (np.asarray(points[name], float) - start for name, start in zip("xyz", origin))
@@ -117,7 +117,7 @@ class PointClassifier:
             ground, level = self._ground.at(number, s[rows], d[rows])
             h[rows] = z[rows] - level
             classes[rows] = self._classes(x[rows], y[rows], z[rows], z[rows] - ground)
-        return RoadPlaces(classes, road, s, d, h)
+        return _RoadPlaces(classes, road, s, d, h)
 
     def _placed(self, points, x, y, z):
         """Road, station and offset of points, and where they lie once the passes are laid on each other, as the layers have it."""

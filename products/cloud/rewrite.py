@@ -14,7 +14,7 @@ from ...core.io.crs import as_in_file, parse_crs
 from ...core.survey.las.point_fields import valid_points
 from ...core.survey.las.reader import CloudHeader, open_cloud, read_blocks
 from ...core.survey.road_points_las import new_laz
-from .classify import PointClass, PointClassifier, RoadPlaces
+from .classify import PointClass, PointClassifier
 
 COPC, CRS_RECORDS = "copc", "LASF_Projection"   # user ids of records
 
@@ -114,7 +114,7 @@ def _name_classes(header):
             names[int(number)] = number.name.lower().replace("_", " ")
 
 
-def _described(points, places: RoadPlaces, header, counts):
+def _described(points, places, header, counts):
     """The record of a block of laspy points for the copy."""
     import laspy
 
