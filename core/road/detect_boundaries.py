@@ -41,8 +41,6 @@ METHODS = ("scanlines", "profiles")   # in the order of trust: three planes are 
 class BoundarySettings:
     """How road boundaries are found.
 
-    Attributes
-    ----------
     method : "profiles", "scanlines", or "both": one path along the road through what the two see
     curbs : settings of the profiles method
     scanlines : settings of the scanlines method
@@ -61,11 +59,9 @@ class BoundarySettings:
 
 
 @dataclass
-class RoadBoundaries:
+class _RoadBoundaries:
     """Curb points and the edges through them.
 
-    Attributes
-    ----------
     curb_points : CurbPoints
     edges : RoadEdges
     differences : RoadEdges, where the curbs of the two methods lie apart; None with one method
@@ -84,9 +80,7 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 
     ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
-    Returns
-    -------
-    {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
+    Returns {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
     curbs as each sees them alone, and "both" those of the best path through the chains of the two. Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
@@ -124,13 +118,11 @@ def _level_for(decimation, settings):
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
-                    progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> RoadBoundaries:
+                    progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> _RoadBoundaries:
     """Edges through the curb points of one method, or of the path through those of two, and edges of the pavement where there is no curb.
 
     With both methods, `agree` of every piece says how far apart they lie.
 
-    Parameters
-    ----------
     found : result of `find_curb_points`
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
     ground : MeasuredGround of it that an earlier stage kept, or None
@@ -149,13 +141,13 @@ def _drawn(found, frame, settings, executor, progress):
     edges, = executor.run(Phase(edges_through, NoSource(), (frame, settings), lambda item: "the edges of all roads"), [points])
     tell_edges(edges, progress)
     if "both" not in found:
-        return RoadBoundaries(points, edges)
+        return _RoadBoundaries(points, edges)
     edges, differences = measure_agreement(edges, *(found[method] for method in METHODS), frame)
     lengths = {method: _measured_length(found[method]) for method in METHODS}
     if any(lengths.values()):
         progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                      f"they lie more than 5 cm apart along {differences.length.sum():.0f} m.")
-    return RoadBoundaries(points, edges, differences, lengths)
+    return _RoadBoundaries(points, edges, differences, lengths)
 
 
 # How far apart the curbs of two methods lie, where both see one.
@@ -194,10 +186,9 @@ def measure_agreement(edges: RoadEdges, first: CurbPoints, second: CurbPoints, f
     first, second : CurbPoints of two methods
 
     Returns
-    -------
-    edges : RoadEdges with `agree`
-    differences : RoadEdges, lines along the curb of the first, one for every stretch where the two lie more
-        than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
+        edges : RoadEdges with `agree`
+        differences : RoadEdges, lines along the curb of the first, one for every stretch where the two lie more
+            than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
     """
     agree = edges.agree.copy()
     differences: list[EdgePiece] = []

@@ -11,7 +11,7 @@ import shapely
 from ...common.arrays import mask_runs
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from ...countries.traffic_side import side_of_traffic
 from ...curves.robust import median
 from ...execution.phase import THREADS, NoSource, Phase
@@ -56,8 +56,6 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                    progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> RoadEstimates:
     """Estimate lines and lanes.
 
-    Parameters
-    ----------
     lines : {number of the road: CrossSections}
     usual_width : metres, of lanes where the lines do not tell
     side : "right", "left" or "automatic"

@@ -392,9 +392,7 @@ def _find_level_strip(track: np.ndarray, count: np.ndarray, total: np.ndarray, s
     size : width of a cell, 0.1 mm
     min_height : the least step, 0.1 mm
 
-    Returns
-    -------
-    low, high, height : as of LevelStrip
+    Returns low, high, height: as of LevelStrip
     """
     half = min(int(CURBS.max_strip_offset / COORDINATE_SCALE) // size, count.shape[2])
     count, total, squares = (np.concatenate([v[:, 1, :half][:, ::-1], v[:, 0, :half]], axis=1) for v in (count, total, squares))

@@ -80,9 +80,8 @@ def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road
     section : (first, last + 1) profile numbers
 
     Returns
-    -------
-    steps : side -> CurbSteps, passes merged
-    occlusion : side -> OcclusionGrid of these profiles
+        steps : side -> CurbSteps, passes merged
+        occlusion : side -> OcclusionGrid of these profiles
     """
     width = decimation.width
     around = max(CURBS.spread_profiles, int(np.ceil(PROFILE.averaging_length / width)))

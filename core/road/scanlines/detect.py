@@ -87,9 +87,8 @@ def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[
     section : (first, last + 1) numbers of planes
 
     Returns
-    -------
-    corners : side -> CurbCorners, merged over passes and scanners where they agree
-    occlusion : side -> OcclusionGrid of these planes
+        corners : side -> CurbCorners, merged over passes and scanners where they agree
+        occlusion : side -> OcclusionGrid of these planes
     """
     interval, (begin, end) = source.interval, section
     margin = max(plane_fit_rows(interval, settings), SCANLINE.neighbour_lines + gap_fill_rows(interval)) + 1
@@ -287,10 +286,7 @@ class LayerScanlines:
     corridor : m, greatest offset of a vertex
     level : None; all points are used
 
-    Raises
-    ------
-    RoadExtractionError
-        If no road has scanlines on two planes.
+    Raises RoadExtractionError if no road has scanlines on two planes.
     """
 
     def __init__(self, lines: dict[int, Scanlines], frame: RoadFrame, interval: float, crs: str, sensor_height: float = 0.0):

@@ -256,9 +256,8 @@ class PlaneVertices:
         """Connect the vertices to L polylines.
 
         Returns
-        -------
-        order : (N,) int, order of the vertices, or None where it does not change
-        first : (L + 1,) int, first vertex of each line in that order
+            order : (N,) int, order of the vertices, or None where it does not change
+            first : (L + 1,) int, first vertex of each line in that order
         """
         count = len(self.d)
         begin = np.r_[0, np.flatnonzero(~self.side_by_side(slice(0, count - 1), slice(1, count))) + 1]

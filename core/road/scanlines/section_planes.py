@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 class ScanlineSettings:
     """Section planes.
 
-    Attributes
-    ----------
     interval : m between section planes
     corridor : m either side of the reference line of the road
     rotation_frequency : Hz, scan lines per second of each scanner; 0 = from the data
@@ -105,13 +103,9 @@ def all_scanlines(survey: Survey, road: int, settings: ScanlineSettings = Scanli
                   progress: Progress = Progress()) -> Iterator[Scanlines]:
     """The normalized scanlines of a whole road, section by section; sections are computed in parallel.
 
-    Parameters
-    ----------
     survey, road, settings, lattice : as in `scanlines_of`
 
-    Yields
-    ------
-    Scanlines, in order of station
+    Yields Scanlines, in order of station
     """
     if lattice is None:
         lattice = find_lattice(survey, settings.rotation_frequency)

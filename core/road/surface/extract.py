@@ -63,9 +63,8 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     counted : whether the density of points is asked for
 
     Returns
-    -------
-    road_points : RoadPoints with `half_width` and `covered`; the survey lives as long as they do
-    surface : SurfaceOutlines
+        road_points : RoadPoints with `half_width` and `covered`; the survey lives as long as they do
+        surface : SurfaceOutlines
 
     Raises RoadExtractionError if no road surface is found.
     """

@@ -360,9 +360,8 @@ class MeasuredGround:
         profiled : whether the profiles of each window are wanted
 
         Returns
-        -------
-        cells : GroundCells of all windows
-        profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
+            cells : GroundCells of all windows
+            profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
         self._measure(road, rows, profiled, progress)
         half = _ground_columns(FRAME.corridor, SURFACE.column_width)
@@ -408,10 +407,9 @@ def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> l
     windows : what is wanted of each window
 
     Returns
-    -------
-    for each window, None where it is not wanted:
-    cells : (3, R, C) float32, the attributes CELL_NAMES of its GroundCells
-    profiles : (5, P, K) float32, the attributes NAMES of its SurfaceProfiles
+        for each window, None where it is not wanted:
+        cells : (3, R, C) float32, the attributes CELL_NAMES of its GroundCells
+        profiles : (5, P, K) float32, the attributes NAMES of its SurfaceProfiles
     """
     result = []
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 MIN_OWN_LENGTH = 0.5 * SURFACE.agreeing_length   # derived: m of a line without that curb; which rows begin it is no better known
 
 
-def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings = EdgeSettings(), surface: SurfaceSettings = SurfaceSettings(),
+def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings = EdgeSettings(),
                         progress: Progress = Progress(), ground: MeasuredGround | None = None) -> RoadEdges:
     """The edges and, where there is no curb, edges of the pavement.
 
@@ -45,7 +45,7 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
     pieces: list[EdgePiece] = []
     roads = survey.store.roads()
     for k, road in enumerate(roads):
-        carriageway = find_carriageway(survey, road, edges, surface, progress.part(k / len(roads), (k + 1) / len(roads)), ground)
+        carriageway = find_carriageway(survey, road, edges, SurfaceSettings(), progress.part(k / len(roads), (k + 1) / len(roads)), ground)
         if carriageway is not None:
             pieces += _pavement_pieces(survey.frame, road, carriageway, edges, settings.max_gap, len(pieces))
     if pieces:
