@@ -166,7 +166,7 @@ class Beams:
         found = cls(models, {}, {}, {})
         counts = np.zeros((len(models), ELEVATION_BINS * INTENSITY_LEVELS), np.int64)
         length = road_points.store.section_length
-        phase = Phase(levels_at_elevations, road_points, (models,), lambda item: road_points.survey.stretch(
+        phase = Phase(_levels_at_elevations, road_points, (models,), lambda item: road_points.survey.stretch(
             item[0], item[1] * length, item[2] * length), state=road_points.store.state)
         for of_stretch in road_points.executor.run(phase, road_points.stretches(), progress):
             for of_scanner, (place, number) in zip(counts, of_stretch):
@@ -212,7 +212,7 @@ class Beams:
         return sum(len(corrections) for corrections in self.corrections.values())
 
 
-def levels_at_elevations(road_points: RoadPoints, stretch: Stretch, models: dict[int, _ElevationModel]) -> list[tuple[np.ndarray, np.ndarray]]:
+def _levels_at_elevations(road_points: RoadPoints, stretch: Stretch, models: dict[int, _ElevationModel]) -> list[tuple[np.ndarray, np.ndarray]]:
     """The phase that counts levels of intensity by elevation.
 
     Returns of each scanner the places that are not empty in a flattened table (ELEVATION_BINS, INTENSITY_LEVELS), (K,) int, and (K,) points there.

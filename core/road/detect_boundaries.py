@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,6 +29,7 @@ from .scanlines.detect import SurveyScanlines, steps_on_scanlines, tell_corners
 from .scanlines.section_planes import ScanlineSettings
 from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
+from .surface.road_look import RoadLook
 from .weights import BOUNDARY, CURBS, SCANLINE
 
 if TYPE_CHECKING:
@@ -102,7 +104,7 @@ def _find_curb_points(decimation, settings, progress, ground):
     source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice, level=_level_for(decimation, settings.scanlines))
     steps["scanlines"] = steps_on_scanlines(source, settings.scanlines, settings.curbs.block_length,
                                             part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress))
-    points = curbs_along(source, {method: steps[method] for method in METHODS if method in steps}, ground)
+    points = curbs_along(source, {method: steps[method] for method in METHODS if method in steps}, partial(RoadLook, ground))
     tell_corners(points["scanlines"], progress)
     if settings.method == "both":
         tell_points(points["profiles"], progress)

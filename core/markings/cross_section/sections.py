@@ -77,7 +77,12 @@ def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
 
 
 class EdgeSections(NamedTuple):
-    """CrossSections of road edges by road number, as of `sections_of_edges` and `sections_of_pavement`; `curbs` is None where no edges are known."""
+    """CrossSections of road edges, by road number.
+
+    curbs : those along the road and about islands in it, None where no edges are known; where the pavement ends without one, the surface ends. Both
+        sides of an island are rows of their own with one `number`
+    pavement : the edges of the pavement without a curb
+    """
 
     curbs: dict[int, CrossSections] | None
     pavement: dict[int, CrossSections]
@@ -87,20 +92,10 @@ class EdgeSections(NamedTuple):
         """Those of RoadEdges, of which there may be none, or what was made of them before."""
         if isinstance(edges, EdgeSections):
             return edges
-        return cls(None, {}) if edges is None else cls(sections_of_edges(edges), sections_of_pavement(edges))
-
-
-def sections_of_edges(edges: RoadEdges) -> dict[int, CrossSections]:
-    """CrossSections of the curbs along the road and about islands in it, by road number; where the pavement ends without one, the surface ends.
-
-    Both sides of an island are rows of their own with one `number`.
-    """
-    return _named_by_chain(edges, np.flatnonzero(np.isin(edges.kind, ("main", "island")) & edges.of_curb))
-
-
-def sections_of_pavement(edges: RoadEdges) -> dict[int, CrossSections]:
-    """CrossSections of the edges of the pavement without a curb, by road number."""
-    return _named_by_chain(edges, np.flatnonzero((edges.kind == "main") & ~edges.of_curb))
+        if edges is None:
+            return cls(None, {})
+        return cls(_named_by_chain(edges, np.flatnonzero(np.isin(edges.kind, ("main", "island")) & edges.of_curb)),
+                   _named_by_chain(edges, np.flatnonzero((edges.kind == "main") & ~edges.of_curb)))
 
 
 def _named_by_chain(edges, rows):

@@ -121,7 +121,7 @@ class _DrawnLine:
     rmse: Sequence[float]
 
 
-def lines_drawn(source: NoSource, courses: Sequence[_Course], curve: str, degree: int) -> list[_DrawnLine]:
+def _lines_drawn(source: NoSource, courses: Sequence[_Course], curve: str, degree: int) -> list[_DrawnLine]:
     """The phase that fits lines and draws their pieces; parameters as of `_shapes_of_lines`."""
     return [shape.drawn(course.pieces) for shape, course in zip(_shapes_of_lines(courses, curve, degree), courses)]
 
@@ -357,7 +357,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     edge_sections = EdgeSections.of(edges)
     edge_lines = edges_beside(edge_sections, roads)
     executor = THREADS if road_points is None else road_points.executor
-    phase = Phase(lines_of_road, NoSource(), (settings,), lambda item: "the marking lines of a road")
+    phase = Phase(_lines_of_road, NoSource(), (settings,), lambda item: "the marking lines of a road")
     for batch in _roads_together(clustered_points):
         items = [_paint_of_road(clustered_points, markings, road, edge_lines[road]) for road in batch]
         for road, (of_road, trend, left_out) in zip(batch, executor.run(phase, items)):
@@ -365,7 +365,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
             courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
             selected += [(int(road), chosen) for chosen in of_road]
         progress.report(LINES_SHARE / 2 * (roads.index(batch[-1]) + 1) / len(roads))
-    phase = Phase(lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
+    phase = Phase(_lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
     fitted = list(executor.run_together(phase, courses, STRANDS.fitted_together, progress.part(LINES_SHARE / 2, LINES_SHARE)))
     rows = [dict(row, line=number, road=road) for number, ((road, chosen), line) in enumerate(zip(selected, fitted), start=1)
             for row in _drawn_pieces(chosen, line, frame, road)]
@@ -392,12 +392,12 @@ def _roads_together(points):
 
 
 def _paint_of_road(points, markings, road, edges):
-    """An item of `lines_of_road`."""
+    """An item of `_lines_of_road`."""
     records, rank = line_paint(columns_of_roads(points.store, [road]), markings, road)
     return {name: records[name] for name in PAINT_OF_LINES}, rank, edges, hatching_bars(markings, road)
 
 
-def lines_of_road(source: NoSource, item: tuple[dict[str, np.ndarray], np.ndarray, EdgesBeside, np.ndarray],
+def _lines_of_road(source: NoSource, item: tuple[dict[str, np.ndarray], np.ndarray, EdgesBeside, np.ndarray],
                   settings: MarkingLineSettings) -> tuple[list[SelectedLine], CommonTrend, int]:
     """The phase that traces and links the paint of one road: its lines, the trend that they have in common, and how many fragments were left out.
 

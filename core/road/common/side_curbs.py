@@ -10,7 +10,6 @@ import numpy as np
 
 from ...common.progress import Progress
 from ...execution.phase import Phase
-from ..surface.road_look import RoadLook, SideLook
 from ..weights import CURBS
 from .corners import CurbSteps
 from .curb_limits import CurbLimits
@@ -21,7 +20,7 @@ from .tracking import StepChain, curb_chains, drop_short_curbs, is_road, link_st
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
-    from ..surface.ground_grid import MeasuredGround
+    from ..surface.road_look import RoadLook, SideLook
 
 AnySteps = TypeVar("AnySteps", bound=CurbSteps)
 
@@ -103,31 +102,32 @@ def grids_beside(found: Mapping[tuple[int, str], SideSteps]) -> dict[int, dict[s
     return beside
 
 
-def curbs_along(source: Any, found: Mapping[str, Mapping[tuple[int, str], SideSteps]], ground: MeasuredGround | None = None) -> dict[str, CurbPoints]:
+def curbs_along(source: Any, found: Mapping[str, Mapping[tuple[int, str], SideSteps]],
+                look_at: Callable[[int], RoadLook] | None = None) -> dict[str, CurbPoints]:
     """{method: CurbPoints} of each method alone and, as "both", those of the best path along the road through the chains of two.
 
     source : PointDecimation of a survey, or scanlines
     found : method -> (number of the road, side) -> SideSteps; the method with the stricter model of a curb comes first
-    ground : MeasuredGround of the survey; None where nothing but the steps is known of the ground
+    look_at : gives the RoadLook of a road; None where nothing but the steps is known of the ground
     """
     parts: dict[str, list[CurbPoints]] = {method: [] for method in [*found, "both"][:len(found) + (len(found) > 1)]}
     for road in sorted({road for steps in found.values() for road, _ in steps}):
-        look = None if ground is None else RoadLook(ground, road)
+        look = look_at(road) if look_at else None
         sides = [(side, {method: steps[road, side] for method, steps in found.items() if (road, side) in steps}) for side in SIDE_SIGNS]
-        phase = Phase(curbs_of_side, source, (road, look), lambda item, road=road: f"road {road}, {item[0]} side")
+        phase = Phase(_curbs_of_side, source, (road, look), lambda item, road=road: f"road {road}, {item[0]} side")
         for points in source.executor.run(phase, sides):
             for method, of_side in points.items():
                 parts[method].append(of_side)
     return {method: CurbPoints.join(of_method, getattr(source, "survey", source).crs) for method, of_method in parts.items()}
 
 
-def curbs_of_side(source: Any, item: tuple[str, Mapping[str, SideSteps]], road: int, look: RoadLook | None) -> dict[str, CurbPoints]:
+def _curbs_of_side(source: Any, item: tuple[str, Mapping[str, SideSteps]], road: int, look: RoadLook | None) -> dict[str, CurbPoints]:
     """The phase that follows the curb: {method: CurbPoints} on one side of a road, as of `curbs_along`.
 
     item : the side, and what each method saw there
     """
     side, methods = item
-    survey, beside = getattr(source, "survey", source), None if look is None else SideLook(look, SIDE_SIGNS[side])
+    survey, beside = getattr(source, "survey", source), look and look.side(SIDE_SIGNS[side])
     chains = {method: SideChains.of(seen.steps, seen, beside) for method, seen in methods.items() if seen.steps is not None and len(seen.steps)}
     # scanlines may have been told how high the scanner is
     points = {method: points_of_side(source if method == "scanlines" else survey, road, side, [of_method], methods[method].occlusion)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from ..common.side_curbs import SideSteps, block_bounds, curbs_along, grids_besi
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
 from ..curb_returns.detect import with_curb_returns
 from ..surface.ground_grid import MeasuredGround
+from ..surface.road_look import RoadLook
 from ..weights import CURBS, PROFILE
 from .steps import find_averaged_steps, find_steps
 
@@ -47,7 +49,7 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
     steps = steps_on_profiles(decimation, settings, progress.part(0.0, PROFILE.main_curb_progress))
     beside = {} if beside is None else beside
     beside.update(grids_beside(steps))
-    main = curbs_along(decimation, {"profiles": steps}, ground)["profiles"]
+    main = curbs_along(decimation, {"profiles": steps}, partial(RoadLook, ground))["profiles"]
     tell_points(main, progress)
     if not include_returns:
         return main

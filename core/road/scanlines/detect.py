@@ -29,6 +29,7 @@ from ..common.side_curbs import SideSteps, block_bounds, curbs_along, merged_pas
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections
 from ..edges.fit import EdgeCurve, point_table, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
+from ..surface.road_look import RoadLook
 from ..weights import CURBS, EDGE, PROFILE, SCANLINE
 from .candidates import ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
@@ -52,7 +53,8 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
 
     Returns CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb.
     """
-    points = curbs_along(source, {"scanlines": steps_on_scanlines(source, settings, block_length, progress)}, ground)["scanlines"]
+    steps = {"scanlines": steps_on_scanlines(source, settings, block_length, progress)}
+    points = curbs_along(source, steps, None if ground is None else partial(RoadLook, ground))["scanlines"]
     tell_corners(points, progress)
     return points
 

@@ -45,6 +45,10 @@ class RoadLook:
         """Height of the ground above the road as it goes on from the track; m, of one shape with stations and offsets; NaN where none was seen."""
         return self._at(self.cells.height, s, d)[0] - self._at(self._road, s, d)[0]
 
+    def side(self, sign: int) -> SideLook:
+        """The look to the left, 1, or to the right, -1."""
+        return SideLook(self, sign)
+
     @cached_property
     def _road(self):
         followed = follow_road(self.cells, self.prior)
