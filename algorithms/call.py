@@ -313,7 +313,7 @@ def run(call, progress):
             listener.warn(tr("{name} was given and has no effect any more: the usual value is used. Leave it out.").format(name=name))
         with cancellation_scope(progress):
             results = call.algorithm.work(call, listener) or {}
-        call.warnings = [text for kind, text in listener.messages if kind == "warn"]
+        call.warnings = listener.warnings
         results[WARNINGS] = len(call.warnings)
         return call.finish(results)
     except Exception as error:
