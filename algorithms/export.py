@@ -296,6 +296,12 @@ def write_lanelet2(call, source, name, progress):
     progress.report(0.8)
     notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
                               for kind, count in draft.skipped.items())]
+    if draft.added:
+        notes.append(tr("{count} lanes end where another begins that they are not linked to; in Lanelet2 the one leads to the other.").format(
+            count=draft.added))
+    if draft.unmet:
+        notes.append(tr("{count} links of the map join lanes whose ends do not meet; Lanelet2 cannot say them, and they were left out.").format(
+            count=draft.unmet))
     if degrees.local:
         notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
     warn_of_faults(notes, check, progress)
