@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_memory, out_of_memory
-from ..core.common.progress import Progress
+from ..core.common.progress import RememberedMessages
 from .algorithm import WARNINGS, settings_class
 from .destinations import Unfinished, check_folder, check_suffix, check_writable, destination_path
 from .provenance import provenance_now, run_facts, sign_file, sign_report
@@ -305,15 +305,16 @@ def run(call, progress):
 
     Raises RoadExtractionError if there are none, in one sentence on why. Cancelled if the user stopped it.
     """
-    counted = CountedWarnings(progress)
+    listener = RememberedMessages(progress)
     try:
         claim_memory()
         call.check_destinations()
         for name in filter(call.given, call.algorithm.RETIRED):
-            counted.warn(tr("{name} was given and has no effect any more: the usual value is used. Leave it out.").format(name=name))
+            listener.warn(tr("{name} was given and has no effect any more: the usual value is used. Leave it out.").format(name=name))
         with cancellation_scope(progress):
-            results = call.algorithm.work(call, counted) or {}
-        results[WARNINGS], call.warnings = len(counted.texts), counted.texts
+            results = call.algorithm.work(call, listener) or {}
+        call.warnings = listener.warnings
+        results[WARNINGS] = len(call.warnings)
         return call.finish(results)
     except Exception as error:
         reason = _reason(error)
@@ -347,31 +348,8 @@ def existing_file(path, label):
     return path
 
 
-# How long a run will still take, in words, and how often it warned.
-
-class CountedWarnings(Progress):
-    """Hands everything on to another listener and keeps the warnings, in the words of the core."""
-
-    def __init__(self, listener):
-        self.listener = listener
-        self.texts: list[str] = []
-
-    def report(self, fraction):
-        self.listener.report(fraction)
-
-    def check_cancelled(self):
-        self.listener.check_cancelled()
-
-    def info(self, text):
-        self.listener.info(text)
-
-    def warn(self, text):
-        self.texts.append(text)
-        self.listener.warn(text)
-
-
 def time_left(seconds):
-    """What the user reads, in the unit that gives a small number."""
+    """How long a run will still take, as the user reads it, in the unit that gives a small number."""
     if seconds < 60:
         return tr("About {number} s left").format(number=round(seconds))
     if seconds < 3600:

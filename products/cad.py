@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -56,6 +56,11 @@ def dxf_lines(source: RoadMapSource) -> list[_DxfLine]:
     lines += _of(source.road_edges, _edge_layer)
     lines += _of(source.markings, lambda row: f"MARKING_AREA_{str(row.get('class') or 'other').upper()}")
     return lines
+
+
+def drawn_layers(layers: Mapping[str, Features]) -> list[_DxfLine]:
+    """Lines and outlines of areas of layers under the names of these; a point is written as the first text of its row."""
+    return [line for name, layer in layers.items() for line in _of(layer, lambda row, name=name: name)]  # type: ignore[misc]
 
 
 def section_drawing(sections: RoadSections) -> list[_DxfLine]:
@@ -115,7 +120,8 @@ def _of(layer: Features | None, name_of: Callable[[dict[str, Any]], str]) -> lis
         for part in shapely.get_parts(geometry) if geometry is not None else ():
             closed = part.geom_type == "Polygon"
             places = shapely.get_coordinates(part.exterior if closed else part, include_z=True)
-            lines.append(_DxfLine(name_of(row), places, closed))
+            text = next((str(value) for value in row.values() if value), "+") if part.geom_type == "Point" else ""
+            lines.append(_DxfLine(name_of(row), places, closed, text))
     return lines
 
 

@@ -31,6 +31,7 @@ FILES = {
     "georeferenceimage.IMAGE": "uav_image.tif", "georeferenceimage.GCPS": "control_points.gpkg",
     "georeferenceimage.OUTPUT": "orthoimage.tif",
     "printsheets.OUTPUT": "sheets.pdf", "exportlanelet2.OUTPUT": "map.osm", "exportopendrive.OUTPUT": "map.xodr", "exportcad.OUTPUT": "map.dxf",
+    "exporttemplate.TEMPLATE": "template.csv", "exporttemplate.OUTPUT": "client.gpkg",
     "classifycloud.OUTPUT": "classified", "classifycloud.UNROLLED": "unrolled",
     "checkhdmap.INPUT": "map.xodr", "checkhdmap.OUTPUT": "map_findings.gpkg",
     "importopendrive.INPUT": "map.xodr", "importlanelet2.INPUT": "map.osm",
@@ -53,6 +54,7 @@ NAMED = {
     "crosssections": ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES"),
     "roadmap": ("TRAJECTORY",),
     "roadside": ("ROAD_EDGES",),
+    "exporttemplate": ("ROAD_EDGES", "MARKINGS", "MARKING_LINES"),
     "classifycloud": ("ROAD_SURFACE", "ROAD_EDGES", "MARKINGS"),
 }
 

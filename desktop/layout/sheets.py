@@ -31,12 +31,13 @@ from qgis.PyQt.QtGui import QColor
 
 from ...algorithms.export import SheetSettings
 from ...algorithms.provenance import own_version
+from ...core.common.arrays import round_step
 from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...processing_provider.texts import tr
 from .axes import axes_of
 from .charts import COLOURS, profile_pages, section_pages
-from .drawing import DARK, GREY, LETTER, Drawing, round_step, station_text, text_width
+from .drawing import DARK, GREY, LETTER, Drawing, station_text, text_width
 from .legend import add_legend, as_it_stands, legend_height, text_format
 from .map_lines import MapLine, accuracy_of, lines_of, road_lines
 from .pages import Sheet, sheets_along

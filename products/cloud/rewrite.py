@@ -14,7 +14,7 @@ from ...core.io.crs import as_in_file, parse_crs
 from ...core.survey.las.point_fields import valid_points
 from ...core.survey.las.reader import CloudHeader, open_cloud, read_blocks
 from ...core.survey.road_points_las import new_laz
-from .classify import PointClass, PointClassifier, RoadPlaces
+from .classify import PointClass, PointClassifier
 
 COPC, CRS_RECORDS = "copc", "LASF_Projection"   # user ids of records
 
@@ -26,8 +26,6 @@ def classified_copy(file: CloudHeader, classifier: PointClassifier, path: str, u
     formats 6, 7, 9 and 10 that hold the same. Noise (classes 7 and 18) and withheld points keep their class, as do points of which nothing is
     known, but for classes of `PointClass`, which an earlier run may have given.
 
-    Parameters
-    ----------
     file : header of a file of the survey; its chunks of an octree (COPC) are left out of the copy, since they do not fit LAZ
     path : of the copy, LAS or LAZ by its ending
     unrolled : path of a second copy with the points of the road laid out straight, "" for none: x is the station, y the offset less 100 m for
@@ -114,7 +112,7 @@ def _name_classes(header):
             names[int(number)] = number.name.lower().replace("_", " ")
 
 
-def _described(points, places: RoadPlaces, header, counts):
+def _described(points, places, header, counts):
     """The record of a block of laspy points for the copy."""
     import laspy
 

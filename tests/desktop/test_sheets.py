@@ -171,6 +171,13 @@ def test_the_axis_crosses_a_junction_straight_where_edges_turn_around_its_corner
     assert np.abs(axis.places[:, 1] - 5_400_000.0).max() < 0.05 and axis.length > 395
 
 
+def test_pieces_of_a_line_that_know_no_road_lead_one_axis_along_all_of_them(project):
+    """Lines that were divided by outcome: each has stations of its own."""
+    pieces = [(f"LINESTRING Z ({first} 0 100, {last} 0 100)", dict(lane=1)) for first, last in ((0, 24), (24, 30), (30, 118))]
+    axis, = axes_of_layers({"BY_OUTCOME": added(project, "BY_OUTCOME", DRIVING_LINES, *pieces)}, project)
+    assert axis.length == pytest.approx(118.0, abs=1.0)
+
+
 def test_lines_against_or_across_the_road_do_not_lead_its_axis(project):
     against = "LINESTRING Z (200 2 100, 0 2 100)", dict(road=0, direction=-1, station_m=0.0, end_m=200.0)
     across = "LINESTRING Z (100 -30 100, 100 30 100)", dict(road=0, direction=1, station_m=95.0, end_m=105.0)

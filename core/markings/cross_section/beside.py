@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ndtr
 
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from .candidates import Candidates
 from .evidence import Evidence
 from .weights import CURB, DOUBLE, ISLAND, PAVEMENT, SAME_LANE, SURFACE_END, EstimateWeights

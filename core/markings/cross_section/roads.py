@@ -11,7 +11,7 @@ import shapely
 from ...common.arrays import mask_runs
 from ...common.parallel import check_cancelled, ordered_map
 from ...common.progress import Progress
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from ...countries.traffic_side import side_of_traffic
 from ...curves.robust import median
 from ...io.crs import horizontal_part, parse_crs, place_on_ground

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.parallel import check_cancelled
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from ..weights import LANES
 from .beside import BEYOND, WIDTH
 from .candidates import FAR, Candidates

@@ -14,8 +14,7 @@ import shapely
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ...countries.catalogue import country
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL, country
 from ...curves.base import CurveFit
 from ...curves.bspline import Profile, fit_splines, smooth_profiles
 from ...curves.model_selection import CURVES, fit_curve, fit_curves

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from ...common.parallel import check_cancelled
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from ...curves.robust import median
 from ..objects.marking_objects import MarkingObjects
 from ..weights import LINKS, SELECTION
