@@ -348,7 +348,8 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
                 road=1, lane=number_of[id], lane_id=str(id), direction=along[id] * driven, type=kind,
                 successors=[str(following) for following in network.following(id) * driven if network.driven(following)])
             progress.report(len(rows) / len(shown))
-    layers = MapLayers(Lanes.of_pieces([rows[id] for id in shown], crs), list(_lines(whole, places)), outlines=list(_outlines(whole, places, network)),
+    layers = MapLayers(Lanes.of_pieces([rows[id] for id in shown], crs), list(_lines(whole, places)),
+                       outlines=list(_outlines(whole, places, network)),
                        signals=_signals(whole, places, crs), left_out=_left_out(whole))
     layers.attributes = {str(id): known for id in shown if (known := _known(whole, whole.lanelets[id]))}
     if not crs:
