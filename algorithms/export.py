@@ -351,8 +351,7 @@ def _landxml(call, source, progress):
 
     tolerance = call.value("TOLERANCE")
     alignments = alignments_of(source, tolerance)
-    now = datetime.now()
-    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))
+    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), datetime.now())
     Path(call.new_file("OUTPUT")).write_text(text, encoding="utf-8")
     irregular = sum(alignment.plan is None for alignment in alignments)
     if irregular:
