@@ -72,7 +72,8 @@ def section_alignments(sections: RoadSections) -> list[Alignment]:
     alignments = []
     for road in sorted({section.road for section in sections.sections}):
         members = [section for section in sections.sections if section.road == road]
-        s = np.linspace(0.0, members[-1].station, max(int(members[-1].station / AXIS_STEP), 1) + 1)
+        length = sections.frame.road(road).length
+        s = np.linspace(0.0, length, max(int(length / AXIS_STEP), 1) + 1)
         places = np.stack(sections.frame.to_map(road, s, 0.0 * s, 0.0 * s), axis=1)
         alignments.append(Alignment(f"Road {road}", "Reference line of the stations", None, places, np.empty((0, 2)),
                                     sections=[(section.station, np.stack(_on_map(sections, section), axis=1)) for section in members]))
@@ -164,12 +165,12 @@ def write_dxf(lines: list[_DxfLine], path: str, crs: str = "", faces: np.ndarray
     """
     units = as_in_file(crs)[1]
     layers = sorted({line.layer for line in lines} | ({"SURFACE"} if faces is not None else set()))
-    with open(path, "w", encoding="ascii", newline="\r\n") as file:
+    with open(path, "w", encoding="cp1252", newline="\r\n") as file:
         def put(*pairs):
             file.write("".join(f"{code}\n{value}\n" for code, value in pairs))
 
-        put((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (0, "ENDSEC"), (0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER"),
-            (70, len(layers)))
+        put((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (9, "$DWGCODEPAGE"), (3, "ANSI_1252"), (0, "ENDSEC"),
+            (0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER"), (70, len(layers)))
         for layer in layers:
             put((0, "LAYER"), (2, layer), (70, 0), (62, _colour_of(layer)), (6, "CONTINUOUS"))
         put((0, "ENDTAB"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES"))
@@ -196,8 +197,8 @@ def _dxf_place(place, corner=0):
 
 
 def _dxf_text(text):
-    """A text in ASCII: other characters by their numbers, as AutoCAD writes them."""
-    return "".join(letter if " " <= letter <= "~" else f"\\U+{ord(letter):04X}" for letter in text)
+    """A text of which letters that the file's encoding lacks are written by their numbers, as AutoCAD does."""
+    return "".join(letter if letter.encode("cp1252", "ignore") else f"\\U+{ord(letter):04X}" for letter in text)
 
 
 # Writes LandXML 1.2: alignments with their elements and profiles.

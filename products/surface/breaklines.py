@@ -24,7 +24,6 @@ KINDS = ("edge_bottom", "edge_top", "gutter_flow_line", "crown", "lane_border")
 HIDDEN_LENGTH = 3.0     # m along a line that may be hidden and are drawn straight
 MIN_LENGTH = 5.0        # m of a crown or gutter
 FOOT, PLATEAU = (-0.30, -0.05), (0.20, 0.50)   # m from an edge, outward: the road and the ground behind the curb that tell the heights of both
-MIN_CELLS = 3           # of either
 RISE = 0.85             # share of a curb's height that its face has reached where its top begins
 MAX_LEAP = 0.03         # m between a height and the median of those along a line about it: more comes of something that stands there
 MIN_STEP = 0.015        # m: a lower step has no top that would be told from its foot
@@ -125,7 +124,7 @@ def _line(u, z, reach):
         slope = (off * np.where(inside, z, 0.0)).sum(axis=1) / spread
         residual = np.where(inside, z - mean_z[:, None] - slope[:, None] * off, 0.0)
         noise = np.sqrt((residual**2).sum(axis=1) / np.maximum(n - 2, 1)) * np.sqrt(1.0 / n + mean_u**2 / spread)
-    return tuple(np.where(n >= MIN_CELLS, values, np.nan) for values in (mean_z - slope * mean_u, slope, noise))
+    return tuple(np.where(n > 2, values, np.nan) for values in (mean_z - slope * mean_u, slope, noise))
 
 
 def _gutter(ground, side):

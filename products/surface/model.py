@@ -25,9 +25,7 @@ from .ground import RoadGround, road_ground
 from .triangulation import Triangulation, thinned
 
 APART = 0.10            # m by which two breaklines that the triangulation follows are apart at least; an edge's foot and top are nearer
-FACE_APART = CROSS_CELL / 4   # m by which the foot of an edge and its top are apart at least
 PLAN_TOLERANCE = 0.01   # m in plan by which a breakline may be missed by the edges of the triangulation
-OUTLINE_TOLERANCE = 0.10   # m, of the outline of what was seen
 
 
 @dataclass(frozen=True)
@@ -79,7 +77,7 @@ def make_surface_model(survey: Survey, layers: BorderLayers, settings: SurfaceSe
         raise RoadExtractionError("No ground was seen between the road edges: they lie on none of the driven roads. Choose those of this survey.")
     area = shapely.union_all([ground.outline(survey.frame, settings.max_gap) for ground in grounds])
     # what two roads see meets without a seam
-    area = area.buffer(SLICE_LENGTH).buffer(-SLICE_LENGTH).simplify(OUTLINE_TOLERANCE)
+    area = area.buffer(SLICE_LENGTH).buffer(-SLICE_LENGTH).simplify(APART)
     lines = sorted(lines, key=lambda line: (line.road, KINDS.index(line.kind), line.station))
     followed = _followed(lines, area, settings.tolerance)
     cells, judged = _cells(grounds, survey.frame, followed, area)
@@ -105,7 +103,7 @@ def _followed(lines, area, tolerance):
     for row, k in enumerate(order):
         line, shape = lines[k], shapes[row]
         stronger = other[(one == row) & (other < row)]
-        gaps = [FACE_APART if (line.kind, lines[order[j]].kind) == ("edge_top", "edge_bottom") else APART for j in stronger]
+        gaps = [CROSS_CELL / 4 if (line.kind, lines[order[j]].kind) == ("edge_top", "edge_bottom") else APART for j in stronger]
         free = shape.intersection(inside).difference(shapely.union_all(shapely.buffer(shapes[stronger], gaps)))
         along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line.places[:, :2], axis=0).T))]
         for part in shapely.get_parts(free):

@@ -11,7 +11,6 @@ from scipy.spatial import Delaunay, cKDTree
 from ...core.common.arrays import order_by
 from ...core.common.progress import Progress
 
-FIRST_LIMIT = 0.16      # m that is missed at least by what becomes a vertex in the first round; half as much in each of the next
 NEAREST_VERTICES = 0.3  # m: nearer ones would follow the noise of the ground
 MOST_ROUNDS = 60        # cost: of refinement; twenty are usual
 
@@ -181,7 +180,8 @@ def thinned(cells: np.ndarray, judged: np.ndarray, fixed: np.ndarray, segments: 
             progress: Progress = Progress()) -> Triangulation:
     """The triangulation with the fewest vertices of the ground that misses it by no more than a tolerance.
 
-    Greedy insertion: of every triangle, the cell that it misses most becomes a vertex, those first that are missed most.
+    Greedy insertion: of every triangle, the cell that it misses most becomes a vertex, in the first rounds only where it is missed by more than
+    half of the most, so that few vertices do.
 
     cells : (N, 3) m, the ground
     judged : (N,) bool, the cells whose misses count for the tolerance
@@ -194,7 +194,7 @@ def thinned(cells: np.ndarray, judged: np.ndarray, fixed: np.ndarray, segments: 
     ----------
     Garland and Heckbert (1995), Fast polygonal approximation of terrains and height fields, CMU-CS-95-181: algorithm II, in rounds.
     """
-    vertices, last, limit = fixed, 2 * tolerance, max(FIRST_LIMIT, 2 * tolerance)
+    vertices, last, limit = fixed, 2 * tolerance, np.inf
     lines = shapely.linestrings(fixed[segments][:, :, :2])
     free = np.ones(len(cells), bool)
     free[shapely.STRtree(lines).query(shapely.points(cells[:, :2]), predicate="dwithin", distance=NEAREST_VERTICES / 2)[0]] = False
@@ -204,13 +204,13 @@ def thinned(cells: np.ndarray, judged: np.ndarray, fixed: np.ndarray, segments: 
         number = surface.locate(*cells[:, :2].T)
         miss = np.abs(np.nan_to_num(surface.heights(*cells[:, :2].T, number) - cells[:, 2]))
         free &= cKDTree(vertices[:, :2]).query(cells[:, :2], distance_upper_bound=NEAREST_VERTICES)[0] == np.inf
+        limit = max(min(limit, float(miss[free].max(initial=0.0))) / 2, last)
         wrong = np.flatnonzero(free & (miss > limit))
         progress.report((turn + 1) / MOST_ROUNDS)
         if not len(wrong) and limit <= last:
             if not judged.any() or np.mean(miss[judged] ** 2) <= tolerance**2 or last <= tolerance:
                 break
             last = max(0.7 * last, tolerance)
-        limit = max(limit / 2, last)
         if len(wrong):
             order = wrong[order_by(np.rint(-miss[wrong] * 1e5).astype(np.int64), number[wrong])]
             vertices = np.concatenate([vertices, cells[order[np.r_[True, np.diff(number[order]) > 0]]]])

@@ -35,7 +35,7 @@ NUMBERS = {
     "products/scanline_layer": 6,
     "products/published_markings": 9,
     "products/inventory": 148,
-    "products/surface": 0,
+    "products/surface": 20,
     "products/export": 158,
     "products/assess": 18,
     "products/overlay": 78,
