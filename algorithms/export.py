@@ -296,7 +296,7 @@ class ExportCad(Algorithm):
             "with a colour. LandXML 1.2: the axis of every road and every driving line as an alignment of the fitted lines, curves and spirals, "
             "with a profile of tangents; a line that no elements follow within the tolerance is an irregular line.\n\n"
             "DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US "
-            "survey feet. Surfaces and texts are not there; Cross-sections draws sections as DXF.")
+            "survey feet. Surface model writes the surface, Cross-sections the sections.")
     TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
     NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
 
