@@ -177,14 +177,13 @@ SURFACE_SETTINGS = (
 class SurfaceOfRoad(Algorithm):
     ID, TITLE, GROUP = "surfacemodel", "Surface model", "Inventory"
     SUMMARY = "Makes the ground of the road for design: breaklines, and triangles between them that keep to a tolerance, for CAD and as a raster."
-    HELP = ("Breaklines are the bottom and the top of every edge that has a step, the flow line of a gutter, the crown of a road that falls to both "
-            "sides, and the borders of lanes. Their heights are measured across them; where the ground was hidden there is no line. The "
-            "triangles follow them, the foot before the top, the gutter, the crown and the lanes: a line nearer than 10 cm to one of these is in "
-            "the layer alone.\n\n"
+    HELP = ("Breaklines are the bottom of every edge and, where it has a step, its top; the flow line of a gutter; the crown of a road that falls to "
+            "both sides; and the borders of lanes. Their heights are measured across them; where the ground was hidden there is no line. The "
+            "triangles follow them, edges first, then gutter, crown and lanes. A line within 10 cm of a stronger one is in the layer alone.\n\n"
             "Triangles get their vertices where they miss the ground most, until they keep to the tolerance. The ground is the median of the points "
             "over 1 m along and 5 cm across the road, without vehicles and whatever else stands on it, and freed of the steps between scanners and "
-            "passes. Constrained Delaunay triangles join the vertices; how a road is read does not change them.\n\n"
-            "The file has the breaklines and triangles as LandXML 1.2 (surface) or DXF (3DFACE and polylines), by its ending.")
+            "passes. The vertices are joined by constrained Delaunay triangles.\n\n"
+            "The file has breaklines and triangles as LandXML 1.2 (surface) or DXF (3DFACE and polylines), by its ending.")
     TAGS = ("TIN", "DTM", "DEM", "terrain", "breakline", "LandXML", "DXF", "triangulation")
     NUMBERS = (("VERTICES", tr("Vertices of the triangles")), ("TRIANGLES", tr("Triangles")),
                ("RMSE", tr("Ground of the carriageway against the triangles, root mean square (m)")),
