@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_ATTRIBUTES, ROAD_EDGES, SIGNALS
 from ..core.common.setting import Limited, setting
 from .algorithm import Algorithm, SettingSpec
 from .call import existing_file
@@ -13,11 +13,15 @@ from .texts import languages, told, tr
 OPENDRIVE_FILTER = "OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)"
 LANELET_FILTER = "Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)"
 MAP_LAYERS = (
-    ("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it."), LANES, "PolygonZ", "lane_areas"),
+    ("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it, and what the map says of its road."),
+     LANES + ROAD_ATTRIBUTES, "PolygonZ", "lane_areas"),
     ("DRIVING_LINES", tr("Driving lines"), tr("The middle of every lane that is driven, in the direction of travel."), DRIVING_LINES, "LineStringZ",
      "driving_lines"),
     ("MARKING_LINES", tr("Marking lines"), tr("Borders that are painted."), MARKING_LINES, "LineStringZ", "marking_lines"),
     ("ROAD_EDGES", tr("Road edges"), tr("Curbs and borders of the road."), ROAD_EDGES, "LineStringZ", "road_edges"),
+    ("MARKINGS", tr("Markings"), tr("Crossings, stop lines, arrows and hatched areas."), MARKINGS, "PolygonZ", "markings"),
+    ("SIGNALS", tr("Signals and poles"), tr("Traffic lights and signs with the lanes that they hold for, and poles."), SIGNALS, "PointZ",
+     "signal_points"),
 )
 MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of the driven lanes (m)")))
 
@@ -42,7 +46,7 @@ def map_file(call):
 
 def write_map_layers(call, layers, progress):
     """Hand on the MapLayers of a map; returns the numbers."""
-    for note in layers.notes:
+    for note in (*layers.notes, *layers.said_left_out()):
         progress.warn(note)
     for name, _, _, _, _, make in MAP_LAYERS:
         if call.wants(name):
@@ -72,17 +76,26 @@ def add_road_map_layers(algorithm):
     algorithm.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it the borders have the heights of the road's surface."), optional=True)
 
 
+def add_signals(algorithm):
+    algorithm.add_input("layer", "SIGNALS", tr("Signals and poles"), tr(
+        "Traffic lights, signs and poles: of an imported map, or the poles and signs of Roadside. The field lanes names the lanes that obey."),
+        "PointZ", optional=True)
+
+
 def road_map_source(call, progress):
     """The layers given, checked, as RoadMapSource."""
     from dataclasses import replace
 
     from ..core.driving.layers import Lanes
-    from ..products.export.sources import RoadMapSource, checked
+    from ..products.export.sources import RoadMapSource, checked, known_of_roads
 
+    areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
     source = RoadMapSource(
-        Lanes.from_features(call.features("LANES", LANES, "PolygonZ")), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
+        Lanes.from_features(areas), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
         call.features("MARKING_LINES", MARKING_LINE_FIELDS, "LineStringZ"), call.features("ROAD_EDGES", EDGE_FIELDS, "LineStringZ"),
-        call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"))
+        call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"), attributes=known_of_roads(areas))
+    if call.algorithm.parameter("SIGNALS") is not None:
+        source.signals = call.features("SIGNALS", SIGNALS, "PointZ")
     source = checked(source)
     if call.cloud("ROAD_POINTS"):
         from ..products.export.sources import with_surface_heights
@@ -95,11 +108,11 @@ def road_map_source(call, progress):
     return source
 
 
-def lanes_with_borders(call, progress):
-    """The same with ways through junctions, and borders that neighbours share."""
+def lanes_with_borders(source):
+    """A RoadMapSource with ways through junctions, and borders that neighbours share."""
     from ..products.export.shared_borders import with_inferred_ways, with_shared_borders
 
-    return with_shared_borders(with_inferred_ways(road_map_source(call, progress)))
+    return with_shared_borders(with_inferred_ways(source))
 
 
 def warn_of_faults(notes, found, progress):
@@ -122,6 +135,14 @@ ROAD_SETTINGS = (
 )
 
 
+def add_road_choices(algorithm):
+    """How OpenDRIVE is written."""
+    algorithm.add_input("choice", "VERSION", tr("Version"), tr("Of OpenDRIVE; older simulators read 1.7."), default=VERSIONS[0], choices=VERSIONS)
+    algorithm.add_settings(ROAD_SETTINGS)
+    algorithm.add_input("choice", "TRAFFIC_SIDE", tr("Side of traffic"), tr(
+        "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), default=SIDES[0], choices=SIDES)
+
+
 class ExportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "exportopendrive", "Export OpenDRIVE", "Export"
     SUMMARY = "Writes lanes as an OpenDRIVE map for simulators: roads with a reference line, lane sections, heights, road marks and junctions."
@@ -142,53 +163,55 @@ class ExportOpenDrive(Algorithm):
 
     def declare(self):
         add_road_map_layers(self)
-        self.add_input("choice", "VERSION", tr("Version"), tr("Of the format; older simulators read 1.7."), default=VERSIONS[0], choices=VERSIONS)
-        self.add_settings(ROAD_SETTINGS)
-        self.add_input("choice", "TRAFFIC_SIDE", tr("Side of traffic"), tr(
-            "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), default=SIDES[0], choices=SIDES)
+        add_road_choices(self)
+        add_signals(self)
         self.add_output("file", "OUTPUT", tr("OpenDRIVE file"), tr("The map."), suffixes=(".xodr",), file_filter="OpenDRIVE (*.xodr)")
         self.add_report()
 
     def work(self, call, progress):
-        from pathlib import Path
-
-        from ..products.export.check.roads import check_opendrive
-        from ..products.export.opendrive.exporter import draft_opendrive
-        from ..products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
-        from ..products.export.sources import border_misses, driving_line_misses, reference_of_crs
-
-        source = lanes_with_borders(call, progress.part(0.0, 0.2))
-        settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
-        draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
-        draft.map.reference = reference_of_crs(source.lanes.crs)
-        path = call.new_file("OUTPUT")
-        Path(path).write_text(opendrive_text(draft.map), encoding="utf-8")
-        whole = read_opendrive(path)
-        shown, check = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
-        across, rise = border_misses(source.lanes, shown.lanes)
-        driven = driving_line_misses(source.driving_lines, shown.lanes)
-        led = source.led_to_middles()
-        single = driving_line_misses(source.driving_lines, shown.lanes, apart_from=led) if len(led) else driven
-        notes = [*source.notes, *draft.notes]
-        if not source.lanes.crs:
-            notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))
-        if across.largest > settings.tolerance or rise.largest > settings.tolerance:
-            x, y, _ = (across if across.largest > settings.tolerance else rise).worst
-            notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
-                            "tolerance, the farthest near x {x:.1f}, y {y:.1f}.").format(across=across.largest, rise=rise.largest, x=x, y=y))
-        warn_of_faults(notes, check, progress)
-        progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
-            roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
-        if call.wants("REPORT"):
-            call.text("REPORT", _report(call, whole, check, shown, (across, rise, driven, single), notes))
-        numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": check.successors, "FINDINGS": len(check.found),
-                   "BORDER_MAXIMUM": across.largest, "HEIGHT_MAXIMUM": rise.largest}
-        if driven.places:
-            numbers["DRIVING_LINE_P95"] = driven.p95
-        return {name: float(value) for name, value in numbers.items()}
+        return write_opendrive(call, lanes_with_borders(road_map_source(call, progress.part(0.0, 0.2))), call.layer_name("LANES"), progress)
 
 
-def _report(call, whole, found, shown, misses, notes):
+def write_opendrive(call, source, name, progress):
+    """Write a RoadMapSource with shared borders as OUTPUT, and its report; returns the numbers. `name`: of what it was made of."""
+    from pathlib import Path
+
+    from ..products.export.check.roads import check_opendrive
+    from ..products.export.opendrive.exporter import draft_opendrive
+    from ..products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+    from ..products.export.sources import border_misses, driving_line_misses, reference_of_crs
+
+    settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
+    draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
+    draft.map.reference = reference_of_crs(source.lanes.crs)
+    path = call.new_file("OUTPUT")
+    Path(path).write_text(opendrive_text(draft.map), encoding="utf-8")
+    whole = read_opendrive(path)
+    shown, check = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
+    across, rise = border_misses(source.lanes, shown.lanes)
+    driven = driving_line_misses(source.driving_lines, shown.lanes)
+    led = source.led_to_middles()
+    single = driving_line_misses(source.driving_lines, shown.lanes, apart_from=led) if len(led) else driven
+    notes = [*source.notes, *draft.notes]
+    if not source.lanes.crs:
+        notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))
+    if across.largest > settings.tolerance or rise.largest > settings.tolerance:
+        x, y, _ = (across if across.largest > settings.tolerance else rise).worst
+        notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
+                        "tolerance, the farthest near x {x:.1f}, y {y:.1f}.").format(across=across.largest, rise=rise.largest, x=x, y=y))
+    warn_of_faults(notes, check, progress)
+    progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
+        roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
+    if call.wants("REPORT"):
+        call.text("REPORT", _report(name, whole, check, shown, (across, rise, driven, single), notes))
+    numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": check.successors, "FINDINGS": len(check.found),
+               "BORDER_MAXIMUM": across.largest, "HEIGHT_MAXIMUM": rise.largest}
+    if driven.places:
+        numbers["DRIVING_LINE_P95"] = driven.p95
+    return {name: float(value) for name, value in numbers.items()}
+
+
+def _report(name, whole, found, shown, misses, notes):
     from collections import defaultdict
 
     from ..core.common.texts import word
@@ -209,15 +232,24 @@ def _report(call, whole, found, shown, misses, notes):
         (tr("Elements of the reference lines"), (tr("Element"), tr("Length (m)")),
          [(word(kind, "element"), round(metres, 1)) for kind, metres in sorted(lengths.items())]),
     ]
-    return map_export_report(tr("OpenDRIVE map"), call.layer_name("LANES"), facts, tables + fault_table(found), notes, shown)
+    return map_export_report(tr("OpenDRIVE map"), name, facts, tables + fault_table(found), notes, shown)
 
 
 LANELETS = "products.export.lanelet_map:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
 LANELET_SETTINGS = (
     SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
-                tr("Written to every lanelet for vehicles. 0 writes none: the survey does not know it.")),
+                tr("Written to every lanelet for vehicles of whose road no limit is known. 0 writes none there.")),
 )
+
+
+def add_lanelet_choices(algorithm):
+    """How Lanelet2 is written."""
+    algorithm.add_settings(LANELET_SETTINGS)
+    algorithm.add_input("choice", "LOCATION", tr("Location"), tr("Whether the roads are in a town; planners draw traffic rules from it."),
+                        default=LOCATIONS[0], choices=LOCATIONS)
+    algorithm.add_input("flag", "LOCAL_COORDINATES", tr("Write local_x and local_y"), tr(
+        "Autoware reads these metres within a square of 100 km instead of latitude and longitude."), default=False)
 
 
 class ExportLanelet2(Algorithm):
@@ -236,48 +268,49 @@ class ExportLanelet2(Algorithm):
 
     def declare(self):
         add_road_map_layers(self)
-        self.add_settings(LANELET_SETTINGS)
-        self.add_input("choice", "LOCATION", tr("Location"), tr("Whether the roads are in a town; planners draw traffic rules from it."),
-                       default=LOCATIONS[0], choices=LOCATIONS)
-        self.add_input("flag", "LOCAL_COORDINATES", tr("Write local_x and local_y"), tr(
-            "Autoware reads these metres within a square of 100 km instead of latitude and longitude."), default=False)
+        add_lanelet_choices(self)
+        add_signals(self)
         self.add_output("file", "OUTPUT", tr("Lanelet2 file"), tr("The map."), suffixes=(".osm",), file_filter="Lanelet2 (*.osm)")
         self.add_report()
 
     def work(self, call, progress):
-        from pathlib import Path
+        return write_lanelet2(call, lanes_with_borders(road_map_source(call, progress.part(0.0, 0.2))), call.layer_name("LANES"), progress)
 
-        from ..products.export.check.lanelets import check_lanelets
-        from ..products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
-        from ..products.report.hd_map import map_export_report
 
-        source = lanes_with_borders(call, progress.part(0.0, 0.2))
-        progress.report(0.2)
-        draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.value("LOCATION")))
-        degrees = to_degrees(draft.nodes, source.lanes.crs)
-        path = call.new_file("OUTPUT")
-        Path(path).write_text(lanelet2_text(draft, degrees, call.value("LOCAL_COORDINATES")), encoding="utf-8")
-        progress.report(0.6)
-        whole = read_lanelet2(path)
-        check = check_lanelets(whole, *node_places(whole, source.lanes.crs))
-        progress.report(0.8)
-        notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
-                                  for kind, count in draft.skipped.items())]
-        if degrees.local:
-            notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
-        warn_of_faults(notes, check, progress)
-        numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
-                   "SUCCESSORS": float(check.successors), "FINDINGS": float(len(check.found))}
-        progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=told(degrees.way)))
-        if call.wants("REPORT"):
-            accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else tr("not stated")
-            facts = [(tr("Lanelets"), len(draft.lanelets)), (tr("Links from one lane to the next"), check.successors),
-                     (tr("Pairs of lanes side by side"), check.neighbours), (tr("Ways"), len(whole.ways)), (tr("Nodes"), len(whole.node_ids)),
-                     (tr("Transformation to latitude and longitude"), told(degrees.way)), (tr("Accuracy of the transformation"), accuracy),
-                     (tr("Heights"), told(degrees.vertical))]
-            call.text("REPORT", map_export_report(tr("Lanelet2 map"), call.layer_name("LANES"), facts, fault_table(check), notes,
-                                                  layers_of_lanelets(whole, source.lanes.crs)))
-        return numbers
+def write_lanelet2(call, source, name, progress):
+    """Write a RoadMapSource with shared borders as OUTPUT, and its report; returns the numbers. `name`: of what it was made of."""
+    from pathlib import Path
+
+    from ..products.export.check.lanelets import check_lanelets
+    from ..products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
+    from ..products.report.hd_map import map_export_report
+
+    progress.report(0.2)
+    draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.value("LOCATION")))
+    degrees = to_degrees(draft.nodes, source.lanes.crs)
+    path = call.new_file("OUTPUT")
+    Path(path).write_text(lanelet2_text(draft, degrees, call.value("LOCAL_COORDINATES")), encoding="utf-8")
+    progress.report(0.6)
+    whole = read_lanelet2(path)
+    check = check_lanelets(whole, *node_places(whole, source.lanes.crs))
+    progress.report(0.8)
+    notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
+                              for kind, count in draft.skipped.items())]
+    if degrees.local:
+        notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
+    warn_of_faults(notes, check, progress)
+    numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
+               "SUCCESSORS": float(check.successors), "FINDINGS": float(len(check.found))}
+    progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=told(degrees.way)))
+    if call.wants("REPORT"):
+        accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else tr("not stated")
+        facts = [(tr("Lanelets"), len(draft.lanelets)), (tr("Links from one lane to the next"), check.successors),
+                 (tr("Pairs of lanes side by side"), check.neighbours), (tr("Ways"), len(whole.ways)), (tr("Nodes"), len(whole.node_ids)),
+                 (tr("Transformation to latitude and longitude"), told(degrees.way)), (tr("Accuracy of the transformation"), accuracy),
+                 (tr("Heights"), told(degrees.vertical))]
+        call.text("REPORT", map_export_report(tr("Lanelet2 map"), name, facts, fault_table(check), notes,
+                                              layers_of_lanelets(whole, source.lanes.crs)))
+    return numbers
 
 
 ALIGNMENTS = "products.export.opendrive.exporter:OpenDriveSettings"
@@ -472,14 +505,19 @@ class ImportOpenDrive(Algorithm):
         add_map_layers(self)
 
     def work(self, call, progress):
-        from ..products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
-        from ..products.export.sources import crs_of_reference
+        return write_map_layers(call, _road_layers(call, progress), progress)
 
-        road_map = read_opendrive(map_file(call), progress.part(0.0, 0.5))
-        crs, note = crs_of_reference(road_map.reference, call.crs())
-        layers = layers_of_opendrive(road_map, crs, progress.part(0.5, 0.95))
-        layers.notes += [note] if note else []
-        return write_map_layers(call, layers, progress)
+
+def _road_layers(call, progress):
+    """The MapLayers of the OpenDRIVE file that was given."""
+    from ..products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
+    from ..products.export.sources import crs_of_reference
+
+    road_map = read_opendrive(map_file(call), progress.part(0.0, 0.5))
+    crs, note = crs_of_reference(road_map.reference, call.crs())
+    layers = layers_of_opendrive(road_map, crs, progress.part(0.5, 0.95))
+    layers.notes += [note] if note else []
+    return layers
 
 
 class ImportLanelet2(Algorithm):
@@ -498,10 +536,54 @@ class ImportLanelet2(Algorithm):
         add_map_layers(self)
 
     def work(self, call, progress):
-        from ..products.export.lanelet_map import layers_of_lanelets, read_lanelet2
+        return write_map_layers(call, _lanelet_layers(call, progress), progress)
 
-        lanelet_map = read_lanelet2(map_file(call), progress.part(0.0, 0.5))
-        return write_map_layers(call, layers_of_lanelets(lanelet_map, call.crs(), progress.part(0.5, 0.95)), progress)
+
+def _lanelet_layers(call, progress):
+    """The MapLayers of the Lanelet2 file that was given."""
+    from ..products.export.lanelet_map import layers_of_lanelets, read_lanelet2
+
+    return layers_of_lanelets(read_lanelet2(map_file(call), progress.part(0.0, 0.5)), call.crs(), progress.part(0.5, 0.95))
+
+
+class ConvertMap(Algorithm):
+    ID, TITLE, GROUP = "converthdmap", "Convert HD map", "Export"
+    SUMMARY = "Writes an OpenDRIVE map as Lanelet2, or a Lanelet2 map as OpenDRIVE, with its signals, crossings, poles and speed limits."
+    HELP = ("The map is read as by Import OpenDRIVE or Import Lanelet2 and written as by the export of the other format; the endings of the files "
+            "say which. Borders come out within the tolerance of where they came in, and every lane leads to the same lanes.\n\n"
+            "Carried over are lanes with their borders, paint, curbs and heights, traffic lights and signs with the lanes that obey them, poles, "
+            "crossings, stop lines, speed limits and names of roads; to OpenDRIVE arrows and hatched areas too. Lanelet2 has no lanes for parking "
+            "and no medians. What is not carried over, such as buildings or the controllers of lights, is counted in one line of the log.")
+    TAGS = ("OpenDRIVE", "Lanelet2", "xodr", "osm", "HD map", "conversion", "Autoware", "CARLA", "esmini")
+    NUMBERS = (("SUCCESSORS", tr("Links from one lane to the next")), ("FINDINGS", tr("Findings of the check")),
+               ("SIGNAL_COUNT", tr("Signals and poles")), ("LEFT_OUT", tr("What is not carried over")))
+
+    def declare(self):
+        add_map_file(self, tr("Map file"), tr("An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides."), MAP_FILTER)
+        self.add_input("crs", "CRS", tr("CRS of the map in metres"), tr(
+            "OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map."),
+            optional=True)
+        add_road_choices(self)
+        add_lanelet_choices(self)
+        self.add_output("file", "OUTPUT", tr("Converted map"), tr("With the ending of the other format, .osm or .xodr."), suffixes=(".osm", ".xodr"),
+                        file_filter="Lanelet2 (*.osm);;OpenDRIVE (*.xodr)")
+        self.add_report()
+
+    def work(self, call, progress):
+        from pathlib import Path
+
+        from ..products.export.sources import checked
+
+        path, output = map_file(call), str(call.output_path("OUTPUT"))
+        from_lanelets = _is_lanelet2(path)
+        if from_lanelets == output.lower().endswith(".osm"):
+            raise RoadExtractionError(tr("{path} is {kind} already, and {output} would be too. Give the result the ending {ending}.").format(
+                path=path, output=output, kind="Lanelet2" if from_lanelets else "OpenDRIVE", ending=".xodr" if from_lanelets else ".osm"))
+        layers = (_lanelet_layers if from_lanelets else _road_layers)(call, progress.part(0.0, 0.2))
+        source = lanes_with_borders(checked(layers.source()))
+        numbers = (write_opendrive if from_lanelets else write_lanelet2)(call, source, Path(path).name, progress.part(0.2, 1.0))
+        return {"SUCCESSORS": numbers["SUCCESSORS"], "FINDINGS": numbers["FINDINGS"], "SIGNAL_COUNT": float(len(layers.signals)),
+                "LEFT_OUT": float(sum(layers.left_out.values()))}
 
 
 MAP_FILTER = "HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)"

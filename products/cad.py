@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
@@ -88,6 +88,11 @@ def section_table(sections: RoadSections) -> str:
     return "\n".join(lines) + "\n"
 
 
+def drawn_layers(layers: Mapping[str, Features]) -> list[_DxfLine]:
+    """Lines and outlines of areas of layers under the names of these; a point is written as the first text of its row."""
+    return [line for name, layer in layers.items() for line in _of(layer, lambda row, name=name: name)]  # type: ignore[misc]
+
+
 def section_drawing(sections: RoadSections) -> list[_DxfLine]:
     """Every section as one sees it along the road, true to scale, one below the other, with stations, heights, slopes and limits that are not kept.
 
@@ -144,7 +149,8 @@ def _of(layer: Features | None, name_of: Callable[[dict[str, Any]], str]) -> lis
         for part in shapely.get_parts(geometry) if geometry is not None else ():
             closed = part.geom_type == "Polygon"
             places = shapely.get_coordinates(part.exterior if closed else part, include_z=True)
-            lines.append(_DxfLine(name_of(row), places, closed))
+            text = next((str(value) for value in row.values() if value), "+") if part.geom_type == "Point" else ""
+            lines.append(_DxfLine(name_of(row), places, closed, text))
     return lines
 
 
@@ -172,19 +178,20 @@ def write_dxf(lines: list[_DxfLine], path: str, crs: str = "", faces: np.ndarray
         put((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (9, "$DWGCODEPAGE"), (3, "ANSI_1252"), (0, "ENDSEC"),
             (0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER"), (70, len(layers)))
         for layer in layers:
-            put((0, "LAYER"), (2, layer), (70, 0), (62, _colour_of(layer)), (6, "CONTINUOUS"))
+            put((0, "LAYER"), (2, _dxf_text(layer)), (70, 0), (62, _colour_of(layer)), (6, "CONTINUOUS"))
         put((0, "ENDTAB"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES"))
         for line in lines:
+            owner = 8, _dxf_text(line.layer)
             places = [_dxf_place(place) for place in units.in_file(line.places)]
             if line.text:
                 middle = [(code + 1, value) for code, value in places[0]]
-                put((0, "TEXT"), (8, line.layer), *places[0], (40, f"{LETTER / units.across:.4f}"), (1, _dxf_text(line.text)),
+                put((0, "TEXT"), owner, *places[0], (40, f"{LETTER / units.across:.4f}"), (1, _dxf_text(line.text)),
                     (50, f"{line.turned:g}"), (72, 1), *middle, (73, 2))
             else:
-                put((0, "POLYLINE"), (8, line.layer), (66, 1), (70, 9 if line.closed else 8), *_dxf_place((0, 0, 0)))
+                put((0, "POLYLINE"), owner, (66, 1), (70, 9 if line.closed else 8), *_dxf_place((0, 0, 0)))
                 for place in places:
-                    put((0, "VERTEX"), (8, line.layer), *place, (70, 32))
-                put((0, "SEQEND"), (8, line.layer))
+                    put((0, "VERTEX"), owner, *place, (70, 32))
+                put((0, "SEQEND"), owner)
         for corners in () if faces is None else units.in_file(faces):
             # a triangle is a face whose last corner stands twice
             put((0, "3DFACE"), (8, "SURFACE"), *(pair for k, corner in enumerate((*corners, corners[2])) for pair in _dxf_place(corner, k)))

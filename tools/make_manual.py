@@ -31,6 +31,8 @@ FILES = {
     "georeferenceimage.IMAGE": "uav_image.tif", "georeferenceimage.GCPS": "control_points.gpkg",
     "georeferenceimage.OUTPUT": "orthoimage.tif",
     "printsheets.OUTPUT": "sheets.pdf", "exportlanelet2.OUTPUT": "map.osm", "exportopendrive.OUTPUT": "map.xodr", "exportcad.OUTPUT": "map.dxf",
+    "exporttemplate.TEMPLATE": "template.csv", "exporttemplate.OUTPUT": "client.gpkg",
+    "classifycloud.OUTPUT": "classified", "classifycloud.UNROLLED": "unrolled",
     "checkhdmap.INPUT": "map.xodr", "checkhdmap.OUTPUT": "map_findings.gpkg",
     "importopendrive.INPUT": "map.xodr", "importlanelet2.INPUT": "map.osm",
     **{f"{name}.{layer}": f"{name.removeprefix('import')}_{layer.lower()}.gpkg" for name in ("importopendrive", "importlanelet2")
@@ -54,6 +56,8 @@ NAMED = {
     "crosssections": ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES"),
     "roadmap": ("TRAJECTORY",),
     "roadside": ("ROAD_EDGES",),
+    "exporttemplate": ("ROAD_EDGES", "MARKINGS", "MARKING_LINES"),
+    "classifycloud": ("ROAD_SURFACE", "ROAD_EDGES", "MARKINGS"),
 }
 
 
@@ -118,7 +122,7 @@ def kind(d):
         "multilayer": tr("files"), "file": tr("file"), "source": tr("vector layer"), "raster": tr("raster"), "crs": tr("CRS"),
         "number": tr("number"), "enum": tr("choice"), "boolean": tr("yes or no"), "string": tr("text"), "sink": tr("vector layer"),
         "fileDestination": tr("file"), "rasterDestination": tr("raster"), "pointcloud": tr("point cloud"), "vector": tr("vector layer"),
-        "matrix": tr("numbers"),
+        "matrix": tr("numbers"), "folderDestination": tr("folder"),
     }
     return ", ".join([kinds.get(d.type(), d.type()), *([tr("optional")] if optional(d) else [])])
 

@@ -12,8 +12,7 @@ import numpy as np
 
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
-from ..countries.model import Country
-from ..countries.neutral import NEUTRAL
+from ..countries.catalogue import NEUTRAL, Country
 from ..curves.base import Arc, CurveFit
 from ..curves.model_selection import fit_curves
 from ..curves.segmentation import element_ranges

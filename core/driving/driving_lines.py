@@ -42,19 +42,16 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     Lanes are those of the most probable cross-sections of each road (`estimate_roads`); their middle is driven. Gaps of all lines are
     bridged one to one.
 
-    Parameters
-    ----------
     markings : MarkingObjects or None: no lane leads along a hatched area
     edges : RoadEdges or None: no lane leads over a curb
     road_points : RoadPoints or None: the heights of the road
     taken : second readings that an analyst took
 
     Returns
-    -------
-    lines : DrivingLines. Lanes are numbered from 1 on every road by where they begin, from right to left. A lane is cut
-        into pieces by `status`, and where its uncertainty changes much; pieces of one lane touch
-    elements : CurveElements of every lane
-    lanes : Lanes, the areas of the same pieces, and connectors between them where the vehicle drove on without lines
+        lines : DrivingLines. Lanes are numbered from 1 on every road by where they begin, from right to left. A lane is cut
+            into pieces by `status`, and where its uncertainty changes much; pieces of one lane touch
+        elements : CurveElements of every lane
+        lanes : Lanes, the areas of the same pieces, and connectors between them where the vehicle drove on without lines
     """
     rows: list[dict[str, Any]] = []
     arcs: list[dict[str, Any]] = []
@@ -213,8 +210,6 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoa
                spacing: np.ndarray | None = None) -> np.ndarray:
     """(N,) m, one sigma across a driving line at each place of its lane.
 
-    Parameters
-    ----------
     known : EstimatedRoad of the road's lines, on whose stations the track runs, and of its boundaries, between which it lies
     paint : {number of a line: m, RMS distance of its paint from its curve}
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`: one for all, or (N,)

@@ -128,18 +128,13 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
                   kept: KeptRun = WINDOW) -> RoadMap:
     """Run the chain.
 
-    Parameters
-    ----------
     paths : point cloud files
     image_path : where the intensity image is written (.tif), by GDAL; None for no file, which the chain does without
     settings : RoadMapSettings, those of every stage
     corrections : the layer CORRECTIONS of an analyst, or None; each is made where its kind of line was found, so that what follows builds on it
     kept : what the last run gave, if it is wanted; stages that would give the same are not run again
 
-    Raises
-    ------
-    RoadExtractionError
-        If a stage cannot use its input. A cloud without intensity still yields edges and surface; `without_paint` then
+    Raises RoadExtractionError if a stage cannot use its input. A cloud without intensity still yields edges and surface; `without_paint` then
         gives the reason why markings are missing.
     """
     stages = Stages(progress, Extent.expected(paths, trajectory, settings.survey.crs), settings.boundary_method,
@@ -320,10 +315,7 @@ class Extent:
     def expected(cls, paths: Sequence[str | Path], trajectory: Trajectory, crs: str = "") -> Extent:
         """The extent by file headers and trajectory, before any point is read; `crs` is that of clouds that carry none.
 
-        Raises
-        ------
-        RoadExtractionError
-            If a header cannot be read or the CRS is unsuitable, as in `open_survey`.
+        Raises RoadExtractionError if a header cannot be read or the CRS is unsuitable, as in `open_survey`.
         """
         files = read_headers(paths, given=crs or trajectory.crs)
         trajectory = reproject_trajectory(trajectory, check_projected(files, crs, trajectory.crs))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from ..common.progress import Progress
 from ..execution.phase import THREADS, NoSource, Phase
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import find_lattice
+from ..survey.open_survey import Survey
 from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
@@ -31,9 +31,6 @@ from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
 from .weights import BOUNDARY, CURBS, SCANLINE
 
-if TYPE_CHECKING:
-    from ..survey.open_survey import Survey
-
 BOUNDARY_METHODS = ("profiles", "scanlines", "both")
 METHODS = ("scanlines", "profiles")   # in the order of trust: three planes are a stricter model of a curb than a profile
 
@@ -42,8 +39,6 @@ METHODS = ("scanlines", "profiles")   # in the order of trust: three planes are 
 class BoundarySettings:
     """How road boundaries are found.
 
-    Attributes
-    ----------
     method : "profiles", "scanlines", or "both": one path along the road through what the two see
     curbs : settings of the profiles method
     scanlines : settings of the scanlines method
@@ -62,11 +57,9 @@ class BoundarySettings:
 
 
 @dataclass
-class RoadBoundaries:
+class _RoadBoundaries:
     """Curb points and the edges through them.
 
-    Attributes
-    ----------
     curb_points : CurbPoints
     edges : RoadEdges
     differences : RoadEdges, where the curbs of the two methods lie apart; None with one method
@@ -85,9 +78,7 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 
     ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
-    Returns
-    -------
-    {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
+    Returns {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
     curbs as each sees them alone, and "both" those of the best path through the chains of the two. Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
@@ -138,13 +129,11 @@ def _points_of_both(chains, occlusion, survey):
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
-                    progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> RoadBoundaries:
+                    progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> _RoadBoundaries:
     """Edges through the curb points of one method, or of the path through those of two, and edges of the pavement where there is no curb.
 
     With both methods, `agree` of every piece says how far apart they lie.
 
-    Parameters
-    ----------
     found : result of `find_curb_points`
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
     ground : MeasuredGround of it that an earlier stage kept, or None
@@ -163,13 +152,13 @@ def _drawn(found, frame, settings, executor, progress):
     edges, = executor.run(Phase(edges_through, NoSource(), (frame, settings), lambda item: "the edges of all roads"), [points])
     tell_edges(edges, progress)
     if "both" not in found:
-        return RoadBoundaries(points, edges)
+        return _RoadBoundaries(points, edges)
     edges, differences = measure_agreement(edges, *(found[method] for method in METHODS), frame)
     lengths = {method: _measured_length(found[method]) for method in METHODS}
     if any(lengths.values()):
         progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                      f"they lie more than 5 cm apart along {differences.length.sum():.0f} m.")
-    return RoadBoundaries(points, edges, differences, lengths)
+    return _RoadBoundaries(points, edges, differences, lengths)
 
 
 # How far apart the curbs of two methods lie, where both see one.
@@ -208,10 +197,9 @@ def measure_agreement(edges: RoadEdges, first: CurbPoints, second: CurbPoints, f
     first, second : CurbPoints of two methods
 
     Returns
-    -------
-    edges : RoadEdges with `agree`
-    differences : RoadEdges, lines along the curb of the first, one for every stretch where the two lie more
-        than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
+        edges : RoadEdges with `agree`
+        differences : RoadEdges, lines along the curb of the first, one for every stretch where the two lie more
+            than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
     """
     agree = edges.agree.copy()
     differences: list[EdgePiece] = []

@@ -105,8 +105,6 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
                    **values: object) -> int:
     """Write one row; an earlier one of the same target at the same place makes room for it.
 
-    Parameters
-    ----------
     layer : of corrections
     line, crs : its course, and the CRS of its coordinates
     former : an earlier decision about the same piece, None where there is none; one of the same target at this place is found without it

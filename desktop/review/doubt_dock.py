@@ -33,7 +33,7 @@ from ..widgets import button, choices, give_map_back, row, say, show_extent, tak
 from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .photos import PhotoButton, photo_of
-from .smart_pick import evidence, pick, snap
+from .smart_pick import evidence, pick, prepare, snap
 from .steps import STALE, StepsPanel, steps_of
 
 ARRIVED = 700   # ms after the last layer of a run that came into the project
@@ -63,8 +63,10 @@ class DoubtDock(QDockWidget):
         self.at = -1
         self.seen: Doubt | None = None   # what map and section show
         self.road_map: RoadMap | None = None
+        self.left: tuple[str | None, Doubt | None] = None, None   # survey and place of the road map whose layers went last
         self._of = self._pending = None
         self.looks: list[QgsTask] = []  # under way; QGIS keeps no reference
+        self.reading: QgsTask | None = None   # what clicks will need
         self.bands: list[QgsRubberBand] = []
         self.tool = LineTool(iface.mapCanvas())
         self.tool.drawn.connect(self._line_drawn)
@@ -173,6 +175,7 @@ class DoubtDock(QDockWidget):
         if self.road_map is not None and self.road_map.has_any(removed):
             self._stop_drawing()
             self._stop_looking()
+            self.left = self.road_map.survey, self.place   # the same survey, made again in the place of the old layers
             self.road_map, self._of, self.places, self.at = None, None, [], -1
             self.photo.show_photo(None)
             self._fill()
@@ -185,12 +188,15 @@ class DoubtDock(QDockWidget):
     def _follow(self):
         """Go on in the map that has just been made again of the same survey, where a run or a stage has added layers of it."""
         arrived, self.arrived = self.arrived, set()
-        if self.road_map is None:
-            return
-        newer = next((one for one in road_maps(QgsProject.instance()) if one.survey == self.road_map.survey and one.has_any(arrived)), None)
+        survey, place = self.left if self.road_map is None else (self.road_map.survey, self.place)
+        newer = next((one for one in road_maps(QgsProject.instance()) if one.survey == survey and one.has_any(arrived)), None)
         if newer is not None:
             self._stop_drawing()
             self._take(newer)
+            if place is not None and self.places:
+                self.at = min(range(len(self.places)), key=lambda at: self.places[at].middle.distance(place.middle))
+                self.seen = self.place
+                self.shown.emit(self.seen)
             self._fill()
             if not self.isHidden():
                 self._come_to_front()
@@ -451,9 +457,11 @@ class DoubtDock(QDockWidget):
     # -- what the points show ---------------------------------------------------------------------
 
     def begin_pick(self) -> None:
-        """Wait for clicks near what is missing."""
+        """Wait for clicks near what is missing; what they need is read meanwhile."""
         if self._layer_to_write() is not None:
-            take_map(self.iface.mapCanvas(), self.pick_tool)
+            canvas = self.iface.mapCanvas()
+            take_map(canvas, self.pick_tool)
+            self.reading = prepare(self.road_map, canvas.center(), canvas.mapSettings().destinationCrs())
             self._say(tr("Click near a curb or a painted line that the map lacks."))
 
     def pick_at(self, point: QgsPointXY) -> None:

@@ -50,6 +50,9 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
         _remove_former(layer, output, former, project)
     else:
         _hide_former(output, road_map, former, project)
+        for run_before, old in [*((earlier, earlier.layer(output)) for earlier in former), *((road_map, old) for old in road_map.older)]:
+            if old is not None and old.source() == layer.source():   # the new one was written in its place
+                _remove(old, run_before, project)
     if output in IMAGES and road_map.group is not None:
         _lay_under_map(layer, road_map, project)
 
@@ -61,10 +64,15 @@ def _remove_former(layer, output, former, project):
         old = run.layer(output)
         if old is None or origin_of(old).provenance.algorithm != algorithm:
             continue
-        project.removeMapLayer(old.id())
-        if not run.group.children():
-            run.group.parent().removeChildNode(run.group)
+        _remove(old, run, project)
         return
+
+
+def _remove(layer, run, project):
+    """Take a layer out of the project, and the group of its run once that is empty."""
+    project.removeMapLayer(layer.id())
+    if not run.group.children():
+        run.group.parent().removeChildNode(run.group)
 
 
 def _hide_former(output, this, former, project):

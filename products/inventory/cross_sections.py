@@ -13,8 +13,7 @@ from ...core.common.features import CROSS_SECTIONS, Features
 from ...core.common.parallel import ordered_map
 from ...core.common.progress import Progress
 from ...core.common.texts import told, word
-from ...core.countries.catalogue import country
-from ...core.countries.model import SectionLimits
+from ...core.countries.catalogue import SectionLimits, country
 from ...core.curves.robust import MAD_TO_SIGMA
 from ...core.survey.frame.road_frame import RoadFrame
 from ...core.survey.store.records import Points

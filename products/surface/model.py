@@ -13,8 +13,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.features import BREAKLINES, SURFACE_FACES, Features
 from ...core.common.progress import Progress
 from ...core.common.setting import Limited, setting
-from ...core.countries.catalogue import country
-from ...core.countries.neutral import NEUTRAL
+from ...core.countries.catalogue import NEUTRAL
 from ...core.io.crs import as_in_file
 from ...core.io.geotiff import GEOTIFF_TILE, NODATA, new_geotiff
 from ...core.survey.survey import Survey
@@ -65,7 +64,7 @@ def make_surface_model(survey: Survey, layers: BorderLayers, settings: SurfaceSe
     layers : BorderLayers, of which the edges must be given
     Raises RoadExtractionError if the edges lie on no road of the survey, or no ground was seen about them
     """
-    borders = RoadBorders(layers, survey.frame, country(NEUTRAL.name))
+    borders = RoadBorders(layers, survey.frame, NEUTRAL)
     roads, grounds, lines = survey.store.roads(), [], []
     for k, road in enumerate(roads):
         part = progress.part(0.6 * k / len(roads), 0.6 * (k + 1) / len(roads))

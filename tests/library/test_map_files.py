@@ -178,3 +178,37 @@ def test_a_road_as_long_as_the_earth_is_wide_costs_no_memory(tmp_path, algorithm
     with pytest.raises(RoadExtractionError, match="1,200 km long; at most 1,000 km"):
         run(algorithm, INPUT=path, **{"OUTPUT" if algorithm == "checkhdmap" else "LANES": tmp_path / "layer.gpkg"})
     assert sorted(os.listdir(tmp_path)) == ["map.xodr"]
+
+
+def lit_street(folder):
+    """A street with a traffic light and a speed limit."""
+    text = road(geometry(0, 0, 0, 0, 40), 40).replace("<planView>", '<type s="0" type="town"><speed max="50" unit="km/h"/></type><planView>')
+    signal = '<signal id="1" s="38" t="-5" zOffset="2" orientation="+" dynamic="yes" type="1000001" subtype="-1" name="A" height="1" width="0.4"/>'
+    return written(folder, opendrive([text.replace("</road>", f"<signals>{signal}</signals></road>")], offset=(602000, 5792000)))
+
+
+def test_a_map_is_converted_there_and_back_with_its_light_and_speed_limit(tmp_path):
+    there = run("converthdmap", INPUT=lit_street(tmp_path), OUTPUT=tmp_path / "there.osm", REPORT=tmp_path / "report.html")
+    assert there["SIGNAL_COUNT"] == 1 and there["FINDINGS"] == 0 and "map.xodr" in (tmp_path / "report.html").read_text()
+    back = run("converthdmap", INPUT=there["OUTPUT"], OUTPUT=tmp_path / "back.xodr", CRS="EPSG:25832")
+    assert back["SIGNAL_COUNT"] == 1 and back["FINDINGS"] == 0
+    results = run("importopendrive", INPUT=back["OUTPUT"], LANES=tmp_path / "lanes.gpkg", SIGNALS=tmp_path / "signals.gpkg")
+    with fiona.open(results["LANES"]) as layer:
+        assert len(layer) == 2 and layer.bounds == pytest.approx((602000, 5791996.5, 602040, 5792003.5), abs=0.02)
+        assert {row.properties["speed_kmh"] for row in layer} == {50.0}
+    with fiona.open(results["SIGNALS"]) as layer:
+        assert [(row.properties["kind"], row.properties["text"]) for row in layer] == [("traffic_light", "A")]
+    again = run("exportlanelet2", LANES=results["LANES"], SIGNALS=results["SIGNALS"], OUTPUT=tmp_path / "again.osm")
+    text = (tmp_path / "again.osm").read_text()
+    assert again["FINDINGS"] == 0 and 'v="50"' in text and "regulatory_element" in text
+
+
+@pytest.mark.parametrize("text, output, said", [
+    (lanelet_street(), "out.osm", "is Lanelet2 already"), (opendrive([road(geometry(0, 0, 0, 0, 40), 40)]), "out.xodr", "is OpenDRIVE already"),
+    (opendrive([]), "out.osm", "no road that can be read"), (opendrive([road(geometry(0, 0, 0, 0, 40), 40)])[:-40], "out.osm", "not well-formed"),
+    ("<osm></osm>", "out.xodr", "no relation of type lanelet"), ("<gpx/>", "out.osm", "neither as OpenDRIVE nor as Lanelet2"),
+    (lanelet_street(), "out.txt", "written as")])
+def test_what_cannot_be_converted_is_refused_in_one_sentence_and_leaves_nothing(tmp_path, text, output, said):
+    with pytest.raises(RoadExtractionError, match=said):
+        run("converthdmap", INPUT=written(tmp_path, text, "map.any"), OUTPUT=tmp_path / output)
+    assert os.listdir(tmp_path) == ["map.any"]

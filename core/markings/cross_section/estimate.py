@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.parallel import check_cancelled
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from .beside import NATS, SECOND_WIDTH
 from .candidates import Candidates
 from .evidence import Evidence

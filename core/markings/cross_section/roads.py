@@ -11,7 +11,7 @@ import shapely
 from ...common.arrays import mask_runs
 from ...common.parallel import check_cancelled, ordered_map
 from ...common.progress import Progress
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from ...countries.traffic_side import side_of_traffic
 from ...curves.robust import median
 from ...io.crs import horizontal_part, parse_crs, place_on_ground
@@ -55,8 +55,6 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                    progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> RoadEstimates:
     """Estimate lines and lanes.
 
-    Parameters
-    ----------
     lines : {number of the road: CrossSections}
     usual_width : metres, of lanes where the lines do not tell
     side : "right", "left" or "automatic"

@@ -55,8 +55,6 @@ def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, patt
                    width: np.ndarray | None = None) -> dict[int, CrossSections]:
     """CrossSections by number of the road: lines as offsets at common stations.
 
-    Parameters
-    ----------
     lines : FrameLines of P pieces; number : (P,) int, the pieces of one line share it
     kind, pattern : (P,) str objects, "" where unknown
     seen : (P,) bool, False for pieces that are bridged

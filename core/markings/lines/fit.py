@@ -14,8 +14,7 @@ import shapely
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ...countries.catalogue import country
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL, country
 from ...curves.base import CurveFit
 from ...curves.bspline import Profile, fit_splines, smooth_profiles
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
@@ -222,8 +221,6 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
                       progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> PaintedLines:
     """Lines with the `kind` that the estimate of their road gives them; one that bounds no lane is called by how it is drawn.
 
-    Parameters
-    ----------
     usual_width : m, of lanes where the lines do not tell
     markings, edges, road_points : what else the estimate is made from, or None
     paint : points of markings, which serve where there are no road points, or None
@@ -306,21 +303,14 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
                       road_points: RoadPoints | None = None, taken: Sequence[TakenReading] = ()) -> PaintedLines:
     """Trace, link and fit the painted lines of all roads.
 
-    Parameters
-    ----------
     clustered_points : RoadPoints with `cluster`; markings : MarkingObjects of the same clusters
     edges, road_points : RoadEdges and RoadPoints, or None: what the lines separate is told better with them
     taken : second readings that an analyst took
 
-    Returns
-    -------
-    PaintedLines with `fitted`: a line that is partly bridged, or changes between dashed and solid, comes in touching pieces with one `line` number.
-    Every piece is drawn on the line's one curve.
+    Returns PaintedLines with `fitted`: a line that is partly bridged, or changes between dashed and solid, comes in touching pieces with one
+    `line` number. Every piece is drawn on the line's one curve.
 
-    Raises
-    ------
-    RoadExtractionError
-        If the points were not clustered.
+    Raises RoadExtractionError if the points were not clustered.
     """
     if not clustered_points.has_cluster:
         raise RoadExtractionError(

@@ -53,14 +53,11 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
                      progress: Progress = Progress(), executor: Executor = THREADS) -> tuple[MarkingObjects, RoadPoints]:
     """Group road points on paint into markings with class, size and outline.
 
-    Parameters
-    ----------
     executor : who links points, looks for crossings, divides compound clusters and measures clusters
 
     Returns
-    -------
-    markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has several, with one `cluster` number
-    clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
+        markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has several, with one `cluster` number
+        clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
     """
     clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
     roads = marking_points.roads()

@@ -42,8 +42,6 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
                     look: Callable[[list[list[Candidate]], float, float], Iterable[list[tuple[int, str]]]]) -> list[_RecognisedFigure]:
     """Bicycles and words among the N markings of one road; no marking is in two of them.
 
-    Parameters
-    ----------
     kinds : N classes, "" for what was taken for no paint
     possible : (N,) bool, whether a marking lies where paint can be
     cells_of : gives the (K, 2) int cells of some markings together, different ones, and the (K,) m of `track_reach` there

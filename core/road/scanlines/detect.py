@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,26 +20,24 @@ from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...execution.phase import THREADS, Executor, Recipe
 from ...survey.blocks import sensor_height_of
+from ...survey.frame.road_frame import RoadFrame
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
+from ...survey.survey import Survey
 from ...survey.weights import READING
 from ..common.curb_points import CurbPoints
+from ..common.decimation import LevelGround
 from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import SideChains, block_bounds, merged_passes, points_of_side, steps_of_road
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections
 from ..edges.fit import EdgeCurve, point_table, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
+from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook, SideLook
 from ..weights import CURBS, EDGE, PROFILE, SCANLINE
 from .candidates import ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
 from .grid import LINE_SEPARATION, Scanlines, height_grid, nearest_distance
 from .section_planes import ScanlineSettings, scanline_runs
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.survey import Survey
-    from ..common.decimation import LevelGround
-    from ..surface.ground_grid import MeasuredGround
 
 
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),
@@ -86,9 +83,8 @@ def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[
     section : (first, last + 1) numbers of planes
 
     Returns
-    -------
-    corners : side -> CurbCorners, merged over passes and scanners where they agree
-    occlusion : side -> OcclusionGrid of these planes
+        corners : side -> CurbCorners, merged over passes and scanners where they agree
+        occlusion : side -> OcclusionGrid of these planes
     """
     interval, (begin, end) = source.interval, section
     margin = max(plane_fit_rows(interval, settings), SCANLINE.neighbour_lines + gap_fill_rows(interval)) + 1
@@ -286,10 +282,7 @@ class LayerScanlines:
     corridor : m, greatest offset of a vertex
     level : None; all points are used
 
-    Raises
-    ------
-    RoadExtractionError
-        If no road has scanlines on two planes.
+    Raises RoadExtractionError if no road has scanlines on two planes.
     """
 
     def __init__(self, lines: dict[int, Scanlines], frame: RoadFrame, interval: float, crs: str, sensor_height: float = 0.0):
