@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage
@@ -11,13 +11,9 @@ from scipy.ndimage import grey_opening, median_filter, minimum_filter1d
 
 from ....core.common.arrays import Rows, order_by
 from ....core.road.common.pseudo_scanlines import lowest_layers
+from ....core.survey.survey import Survey
 from ....core.survey.weights import READING
 from ..surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, smoothed, surface_grid
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from ....core.survey.survey import Survey
 
 UPRIGHT_SLICE = 0.5              # m along the road
 UPRIGHT_CELL = 0.10              # m across
