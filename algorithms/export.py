@@ -335,7 +335,7 @@ class ExportCad(Algorithm):
             "with a colour. LandXML 1.2: the axis of every road and every driving line as an alignment of the fitted lines, curves and spirals, "
             "with a profile of tangents; a line that no elements follow within the tolerance is an irregular line.\n\n"
             "DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US "
-            "survey feet. Surfaces and texts are not there; Cross-sections draws sections as DXF.")
+            "survey feet. Surface model writes the surface, Cross-sections the sections.")
     TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
     NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
 
@@ -390,8 +390,7 @@ def _landxml(call, source, progress):
 
     tolerance = call.value("TOLERANCE")
     alignments = alignments_of(source, tolerance)
-    now = datetime.now()
-    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))
+    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), datetime.now())
     Path(call.new_file("OUTPUT")).write_text(text, encoding="utf-8")
     irregular = sum(alignment.plan is None for alignment in alignments)
     if irregular:
