@@ -296,6 +296,12 @@ def write_lanelet2(call, source, name, progress):
     progress.report(0.8)
     notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
                               for kind, count in draft.skipped.items())]
+    if draft.added:
+        notes.append(tr("{count} lanes end where another begins that they are not linked to; in Lanelet2 the one leads to the other.").format(
+            count=draft.added))
+    if draft.unmet:
+        notes.append(tr("{count} links of the map join lanes whose ends do not meet; Lanelet2 cannot say them, and they were left out.").format(
+            count=draft.unmet))
     if degrees.local:
         notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
     warn_of_faults(notes, check, progress)
@@ -329,7 +335,7 @@ class ExportCad(Algorithm):
             "with a colour. LandXML 1.2: the axis of every road and every driving line as an alignment of the fitted lines, curves and spirals, "
             "with a profile of tangents; a line that no elements follow within the tolerance is an irregular line.\n\n"
             "DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US "
-            "survey feet. Surfaces and texts are not there; Cross-sections draws sections as DXF.")
+            "survey feet. Surface model writes the surface, Cross-sections the sections.")
     TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
     NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
 
@@ -384,8 +390,7 @@ def _landxml(call, source, progress):
 
     tolerance = call.value("TOLERANCE")
     alignments = alignments_of(source, tolerance)
-    now = datetime.now()
-    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))
+    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), datetime.now())
     Path(call.new_file("OUTPUT")).write_text(text, encoding="utf-8")
     irregular = sum(alignment.plan is None for alignment in alignments)
     if irregular:

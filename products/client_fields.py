@@ -63,8 +63,6 @@ class _Template:
 def read_template(path: str | os.PathLike[str], sources: Mapping[str, tuple[Sequence[Field], str]], mixed: bool = False) -> _Template:
     """Read and check a template.
 
-    Parameters
-    ----------
     path : table in UTF-8 with commas, semicolons or tabs. Its columns are `from` (name of our layer), `where` (conditions, may be empty),
         `layer` (of the client, or - for what is left out on purpose), `geometry` (point, line or polygon; empty as it is), and the client's
         fields, such as `WIDTH` or `WIDTH:int`. Lines that begin with # say what people should know
@@ -227,8 +225,6 @@ def apply_template(template: _Template, layers: Mapping[str, Features],
                    office: Mapping[str, tuple[str, Mapping[str, type]]] | None = None) -> _ClientMap:
     """The layers of the client. In each of them a feature of ours becomes what the first row that fits says.
 
-    Parameters
-    ----------
     layers : ours, by name, in map coordinates in metres; rows about layers that are not given are passed over
     office : geometry and fields of the layers that the client's own file has, see `layers_of_file`; None where there is no such file
 

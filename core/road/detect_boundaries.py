@@ -5,7 +5,6 @@ from __future__ import annotations
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from ..common.progress import Progress
 from ..execution.phase import THREADS, NoSource, Phase
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import find_lattice
+from ..survey.open_survey import Survey
 from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
@@ -31,9 +31,6 @@ from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
 from .surface.road_look import RoadLook
 from .weights import BOUNDARY, CURBS, SCANLINE
-
-if TYPE_CHECKING:
-    from ..survey.open_survey import Survey
 
 BOUNDARY_METHODS = ("profiles", "scanlines", "both")
 METHODS = ("scanlines", "profiles")   # in the order of trust: three planes are a stricter model of a curb than a profile

@@ -145,7 +145,8 @@ class SectionView(QWidget):
     def _draw_scanline(self, painter):
         painter.setPen(QPen(SCANLINE, 1.6))
         for line in self.scanline:
-            painter.drawPolyline(QPolygonF([QPointF(*self._at(offset, z)) for offset, z in line]))
+            x, y = self._at(*np.asarray(line).T)
+            painter.drawPolyline(QPolygonF([QPointF(*place) for place in zip(x.tolist(), y.tolist())]))
 
     def _shown(self):
         """The crossings within what is shown across."""

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-from scipy.ndimage import distance_transform_edt, grey_opening, map_coordinates
+from scipy.ndimage import distance_transform_edt, grey_dilation, grey_erosion, map_coordinates
 from scipy.spatial import cKDTree
 
 from ...core.common.features import Features
@@ -146,10 +146,12 @@ class PointClassifier:
         within = self._surface.holds(x, y, low | deep)
         classes[within & low] = PointClass.ROAD_SURFACE
         classes[within & deep] = PointClass.LOW_NOISE
-        self._mark_curbs(classes, x, y, z, np.abs(h) < 1.0)
+        self._mark_curbs(classes, x, y, z, ~(np.abs(h) > 1.0))
         classes[self._paint.holds(x, y, low) & (classes != PointClass.CURB)] = PointClass.PAINT
-        self._mark_lines(classes, x, y, z, h > chosen.ground)
-        self._mark_objects(classes, x, y, z, h > chosen.ground)
+        # layers overrule what is taken for ground, where that is a rail far away of which alone anything was seen
+        beside = ~within & ~np.isin(classes, (PointClass.CURB, PointClass.PAINT))
+        self._mark_lines(classes, x, y, z, beside)
+        self._mark_objects(classes, x, y, z, beside)
         return classes
 
     def _mark_curbs(self, classes, x, y, z, which):
@@ -161,8 +163,8 @@ class PointClassifier:
         chosen = self.settings
         rows, near, rise, away = self._lines.of(x, y, z, which, chosen.hedge * chosen.beside)
         hedge = self._lines.words("hedge")[near]
-        rows, near, rise, hedge = (values[((away < chosen.beside) | hedge) & (rise < self._lines.column("height_m")[near] + chosen.slack)]
-                                   for values in (rows, near, rise, hedge))
+        on_it = ((away < chosen.beside) | hedge) & (rise > chosen.ground) & (rise < self._lines.column("height_m")[near] + chosen.slack)
+        rows, near, rise, hedge = (values[on_it] for values in (rows, near, rise, hedge))
         for kind, number in (("guard_rail", PointClass.GUARD_RAIL), ("barrier", PointClass.BARRIER), ("wall", PointClass.WALL),
                              ("fence", PointClass.FENCE)):
             classes[rows[self._lines.words(kind)[near]]] = number
@@ -173,7 +175,7 @@ class PointClassifier:
         reach = np.nan_to_num(self._objects.column("diam_m")) / 2 + chosen.beside / 2
         rows, near, rise, away = self._objects.of(x, y, z, which, max(reach.max(initial=0.0), chosen.panel[0]))
         panel = self._objects.words("sign")[near] & (away < chosen.panel[0]) & (rise > chosen.panel[1])
-        taken = ((away < reach[near]) | panel) & (rise < self._objects.column("height_m")[near] + chosen.slack)
+        taken = ((away < reach[near]) | panel) & (rise > chosen.ground) & (rise < self._objects.column("height_m")[near] + chosen.slack)
         rows, near, rise = rows[taken], near[taken], rise[taken]
         for kind, number in (("pole", PointClass.POLE), ("sign", PointClass.SIGN)):
             classes[rows[self._objects.words(kind)[near]]] = number
@@ -228,17 +230,14 @@ class _Ground:
     def _without_objects(self, height, row_size, column_size):
         """Heights of all cells, of the nearest ground where a cell has none, and whether that is near enough."""
         sampling, chosen = (row_size, column_size), self.settings
-        filled, _ = _filled(height, np.isfinite(height), sampling)
-        size = [2 * round(metres / step / 2) + 1 for metres, step in zip(chosen.object_width, sampling)]
-        bare = np.isfinite(height) & (filled - grey_opening(filled, size=size, mode="nearest") < chosen.object_height)
-        filled, away = _filled(height, bare, sampling)
-        return filled, away <= chosen.reach
-
-
-def _filled(values, known, sampling):
-    """Values with those of the nearest known cell where none is known, and its distance, m."""
-    away, nearest = distance_transform_edt(~known, sampling=sampling, return_indices=True)
-    return values[tuple(nearest)], away
+        seen, size = np.isfinite(height), [2 * round(metres / step / 2) + 1 for metres, step in zip(chosen.object_width, sampling)]
+        # an opening by seen cells alone: in the shadow of a wall its height would go on
+        lowest = np.where(seen, grey_erosion(np.where(seen, height, np.inf), size=size, mode="nearest"), -np.inf)
+        bare = seen & (height - grey_dilation(lowest, size=size, mode="nearest") < chosen.object_height)
+        if not bare.any():
+            return height, bare
+        away, nearest = distance_transform_edt(~bare, sampling=sampling, return_indices=True)
+        return height[tuple(nearest)], away <= chosen.reach
 
 
 class _Areas:

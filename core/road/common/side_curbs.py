@@ -10,6 +10,7 @@ import numpy as np
 
 from ...common.progress import Progress
 from ...execution.phase import Phase
+from ...survey.frame.road import Road
 from ..weights import CURBS
 from .corners import CurbSteps
 from .curb_limits import CurbLimits
@@ -19,7 +20,6 @@ from .sides import SIDE_SIGNS, OutermostTrack, expected_height, hidden_points, j
 from .tracking import StepChain, curb_chains, drop_short_curbs, is_road, link_steps, select_along_road, with_pieces_in_line
 
 if TYPE_CHECKING:
-    from ...survey.frame.road import Road
     from ..surface.road_look import RoadLook, SideLook
 
 AnySteps = TypeVar("AnySteps", bound=CurbSteps)

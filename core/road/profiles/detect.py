@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import closing
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...common.features import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION, Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ...survey.open_survey import Survey
 from ..common.corners import CurbSteps
 from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints
@@ -24,9 +25,6 @@ from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, PROFILE
 from .steps import find_averaged_steps, find_steps
-
-if TYPE_CHECKING:
-    from ...survey.open_survey import Survey
 
 
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),

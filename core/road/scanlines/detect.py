@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,26 +20,24 @@ from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...execution.phase import THREADS, Executor, Recipe
 from ...survey.blocks import sensor_height_of
+from ...survey.frame.road_frame import RoadFrame
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
+from ...survey.survey import Survey
 from ...survey.weights import READING
 from ..common.curb_points import CurbPoints
+from ..common.decimation import LevelGround
 from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import SideSteps, block_bounds, curbs_along, merged_passes, steps_of_road
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections
 from ..edges.fit import EdgeCurve, point_table, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
+from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, EDGE, PROFILE, SCANLINE
 from .candidates import ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
 from .grid import LINE_SEPARATION, Scanlines, height_grid, nearest_distance
 from .section_planes import ScanlineSettings, scanline_runs
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.survey import Survey
-    from ..common.decimation import LevelGround
-    from ..surface.ground_grid import MeasuredGround
 
 
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),

@@ -13,20 +13,16 @@ The paper on normalized scanlines (ISPRS Archives, 2020), section 2.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.arrays import Rows
-from ...survey.lattice.scan_lattice import time_order
+from ...survey.frame.passes import Pass
+from ...survey.lattice.scan_lattice import MirrorPhase, time_order
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, take_rows
+from ..common.decimation import LevelStrip
 from ..weights import SCANLINE
-
-if TYPE_CHECKING:
-    from ...survey.frame.passes import Pass
-    from ...survey.lattice.scan_lattice import MirrorPhase
-    from ...survey.store.columns import Columns
-    from ..common.decimation import LevelStrip
 
 LINE_OFFSET_UNITS = 2 * 10**10   # derived: 2 km between the offsets of consecutive lines in one sorted array
 PHASE_STEPS = 65535   # derived: steps of a turn by which vertices are sorted, 16 bits

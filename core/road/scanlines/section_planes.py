@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,15 +20,13 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice, scanner_runs
+from ...survey.open_survey import Survey
+from ..common.decimation import LevelStrip
 from ..common.pseudo_scanlines import pseudo_scan_lines
 from ..common.sides import expected_height, fixed_sections
 from ..weights import CURBS, SCANLINE
 from .grid import Scanlines
 from .mesh import PlaneVertices, Ribs, increasing, plane_order, ribs_of, scanner_lines, slanting_edges
-
-if TYPE_CHECKING:
-    from ...survey.open_survey import Survey
-    from ..common.decimation import LevelStrip
 
 
 @dataclass(frozen=True)

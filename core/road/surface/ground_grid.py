@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import solveh_banded
@@ -16,14 +15,12 @@ from scipy.linalg import solveh_banded
 from ...common.arrays import order_by
 from ...common.progress import Progress
 from ...execution.phase import Phase
+from ...survey.open_survey import Survey
 from ...survey.store.array_file import ArrayFile
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.weights import FRAME
 from ..common.sides import ahead_of_vehicle
 from ..weights import SURFACE
-
-if TYPE_CHECKING:
-    from ...survey.open_survey import Survey
 
 GOLDEN_RATIO_32 = 0x9E3779B9   # source: golden ratio times 2^32; its multiples, modulo 2^32, are evenly distributed (Knuth, TAOCP 3, 6.4)
 

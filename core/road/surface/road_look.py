@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..weights import SURFACE
 from .ground_change import follow_road, smooth_road
-from .ground_grid import known_median
-
-if TYPE_CHECKING:
-    from .ground_grid import MeasuredGround
+from .ground_grid import MeasuredGround, known_median
 
 
 class RoadLook:
