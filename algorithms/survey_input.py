@@ -1,7 +1,5 @@
 """Opening what the stages work on: the survey, the road frame, the road points."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError

@@ -1,7 +1,5 @@
 """Vector files without QGIS: layers read and written by fiona."""
 
-from __future__ import annotations
-
 import logging
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Lines with measures (M) in vector files: fiona leaves measures out, so GDAL's own Python module reads and writes these."""
 
-from __future__ import annotations
-
 import sqlite3
 from contextlib import closing
 from importlib.util import find_spec
