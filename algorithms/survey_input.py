@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import CORRECTIONS, Features
+from ..core.lazy import shapely
 from .algorithm import SettingSpec
 from .texts import tr
 
@@ -244,8 +245,6 @@ def read_corrections(source):
 
     Raises RoadExtractionError if one of these two is missing.
     """
-    import shapely
-
     index = {name.lower(): k for k, name in enumerate(source.names)}
     missing = [name for name in NEEDED if name not in index]
     if missing:

@@ -1,4 +1,4 @@
-"""What is imported when it is first used: public names of a folder, and OpenCV, a large library that QGIS need not wait for at its start."""
+"""Libraries that are imported when they are first used: QGIS need not wait for them at its start, and some may be missing."""
 
 from __future__ import annotations
 
@@ -36,9 +36,16 @@ class LazyModule:
         self._name = name
 
     def __getattr__(self, attribute: str) -> Any:
-        value = getattr(import_module(self._name), attribute)
-        setattr(self, attribute, value)  # the next use finds it at once
-        return value
+        return getattr(import_module(self._name), attribute)
 
 
 cv2: Any = LazyModule("cv2")
+fiona: Any = LazyModule("fiona")
+gdal: Any = LazyModule("osgeo.gdal")
+laspy: Any = LazyModule("laspy")
+lazrs: Any = LazyModule("lazrs")
+np: Any = LazyModule("numpy")   # for what is loaded without it, to say what is missing; the work imports it
+ogr: Any = LazyModule("osgeo.ogr")
+osr: Any = LazyModule("osgeo.osr")
+pyproj: Any = LazyModule("pyproj")
+shapely: Any = LazyModule("shapely")
