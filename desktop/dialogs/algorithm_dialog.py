@@ -10,6 +10,7 @@ from qgis import utils
 from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QInputDialog, QMenu, QTextBrowser, QWidget
 
+from ...algorithms.destinations import package_and_table
 from ...algorithms.survey_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.runs import last_run
@@ -104,9 +105,13 @@ class LanewrightDialog(AlgorithmDialog):
         """Set the destinations of all results that are made by default."""
         places = destinations(self.algorithm(), folder)
         self.setParameters(places)
-        geopackage = Path(folder) / f"{self.algorithm().name()}.gpkg"
-        self._say(tr("The {count} results go to {folder}.").format(count=len(places), folder=folder)
-                  + (" " + tr("Those of the earlier run in {file} will be replaced.").format(file=geopackage.name) if geopackage.exists() else ""))
+        self.say_places(folder, places)
+
+    def say_places(self, folder: str, places: dict[str, str]) -> None:
+        """Say that results go to a folder, and which GeoPackage of an earlier run has some already."""
+        packages = {Path(found[0]) for found in map(package_and_table, places.values()) if found is not None and Path(found[0]).exists()}
+        self._say(" ".join([tr("The {count} results go to {folder}.").format(count=len(places), folder=folder),
+                            *(tr("Those of the earlier run in {file} will be replaced.").format(file=package.name) for package in sorted(packages))]))
 
     def choose_database(self) -> None:
         dialog = self.database = DatabaseDialog(self)
