@@ -576,7 +576,7 @@ class ImportOpenDrive(Algorithm):
     SUMMARY = "Reads an OpenDRIVE map (1.1 to 1.8) into layers like those of the road map, to lay it over a survey and assess it."
     HELP = ("Lines, arcs, spirals and polynomials of the reference line, elevation, superelevation and shape, lane offsets, widths and borders, road "
             "marks, heights of curbs and the links of lanes are read; signals with the lanes that they hold for, poles, crossings, stop lines, "
-            "arrows and hatched areas, speed limits and names of roads too. What is not read, such as buildings and bridges, is counted in the log.\n\n"
+            "arrows and hatched areas, speed limits and names of roads too. What is not read, such as buildings, is counted in the log.\n\n"
             "Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one "
             "begins, with the height of its curb. Gaps of reference lines, borders that fold back in a tight curve, and widths below 0 are named "
             "with their road; folds are cut off. Files that declare entities, or are not what a map can be, are refused.")
