@@ -20,7 +20,7 @@ from ...core.survey.survey import Survey
 from ..inventory.borders import BorderLayers, RoadBorders
 from ..inventory.surface_grid import CROSS_CELL, SLICE_LENGTH
 from .breaklines import KINDS, Breakline, road_breaklines
-from .ground import RoadGround, road_ground
+from .ground import road_ground
 from .triangulation import Triangulation, thinned
 
 APART = 0.10            # m by which two breaklines that the triangulation follows are apart at least; an edge's foot and top are nearer
@@ -121,7 +121,7 @@ def _needed(xy, along, z, tolerance):
     return np.c_[xy, z][kept]
 
 
-def _cells(grounds: list[RoadGround], frame, followed, area):
+def _cells(grounds, frame, followed, area):
     """((C, 3) cells of the ground that lie on one side of every edge, (C,) whether on the carriageway)."""
     edges = np.array([shapely.linestrings(places[:, :2]) for kind, places in followed if kind.startswith("edge")], object)
     tree = shapely.STRtree(edges)

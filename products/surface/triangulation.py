@@ -195,14 +195,15 @@ def thinned(cells: np.ndarray, judged: np.ndarray, fixed: np.ndarray, segments: 
     Garland and Heckbert (1995), Fast polygonal approximation of terrains and height fields, CMU-CS-95-181: algorithm II, in rounds.
     """
     vertices, last, limit = fixed, 2 * tolerance, np.inf
+    x, y, z = cells.T
     lines = shapely.linestrings(fixed[segments][:, :, :2])
     free = np.ones(len(cells), bool)
     free[shapely.STRtree(lines).query(shapely.points(cells[:, :2]), predicate="dwithin", distance=NEAREST_VERTICES / 2)[0]] = False
     for turn in range(MOST_ROUNDS):
         surface = Triangulation(vertices, segments)
         surface.keep_within(area)
-        number = surface.locate(*cells[:, :2].T)
-        miss = np.abs(np.nan_to_num(surface.heights(*cells[:, :2].T, number) - cells[:, 2]))
+        number = surface.locate(x, y)
+        miss = np.abs(np.nan_to_num(surface.heights(x, y, number) - z))
         free &= cKDTree(vertices[:, :2]).query(cells[:, :2], distance_upper_bound=NEAREST_VERTICES)[0] == np.inf
         limit = max(min(limit, float(miss[free].max(initial=0.0))) / 2, last)
         wrong = np.flatnonzero(free & (miss > limit))
