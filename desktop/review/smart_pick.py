@@ -7,7 +7,17 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsGeometry, QgsPointXY, QgsProject, QgsTask, QgsUnitTypes, QgsVectorLayer
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsGeometry,
+    QgsPointXY,
+    QgsProject,
+    QgsTask,
+    QgsUnitTypes,
+    QgsVectorLayer,
+)
 
 from ...core.corrections.pick import Seen, pick_line, snap_line
 from ...processing_provider.results.origin import output_of
