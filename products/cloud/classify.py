@@ -58,7 +58,8 @@ class CloudSettings(Limited):
     reach: float = 1.0   # m from a measured place of the ground to points whose ground it is
     noise: float = 0.25   # m below the road surface: no scanner sees through asphalt
     level: float = 1.5   # m either side of the reference line whose ground is the level of the road
-    curb_share: float = 0.25   # of its height from which on the face of a curb begins
+    curb_share: float = 0.12   # of its height from which on the face of a curb begins, but at least
+    curb_rise: float = 0.01   # m above its bottom: what asphalt scatters by
     slack: float = 0.05   # m above the top of a thing
     panel: tuple[float, float] = (0.5, 1.0)   # m about the shaft of a sign, and above its foot, where its panel may hang
     hedge: float = 2.0   # times `beside`: hedges are not as thin as rails
@@ -157,7 +158,8 @@ class PointClassifier:
     def _mark_curbs(self, classes, x, y, z, which):
         rows, near, rise, _ = self._edges.of(x, y, z, which, self.settings.curb)
         height = self._edges.column("height_m")[near]
-        classes[rows[(rise > self.settings.curb_share * height) & (rise < height + self.settings.slack)]] = PointClass.CURB
+        begins = np.maximum(self.settings.curb_share * height, self.settings.curb_rise)
+        classes[rows[(rise > begins) & (rise < height + self.settings.slack)]] = PointClass.CURB
 
     def _mark_lines(self, classes, x, y, z, which):
         chosen = self.settings
