@@ -73,7 +73,8 @@ class ClassifyCloud(Algorithm):
         from ..core.survey.las.point_fields import intensity_source_of
         from ..core.survey.las.reader import read_headers
         from ..core.survey.las.samples import sample_files
-        from ..products.cloud import CloudLayers, PointClass, PointClassifier, classified_copy
+        from ..products.cloud.classify import CloudLayers, PointClass, PointClassifier
+        from ..products.cloud.rewrite import classified_copy
 
         files = read_headers(call.point_clouds(), given=call.crs())
         copies = _copies(call, files, progress)

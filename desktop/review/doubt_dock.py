@@ -193,6 +193,7 @@ class DoubtDock(QDockWidget):
         newer = next((one for one in road_maps(QgsProject.instance()) if one.survey == survey and one.has_any(arrived)), None)
         if newer is not None:
             self._stop_drawing()
+            self._of = None
             self._take(newer)
             if place is not None and self.places:
                 self.at = min(range(len(self.places)), key=lambda at: self.places[at].middle.distance(place.middle))
@@ -223,6 +224,8 @@ class DoubtDock(QDockWidget):
         counts = [(layer.id(), layer.featureCount()) for layer in road_map.vectors]
         if counts != self._of:
             self._of, self.road_map = counts, road_map
+            for layer in road_map.layers:   # a run that writes a layer in its place says so in its metadata
+                layer.metadataChanged.connect(partial(self._note_layers, [layer]))
             self._list_places()
 
     # -- from place to place ----------------------------------------------------------------------

@@ -22,6 +22,7 @@ from .section_view import SectionView
 
 AROUND = 40.0    # m of road kept in memory either side of a place, so that stepping along it needs no new reading
 STEP = 1.0       # m of a step along the road
+SHARE = 0.35     # of the window's height; by itself the section takes half of a small one
 THICKNESS = 0.3  # m along the road that a section takes points from
 
 
@@ -58,6 +59,7 @@ class SectionDock(QDockWidget):
         column.addWidget(self.view, 1)
         self.setWidget(body)
         iface.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)
+        iface.mainWindow().resizeDocks([self], [int(SHARE * iface.mainWindow().height())], Qt.Orientation.Vertical)
         self.visibilityChanged.connect(self._hide_line)
         QgsProject.instance().layersWillBeRemoved.connect(self._forget)
 
@@ -188,6 +190,7 @@ class _PointsByPlace:
 
     def cut(self, section, thickness):
         """As `Section.cut`."""
-        box = section.line().boundingBox().buffered(thickness)
-        rows = self.index.within((box.xMinimum(), box.yMinimum()), (box.xMaximum(), box.yMaximum()))
-        return section.cut(self.points[rows], thickness)
+        offsets = np.arange(-HALF_WIDTH, HALF_WIDTH + 1.0)[:, None]
+        places = np.array([section.x, section.y]) + offsets * section.left   # boxes of a metre about them hold little else
+        rows = [self.index.within(np.minimum(*ends) - thickness, np.maximum(*ends) + thickness) for ends in zip(places[:-1], places[1:])]
+        return section.cut(self.points[np.unique(np.concatenate(rows))], thickness)
