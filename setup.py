@@ -33,7 +33,8 @@ setup(
     packages=["lanewright"] + [f"lanewright.{name}" for name in find_packages(".", include=[pattern for name in FOLDERS
                                                                                          for pattern in (name, f"{name}.*")])],
     package_data={"lanewright.products.report": ["templates/*.html"], "lanewright.core.survey.trajectory": ["column_names.txt"],
-                  "lanewright.core.common": ["words.txt"], "lanewright.products.export.check": ["faults.txt"],
+                  "lanewright.core.common": ["words.txt"], "lanewright.core.countries": ["countries.json", "traffic_sides.txt"],
+                  "lanewright.products.export.check": ["faults.txt"],
                   "lanewright": ["resources/i18n/*.json"]},
     # build/ is that of the checkout
     options={"build": {"build_base": "build/package"}},

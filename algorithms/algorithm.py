@@ -166,7 +166,7 @@ class ParameterSpec:
 
 @dataclass(frozen=True)
 class OutputSpec(ParameterSpec):
-    """A result, of the kind layer, cloud (LAZ or LAS), raster (GeoTIFF), report (HTML) or file."""
+    """A result, of the kind layer, cloud (LAZ or LAS), raster (GeoTIFF), report (HTML), file, or folder (for several files)."""
 
     by_default: bool = True   # a dialog makes it unless told otherwise
     schema: tuple = ()   # fields of a layer, empty where they are not fixed

@@ -222,7 +222,7 @@ class AssessBoundaries(Algorithm):
         layer = boundary_layer(accuracy, crs, progress.part(0.8, 0.95))
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
-            call.text("REPORT", boundary_report(accuracy, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), progress.texts))
+            call.text("REPORT", boundary_report(accuracy, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), progress.warnings))
         numbers = found_numbers(_boundary_numbers(accuracy))
         progress.info(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.").format(
             correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,
@@ -323,7 +323,7 @@ class AssessMarkings(Algorithm):
         layer = marking_layer(accuracy, result.geometries, reference.geometries, *classes, crs)
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
-            self._report(call, accuracy, layer, frame, image, progress.texts)
+            self._report(call, accuracy, layer, frame, image, progress.warnings)
         numbers = found_numbers(_marking_numbers(accuracy))
         progress.info(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.").format(
             cells=settings.tolerance, strict=shares_of(numbers, ("PRECISION", "RECALL", "F1")),
@@ -416,7 +416,7 @@ class AssessDrivingLines(Algorithm):
             station, along = stations_of_match(match, frame)
             call.text("REPORT", driving_report(
                 match, accuracy, settings, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), station, along,
-                call.value("WIDTH") == "total-width", progress.texts))
+                call.value("WIDTH") == "total-width", progress.warnings))
         numbers = found_numbers(_line_numbers(accuracy, settings.tolerance))
         progress.info(tr("Within {tolerance:g} cm to either side: {rates}.").format(
             tolerance=100 * settings.tolerance, rates=shares_of(numbers, ("COMPLETENESS", "CORRECTNESS", "MISCODING"))))

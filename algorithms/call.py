@@ -7,14 +7,14 @@ which knows how values are given there and how layers are read and written.
 import errno
 import os
 import tempfile
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_memory, out_of_memory
-from ..core.common.progress import Progress
+from ..core.common.progress import RememberedMessages
 from .algorithm import WARNINGS, settings_class
-from .destinations import Unfinished, check_suffix, check_writable, destination_path
+from .destinations import Unfinished, check_folder, check_suffix, check_writable, destination_path
 from .provenance import provenance_now, run_facts, sign_file, sign_report
 from .survey_files import cloud_files, survey_name
 from .texts import tr
@@ -35,6 +35,7 @@ class Call:
     def __init__(self, algorithm, parameters):
         self.algorithm, self.parameters = algorithm, parameters
         self._unfinished = Unfinished()
+        self._made_folders = []
         self._scratch = tempfile.TemporaryDirectory(prefix="lanewright-")
         self._results = {}
         self._layers = []
@@ -199,6 +200,9 @@ class Call:
             path = destination_path(value)
             if path is None:
                 continue
+            if spec.kind == "folder":
+                check_folder(path, spec.label)
+                continue
             check_suffix(path, spec, self.VECTOR_SUFFIXES)
             read = self.read_as(value, path) or self._cloud_at(path)
             if read:
@@ -226,6 +230,20 @@ class Call:
             return ""
         self._results[name] = path = self.output_path(name)
         return str(self._unfinished.begin(path))
+
+    def new_file_in(self, name, file_name):
+        """A temporary path for a file of that name in a result that is a folder, which is made; "" where it is not wanted."""
+        if not self.wants(name):
+            return ""
+        folder = Path(self.output_path(name))
+        if not folder.exists():
+            folder.mkdir()
+            self._made_folders.append(folder)
+        if read := self._cloud_at(folder / file_name):
+            raise RoadExtractionError(tr("{label} would be written over {path}, which is read as {input}: inputs are never changed. Choose another "
+                                         "folder.").format(label=self.label(name), path=folder / file_name, input=read))
+        self._results[name] = str(folder)
+        return str(self._unfinished.begin(folder / file_name))
 
     def scratch_file(self, name):
         """A path in a folder that vanishes with the run."""
@@ -276,6 +294,9 @@ class Call:
     def discard_unfinished(self):
         self._at_end.close()
         self._unfinished.discard()
+        for folder in self._made_folders:
+            with suppress(OSError):   # what a run has finished lies in it
+                folder.rmdir()
         self._scratch.cleanup()
 
 
@@ -284,15 +305,16 @@ def run(call, progress):
 
     Raises RoadExtractionError if there are none, in one sentence on why. Cancelled if the user stopped it.
     """
-    counted = CountedWarnings(progress)
+    listener = RememberedMessages(progress)
     try:
         claim_memory()
         call.check_destinations()
         for name in filter(call.given, call.algorithm.RETIRED):
-            counted.warn(tr("{name} was given and has no effect any more: the usual value is used. Leave it out.").format(name=name))
+            listener.warn(tr("{name} was given and has no effect any more: the usual value is used. Leave it out.").format(name=name))
         with cancellation_scope(progress):
-            results = call.algorithm.work(call, counted) or {}
-        results[WARNINGS], call.warnings = len(counted.texts), counted.texts
+            results = call.algorithm.work(call, listener) or {}
+        call.warnings = listener.warnings
+        results[WARNINGS] = len(call.warnings)
         return call.finish(results)
     except Exception as error:
         reason = _reason(error)
@@ -326,31 +348,8 @@ def existing_file(path, label):
     return path
 
 
-# How long a run will still take, in words, and how often it warned.
-
-class CountedWarnings(Progress):
-    """Hands everything on to another listener and keeps the warnings, in the words of the core."""
-
-    def __init__(self, listener):
-        self.listener = listener
-        self.texts: list[str] = []
-
-    def report(self, fraction):
-        self.listener.report(fraction)
-
-    def check_cancelled(self):
-        self.listener.check_cancelled()
-
-    def info(self, text):
-        self.listener.info(text)
-
-    def warn(self, text):
-        self.texts.append(text)
-        self.listener.warn(text)
-
-
 def time_left(seconds):
-    """What the user reads, in the unit that gives a small number."""
+    """How long a run will still take, as the user reads it, in the unit that gives a small number."""
     if seconds < 60:
         return tr("About {number} s left").format(number=round(seconds))
     if seconds < 3600:

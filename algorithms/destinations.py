@@ -111,6 +111,14 @@ def check_writable(path, label):
         ) from error
 
 
+def check_folder(path, label):
+    """Raise RoadExtractionError, before any work, where files cannot be written into a folder, which need not be there."""
+    if path.exists() and not path.is_dir():
+        raise RoadExtractionError(
+            tr("{label} was to be written to {path}, which is a file. Name a folder.").format(label=label, path=path))
+    check_writable(path / ".new" if path.is_dir() else path, label)
+
+
 class Unfinished:
     """Results being written: each under its own name, which names its layer and its parts, in a hidden folder beside its place."""
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_ATTRIBUTES, ROAD_EDGES, SIGNALS
 from ..core.common.setting import Limited, setting
 from .algorithm import Algorithm, SettingSpec
 from .call import existing_file
@@ -13,11 +13,15 @@ from .texts import languages, told, tr
 OPENDRIVE_FILTER = "OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)"
 LANELET_FILTER = "Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)"
 MAP_LAYERS = (
-    ("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it."), LANES, "PolygonZ", "lane_areas"),
+    ("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it, and what the map says of its road."),
+     LANES + ROAD_ATTRIBUTES, "PolygonZ", "lane_areas"),
     ("DRIVING_LINES", tr("Driving lines"), tr("The middle of every lane that is driven, in the direction of travel."), DRIVING_LINES, "LineStringZ",
      "driving_lines"),
     ("MARKING_LINES", tr("Marking lines"), tr("Borders that are painted."), MARKING_LINES, "LineStringZ", "marking_lines"),
     ("ROAD_EDGES", tr("Road edges"), tr("Curbs and borders of the road."), ROAD_EDGES, "LineStringZ", "road_edges"),
+    ("MARKINGS", tr("Markings"), tr("Crossings, stop lines, arrows and hatched areas."), MARKINGS, "PolygonZ", "markings"),
+    ("SIGNALS", tr("Signals and poles"), tr("Traffic lights and signs with the lanes that they hold for, and poles."), SIGNALS, "PointZ",
+     "signal_points"),
 )
 MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of the driven lanes (m)")))
 
@@ -42,7 +46,7 @@ def map_file(call):
 
 def write_map_layers(call, layers, progress):
     """Hand on the MapLayers of a map; returns the numbers."""
-    for note in layers.notes:
+    for note in (*layers.notes, *layers.said_left_out()):
         progress.warn(note)
     for name, _, _, _, _, make in MAP_LAYERS:
         if call.wants(name):
@@ -72,17 +76,26 @@ def add_road_map_layers(algorithm):
     algorithm.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it the borders have the heights of the road's surface."), optional=True)
 
 
+def add_signals(algorithm):
+    algorithm.add_input("layer", "SIGNALS", tr("Signals and poles"), tr(
+        "Traffic lights, signs and poles: of an imported map, or the poles and signs of Roadside. The field lanes names the lanes that obey."),
+        "PointZ", optional=True)
+
+
 def road_map_source(call, progress):
     """The layers given, checked, as RoadMapSource."""
     from dataclasses import replace
 
     from ..core.driving.layers import Lanes
-    from ..products.export.sources import RoadMapSource, checked
+    from ..products.export.sources import RoadMapSource, checked, known_of_roads
 
+    areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
     source = RoadMapSource(
-        Lanes.from_features(call.features("LANES", LANES, "PolygonZ")), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
+        Lanes.from_features(areas), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
         call.features("MARKING_LINES", MARKING_LINE_FIELDS, "LineStringZ"), call.features("ROAD_EDGES", EDGE_FIELDS, "LineStringZ"),
-        call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"))
+        call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"), attributes=known_of_roads(areas))
+    if call.algorithm.parameter("SIGNALS") is not None:
+        source.signals = call.features("SIGNALS", SIGNALS, "PointZ")
     source = checked(source)
     if call.cloud("ROAD_POINTS"):
         from ..products.export.sources import with_surface_heights
@@ -95,11 +108,11 @@ def road_map_source(call, progress):
     return source
 
 
-def lanes_with_borders(call, progress):
-    """The same with ways through junctions, and borders that neighbours share."""
+def lanes_with_borders(source):
+    """A RoadMapSource with ways through junctions, and borders that neighbours share."""
     from ..products.export.shared_borders import with_inferred_ways, with_shared_borders
 
-    return with_shared_borders(with_inferred_ways(road_map_source(call, progress)))
+    return with_shared_borders(with_inferred_ways(source))
 
 
 def warn_of_faults(notes, found, progress):
@@ -114,12 +127,96 @@ def fault_table(found):
     return [(tr("Findings of the check"), (tr("Fault"), tr("Count")), counts)] if counts else []
 
 
+ATTRIBUTES = "products.export.road_attributes:AttributeSettings"
+ATTRIBUTE_SETTINGS = (
+    SettingSpec("CORRIDOR", ATTRIBUTES, "corridor", tr("Corridor either side of a way (m)"),
+                tr("How far the middle of a lane may lie from the way of its road. Raise it for roads of many lanes that are one way; lower it where "
+                   "side roads run beside the road.")),
+)
+
+
+class RoadAttributes(Algorithm):
+    ID, TITLE, GROUP = "roadattributes", "Attributes of OpenStreetMap", "Export"
+    SUMMARY = "Gives lanes the name, number, speed limit, surface and number of lanes of the OpenStreetMap way that they lie along."
+    HELP = ("The ways come from a file of yours, in the XML of OpenStreetMap (.osm) or as a layer of lines with the tags as fields; nothing is "
+            "fetched from the network. A lane belongs to the nearest way within the corridor that runs as the lane does; a one-way road counts "
+            "for lanes in its direction of travel alone. A value that holds along more than half of a lane becomes the lane's; what no way says "
+            "stays empty, or as it was.\n\n"
+            "The exports write the names and speed limits of such lanes into OpenDRIVE and Lanelet2. Limits that a way names by a law, such as "
+            "DE:urban, are not taken for numbers. Data of OpenStreetMap are under the ODbL: name the source.")
+    TAGS = ("OpenStreetMap", "OSM", "speed limit", "maxspeed", "street name", "surface", "HD map")
+    LOOKS = {"OUTPUT": "LANES"}
+    NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("KNOWN", tr("Lanes of which something is known")),
+               ("SPEEDS", tr("Lanes with a speed limit")), ("NAMES", tr("Lanes with a name")))
+
+    def declare(self):
+        self.add_input("layer", "LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
+        self.add_input("file", "OSM_FILE", tr("OpenStreetMap file"), tr("An extract in XML with the ending .osm, that holds the roads."),
+                       optional=True, file_filter="OpenStreetMap (*.osm *.OSM *.xml);;All files (*.*)")
+        self.add_input("layer", "WAYS", tr("Ways"), tr("Instead of the file: lines with the fields name, ref, maxspeed, lanes, oneway, surface, "
+                                                       "highway, as far as there are, or other_tags."), optional=True)
+        self.add_settings(ATTRIBUTE_SETTINGS)
+        self.add_sink("OUTPUT", tr("Lanes with attributes"), tr("The same lanes."), fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ")
+
+    def work(self, call, progress):
+        from ..core.driving.layers import Lanes
+        from ..products.export.road_attributes import attributes_along, read_osm_ways
+
+        if bool(call.file("OSM_FILE")) == call.given("WAYS"):
+            raise RoadExtractionError(tr("Give either {file} (OSM_FILE) or {layer} (WAYS).").format(
+                file=call.label("OSM_FILE"), layer=call.label("WAYS")))
+        areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
+        lanes = Lanes.from_features(areas)
+        if not len(lanes):
+            raise RoadExtractionError(
+                tr("The layer of lanes is empty. Run Driving lines or Road map where there are marking lines or road edges."))
+        if not lanes.crs:
+            raise RoadExtractionError(
+                tr("The layer of lanes has no CRS, so its latitude and longitude are unknown. Set the CRS of the layer and run again."))
+        if call.file("OSM_FILE"):
+            ways = read_osm_ways(existing_file(call.file("OSM_FILE"), call.label("OSM_FILE")), lanes.crs, progress.part(0.0, 0.5))
+        else:
+            ways = _ways_of_layer(call.source("WAYS"), lanes.crs)
+        known = attributes_along(lanes, ways, call.settings(ATTRIBUTE_SETTINGS))
+        for row in areas.rows:
+            row.update(known.get(str(row["lane_id"]), {}))
+        if not known:
+            progress.warn(tr("No lane lies along a way that says anything. Do the ways cover the survey?"))
+        progress.info(tr("{known} of {count} lanes and pieces lie along ways that say something.").format(known=len(known), count=len(lanes)))
+        call.layer("OUTPUT", areas)
+        counts = {name: float(sum(row.get(field) is not None for row in areas.rows))
+                  for name, field in (("SPEEDS", "speed_kmh"), ("NAMES", "name"))}
+        return {"LANE_COUNT": float(len(lanes)), "KNOWN": float(len(known)), **counts}
+
+
+def _ways_of_layer(source, crs):
+    """The roads of a layer of lines in the CRS of the lanes."""
+    import shapely
+
+    from ..products.export.road_attributes import ways_in
+    from .vector_source import LINE
+
+    if source.kind != LINE or not source.stored_crs:
+        raise RoadExtractionError(tr("{label} must be a layer of lines with a CRS.").format(label=source.label))
+    lines = [(shapely.get_coordinates(part), dict(zip(source.names, values))) for wkb, values in source.stored_rows() if wkb
+             for part in shapely.get_parts(shapely.from_wkb(wkb))]
+    return ways_in(lines, source.stored_crs, crs)
+
+
 ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
 VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
 ROAD_SETTINGS = (
     SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
                 tr("How far borders may be missed, across and in height. Smaller follows the survey more closely with more and shorter elements.")),
 )
+
+
+def add_road_choices(algorithm):
+    """How OpenDRIVE is written."""
+    algorithm.add_input("choice", "VERSION", tr("Version"), tr("Of OpenDRIVE; older simulators read 1.7."), default=VERSIONS[0], choices=VERSIONS)
+    algorithm.add_settings(ROAD_SETTINGS)
+    algorithm.add_input("choice", "TRAFFIC_SIDE", tr("Side of traffic"), tr(
+        "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), default=SIDES[0], choices=SIDES)
 
 
 class ExportOpenDrive(Algorithm):
@@ -131,8 +228,8 @@ class ExportOpenDrive(Algorithm):
             "shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra crossings, stop "
             "lines, arrows and hatched areas are objects. What was inferred or bridged, and the uncertainty of every lane, is said in userData.\n\n"
             "The file is read back and checked before it is handed over: the report says how far its borders lie from the survey's. OpenDRIVE "
-            "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Signals, signs, "
-            "speed limits and buildings are not there.")
+            "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Speed limits and "
+            "names of roads are written where the lanes have these fields, signals and poles where their layer is given.")
     TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
     NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
                ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
@@ -142,53 +239,55 @@ class ExportOpenDrive(Algorithm):
 
     def declare(self):
         add_road_map_layers(self)
-        self.add_input("choice", "VERSION", tr("Version"), tr("Of the format; older simulators read 1.7."), default=VERSIONS[0], choices=VERSIONS)
-        self.add_settings(ROAD_SETTINGS)
-        self.add_input("choice", "TRAFFIC_SIDE", tr("Side of traffic"), tr(
-            "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), default=SIDES[0], choices=SIDES)
+        add_road_choices(self)
+        add_signals(self)
         self.add_output("file", "OUTPUT", tr("OpenDRIVE file"), tr("The map."), suffixes=(".xodr",), file_filter="OpenDRIVE (*.xodr)")
         self.add_report()
 
     def work(self, call, progress):
-        from pathlib import Path
-
-        from ..products.export.check.roads import check_opendrive
-        from ..products.export.opendrive.exporter import draft_opendrive
-        from ..products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
-        from ..products.export.sources import border_misses, driving_line_misses, reference_of_crs
-
-        source = lanes_with_borders(call, progress.part(0.0, 0.2))
-        settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
-        draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
-        draft.map.reference = reference_of_crs(source.lanes.crs)
-        path = call.new_file("OUTPUT")
-        Path(path).write_text(opendrive_text(draft.map), encoding="utf-8")
-        whole = read_opendrive(path)
-        shown, check = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
-        across, rise = border_misses(source.lanes, shown.lanes)
-        driven = driving_line_misses(source.driving_lines, shown.lanes)
-        led = source.led_to_middles()
-        single = driving_line_misses(source.driving_lines, shown.lanes, apart_from=led) if len(led) else driven
-        notes = [*source.notes, *draft.notes]
-        if not source.lanes.crs:
-            notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))
-        if across.largest > settings.tolerance or rise.largest > settings.tolerance:
-            x, y, _ = (across if across.largest > settings.tolerance else rise).worst
-            notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
-                            "tolerance, the farthest near x {x:.1f}, y {y:.1f}.").format(across=across.largest, rise=rise.largest, x=x, y=y))
-        warn_of_faults(notes, check, progress)
-        progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
-            roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
-        if call.wants("REPORT"):
-            call.text("REPORT", _report(call, whole, check, shown, (across, rise, driven, single), notes))
-        numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": check.successors, "FINDINGS": len(check.found),
-                   "BORDER_MAXIMUM": across.largest, "HEIGHT_MAXIMUM": rise.largest}
-        if driven.places:
-            numbers["DRIVING_LINE_P95"] = driven.p95
-        return {name: float(value) for name, value in numbers.items()}
+        return write_opendrive(call, lanes_with_borders(road_map_source(call, progress.part(0.0, 0.2))), call.layer_name("LANES"), progress)
 
 
-def _report(call, whole, found, shown, misses, notes):
+def write_opendrive(call, source, name, progress):
+    """Write a RoadMapSource with shared borders as OUTPUT, and its report; returns the numbers. `name`: of what it was made of."""
+    from pathlib import Path
+
+    from ..products.export.check.roads import check_opendrive
+    from ..products.export.opendrive.exporter import draft_opendrive
+    from ..products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+    from ..products.export.sources import border_misses, driving_line_misses, reference_of_crs
+
+    settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
+    draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
+    draft.map.reference = reference_of_crs(source.lanes.crs)
+    path = call.new_file("OUTPUT")
+    Path(path).write_text(opendrive_text(draft.map), encoding="utf-8")
+    whole = read_opendrive(path)
+    shown, check = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
+    across, rise = border_misses(source.lanes, shown.lanes)
+    driven = driving_line_misses(source.driving_lines, shown.lanes)
+    led = source.led_to_middles()
+    single = driving_line_misses(source.driving_lines, shown.lanes, apart_from=led) if len(led) else driven
+    notes = [*source.notes, *draft.notes]
+    if not source.lanes.crs:
+        notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))
+    if across.largest > settings.tolerance or rise.largest > settings.tolerance:
+        x, y, _ = (across if across.largest > settings.tolerance else rise).worst
+        notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
+                        "tolerance, the farthest near x {x:.1f}, y {y:.1f}.").format(across=across.largest, rise=rise.largest, x=x, y=y))
+    warn_of_faults(notes, check, progress)
+    progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
+        roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
+    if call.wants("REPORT"):
+        call.text("REPORT", _report(name, whole, check, shown, (across, rise, driven, single), notes))
+    numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": check.successors, "FINDINGS": len(check.found),
+               "BORDER_MAXIMUM": across.largest, "HEIGHT_MAXIMUM": rise.largest}
+    if driven.places:
+        numbers["DRIVING_LINE_P95"] = driven.p95
+    return {name: float(value) for name, value in numbers.items()}
+
+
+def _report(name, whole, found, shown, misses, notes):
     from collections import defaultdict
 
     from ..core.common.texts import word
@@ -209,15 +308,24 @@ def _report(call, whole, found, shown, misses, notes):
         (tr("Elements of the reference lines"), (tr("Element"), tr("Length (m)")),
          [(word(kind, "element"), round(metres, 1)) for kind, metres in sorted(lengths.items())]),
     ]
-    return map_export_report(tr("OpenDRIVE map"), call.layer_name("LANES"), facts, tables + fault_table(found), notes, shown)
+    return map_export_report(tr("OpenDRIVE map"), name, facts, tables + fault_table(found), notes, shown)
 
 
 LANELETS = "products.export.lanelet_map:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
 LANELET_SETTINGS = (
     SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
-                tr("Written to every lanelet for vehicles. 0 writes none: the survey does not know it.")),
+                tr("Written to every lanelet for vehicles of whose road no limit is known. 0 writes none there.")),
 )
+
+
+def add_lanelet_choices(algorithm):
+    """How Lanelet2 is written."""
+    algorithm.add_settings(LANELET_SETTINGS)
+    algorithm.add_input("choice", "LOCATION", tr("Location"), tr("Whether the roads are in a town; planners draw traffic rules from it."),
+                        default=LOCATIONS[0], choices=LOCATIONS)
+    algorithm.add_input("flag", "LOCAL_COORDINATES", tr("Write local_x and local_y"), tr(
+        "Autoware reads these metres within a square of 100 km instead of latitude and longitude."), default=False)
 
 
 class ExportLanelet2(Algorithm):
@@ -229,55 +337,63 @@ class ExportLanelet2(Algorithm):
             "markings. What was inferred or bridged has the tags lanewright:status and lanewright:confidence, and "
             "lanewright:sigma_m is the uncertainty of the lane.\n\n"
             "The file is read back and checked before it is handed over; the report names the transformation to latitude and longitude and what "
-            "the heights are. Traffic lights, signs, right of way and regulatory elements are not there.")
+            "the heights are. Speed limits and names of roads are written where the lanes have these fields. Traffic lights and signs, where their "
+            "layer is given, are regulatory elements of the lanelets that they hold for; right of way is not there.")
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
     NUMBERS = (("LANELETS", tr("Lanelets")), ("WAYS", tr("Ways")), ("NODES", tr("Nodes")), ("SUCCESSORS", tr("Links from one lane to the next")),
                ("FINDINGS", tr("Findings of the check")))
 
     def declare(self):
         add_road_map_layers(self)
-        self.add_settings(LANELET_SETTINGS)
-        self.add_input("choice", "LOCATION", tr("Location"), tr("Whether the roads are in a town; planners draw traffic rules from it."),
-                       default=LOCATIONS[0], choices=LOCATIONS)
-        self.add_input("flag", "LOCAL_COORDINATES", tr("Write local_x and local_y"), tr(
-            "Autoware reads these metres within a square of 100 km instead of latitude and longitude."), default=False)
+        add_lanelet_choices(self)
+        add_signals(self)
         self.add_output("file", "OUTPUT", tr("Lanelet2 file"), tr("The map."), suffixes=(".osm",), file_filter="Lanelet2 (*.osm)")
         self.add_report()
 
     def work(self, call, progress):
-        from pathlib import Path
+        return write_lanelet2(call, lanes_with_borders(road_map_source(call, progress.part(0.0, 0.2))), call.layer_name("LANES"), progress)
 
-        from ..products.export.check.lanelets import check_lanelets
-        from ..products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
-        from ..products.report.hd_map import map_export_report
 
-        source = lanes_with_borders(call, progress.part(0.0, 0.2))
-        progress.report(0.2)
-        draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.value("LOCATION")))
-        degrees = to_degrees(draft.nodes, source.lanes.crs)
-        path = call.new_file("OUTPUT")
-        Path(path).write_text(lanelet2_text(draft, degrees, call.value("LOCAL_COORDINATES")), encoding="utf-8")
-        progress.report(0.6)
-        whole = read_lanelet2(path)
-        check = check_lanelets(whole, *node_places(whole, source.lanes.crs))
-        progress.report(0.8)
-        notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
-                                  for kind, count in draft.skipped.items())]
-        if degrees.local:
-            notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
-        warn_of_faults(notes, check, progress)
-        numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
-                   "SUCCESSORS": float(check.successors), "FINDINGS": float(len(check.found))}
-        progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=told(degrees.way)))
-        if call.wants("REPORT"):
-            accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else tr("not stated")
-            facts = [(tr("Lanelets"), len(draft.lanelets)), (tr("Links from one lane to the next"), check.successors),
-                     (tr("Pairs of lanes side by side"), check.neighbours), (tr("Ways"), len(whole.ways)), (tr("Nodes"), len(whole.node_ids)),
-                     (tr("Transformation to latitude and longitude"), told(degrees.way)), (tr("Accuracy of the transformation"), accuracy),
-                     (tr("Heights"), told(degrees.vertical))]
-            call.text("REPORT", map_export_report(tr("Lanelet2 map"), call.layer_name("LANES"), facts, fault_table(check), notes,
-                                                  layers_of_lanelets(whole, source.lanes.crs)))
-        return numbers
+def write_lanelet2(call, source, name, progress):
+    """Write a RoadMapSource with shared borders as OUTPUT, and its report; returns the numbers. `name`: of what it was made of."""
+    from pathlib import Path
+
+    from ..products.export.check.lanelets import check_lanelets
+    from ..products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
+    from ..products.report.hd_map import map_export_report
+
+    progress.report(0.2)
+    draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.value("LOCATION")))
+    degrees = to_degrees(draft.nodes, source.lanes.crs)
+    path = call.new_file("OUTPUT")
+    Path(path).write_text(lanelet2_text(draft, degrees, call.value("LOCAL_COORDINATES")), encoding="utf-8")
+    progress.report(0.6)
+    whole = read_lanelet2(path)
+    check = check_lanelets(whole, *node_places(whole, source.lanes.crs))
+    progress.report(0.8)
+    notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
+                              for kind, count in draft.skipped.items())]
+    if draft.added:
+        notes.append(tr("{count} lanes end where another begins that they are not linked to; in Lanelet2 the one leads to the other.").format(
+            count=draft.added))
+    if draft.unmet:
+        notes.append(tr("{count} links of the map join lanes whose ends do not meet; Lanelet2 cannot say them, and they were left out.").format(
+            count=draft.unmet))
+    if degrees.local:
+        notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
+    warn_of_faults(notes, check, progress)
+    numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
+               "SUCCESSORS": float(check.successors), "FINDINGS": float(len(check.found))}
+    progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=told(degrees.way)))
+    if call.wants("REPORT"):
+        accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else tr("not stated")
+        facts = [(tr("Lanelets"), len(draft.lanelets)), (tr("Links from one lane to the next"), check.successors),
+                 (tr("Pairs of lanes side by side"), check.neighbours), (tr("Ways"), len(whole.ways)), (tr("Nodes"), len(whole.node_ids)),
+                 (tr("Transformation to latitude and longitude"), told(degrees.way)), (tr("Accuracy of the transformation"), accuracy),
+                 (tr("Heights"), told(degrees.vertical))]
+        call.text("REPORT", map_export_report(tr("Lanelet2 map"), name, facts, fault_table(check), notes,
+                                              layers_of_lanelets(whole, source.lanes.crs)))
+    return numbers
 
 
 ALIGNMENTS = "products.export.opendrive.exporter:OpenDriveSettings"
@@ -296,7 +412,7 @@ class ExportCad(Algorithm):
             "with a colour. LandXML 1.2: the axis of every road and every driving line as an alignment of the fitted lines, curves and spirals, "
             "with a profile of tangents; a line that no elements follow within the tolerance is an irregular line.\n\n"
             "DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US "
-            "survey feet. Surfaces and texts are not there; Cross-sections draws sections as DXF.")
+            "survey feet. Surface model writes the surface, Cross-sections the sections.")
     TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
     NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
 
@@ -351,8 +467,7 @@ def _landxml(call, source, progress):
 
     tolerance = call.value("TOLERANCE")
     alignments = alignments_of(source, tolerance)
-    now = datetime.now()
-    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))
+    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), datetime.now())
     Path(call.new_file("OUTPUT")).write_text(text, encoding="utf-8")
     irregular = sum(alignment.plan is None for alignment in alignments)
     if irregular:
@@ -460,7 +575,8 @@ class ImportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "importopendrive", "Import OpenDRIVE", "Export"
     SUMMARY = "Reads an OpenDRIVE map (1.1 to 1.8) into layers like those of the road map, to lay it over a survey and assess it."
     HELP = ("Lines, arcs, spirals and polynomials of the reference line, elevation, superelevation and shape, lane offsets, widths and borders, road "
-            "marks, heights of curbs and the links of lanes are read. Signals, objects, bridges, railways and the lines of their paint are not.\n\n"
+            "marks, heights of curbs and the links of lanes are read; signals with the lanes that they hold for, poles, crossings, stop lines, "
+            "arrows and hatched areas, speed limits and names of roads too. What is not read, such as buildings, is counted in the log.\n\n"
             "Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one "
             "begins, with the height of its curb. Gaps of reference lines, borders that fold back in a tight curve, and widths below 0 are named "
             "with their road; folds are cut off. Files that declare entities, or are not what a map can be, are refused.")
@@ -473,21 +589,27 @@ class ImportOpenDrive(Algorithm):
         add_map_layers(self)
 
     def work(self, call, progress):
-        from ..products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
-        from ..products.export.sources import crs_of_reference
+        return write_map_layers(call, _road_layers(call, progress), progress)
 
-        road_map = read_opendrive(map_file(call), progress.part(0.0, 0.5))
-        crs, note = crs_of_reference(road_map.reference, call.crs())
-        layers = layers_of_opendrive(road_map, crs, progress.part(0.5, 0.95))
-        layers.notes += [note] if note else []
-        return write_map_layers(call, layers, progress)
+
+def _road_layers(call, progress):
+    """The MapLayers of the OpenDRIVE file that was given."""
+    from ..products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
+    from ..products.export.sources import crs_of_reference
+
+    road_map = read_opendrive(map_file(call), progress.part(0.0, 0.5))
+    crs, note = crs_of_reference(road_map.reference, call.crs())
+    layers = layers_of_opendrive(road_map, crs, progress.part(0.5, 0.95))
+    layers.notes += [note] if note else []
+    return layers
 
 
 class ImportLanelet2(Algorithm):
     ID, TITLE, GROUP = "importlanelet2", "Import Lanelet2", "Export"
     SUMMARY = "Reads a Lanelet2 map into layers like those of the road map, to lay it over a survey and assess it."
-    HELP = ("Every lanelet becomes a lane between its two borders, with the lanelets that begin where it ends as successors. Footways, areas and "
-            "regulatory elements are not read. Heights are the tag ele of the nodes, as they stand in the file.\n\n"
+    HELP = ("Every lanelet becomes a lane between its two borders, with the lanelets that begin where it ends as successors. Traffic "
+            "lights and signs with the lanes that obey them, poles, crosswalks, stop lines and speed limits are read. Footways, areas and "
+            "right of way are not read and counted in the log. Heights are the tag ele of the nodes, as they stand in the file.\n\n"
             "Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone, or whose latitudes and longitudes are all about 0, "
             "gets layers in local coordinates, without CRS.")
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
@@ -499,10 +621,54 @@ class ImportLanelet2(Algorithm):
         add_map_layers(self)
 
     def work(self, call, progress):
-        from ..products.export.lanelet_map import layers_of_lanelets, read_lanelet2
+        return write_map_layers(call, _lanelet_layers(call, progress), progress)
 
-        lanelet_map = read_lanelet2(map_file(call), progress.part(0.0, 0.5))
-        return write_map_layers(call, layers_of_lanelets(lanelet_map, call.crs(), progress.part(0.5, 0.95)), progress)
+
+def _lanelet_layers(call, progress):
+    """The MapLayers of the Lanelet2 file that was given."""
+    from ..products.export.lanelet_map import layers_of_lanelets, read_lanelet2
+
+    return layers_of_lanelets(read_lanelet2(map_file(call), progress.part(0.0, 0.5)), call.crs(), progress.part(0.5, 0.95))
+
+
+class ConvertMap(Algorithm):
+    ID, TITLE, GROUP = "converthdmap", "Convert HD map", "Export"
+    SUMMARY = "Writes an OpenDRIVE map as Lanelet2, or a Lanelet2 map as OpenDRIVE, with its signals, crossings, poles and speed limits."
+    HELP = ("The map is read as by Import OpenDRIVE or Import Lanelet2 and written as by the export of the other format; the endings of the files "
+            "say which. Borders come out within the tolerance of where they came in, and every lane leads to the same lanes.\n\n"
+            "Carried over are lanes with their borders, paint, curbs and heights, traffic lights and signs with the lanes that obey them, poles, "
+            "crossings, stop lines, speed limits and names of roads; to OpenDRIVE arrows and hatched areas too. Lanelet2 has no lanes for parking "
+            "and no medians. What is not carried over, such as buildings or the controllers of lights, is counted in one line of the log.")
+    TAGS = ("OpenDRIVE", "Lanelet2", "xodr", "osm", "HD map", "conversion", "Autoware", "CARLA", "esmini")
+    NUMBERS = (("SUCCESSORS", tr("Links from one lane to the next")), ("FINDINGS", tr("Findings of the check")),
+               ("SIGNAL_COUNT", tr("Signals and poles")), ("LEFT_OUT", tr("What is not carried over")))
+
+    def declare(self):
+        add_map_file(self, tr("Map file"), tr("An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides."), MAP_FILTER)
+        self.add_input("crs", "CRS", tr("CRS of the map in metres"), tr(
+            "OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map."),
+            optional=True)
+        add_road_choices(self)
+        add_lanelet_choices(self)
+        self.add_output("file", "OUTPUT", tr("Converted map"), tr("With the ending of the other format, .osm or .xodr."), suffixes=(".osm", ".xodr"),
+                        file_filter="Lanelet2 (*.osm);;OpenDRIVE (*.xodr)")
+        self.add_report()
+
+    def work(self, call, progress):
+        from pathlib import Path
+
+        from ..products.export.sources import checked
+
+        path, output = map_file(call), str(call.output_path("OUTPUT"))
+        from_lanelets = _is_lanelet2(path)
+        if from_lanelets == output.lower().endswith(".osm"):
+            raise RoadExtractionError(tr("{path} is {kind} already, and {output} would be too. Give the result the ending {ending}.").format(
+                path=path, output=output, kind="Lanelet2" if from_lanelets else "OpenDRIVE", ending=".xodr" if from_lanelets else ".osm"))
+        layers = (_lanelet_layers if from_lanelets else _road_layers)(call, progress.part(0.0, 0.2))
+        source = lanes_with_borders(checked(layers.source()))
+        numbers = (write_opendrive if from_lanelets else write_lanelet2)(call, source, Path(path).name, progress.part(0.2, 1.0))
+        return {"SUCCESSORS": numbers["SUCCESSORS"], "FINDINGS": numbers["FINDINGS"], "SIGNAL_COUNT": float(len(layers.signals)),
+                "LEFT_OUT": float(sum(layers.left_out.values()))}
 
 
 MAP_FILTER = "HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)"

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -104,6 +105,7 @@ def _without_folders(value, folders):
     return FOLDER.sub(lambda found: found["before"], value)
 
 
+@lru_cache(maxsize=256)   # every look at the layers of a project reads them all
 def _read(algorithm, version, parameters, time):
     """A Provenance of its texts; None where they are cut off or somebody else's."""
     try:

@@ -95,7 +95,7 @@ class EstimateTrajectory(Algorithm):
     def work(self, call, progress):
         import numpy as np
 
-        from ..core.survey.estimation import estimate_trajectory
+        from ..core.survey.estimation.estimate import estimate_trajectory
         from ..products.report.survey import estimated_trajectory_report
 
         estimate = estimate_trajectory(call.point_clouds(), call.crs(), call.value("SCANNER_FIELD"), progress)

@@ -62,7 +62,7 @@ def estimated_trajectory(call, progress):
     """The EstimatedTrajectory of POINT_CLOUDS where TRAJECTORY was left out, None where it was given; says so in the log."""
     if call.given("TRAJECTORY"):
         return None
-    from ..core.survey.estimation import estimate_trajectory
+    from ..core.survey.estimation.estimate import estimate_trajectory
 
     progress.info(tr("No trajectory was given; it is estimated from the points …"))
     estimate = estimate_trajectory(call.point_clouds(), call.crs(), call.settings(SURVEY_SETTINGS).scanner_field, progress)

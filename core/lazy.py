@@ -8,23 +8,7 @@ from typing import Any
 
 
 def public(package: str, modules: dict[str, tuple[str, ...]]) -> tuple[Callable[[str], Any], list[str]]:
-    """What an `__init__` needs to offer names of the modules beside it.
-
-    Parameters
-    ----------
-    package : `__name__` of the folder
-    modules : module, relative to the folder -> public names that it defines
-
-    Returns
-    -------
-    __getattr__ : looks a name up in its module (PEP 562)
-    __all__ : the public names
-
-    Examples
-    --------
-    `__getattr__, __all__ = public(__name__, {"open_survey": ("open_survey", "Survey")})`
-    """
-
+    """(`__getattr__`, `__all__`) with which an `__init__` offers names of the modules beside it (PEP 562): {module, relative to it: names}."""
     module_of = {name: module for module, names in modules.items() for name in names}
 
     def get(name: str) -> Any:
@@ -45,17 +29,7 @@ class LazyModule:
     QGIS asks every algorithm for its parameters when it starts, and their defaults stand in the files of the
     stages; what those files compute with is needed only when a stage runs.
 
-    Parameters
-    ----------
-    name : of the module
-
-    Raises
-    ------
-    ImportError : at the first use, where it is not installed
-
-    Examples
-    --------
-    `cv2 = LazyModule("cv2")`
+    name : of the module; ImportError at the first use where it is not installed
     """
 
     def __init__(self, name: str) -> None:

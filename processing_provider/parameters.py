@@ -13,6 +13,7 @@ from qgis.core import (
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterFile,
     QgsProcessingParameterFileDestination,
+    QgsProcessingParameterFolderDestination,
     QgsProcessingParameterMapLayer,
     QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterNumber,
@@ -99,6 +100,7 @@ OUTPUTS = {
     "cloud": _file_output,
     "report": _file_output,
     "file": _file_output,
+    "folder": lambda spec: QgsProcessingParameterFolderDestination(spec.name, spec.label),
 }
 
 

@@ -188,7 +188,7 @@ class _Counter:
 
     def _raster(self):
         cell = self.settings.cell_size
-        column, row, _ = _unkey(self.cells.keys)
+        column, row = ((self.cells.keys >> bits & 2 * CELLS_BEFORE - 1) - CELLS_BEFORE for bits in (0, 20))
         first, last = row.min(), row.max()
         west, width, height = column.min(), int(np.ptp(column)) + 1, int(last - first) + 1
         corner = (self.corner[0] + west * cell, self.corner[1] + (last + 1) * cell)
@@ -224,10 +224,6 @@ def _key(column, row, layer=0):
     """One int64 of up to three cell numbers from -CELLS_BEFORE to below CELLS_BEFORE."""
     part = [np.clip(np.asarray(v) + CELLS_BEFORE, 0, 2 * CELLS_BEFORE - 1).astype(np.int64) for v in (column, row, layer)]
     return (part[2] << 40) | (part[1] << 20) | part[0]
-
-
-def _unkey(keys):
-    return tuple((keys >> bits & 2 * CELLS_BEFORE - 1) - CELLS_BEFORE for bits in (0, 20, 40))
 
 
 def _density(counts, size):

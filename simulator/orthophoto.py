@@ -242,8 +242,6 @@ def _within(x, y, at_x, at_y, reach):
 def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress: Progress | None = None) -> None:
     """Write the UAV image of a simulated survey, an RGB TIFF without a position on the map, with position tags.
 
-    Parameters
-    ----------
     path : of the TIFF, which appears when it is complete
 
     Raises RoadExtractionError if the file cannot be written.

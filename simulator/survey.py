@@ -139,13 +139,9 @@ class SampleSurvey:
     def blocks(self, noise: bool = True, progress: Progress | None = None) -> Iterator[np.ndarray]:
         """Points in blocks of time and scanner.
 
-        Parameters
-        ----------
         noise : whether ranges and intensities are noisy and pulses are lost; else every point lies where its pulse met the street
 
-        Yields
-        ------
-        SAMPLE_POINT arrays in map coordinates, some of them empty
+        Yields SAMPLE_POINT arrays in map coordinates, some of them empty
         """
         progress = progress or Progress()
         jobs = list(self._blocks())
@@ -166,8 +162,6 @@ class SampleSurvey:
     def points(self, noise: bool = True, progress: Progress | None = None) -> np.ndarray:
         """All points at once.
 
-        Parameters
-        ----------
         noise, progress : as in `blocks`
 
         Returns SAMPLE_POINT array in map coordinates, with labels (see street.LABELS), true range, station and offset
@@ -219,8 +213,6 @@ class SampleSurvey:
     def write_cloud(self, path: str | os.PathLike[str], progress: Progress | None = None, noise: bool = True) -> int:
         """Write the survey as LAS 1.4, point format 6, in blocks; the file appears when it is complete.
 
-        Parameters
-        ----------
         path : of the file; LAZ where it ends in .laz
         noise : as in `blocks`
 

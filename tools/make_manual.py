@@ -31,13 +31,19 @@ FILES = {
     "georeferenceimage.IMAGE": "uav_image.tif", "georeferenceimage.GCPS": "control_points.gpkg",
     "georeferenceimage.OUTPUT": "orthoimage.tif",
     "printsheets.OUTPUT": "sheets.pdf", "exportlanelet2.OUTPUT": "map.osm", "exportopendrive.OUTPUT": "map.xodr", "exportcad.OUTPUT": "map.dxf",
+    "exporttemplate.TEMPLATE": "template.csv", "exporttemplate.OUTPUT": "client.gpkg",
+    "classifycloud.OUTPUT": "classified", "classifycloud.UNROLLED": "unrolled",
     "checkhdmap.INPUT": "map.xodr", "checkhdmap.OUTPUT": "map_findings.gpkg",
     "importopendrive.INPUT": "map.xodr", "importlanelet2.INPUT": "map.osm",
+    "converthdmap.INPUT": "map.xodr", "converthdmap.OUTPUT": "converted.osm", "roadattributes.OUTPUT": "lanes_with_names.gpkg",
+    "roadattributes.OSM_FILE": "streets.osm",
     **{f"{name}.{layer}": f"{name.removeprefix('import')}_{layer.lower()}.gpkg" for name in ("importopendrive", "importlanelet2")
-       for layer in ("LANES", "DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES")},
+       for layer in ("LANES", "DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES", "MARKINGS", "SIGNALS")},
     "roadside.OUTPUT": "roadside.gpkg", "roadside.OBJECTS": "roadside_objects.gpkg",
     "crosssections.OUTPUT": "cross_sections.gpkg", "crosssections.DRAWING": "sections.dxf",
-    "crosssections.TABLE": "cross_sections_table.gpkg",
+    "crosssections.TABLE": "cross_sections_table.gpkg", "crosssections.LANDXML": "sections.xml", "crosssections.HEIGHTS": "sections.csv",
+    "surfacemodel.BREAKLINES": "breaklines.gpkg", "surfacemodel.TIN": "triangles.gpkg", "surfacemodel.SURFACE_FILE": "surface.xml",
+    "surfacemodel.DEM": "heights.tif",
     "assessboundaries.INPUT": "road_edges.gpkg", "assessboundaries.REFERENCE": "truth_boundaries.gpkg",
     "assessboundaries.OUTPUT": "boundaries_by_outcome.gpkg",
     "assessmarkings.INPUT": "markings.gpkg", "assessmarkings.REFERENCE": "truth_markings.gpkg",
@@ -50,8 +56,10 @@ NAMED = {
     "importtrajectory": ("POINT_CLOUDS",), "inspectsurvey": ("TRAJECTORY",), "extractroadsurface": ("ROAD_EDGES",),
     "drivinglines": ("MARKINGS", "ROAD_EDGES", "ROAD_POINTS"), "printsheets": ("ROAD_EDGES", "DRIVING_LINES"), "georeferenceimage": ("GCPS",),
     "crosssections": ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES"),
-    "roadmap": ("TRAJECTORY",),
+    "roadmap": ("TRAJECTORY",), "roadattributes": ("OSM_FILE",),
     "roadside": ("ROAD_EDGES",),
+    "exporttemplate": ("ROAD_EDGES", "MARKINGS", "MARKING_LINES"),
+    "classifycloud": ("ROAD_SURFACE", "ROAD_EDGES", "MARKINGS"),
 }
 
 
@@ -116,7 +124,7 @@ def kind(d):
         "multilayer": tr("files"), "file": tr("file"), "source": tr("vector layer"), "raster": tr("raster"), "crs": tr("CRS"),
         "number": tr("number"), "enum": tr("choice"), "boolean": tr("yes or no"), "string": tr("text"), "sink": tr("vector layer"),
         "fileDestination": tr("file"), "rasterDestination": tr("raster"), "pointcloud": tr("point cloud"), "vector": tr("vector layer"),
-        "matrix": tr("numbers"),
+        "matrix": tr("numbers"), "folderDestination": tr("folder"),
     }
     return ", ".join([kinds.get(d.type(), d.type()), *([tr("optional")] if optional(d) else [])])
 

@@ -28,7 +28,7 @@ from lanewright.core.execution.tasks import ShippedPhase  # noqa: E402
 from lanewright.core.pipeline import road_map as pipeline  # noqa: E402
 from lanewright.core.pipeline.road_map import Stages  # noqa: E402
 from lanewright.core.survey import open_survey  # noqa: E402
-from lanewright.simulator import SampleSettings, make_sample_survey  # noqa: E402
+from lanewright.simulator.survey import SampleSettings, make_sample_survey  # noqa: E402
 
 WORKERS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 

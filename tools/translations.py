@@ -18,6 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
 TEMPLATES = ROOT / "products" / "report" / "templates"
 SCHEMAS = ROOT / "core" / "common" / "features.py"
+COUNTRIES = ROOT / "core" / "countries" / "countries.json"
 VOCABULARY, FAULTS = ROOT / "core" / "common" / "words.txt", ROOT / "products" / "export" / "check" / "faults.txt"   # lines of name: text
 FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "products", "simulator", "library")
 FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
@@ -126,6 +127,7 @@ def core_messages():
         if not file.startswith(NO_SENTENCES):
             phrases |= dict.fromkeys(phrases_of(tree), file)
     phrases |= dict.fromkeys((text for row in table(FAULTS) for text in row), FAULTS.relative_to(ROOT).as_posix())
+    phrases |= dict.fromkeys(filter(is_phrase, texts_of_countries()), COUNTRIES.relative_to(ROOT).as_posix())
     return {**said, **{text: file for text, file in phrases.items() if text not in said}}
 
 
@@ -151,9 +153,20 @@ def phrases_of(tree):
             left_out |= {node.left, node.right}
     for node in ast.walk(tree):
         text = template_of(node) if node not in left_out else None
-        words = re.findall("[A-Za-z]{2,}", text or "")
-        if len(words) >= FEWEST_WORDS and text.strip().count(" ") >= FEWEST_WORDS - 1 and not NO_PROSE.search(text):
+        if is_phrase(text):
             yield text
+
+
+def is_phrase(text):
+    words = re.findall("[A-Za-z]{2,}", text or "")
+    return len(words) >= FEWEST_WORDS and text.strip().count(" ") >= FEWEST_WORDS - 1 and not NO_PROSE.search(text)
+
+
+def texts_of_countries():
+    """Where dashes are painted, codes, sources and rules of the catalogue of countries."""
+    for entry in json.loads(COUNTRIES.read_text(encoding="utf-8")):
+        yield from (where for *_, where in entry["dash_patterns"])
+        yield from (entry["design_code"], *entry["sources"], *(rule for _, rule in entry["section_limits"].values()))
 
 
 def said_in(node):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import MISSING, fields, replace
 from functools import cache
@@ -39,9 +40,8 @@ def bucket_argsort(cell: np.ndarray, count: int, own: np.ndarray | None = None) 
     cell : (N,) cell numbers, 0 to count - 1
 
     Returns
-    -------
-    rows : (M,) row numbers, ascending within each cell
-    ends : (count,) index in `rows` at which each cell ends
+        rows : (M,) row numbers, ascending within each cell
+        ends : (count,) index in `rows` at which each cell ends
     """
     kind = np.min_scalar_type(count)
     cell = cell.astype(kind)
@@ -115,6 +115,12 @@ def _interpolated(shares: np.ndarray | Sequence[float], count: int, at_ranks: Ca
     a, b = at_ranks(np.r_[before, np.minimum(before + 1, count - 1)]).astype(float).reshape(2, -1)
     share = rank - before
     return np.where(share < 0.5, a + (b - a) * share, b - (b - a) * (1.0 - share))
+
+
+def round_step(least: float) -> float:
+    """The smallest of 1, 2, 5, 10, 20, 50 … (and their tenths) that is not below `least`, above 0."""
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(power * step for step in (1, 2, 5, 10) if power * step >= least * (1 - 1e-9))
 
 
 # What hangs together: groups of things of which pairs are linked.

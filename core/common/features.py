@@ -148,6 +148,10 @@ CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part",
                   Field("curb_l_m", float, "Height of the left curb (m)"), Field("curb_r_m", float, "Height of the right curb (m)"),
                   Field("clear_m", float, "Clearance above (m)"), Field("seen_pct", float, "Surface seen (%)"),
                   Field("exceeds", str, "Limits not kept"), Field("why", str, "Value, limit and rule of each")]
+BREAKLINES = [ROAD, Field("kind", str, "Kind (crown/lane_border/edge_bottom/edge_top/gutter_flow_line)"), STATION, END, LENGTH,
+              Field("height_m", float, "Height of the top of an edge above its bottom (m)"),
+              Field("sigma_z_m", float, "Uncertainty of the height, one sigma (m)")]
+SURFACE_FACES = [STATUS, Field("slope_pct", float, "Slope (%)"), Field("area_m2", float, "Area (m²)")]
 EDGE_DISTANCE = Field("edge_m", float, "Distance from the carriageway's edge (m)")
 ROADSIDE = [ROAD, SIDE, Field("line", int, "Line"), Field("kind", str, "Kind (guard_rail/barrier/wall/fence/hedge/gutter)"), STATUS, STATION, END,
             OFFSET, EDGE_DISTANCE,
@@ -155,6 +159,18 @@ ROADSIDE = [ROAD, SIDE, Field("line", int, "Line"), Field("kind", str, "Kind (gu
             Field("foot_m", float, "Height of its lower edge above the ground (m)"), LENGTH]
 ROADSIDE_OBJECTS = [ROAD, SIDE, Field("kind", str, "Kind (pole/sign/trunk)"), STATION, OFFSET, EDGE_DISTANCE,
                     Field("height_m", float, "Height of its top above the ground (m)"), Field("diam_m", float, "Diameter of its shaft (m)")]
+# of the roads of other maps and of OpenStreetMap, which lanes may carry beside the fields of a survey
+ROAD_ATTRIBUTES = [Field("speed_kmh", float, "Speed limit (km/h)", needed=False), Field("name", str, "Name of the road", needed=False),
+                   Field("ref", str, "Number of the road", needed=False), Field("surface", str, "Surface", needed=False),
+                   Field("lanes", int, "Lanes of the road", needed=False), Field("oneway", str, "One-way road (yes/no)", needed=False)]
+# the point of a signal is the middle of its lower edge, that of a pole its foot
+SIGNALS = [Field("kind", str, "Kind (traffic_light/sign/pole)"),
+           *(Field(name, type_, alias, needed=False) for name, type_, alias in (
+               ("country", str, "Country of its code, two letters"), ("code", str, "Code of the country's catalogue"),
+               ("subcode", str, "Second part of the code"), ("value", float, "Value"), ("unit", str, "Unit of the value"),
+               ("text", str, "Name or text"), ("lanes", str, "Lanes it holds for, by lane_id"),
+               ("heading", float, "Travel of the traffic it is for (°, clockwise from grid north)"),
+               ("height_m", float, "Height from its lower edge to its top (m)"), ("width_m", float, "Width (m)")))]
 RESIDUALS = [Field("point", str, "Point"), Field("role", str, "Role (control/check/disabled)"),
              Field("pixel", float, "Pixel"), Field("line", float, "Line, downwards"),
              Field("dx_m", float, "Residual east (m)"), Field("dy_m", float, "Residual north (m)"),

@@ -71,6 +71,11 @@ class RememberedMessages(_PassedOn):
         super().__init__(whole)
         self.messages: list[tuple[str, str]] = []
 
+    @property
+    def warnings(self) -> list[str]:
+        """The texts of the warnings so far."""
+        return [text for kind, text in self.messages if kind == "warn"]
+
     def info(self, text: str) -> None:
         self.messages.append(("info", text))
         super().info(text)

@@ -41,9 +41,10 @@ class _DrivingLines(LineKind):
 
     def drawn(self, correction, places, like, pieces):
         way = _way(self.frame, correction, places) if like is None else like["direction"]
-        blank = dict(road=correction.road, lane=_free_lane(pieces, correction.road), pattern=NO_LINES, direction=way, station=correction.station,
+        lanes = [int(piece["lane"]) for piece in pieces if piece["road"] == correction.road]
+        blank = dict(road=correction.road, lane=max(lanes, default=0) + 1, pattern=NO_LINES, direction=way, station=correction.station,
                      end=correction.station, width=correction.width if np.isfinite(correction.width) else self.lane_width)
-        places = _in_direction(self.frame, correction, places, way)
+        places = places if _way(self.frame, correction, places) == way else places[::-1]
         fit = fit_curve(places[:, 0], places[:, 1])
         piece = dict(blank if like is None else like, source="drawn", status=DRAWN, confidence=SURE, other="", curve=fit.curve, rmse=np.nan,
                      sigma=np.nan, offset=correction.offset, places=places)
@@ -196,11 +197,3 @@ def _way(frame: RoadFrame, correction: Correction, places: np.ndarray) -> int:
     """1 for a line drawn along the road, -1 for one drawn against it: a lane is drawn as it is driven."""
     s, _ = located(frame, np.full(2, correction.road), places[[0, -1], 0], places[[0, -1], 1])
     return -1 if s[1] < s[0] else 1
-
-
-def _in_direction(frame, correction, places, way):
-    return places if _way(frame, correction, places) == way else places[::-1]
-
-
-def _free_lane(pieces, road):
-    return max((int(piece["lane"]) for piece in pieces if piece["road"] == road), default=0) + 1

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..countries import country
+from ..countries.catalogue import country
 from ..survey.frame.placement import PlaceIndex
 from .weights import PICK
 

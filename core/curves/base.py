@@ -49,9 +49,8 @@ class Curve:
         near : (N,) arc lengths near the projections, if known; else the nearest points of the curve are searched
 
         Returns
-        -------
-        u : (N,) arc lengths of the projections, metres
-        e : (N,) distances, metres, positive left of the curve; beyond an end, from the extrapolated curve
+            u : (N,) arc lengths of the projections, metres
+            e : (N,) distances, metres, positive left of the curve; beyond an end, from the extrapolated curve
         """
         x, y = np.asarray(x, float), np.asarray(y, float)
         if near is None:

@@ -21,9 +21,8 @@ def single_lines(geometries: Sequence[Any]) -> tuple[list[shapely.LineString], n
     """The lines of any mix of geometries: parts of multi-lines and outlines of polygons, without those of no length.
 
     Returns
-    -------
-    lines : list of LineString
-    owner : (N,) index of the geometry each line comes from
+        lines : list of LineString
+        owner : (N,) index of the geometry each line comes from
     """
     shapes = np.asarray(geometries, object)
     parts, owner = shapely.get_parts(shapes, return_index=True) if len(shapes) else (shapes, np.empty(0, int))
@@ -82,8 +81,6 @@ class SegmentIndex:
                 progress: Progress = Progress()) -> NearestPoints:
         """Nearest points on the lines.
 
-        Parameters
-        ----------
         xy : (N, 2) metres
         heading : (N,) radians; only with `max_angle`
         max_angle : radians; only segments within this angle of `heading`, in either direction, count; None: all

@@ -27,8 +27,6 @@ def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: in
     "automatic" fits line, circle, clothoid, ellipse and B-spline and selects the simplest whose BIC is within 6 of the best and whose 95th
     percentile of the residuals is below 5 cm. It never selects a polynomial, which is not an element of road design.
 
-    Parameters
-    ----------
     x, y : (N,) metres, about one point per 0.25 m, ordered along the line
     curve : one of CURVES
     degree : of the polynomial

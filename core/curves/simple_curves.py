@@ -130,8 +130,6 @@ class Ellipse(TabulatedCurve):
 def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> CurveFit:
     """Fit an Ellipse: Halir and Flusser's direct fit as start, then robust orthogonal distances.
 
-    Parameters
-    ----------
     x, y : (N,) metres, N >= 6, ordered along the line
     max_misfit : metres; a fit with a larger root mean square residual is given up once steps gain little
 
@@ -261,8 +259,6 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
     The residual minimised is measured across the chord, as in the driving-line thesis (its Eq. 3.17 with the normal equations put right); the one
     reported is orthogonal. A parabola is not a circle: for R = 140 m it misses by 3 cm over 80 m and by 57 cm over 160 m.
 
-    Parameters
-    ----------
     x, y : (N,) metres, N >= degree + 1, ordered along the line
     degree : int, 0 to 9
 

@@ -14,7 +14,7 @@ from ..countries.catalogue import country
 from ..execution.phase import THREADS
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads, usual_side
-from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
+from ..markings.cross_section.sections import STATION_STEP, CrossSections, EdgeSections, sections_of_lines
 from ..markings.cross_section.weights import HATCHING, OUTSIDE, TakenReading, share_within
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
@@ -35,33 +35,30 @@ __all__ = ["DrivingSettings", "make_driving_lines"]
 
 
 def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: DrivingSettings = DrivingSettings(),
-                       progress: Progress = Progress(), markings: MarkingObjects | None = None, edges: RoadEdges | None = None,
+                       progress: Progress = Progress(), markings: MarkingObjects | None = None, edges: RoadEdges | EdgeSections | None = None,
                        road_points: RoadPoints | None = None, taken: Sequence[TakenReading] = ()) -> tuple[DrivingLines, CurveElements, Lanes]:
     """Lines to drive on.
 
     Lanes are those of the most probable cross-sections of each road (`estimate_roads`); their middle is driven. Gaps of all lines are
     bridged one to one.
 
-    Parameters
-    ----------
     markings : MarkingObjects or None: no lane leads along a hatched area
-    edges : RoadEdges or None: no lane leads over a curb
+    edges : RoadEdges or their EdgeSections, or None: no lane leads over a curb
     road_points : RoadPoints or None: the heights of the road
     taken : second readings that an analyst took
 
     Returns
-    -------
-    lines : DrivingLines. Lanes are numbered from 1 on every road by where they begin, from right to left. A lane is cut
-        into pieces by `status`, and where its uncertainty changes much; pieces of one lane touch
-    elements : CurveElements of every lane
-    lanes : Lanes, the areas of the same pieces, and connectors between them where the vehicle drove on without lines
+        lines : DrivingLines. Lanes are numbered from 1 on every road by where they begin, from right to left. A lane is cut
+            into pieces by `status`, and where its uncertainty changes much; pieces of one lane touch
+        elements : CurveElements of every lane
+        lanes : Lanes, the areas of the same pieces, and connectors between them where the vehicle drove on without lines
     """
     rows: list[dict[str, Any]] = []
     arcs: list[dict[str, Any]] = []
     areas: list[dict[str, Any]] = []
     lanes: dict[int, RoadLanes] = {}
     paint = marking_lines.scatter()
-    curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, {})
+    curbs, pavement = EdgeSections.of(edges)
     estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
                                settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width), pavement=pavement,
                                progress=progress.part(0.0, 0.4), taken=taken)
@@ -213,8 +210,6 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoa
                spacing: np.ndarray | None = None) -> np.ndarray:
     """(N,) m, one sigma across a driving line at each place of its lane.
 
-    Parameters
-    ----------
     known : EstimatedRoad of the road's lines, on whose stations the track runs, and of its boundaries, between which it lies
     paint : {number of a line: m, RMS distance of its paint from its curve}
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`: one for all, or (N,)
@@ -275,7 +270,7 @@ def _mean_square_bias(track, course, lines):
 
 def _mean_square_guess(track):
     """(N,) m², of a place that is a guess: from where its borders show the lane, and from the lanes of a second reading, about the place drawn."""
-    square, doubt = track.aside**2, track.in_doubt()
+    square, doubt = track.aside**2, track.in_doubt
     for k in np.flatnonzero(doubt).tolist():
         second = track.second[k]
         if second is not None and second.lanes:

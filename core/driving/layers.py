@@ -13,8 +13,7 @@ import shapely
 from ..common.errors import RoadExtractionError
 from ..common.features import CURVE_ELEMENTS, DRIVING_LINES, LANES, Features
 from ..common.layer_rows import LayerRows, column
-from ..countries.catalogue import country
-from ..countries.neutral import NEUTRAL
+from ..countries.catalogue import NEUTRAL, country
 from ..curves.base import Arc, Curve
 from ..survey.frame.road_frame import RoadFrame
 from .alignment import element_row

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 from ..common.errors import RoadExtractionError
 from ..common.setting import check_limits, setting
-from ..countries.catalogue import country
-from ..countries.neutral import NEUTRAL
+from ..countries.catalogue import NEUTRAL, country
 
 MIN_LANE_WIDTH, MAX_LANE_WIDTH = NEUTRAL.narrowest_lane, NEUTRAL.widest_lane  # m between the lines of a lane, in any country
 TRAFFIC_SIDES = ("automatic", "right", "left")

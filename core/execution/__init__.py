@@ -3,14 +3,3 @@
 In: a `Phase`, a public function with what it reads from and plain settings, and the sections of road it is to work on. Out: its results in
 the order of the sections, the same from every `Executor`.
 """
-
-from ..lazy import public
-
-__getattr__, __all__ = public(__name__, {
-    "choice": ("ExecutionSettings", "cluster_for", "executor_for"),
-    "cluster": ("Cluster", "cluster_of"),
-    "phase": ("Executor", "Phase", "Recipe", "THREADS", "Threads", "digest", "is_whole", "read_plain", "write_plain"),
-    "processes": ("WorkerProcesses",),
-    "remembered": ("RememberedResults",),
-    "work_folder": ("KeptResults", "WorkFolder"),
-})

@@ -45,8 +45,6 @@ class FolderExecutor(Executor):
     workers : how many there are
     least_together : items of a task, as `items_together`
 
-    Attributes
-    ----------
     folder : own folder of the run, removed at the end; a phase is wanted as long as its file is there
     """
 

@@ -94,17 +94,11 @@ class Executor:
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order.
 
-        Parameters
-        ----------
         phase, items : the work
         keep : a file for every item, which the executor may write the result to as soon as it is computed; it stays
 
-        Raises
-        ------
-        Cancelled
-            If the user cancelled.
-        Exception
-            Whatever the function raises.
+        Raises Cancelled if the user cancelled.
+        Raises Exception: whatever the function raises.
         """
         raise NotImplementedError
 

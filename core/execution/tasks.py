@@ -119,10 +119,9 @@ def look_around(folder: str, word: str, dask_worker: Any = None) -> dict[str, An
     word : file in it that the worker must see
 
     Returns
-    -------
-    code : digest of the worker's Lanewright
-    problem : why the folder is of no use, "" where it can be read and written
-    memory : bytes that the worker may take, 0 where nothing limits it
+        code : digest of the worker's Lanewright
+        problem : why the folder is of no use, "" where it can be read and written
+        memory : bytes that the worker may take, 0 where nothing limits it
     """
     problem = ""
     _watch(folder)

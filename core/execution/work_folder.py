@@ -128,9 +128,10 @@ class KeptResults(Executor):
 
 @lru_cache(maxsize=1)
 def code_digest() -> str:
-    """A digest of the code that phases run: other code may give other results."""
+    """A digest of the code that phases run, with its tables: other code may give other results."""
     package = Path(__file__).resolve().parents[2]
     sha = hashlib.sha256()
-    for path in sorted(path for folder in ("core", "products") for path in (package / folder).rglob("*.py")):
+    files = (path for folder in ("core", "products") for path in (package / folder).rglob("*") if path.suffix in (".py", ".json", ".txt"))
+    for path in sorted(files):
         sha.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
     return sha.hexdigest()

@@ -41,7 +41,7 @@ SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
 
 
 @dataclass(frozen=True)
-class Saturation:
+class _Saturation:
     """The ends of the range of a road's intensities.
 
     at_lowest, at_highest : shares of points within 1.1 % of their scanner's lowest and highest, 0 where they do not accumulate there
@@ -53,8 +53,8 @@ class Saturation:
     at_highest: float = 0.0
 
     @classmethod
-    def from_levels(cls, levels: np.ndarray, highest: float | None = None) -> Saturation:
-        """Saturation of (scanners, INTENSITY_LEVELS) counts of points; `highest` is the highest intensity, where it is known exactly."""
+    def from_levels(cls, levels: np.ndarray, highest: float | None = None) -> _Saturation:
+        """_Saturation of (scanners, INTENSITY_LEVELS) counts of points; `highest` is the highest intensity, where it is known exactly."""
         levels = levels[levels.any(axis=1)]
         if not len(levels):
             return cls()
@@ -84,8 +84,8 @@ def _accumulated(counts):
     return first if first > sum(following) and following else 0
 
 
-def saturation_of(road_points: RoadPoints) -> Saturation:
-    """Saturation of the raw intensities of road points."""
+def saturation_of(road_points: RoadPoints) -> _Saturation:
+    """_Saturation of the raw intensities of road points."""
     def count(key):
         points, levels = road_points.section(*key), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64)
         intensity, scanner = points.intensity, points.scanner
@@ -95,7 +95,7 @@ def saturation_of(road_points: RoadPoints) -> Saturation:
         return levels
 
     counts = sum(ordered_map(count, road_points.all_sections()), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64))
-    return Saturation.from_levels(counts.reshape(SCANNER_NUMBERS, INTENSITY_LEVELS))
+    return _Saturation.from_levels(counts.reshape(SCANNER_NUMBERS, INTENSITY_LEVELS))
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ class IntensitySettings:
 
 
 @dataclass
-class IntensityReport:
+class _IntensityReport:
     """Result of a correction in numbers.
 
     scanners : a dict per scanner: scanner, points, nearest and farthest (m from the track), asphalt_before, asphalt_after (medians over the
@@ -126,7 +126,7 @@ class IntensityReport:
     spread_before: float = float("nan")   # spread_before, spread_after: coefficient of variation of asphalt over distances and scanners, %
     spread_after: float = float("nan")
     beams: int = 0   # how many beams of spinning scanners were equalised, 0 where there are none
-    saturation: Saturation = Saturation()   # whether intensities were cut off at an end
+    saturation: _Saturation = _Saturation()   # whether intensities were cut off at an end
     reason: str = ""   # why nothing was corrected, "" where it was
 
     @property
@@ -168,7 +168,7 @@ class AsphaltLook:
         reason = _reason_against(road_points, frame)
         if reason:
             return cls(None, reason)
-        points_by_scanner = sum(ordered_map(lambda key: _points_by_scanner(road_points.section(*key)), road_points.all_sections()))
+        points_by_scanner = sum(_run(points_of_scanners, road_points, (), Progress()))
         scanners = int(np.flatnonzero(points_by_scanner)[-1]) + 1
         beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.4))
         step, before = _sampling_step(road_points), IntensityHistograms(scanners)
@@ -188,7 +188,7 @@ class AsphaltLook:
 
 
 def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: IntensitySettings = IntensitySettings(),
-                      progress: Progress = Progress(), asphalt: AsphaltLook | None = None) -> tuple[RoadPoints, IntensityReport]:
+                      progress: Progress = Progress(), asphalt: AsphaltLook | None = None) -> tuple[RoadPoints, _IntensityReport]:
     """Bring asphalt to one intensity at every distance and for every scanner.
 
     The beams of a spinning scanner are equalised first, where they differ. In a first round the
@@ -201,26 +201,22 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
 
     The correction is our own: it needs neither the range nor the angle of incidence of a point.
 
-    Parameters
-    ----------
     frame : RoadFrame of the same trajectory
     asphalt : AsphaltLook of these points or of others of the survey, None to look at these
 
-    Returns
-    -------
-    RoadPoints with `corrected`; the raw intensity stays, and all other columns are shared with
+    Returns RoadPoints with `corrected`; the raw intensity stays, and all other columns are shared with
         `road_points`. NaN for a point measured when the vehicle's position is not known, or by a scanner with too few points to
         know its asphalt. Where nothing can be corrected, the points are returned as they were.
-    IntensityReport; its `reason` says why nothing was corrected
+    _IntensityReport; its `reason` says why nothing was corrected
     """
     asphalt = asphalt or AsphaltLook.of(road_points, frame, settings, progress.part(0.0, 0.5))
     if asphalt.reason or asphalt.table is None:
         progress.warn(asphalt.reason)
-        return road_points, IntensityReport(reason=asphalt.reason)
+        return road_points, _IntensityReport(reason=asphalt.reason)
     store, after = _corrected_store(road_points, frame, asphalt, progress.part(0.5, 1.0))
     report = _report(asphalt.counts, after, asphalt.table, asphalt.points_by_scanner)
     report.beams = asphalt.beams.count if asphalt.beams else 0
-    report.saturation = Saturation.from_levels(asphalt.counts[ACROSS_TRACK].sum(axis=1), asphalt.highest)
+    report.saturation = _Saturation.from_levels(asphalt.counts[ACROSS_TRACK].sum(axis=1), asphalt.highest)
     if report.saturation_warning:
         progress.warn(report.saturation_warning)
     for line in report.lines()[:1]:
@@ -266,10 +262,9 @@ def levels_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequenc
     step : points in every step-th centimetre of the road are counted
 
     Returns
-    -------
-    raw, equal : counts of intensities, as they are and with equal beams (none without)
-    highest : intensity
-    lost : (2,) points without a position of the vehicle, and all points
+        raw, equal : counts of intensities, as they are and with equal beams (none without)
+        highest : intensity
+        lost : (2,) points without a position of the vehicle, and all points
     """
     histograms = IntensityHistograms(scanners)
     raw, equal, highest, lost = [], [], 0, np.zeros(2, np.int64)
@@ -333,11 +328,10 @@ def _stripes(points, step):
     return points[np.repeat(begins - (np.cumsum(count) - count), count) + np.arange(count.sum())]
 
 
-def _points_by_scanner(points):
-    """(256,) how many points each scanner has."""
-    scanner, size = points.scanner, ASPHALT.points_at_once
-    return sum((np.bincount(scanner[k:k + size], minlength=SCANNER_NUMBERS) for k in range(0, len(scanner), size)),
-               np.zeros(SCANNER_NUMBERS, np.int64))
+def points_of_scanners(road_points: RoadPoints, stretch: Stretch) -> np.ndarray:
+    """The phase that counts points: (256,) how many each scanner has."""
+    sections = (road_points.section(*key).scanner for key in road_points.store.in_stretch(stretch))
+    return sum((np.bincount(scanner, minlength=SCANNER_NUMBERS) for scanner in sections), np.zeros(SCANNER_NUMBERS, np.int64))
 
 
 def _reason_against(road_points, frame):
@@ -351,12 +345,12 @@ def _reason_against(road_points, frame):
 
 
 def _report(before, after, table, points_by_scanner):
-    """IntensityReport of the counts before and after."""
+    """_IntensityReport of the counts before and after."""
     rows = table.distance_kind, np.arange(len(table.distance_kind))
     medians = [asphalt_of_histograms(counts[rows])[0] for counts in (before, after)]
     weight = before[rows].sum(axis=-1)
     usable = table.known & np.isfinite(medians[0]) & np.isfinite(medians[1])
-    report = IntensityReport("logarithmic" if table.logarithmic else "linear", table.reference)
+    report = _IntensityReport("logarithmic" if table.logarithmic else "linear", table.reference)
     distances = np.abs(np.arange(weight.shape[1]) * ASPHALT.distance_bin + ASPHALT.distance_bin / 2 - ASPHALT.max_distance)
     for scanner in np.flatnonzero(usable.any(axis=1)):
         use = usable[scanner]

@@ -263,8 +263,6 @@ def write_intensity_image(road_points: RoadPoints, path: str | PathLike, setting
     coordinates, so images of one place lie cell on cell. A cell without a point within the
     radius has no data.
 
-    Parameters
-    ----------
     path : of the GeoTIFF; it appears when it is complete
 
     Raises RoadExtractionError if there are no points, the image has too many tiles, or the file cannot be written.

@@ -35,8 +35,6 @@ class TiledImage(IntensityImage):
 
     folder : where the file lies, so that other processes can read it; None for a temporary one without a name
 
-    Attributes
-    ----------
     pieces, states : {piece of road, or (column, row) of a tile: digest of all that its part of the image depends on}
     """
 

@@ -100,8 +100,6 @@ def check_same_crs(own: str, other: str, place: tuple[float, float], label: str)
 
     Two that give the place of the layer the same coordinates, such as UTM zone 32 of ETRS89 and of WGS 84, are no others.
 
-    Parameters
-    ----------
     own, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
     place : (x, y) in the layer
     label : name of the layer, as at the beginning of a sentence
@@ -124,8 +122,6 @@ def _projection(crs):
 def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str = "") -> str:
     """The CRS in which a survey is processed: that of its clouds, else the given one, else that of the trajectory.
 
-    Parameters
-    ----------
     files : CloudHeader of each point cloud
     given, trajectory_crs : WKT or "EPSG:n", the first for clouds without a CRS; "" where unknown
 
@@ -201,7 +197,7 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
     notes += [f"What {file.path} says about its coordinates was not used, but the parameter CRS: {file.crs_problem}."
               for file in files if file.crs_problem][:1]
     if (units := as_in_file(crs)[1]).across != units.up:
-        across, *_, up = unit_names(as_in_file(crs)[0])
+        across, *_, up = _unit_names(as_in_file(crs)[0])
         notes.append(f"The point cloud says that the unit of its heights is the {up}, and that of its x and y the {across}: what is not in "
                      "metres was converted.")
     return " ".join(note for note in notes if note)
@@ -261,8 +257,6 @@ def place_on_ground(crs: Any, x: float, y: float) -> _MapPlace:
 def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
     """Refuse a CRS in which lengths at the survey are not those on the ground, and coordinates that are exchanged.
 
-    Parameters
-    ----------
     wkt : metric CRS
     place : (x, y) of the survey, metres
     what : the subject of the message, such as "The point cloud"
@@ -413,14 +407,11 @@ METRES = FileUnits()
 def in_metres(wkt: str) -> tuple[str, FileUnits]:
     """The CRS to work in with coordinates of a file, and the units of the file; RoadExtractionError if the text is not understood.
 
-    Parameters
-    ----------
     wkt : WKT or "EPSG:n" of the file's CRS, or what this function made of it; "" where unknown
 
     Returns
-    -------
-    wkt : as it was where the file is in metres (or degrees); otherwise a CRS with the same projection in metres
-    units : FileUnits. Heights without a vertical CRS have the unit of x and y, and beside degrees metres
+        wkt : as it was where the file is in metres (or degrees); otherwise a CRS with the same projection in metres
+        units : FileUnits. Heights without a vertical CRS have the unit of x and y, and beside degrees metres
     """
     file_wkt = _file_wkt(wkt)
     crs = parse_crs(file_wkt or wkt)
@@ -455,7 +446,7 @@ def place_raster(dataset: Any, geotransform: Any, crs: str) -> None:
         dataset.SetProjection(wkt)
 
 
-def unit_names(wkt: str) -> list[str]:
+def _unit_names(wkt: str) -> list[str]:
     """The names of the units of x, y and, where a CRS says it, z."""
     crs = parse_crs(wkt)
     return [] if crs is None else [axis.unit_name for axis in crs.axis_info]

@@ -57,13 +57,9 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
                     executor: Executor = THREADS) -> RoadPoints:
     """Leave out points that lie apart from the others.
 
-    Parameters
-    ----------
     executor : who looks at windows
 
-    Returns
-    -------
-    RoadPoints with the same columns and fewer points
+    Returns RoadPoints with the same columns and fewer points
 
     Notes
     -----
@@ -116,13 +112,9 @@ def _columns_of(points, road, number):
 def kept_of_windows(source: NoSource, windows: Sequence[tuple[int, Sequence[np.ndarray]]], settings: OutlierSettings) -> list[np.ndarray]:
     """The phase that finds outliers.
 
-    Parameters
-    ----------
     windows : number of each and the columns s, d, x, y, z (0.1 mm) of its points and those about it
 
-    Returns
-    -------
-    (N,) bool of each window, its own points that are kept
+    Returns (N,) bool of each window, its own points that are kept
     """
     return [_kept_of_window(number, Columns(dict(zip(COLUMNS, columns)), [(name, column.dtype) for name, column in zip(COLUMNS, columns)]), settings)
             for number, columns in windows]
@@ -165,8 +157,6 @@ def _units(records):
 class Neighbours:
     """The k nearest others of points, exactly.
 
-    Parameters
-    ----------
     units : (N, 3) int32 of 0.1 mm
     k : neighbours; fewer where there are no more
 
@@ -194,10 +184,9 @@ class Neighbours:
         """Mean distance of some points to their nearest others, and which these are.
 
         Returns
-        -------
-        distances : (M,) m; inf where a point has no neighbour at all. The point
-            itself is left out, a second point at the very same place is not (as in PCL).
-        nearest : (M, k) indices
+            distances : (M,) m; inf where a point has no neighbour at all. The point
+                itself is left out, a second point at the very same place is not (as in PCL).
+            nearest : (M, k) indices
         """
         if not self._k or not len(rows):
             return np.full(len(rows), np.inf), np.empty((len(rows), self._k), np.intp)

@@ -185,8 +185,6 @@ def components(cells: np.ndarray, places: np.ndarray, size: tuple[float, float],
     Exact, and without measuring every pair: where places of cells that touch are near enough wherever they lie, an image of the cells gives the
     patches that are connected, and pairs are measured between patches only.
 
-    Parameters
-    ----------
     cells : (K, 2) int, row and column, different ones, sorted; places : (K, 2) m, a place in each
     size : (2,) m, of a cell in the units of the places
     distance : m between places that belong together

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from functools import partial
 
 import numpy as np
 
@@ -14,25 +14,23 @@ from ..common.progress import Progress
 from ..execution.phase import THREADS, NoSource, Phase
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import find_lattice
+from ..survey.open_survey import Survey
 from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
-from .common.occlusion import OcclusionGrid
-from .common.side_curbs import SideChains, points_of_side
+from .common.side_curbs import curbs_along, grids_beside
 from .common.sides import SIDE_SIGNS
 from .curb_returns.detect import with_curb_returns
 from .edges.fit import EdgeSettings, edges_through, tell_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
-from .profiles.detect import detect_curbs
+from .profiles.detect import detect_curbs, steps_on_profiles, tell_points
 from .scanlines.candidates import ScanlineBoundarySettings
-from .scanlines.detect import SurveyScanlines, curbs_from_scanlines
+from .scanlines.detect import SurveyScanlines, steps_on_scanlines, tell_corners
 from .scanlines.section_planes import ScanlineSettings
 from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
+from .surface.road_look import RoadLook
 from .weights import BOUNDARY, CURBS, SCANLINE
-
-if TYPE_CHECKING:
-    from ..survey.open_survey import Survey
 
 BOUNDARY_METHODS = ("profiles", "scanlines", "both")
 METHODS = ("scanlines", "profiles")   # in the order of trust: three planes are a stricter model of a curb than a profile
@@ -42,8 +40,6 @@ METHODS = ("scanlines", "profiles")   # in the order of trust: three planes are 
 class BoundarySettings:
     """How road boundaries are found.
 
-    Attributes
-    ----------
     method : "profiles", "scanlines", or "both": one path along the road through what the two see
     curbs : settings of the profiles method
     scanlines : settings of the scanlines method
@@ -62,11 +58,9 @@ class BoundarySettings:
 
 
 @dataclass
-class RoadBoundaries:
+class _RoadBoundaries:
     """Curb points and the edges through them.
 
-    Attributes
-    ----------
     curb_points : CurbPoints
     edges : RoadEdges
     differences : RoadEdges, where the curbs of the two methods lie apart; None with one method
@@ -85,9 +79,7 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 
     ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
-    Returns
-    -------
-    {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
+    Returns {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
     curbs as each sees them alone, and "both" those of the best path through the chains of the two. Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
@@ -98,25 +90,23 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 
 def _find_curb_points(decimation, settings, progress, ground):
     """`find_curb_points` with the points of a PointDecimation."""
-    survey, both_methods, points = decimation.survey, settings.method == "both", {}
-    occlusion: dict[int, dict[str, OcclusionGrid]] = {}
-    chains: list[dict[tuple[int, str], SideChains]] = [{}, {}]
-    if settings.method != "scanlines":
-        part = progress.part(0.0, BOUNDARY.profiles_progress) if both_methods else progress
-        points["profiles"] = detect_curbs(survey, settings.curbs, part, not both_methods, decimation, occlusion, chains[0], ground)
-    if settings.method != "profiles":
-        part = progress.part(BOUNDARY.profiles_progress if both_methods else 0.0, 1.0)
-        lattice = find_lattice(survey, settings.planes.rotation_frequency, part.part(0.0, BOUNDARY.lattice_progress))
-        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice,
-                                 level=_level_for(decimation, settings.scanlines))
-        corners = part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)
-        points["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, corners,
-                                                   None if both_methods else occlusion, chains[1], ground)
-        drawn = "both" if both_methods else "scanlines"
-        if both_methods:
-            points["both"] = _points_of_both(chains[::-1], occlusion, survey)
-        points[drawn] = with_curb_returns(points[drawn], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0), occlusion,
-                                           ground)
+    survey, steps, begun = decimation.survey, {}, 0.0
+    if settings.method == "profiles":
+        return {"profiles": detect_curbs(survey, settings.curbs, progress, True, decimation, None, ground)}
+    if settings.method == "both":
+        begun = BOUNDARY.profiles_progress
+        steps["profiles"] = steps_on_profiles(decimation, settings.curbs, progress.part(0.0, begun))
+    part = progress.part(begun, 1.0)
+    lattice = find_lattice(survey, settings.planes.rotation_frequency, part.part(0.0, BOUNDARY.lattice_progress))
+    source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice, level=_level_for(decimation, settings.scanlines))
+    steps["scanlines"] = steps_on_scanlines(source, settings.scanlines, settings.curbs.block_length,
+                                            part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress))
+    points = curbs_along(source, {method: steps[method] for method in METHODS if method in steps}, partial(RoadLook, ground))
+    tell_corners(points["scanlines"], progress)
+    if settings.method == "both":
+        tell_points(points["profiles"], progress)
+    points[settings.method] = with_curb_returns(points[settings.method], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0),
+                                                grids_beside(next(iter(steps.values()))), ground)
     return points
 
 
@@ -126,25 +116,12 @@ def _level_for(decimation, settings):
     return LevelGround(decimation, settings.distance_across + BOUNDARY.level_strip_margin, along)
 
 
-def _points_of_both(chains, occlusion, survey):
-    """The curb points along the best path through the chains of all methods; those of the stricter model of a curb come first."""
-    parts = []
-    for road in survey.store.roads():
-        for side in SIDE_SIGNS:
-            of_side = [of_method[road, side] for of_method in chains if (road, side) in of_method]
-            if of_side:
-                parts.append(points_of_side(survey, road, side, of_side, occlusion[road][side]))
-    return CurbPoints.join(parts, survey.crs)
-
-
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
-                    progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> RoadBoundaries:
+                    progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> _RoadBoundaries:
     """Edges through the curb points of one method, or of the path through those of two, and edges of the pavement where there is no curb.
 
     With both methods, `agree` of every piece says how far apart they lie.
 
-    Parameters
-    ----------
     found : result of `find_curb_points`
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
     ground : MeasuredGround of it that an earlier stage kept, or None
@@ -163,13 +140,13 @@ def _drawn(found, frame, settings, executor, progress):
     edges, = executor.run(Phase(edges_through, NoSource(), (frame, settings), lambda item: "the edges of all roads"), [points])
     tell_edges(edges, progress)
     if "both" not in found:
-        return RoadBoundaries(points, edges)
+        return _RoadBoundaries(points, edges)
     edges, differences = measure_agreement(edges, *(found[method] for method in METHODS), frame)
     lengths = {method: _measured_length(found[method]) for method in METHODS}
     if any(lengths.values()):
         progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                      f"they lie more than 5 cm apart along {differences.length.sum():.0f} m.")
-    return RoadBoundaries(points, edges, differences, lengths)
+    return _RoadBoundaries(points, edges, differences, lengths)
 
 
 # How far apart the curbs of two methods lie, where both see one.
@@ -208,10 +185,9 @@ def measure_agreement(edges: RoadEdges, first: CurbPoints, second: CurbPoints, f
     first, second : CurbPoints of two methods
 
     Returns
-    -------
-    edges : RoadEdges with `agree`
-    differences : RoadEdges, lines along the curb of the first, one for every stretch where the two lie more
-        than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
+        edges : RoadEdges with `agree`
+        differences : RoadEdges, lines along the curb of the first, one for every stretch where the two lie more
+            than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
     """
     agree = edges.agree.copy()
     differences: list[EdgePiece] = []

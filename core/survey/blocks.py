@@ -180,7 +180,7 @@ class BlockReader:
         summary.without_time += lost
         self._add_scanners(columns, names, inside, summary)
         if inside is not None:
-            _fill_outside(columns["s"], inside)
+            columns["s"][~inside] = columns["s"][inside.argmax()] if inside.any() else 0   # a valid station of the piece
         points = Columns(columns, self.dtype, len(piece))
         if inside is not None and self.choice.has_time:
             yield from self._beyond(columns, points, inside, ground)
@@ -288,11 +288,6 @@ class BlockReader:
         for p in self.frame.passes[::-1]:
             passes[road == p.road] = p.number
         return passes, road >= 0
-
-
-def _fill_outside(stations, inside):
-    """Give points outside the frame a valid station of their piece."""
-    stations[~inside] = stations[inside.argmax()] if inside.any() else 0
 
 
 def unwrap_week(time: np.ndarray) -> np.ndarray:

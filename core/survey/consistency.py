@@ -23,8 +23,6 @@ CHECKED_SECTIONS, CHECKED_POINTS_PER_SECTION = 50, 200  # cost: evenly over the 
 def check_features_on_roads(features: Features, frame: RoadFrame, label: str) -> None:
     """Refuse features whose fields `station_m` and `offset_m` disagree with their position in the road frame, or that lie at heights of another.
 
-    Parameters
-    ----------
     features : Features with the fields `road` and `station_m`, and maybe `offset_m`
     label : name of the input, as at the beginning of a sentence
 
@@ -51,8 +49,6 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
 def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
     """Leave out what lies so far from the roads that it was drawn or written there by mistake: work goes with the length of lines.
 
-    Parameters
-    ----------
     features : Features in map coordinates, which are changed: points and polygons go whole, of lines the vertices far away
     label : name of the input, as at the beginning of a sentence
 
@@ -89,8 +85,6 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
 def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label: str) -> None:
     """Refuse road points whose stations, offsets or heights disagree with their positions in the road frame, judged by a sample.
 
-    Parameters
-    ----------
     label : name of the input, as at the beginning of a sentence
 
     Raises RoadExtractionError if more than half of the sampled points disagree.
@@ -110,9 +104,7 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
 def sample_road_points(road_points: RoadPoints) -> Iterator[tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """A sample of road points, evenly over the file.
 
-    Yields
-    ------
-    road number, (N,) x and y in map coordinates, (N,) stations and offsets in metres, and (N,) z, section by section
+    Yields road number, (N,) x and y in map coordinates, (N,) stations and offsets in metres, and (N,) z, section by section
     """
     keys = road_points.all_sections()
     for k in np.unique(np.linspace(0, len(keys) - 1, CHECKED_SECTIONS).astype(int)) if keys else ():

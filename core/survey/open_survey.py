@@ -42,18 +42,13 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
                 progress: Progress = Progress(), execution: ExecutionSettings = ExecutionSettings()) -> Survey:
     """Read a survey, or take what an earlier run read from the work folder.
 
-    Parameters
-    ----------
     paths : LAS, LAZ or COPC files in any order
     trajectory, settings, progress : as in `read_survey`
     execution : who runs the phases that read from the survey, and the work folder
 
     Returns Survey; closing its store ends everything that was started for it
 
-    Raises
-    ------
-    RoadExtractionError
-        As `read_survey`, and if the work folder or the cluster cannot be used.
+    Raises RoadExtractionError as `read_survey`, and if the work folder or the cluster cannot be used.
     """
     work, cluster = execution.work, cluster_for(execution, progress)
     executor: Executor = cluster or THREADS
@@ -156,8 +151,6 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
                 progress: Progress = Progress(), shared: _SharedReading | None = None) -> Survey:
     """Read point clouds once and project every point into the road frame.
 
-    Parameters
-    ----------
     files : headers of LAS, LAZ or COPC files in any order
     trajectory : Trajectory in any CRS and time system
     shared : who reads, where the points are to lie in a folder; None for threads of this process and its memory

@@ -79,13 +79,9 @@ class Survey:
         if self.folder is None:
             points_folder = folder / SURVEY_FOLDER
             points_folder.mkdir()
-            self.move_to(points_folder)
+            self.put_in_order(points_folder)
+            self.keep(points_folder)
         return Recipe("core.survey.survey:survey_in_folder", dict(folder=str(self.folder)))
-
-    def move_to(self, folder: Path, executor: Executor = THREADS, progress: Progress = Progress()) -> None:
-        """Keep the points, in order, in an empty folder from now on, from where `survey_in_folder` opens the survey, here and elsewhere."""
-        self.put_in_order(folder, executor, progress)
-        self.keep(folder)
 
     def keep(self, folder: Path) -> None:
         """Write what other processes need to open the survey whose points were put in order in a folder."""

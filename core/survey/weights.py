@@ -186,6 +186,10 @@ class _LasWeights:
     sampled_places: int = 5   # places in a file at which points are looked at
     points_per_sample: int = 1000   # points looked at in each of these places
     points_per_block: int = 400_000   # points decoded at a time
+    points_per_range: int = 50_000   # points of which it is noted where they lie: those that LASzip compresses together
+    place_cell: float = 10.0   # m: cells by which it is noted: some lengths of road that 50,000 points cover
+    remembered_points: int = 6_000_000   # points of the places looked at last, 14 bytes each: of some hundred metres of a road
+    remembered_surveys: int = 8   # surveys of which it is remembered where their points lie
     max_header_scale: float = 1e3   # m per stored integer: a coarser scale describes no place on earth
     max_header_offset: float = 1e12   # m: a larger offset describes no place on earth
     farthest_place: float = 1e8   # m or feet from any origin: no place of a map lies farther
@@ -233,8 +237,6 @@ class _ReadingWeights:
     height_peak_reach: float = 0.5   # m either side of the peak that belong to the road
     max_waiting_points: int = 4_000_000   # points held back at most until the height of the road is known
     height_samples: int = 5_000   # points on the own track from which the rough height is estimated
-    max_threads: int = 4   # threads that read; each decodes blocks with all cores (lazrs keeps the others waiting) and projects their points
-    blocks_per_thread: int = 3   # blocks begun or queued per thread: keeps threads busy while sections are written to the temporary file
     max_split_samples: int = 1_500_000   # points sampled, by which two scanners are distinguished
     part_points: int = 1_200_000   # points of a part, about: a second or two of a worker's time, some 20 MB of its file
     road_height_step: float = 0.25   # m between the stations at which points are compared with the height of the road

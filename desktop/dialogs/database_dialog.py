@@ -11,6 +11,7 @@ from qgis.core import (
     QgsProcessingParameterDefinition,
     QgsProviderConnectionException,
     QgsProviderRegistry,
+    QgsVectorLayer,
 )
 from qgis.gui import QgsProviderConnectionComboBox
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLineEdit, QWidget
@@ -89,6 +90,14 @@ def database_destinations(algorithm: QgsProcessingAlgorithm, connection: str, sc
             # a password that QGIS keeps apart stays there
             result[definition.name()] = f"{PROVIDER}://{uri.uri(False)}"
     return result
+
+
+def table_of_database(layer: QgsVectorLayer) -> str:
+    """The destination that is the table of a layer."""
+    table = QgsDataSourceUri(layer.source())
+    uri = QgsDataSourceUri(table.connectionInfo(False))
+    uri.setDataSource(table.schema(), table.table(), table.geometryColumn())
+    return f"{PROVIDER}://{uri.uri(False)}"
 
 
 def _connection(name):

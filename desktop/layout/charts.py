@@ -8,9 +8,10 @@ from collections.abc import Iterable
 import numpy as np
 import shapely
 
+from ...core.common.arrays import round_step
 from ...processing_provider.texts import tr
 from .axes import Axis
-from .drawing import DARK, GREY, Drawing, round_step, station_text, text_width
+from .drawing import DARK, GREY, Drawing, station_text, text_width
 from .map_lines import MapLine
 
 EXAGGERATIONS = (10, 5, 2, 1)   # heights of a profile are drawn so many times as large as lengths

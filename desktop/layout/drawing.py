@@ -81,9 +81,3 @@ def station_text(station: float) -> str:
     whole, rest = divmod(round(abs(station), 2), 1000)
     sign = "-" if station < 0 else ""
     return f"{sign}{int(whole)}+{rest:03.0f}" if rest == round(rest) else f"{sign}{int(whole)}+{rest:06.2f}"
-
-
-def round_step(least: float) -> float:
-    """The smallest of 1, 2, 5, 10, 20, 50 … (and their tenths) that is not below `least`."""
-    power = 10.0 ** math.floor(math.log10(least))
-    return next(power * step for step in (1, 2, 5, 10) if power * step >= least * (1 - 1e-9))

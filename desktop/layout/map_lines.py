@@ -57,7 +57,7 @@ def lines_of(layers: dict[str, QgsMapLayer], crs: QgsCoordinateReferenceSystem, 
 
 
 def road_lines(lines: list[MapLine]) -> list[RoadLine]:
-    """Those that run along a road, by the stations in their fields; of layers without stations the longest line alone."""
+    """Those that run along a road, by the stations in their fields; where none is, the longest line alone, pieces of one line joined."""
     result = []
     for line in lines:
         first, last = line.number("station"), line.number("end")
@@ -71,7 +71,8 @@ def road_lines(lines: list[MapLine]) -> list[RoadLine]:
         return result
     best = min(LEADING.index(line.output) if line.output in LEADING else len(LEADING) for line in lines)
     candidates = [line.places for line in lines if (LEADING.index(line.output) if line.output in LEADING else len(LEADING)) == best]
-    longest = max(candidates, key=lambda places: np.hypot(*np.diff(places[:, :2], axis=0).T).sum())
+    joined = shapely.get_parts(shapely.line_merge(shapely.multilinestrings([shapely.linestrings(places) for places in candidates])))
+    longest = shapely.get_coordinates(max(joined, key=lambda line: line.length), include_z=True)
     made = road_line(0, 0, longest, 0.0, float(np.hypot(*np.diff(longest[:, :2], axis=0).T).sum()))
     return [made] if made is not None else []
 

@@ -31,12 +31,13 @@ from qgis.PyQt.QtGui import QColor
 
 from ...algorithms.export import SheetSettings
 from ...algorithms.provenance import own_version
+from ...core.common.arrays import round_step
 from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...processing_provider.texts import tr
-from .axes import Axis, axes_of
+from .axes import axes_of
 from .charts import COLOURS, profile_pages, section_pages
-from .drawing import DARK, GREY, LETTER, Drawing, round_step, station_text, text_width
+from .drawing import DARK, GREY, LETTER, Drawing, station_text, text_width
 from .legend import add_legend, as_it_stands, legend_height, text_format
 from .map_lines import MapLine, accuracy_of, lines_of, road_lines
 from .pages import Sheet, sheets_along
@@ -101,8 +102,6 @@ def sheet_layout(project: QgsProject, layers: dict[str, QgsMapLayer], choice: Sh
                  ground: Iterable[np.ndarray] = (), progress: Progress = Progress()) -> tuple[QgsPrintLayout, dict[str, float]]:
     """All pages in one layout, which is not yet added to the project's layouts; and SHEETS, PAGES and SCALE_NUMBER.
 
-    Parameters
-    ----------
     project : QgsProject that will own the layout
     layers : result (such as ROAD_EDGES) -> its layer, from above
     below : layer drawn below these and left out of the legend: an orthoimage, a web map
@@ -521,9 +520,3 @@ def _on_frame(sheet: Sheet, value: float, axis: int, level: bool, box: QRectF, p
 
 def _corners(box: QRectF) -> list[tuple[float, float]]:
     return [(box.left(), box.top()), (box.right(), box.top()), (box.right(), box.bottom()), (box.left(), box.bottom())]
-
-
-def axes_of_layers(layers: dict[str, QgsMapLayer], project: QgsProject) -> list[Axis]:
-    """The axes that sheets of these layers follow, metres of the CRS that they are drawn in."""
-    crs = map_crs(list(layers.values()), project)
-    return axes_of(road_lines(lines_of(layers, crs, project, QgsUnitTypes.fromUnitToUnitFactor(crs.mapUnits(), Qgis.DistanceUnit.Meters))))

@@ -10,7 +10,7 @@ from qgis.core import QgsApplication, QgsTask
 from ...core.common.errors import Cancelled, RoadExtractionError
 from ...core.common.parallel import cancellation_scope
 from ...core.common.progress import Progress
-from ...core.survey.las.samples import points_near
+from ...core.survey.las.near import points_near
 from ...processing_provider.texts import told, tr
 
 
@@ -18,8 +18,6 @@ def with_points(title: str, clouds: Sequence[str], place: Sequence[float], radiu
                 ready: Callable[[QgsTask, object, str], None]) -> QgsTask:
     """Read the points about a place and work on them; keep the task, for QGIS keeps no reference, and cancel it when it is no longer wanted.
 
-    Parameters
-    ----------
     title : of the task
     clouds : files
     place, radius : x, y in map coordinates, and m either side

@@ -10,6 +10,7 @@ from qgis.PyQt.QtCore import QPointF, QRectF, Qt
 from qgis.PyQt.QtGui import QColor, QCursor, QFont, QFontMetricsF, QImage, QMouseEvent, QPainter, QPen, QPolygonF, QWheelEvent
 from qgis.PyQt.QtWidgets import QToolTip, QWidget
 
+from ...core.common.arrays import round_step
 from ...processing_provider.texts import tr
 from .section import HALF_WIDTH, Crossing
 
@@ -144,7 +145,8 @@ class SectionView(QWidget):
     def _draw_scanline(self, painter):
         painter.setPen(QPen(SCANLINE, 1.6))
         for line in self.scanline:
-            painter.drawPolyline(QPolygonF([QPointF(*self._at(offset, z)) for offset, z in line]))
+            x, y = self._at(*np.asarray(line).T)
+            painter.drawPolyline(QPolygonF([QPointF(*place) for place in zip(x.tolist(), y.tolist())]))
 
     def _shown(self):
         """The crossings within what is shown across."""
@@ -229,7 +231,5 @@ def caption() -> str:
 
 def _ticks(low, high, most):
     """Round numbers between two limits, about so many at most."""
-    step = (high - low) / max(most, 1.0)
-    unit = 10.0 ** math.floor(math.log10(step))
-    step = next(unit * times for times in (1, 2, 5, 10) if unit * times >= step)
+    step = round_step((high - low) / max(most, 1.0))
     return np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step

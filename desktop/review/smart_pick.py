@@ -43,7 +43,13 @@ def pick(road_map: RoadMap, point: QgsPointXY, crs: QgsCoordinateReferenceSystem
             problem = tr("The map has this line already.")
         ready(task, None if problem else seen, line, problem)
 
-    return _look(road_map, place, AROUND, work, looked)
+    return _look(road_map, place, AROUND, partial(_in_metres, work, _metres(road_map)), looked)
+
+
+def prepare(road_map: RoadMap, point: QgsPointXY, crs: QgsCoordinateReferenceSystem) -> QgsTask | None:
+    """Read what clicks about a place will need, in the background; None as of `pick`."""
+    place = QgsCoordinateTransform(crs, road_map.vectors[0].crs(), QgsProject.instance()).transform(point)
+    return _look(road_map, place, AROUND, len, lambda task, count, problem: None)
 
 
 def snap(road_map: RoadMap, line: QgsGeometry, crs: QgsCoordinateReferenceSystem, target: str,
@@ -58,7 +64,8 @@ def snap(road_map: RoadMap, line: QgsGeometry, crs: QgsCoordinateReferenceSystem
         kept = "" if seen else tr("Kept as it was drawn: nothing is seen along it.")
         ready(task, seen, _line_of(seen) if seen else drawn, problem or kept)
 
-    return _look(road_map, box.center(), max(box.width(), box.height()) / 2 * _metres(road_map) + BESIDE, work, looked)
+    metres = _metres(road_map)
+    return _look(road_map, box.center(), max(box.width(), box.height()) / 2 * metres + BESIDE, partial(_in_metres, work, metres), looked)
 
 
 def _metres(road_map):
@@ -70,7 +77,7 @@ def _look(road_map, place, radius, work, ready):
     clouds, missing = clouds_of(road_map, QgsProject.instance())
     if missing or not clouds:
         return None
-    return with_points(tr("Smart pick"), clouds, (place.x(), place.y()), radius, partial(_in_metres, work, _metres(road_map)), ready)
+    return with_points(tr("Smart pick"), clouds, (place.x(), place.y()), radius, work, ready)
 
 
 def _in_metres(work, metres, points):

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
+from pathlib import Path
 
-from qgis.core import QgsApplication, QgsMapLayer, QgsProject, QgsVectorLayer
+from qgis.core import QgsApplication, QgsMapLayer, QgsProcessingUtils, QgsProject, QgsProviderRegistry, QgsVectorLayer
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
 from ...algorithms.algorithm import SettingSpec
+from ...algorithms.destinations import table_of
 from ...algorithms.survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS
 from ...processing_provider.results.origin import origin_of
 from ...processing_provider.results.road_maps import CLOUDS, RoadMap
 from ...processing_provider.texts import tr
+from ..dialogs.database_dialog import PROVIDER, table_of_database
 from ..dialogs.stage_inputs import STAGES, TRAJECTORY, stage_again
 from ..widgets import button, row, wrapped
 from .corrections_layer import NAME, changed_at
@@ -84,11 +87,27 @@ def _settings(algorithm, values):
 
 
 def values_again(road_map: RoadMap) -> dict[str, object]:
-    """{parameter: value} of the run of a road map, with the settings of those steps that were run again by themselves."""
+    """{parameter: value} of the run of a road map, with the settings of steps that were run again by themselves, and where its results lie."""
     values = road_map.values
     for origin in sorted((origin_of(layer) for layer in road_map.layers), key=lambda origin: origin.provenance.ended):
         values |= {name: value for name, value in origin.provenance.values.items() if name in values and name not in (CLOUDS, TRAJECTORY, NAME)}
-    return values
+    return {**values, **saved(road_map)}
+
+
+def saved(road_map: RoadMap) -> dict[str, str]:
+    """{result: destination} of the layers that were saved, and of the report beside them: there a new run puts its own in their place."""
+    places = {}
+    for output, layer in zip(road_map.outputs, road_map.layers):
+        parts = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
+        path = str(parts.get("path") or "")
+        if layer.providerType() == PROVIDER:
+            places[output] = table_of_database(layer)
+        elif path and not path.startswith(QgsProcessingUtils.tempFolder()):
+            places[output] = table_of(path, parts["layerName"]) if parts.get("layerName") else path
+            report = Path(path).parent / "report.html"
+            if report.is_file():
+                places["REPORT"] = str(report)
+    return places
 
 
 class StepsPanel(QWidget):

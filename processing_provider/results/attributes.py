@@ -59,7 +59,8 @@ def _parts():
         "length": _part('format_number("length_m", 0) || \' m\'', "length_m"),
         "height": _part(f"'{tr('height')} ' || format_number(\"height_m\", 2) || ' m'", "height_m"),
         "status": _part(value("status"), "status"),
-        "sigma": _part("'± ' || format_number(\"sigma_m\" * 1000, 0) || ' mm'", "sigma_m"),
+        "sigma": _part("'± ' || CASE WHEN \"sigma_m\" < 0.1 THEN format_number(\"sigma_m\" * 1000, 0) || ' mm' ELSE "
+                       "format_number(\"sigma_m\" * 100, 0) || ' cm' END", "sigma_m"),
         "line": _part(f"CASE WHEN \"kind\" = 'edge' THEN '{tr('Edge line')}' WHEN \"kind\" = 'centre' THEN '{tr('Centre line')}' "
                       f"ELSE '{tr('Lane line')}' END || ' ' || \"line\"", "kind", "line"),
         "pattern": _part(value("pattern"), "pattern"),

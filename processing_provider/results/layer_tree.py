@@ -39,6 +39,7 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
     node = project.layerTreeRoot().findLayer(layer.id())
     if node is not None:
         node.setExpanded(False)  # legends of thirty entries would hide the layers
+        _renew_group(node, run, project)
     layer.setCustomProperty(OUTPUT, output)
     describe_origin(layer, run.provenance, output)
     road_map = road_map_of(layer, project)
@@ -52,6 +53,15 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
         _hide_former(output, road_map, former, project)
     if output in IMAGES and road_map.group is not None:
         _lay_under_map(layer, road_map, project)
+
+
+def _renew_group(node, run, project):
+    """Call the group of a layer by the run that has written the layer in its place: QGIS leaves the layer there, and the run's own group empty."""
+    group = project.layerTreeRoot().findGroup(run.group) if run.group else None
+    if group is not None and not group.children():
+        if node.parent() is not project.layerTreeRoot():
+            node.parent().setName(run.group)
+        group.parent().removeChildNode(group)
 
 
 def _remove_former(layer, output, former, project):

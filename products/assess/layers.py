@@ -211,18 +211,18 @@ def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore
             raise RoadExtractionError(f"{layer.label} has no CRS and coordinates that look like degrees, while the others are in "
                                       f"{horizontal_part(target).name}. Set the layer's CRS and run again.")
         warn(f"{layer.label} has no CRS; its coordinates are taken to be in {horizontal_part(target).name}.")
-        return AssessedLayer(layer.label, layer.geometries, layer.rows, wkt)
+        return replace(layer, crs=wkt)
     if same_crs(source, target):
-        return AssessedLayer(layer.label, layer.geometries, layer.rows, wkt)
+        return replace(layer, crs=wkt)
     from pyproj import Transformer
 
     move = Transformer.from_crs(horizontal_part(source), horizontal_part(target), always_xy=True)
-    moved = shapely.transform(np.asarray(layer.geometries, object), lambda xy: np.column_stack(move.transform(*xy.T)))
-    moved = [_with_heights_of(old, new) for old, new in zip(layer.geometries, moved)]
+    moved = [shapely.transform(shape, lambda xyz: np.column_stack([*move.transform(*xyz[:, :2].T), xyz[:, 2:]]), include_z=bool(shape.has_z))
+             for shape in layer.geometries]
     if not np.isfinite(shapely.get_coordinates(moved)).all():
         raise RoadExtractionError(
             f"{layer.label} is in {horizontal_part(source).name} and cannot be brought to {horizontal_part(target).name}. Check its CRS.")
-    return AssessedLayer(layer.label, moved, layer.rows, wkt)
+    return replace(layer, geometries=moved, crs=wkt)
 
 
 def without_stray_vertices(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
@@ -258,14 +258,6 @@ def check_overlap(result: AssessedLayer, reference: AssessedLayer) -> None:
 
         raise RoadExtractionError(f"{result.label} and {reference.label} lie {np.hypot(*gap):.0f} m apart ({extent(a)} against {extent(b)}), so "
                                   "nothing can be compared. Check that both show the same road and that their CRSs are right.")
-
-
-def _with_heights_of(old, new):
-    """`shapely.transform` of x and y drops the heights: put them back."""
-    if not old.has_z:
-        return new
-    z = shapely.get_coordinates(old, include_z=True)[:, 2]
-    return shapely.transform(shapely.force_3d(new), lambda xyz: np.column_stack([xyz[:, :2], z]), include_z=True)
 
 
 def _looks_like_degrees(geometries):
@@ -381,8 +373,7 @@ def marking_polygons(layer: AssessedLayer, line_width: float) -> AssessedLayer:
     widths = [_width(named[k], plain[k], line_width) for k in lines]
     for k, strip in zip(lines, widened_lines([shapes[k] for k in lines], widths)):
         shapes[k] = strip
-    valid = shapely.make_valid(shapely.force_2d(np.asarray(shapes, object))) if shapes else []
-    return AssessedLayer(layer.label, list(valid), layer.rows, layer.crs)
+    return replace(layer, geometries=list(shapely.make_valid(shapely.force_2d(np.asarray(shapes, object)))))
 
 
 def _width(*candidates):

@@ -13,7 +13,19 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...core.common.setting import check_limits, setting
 from ...core.curves.line_segments import SegmentIndex, single_lines
-from .matching import NAN, Errors, LinePoints, Rates, ReferenceStationing, Stations, TrajectoryStationing, constant_runs, cut_runs, sample_lines
+from .matching import (
+    NAN,
+    Errors,
+    LinePoints,
+    Rates,
+    ReferenceStationing,
+    Stations,
+    TrajectoryStationing,
+    constant_runs,
+    cut_runs,
+    sample_lines,
+    share_of,
+)
 
 # Lines against reference lines: completeness, correctness and deviations.
 #
@@ -109,10 +121,10 @@ class LineMatch:
         for tolerance in tolerances:
             right = self.result_points.length[of_result & (self.to_reference <= tolerance)].sum()
             matched = self.reference_points.length[of_reference & (self.to_result <= tolerance)].sum()
-            complete[tolerance], correct[tolerance] = _share(matched, reference_length), _share(right, length)
-            quality[tolerance] = _share(right, length + reference_length - matched)
+            complete[tolerance], correct[tolerance] = share_of(matched, reference_length), share_of(right, length)
+            quality[tolerance] = share_of(right, length + reference_length - matched)
             long = self._gaps(tolerance, of_reference)
-            gaps[tolerance] = _share(1000.0 * len(long), reference_length)
+            gaps[tolerance] = share_of(1000.0 * len(long), reference_length)
             mean_gap[tolerance] = float(np.mean(long)) if len(long) else 0.0
         return LineAccuracy(complete, correct, quality, gaps, mean_gap, Errors.of(self.lateral[of_result], lengths),
                             Errors.of(self.height[of_result], lengths), float(reference_length), float(length))
@@ -176,10 +188,6 @@ def _nearest_points(points, lines, max_angle, progress):
     if max_angle >= 90.0:
         return SegmentIndex(lines).nearest(points.xy, progress=progress)
     return SegmentIndex(lines).nearest(points.xy, points.heading, np.radians(max_angle), MAX_MATCH_DISTANCE, progress)
-
-
-def _share(part, whole):
-    return float(part / whole) if whole else NAN
 
 
 # Road boundaries in intervals of 2 m and by side: the protocol of the scanline paper, completed by the tolerance that it does not state. An

@@ -229,12 +229,12 @@ class Rates:
     @property
     def precision(self) -> float:
         """right / (right + false)"""
-        return _share(self.right, self.right + self.false)
+        return share_of(self.right, self.right + self.false)
 
     @property
     def recall(self) -> float:
         """found / (found + missed)"""
-        return _share(self._found, self._found + self.missed)
+        return share_of(self._found, self._found + self.missed)
 
     @property
     def f1(self) -> float:
@@ -279,5 +279,6 @@ class Errors:
         return cls(len(values), mean, float(np.sqrt(np.average(values**2, weights=weights))), p95, float(size.max()))
 
 
-def _share(part, whole):
+def share_of(part: float, whole: float) -> float:
+    """A share, NaN of nothing."""
     return float(part / whole) if whole else NAN

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from dataclasses import dataclass, field
+import re
+from collections import Counter, defaultdict, deque
+from dataclasses import dataclass, field, replace
 from html import escape
 
 import numpy as np
+import shapely
 
 from ...core.common.errors import RoadExtractionError
+from ...core.common.features import SIGNALS, Features
 from ...core.common.progress import Progress
 from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
 from ...core.io.crs import as_in_file, horizontal_part, parse_crs
-from .shared_borders import cuts_beside, numbered
+from .shared_borders import WIDEST_DOUBLE, cuts_beside, numbered
 from .sources import (
     LEAST_CURB,
+    LEAST_LED,
     LOCAL_CRS,
     MapLayers,
     MapLine,
@@ -23,6 +27,7 @@ from .sources import (
     RoadMapSource,
     is_stated,
     metric_wkt,
+    plan_length,
     sigma_of_lanes,
     stop_lines,
     utm_of,
@@ -104,12 +109,13 @@ class LaneletNetwork:
         self.reversed_right: dict[int, bool] = {}
         for lanelet in whole.lanelets.values():
             self._place(lanelet)
-        starts, by_border = defaultdict(list), defaultdict(list)
+        starts, goals, by_border = defaultdict(list), defaultdict(list), defaultdict(list)
         for id in self.left:
             starts[self.ends(id)[0]].append(id)
+            goals[self.ends(id)[1]].append(id)
             for role in ("left", "right"):
                 by_border[whole.lanelets[id].way(role)].append((id, role))
-        self._starts, self._by_border = starts, by_border
+        self._starts, self._goals, self._by_border = starts, goals, by_border
 
     def _place(self, lanelet: Lanelet) -> None:
         ids = lanelet.way("left"), lanelet.way("right")
@@ -148,6 +154,17 @@ class LaneletNetwork:
         """Lanelets that share a border with this one."""
         lanelet = self.whole.lanelets[id]
         return [neighbour for role in ("left", "right") for neighbour, _ in self._by_border[lanelet.way(role)] if neighbour != id]
+
+    def abreast(self, id: int) -> list[tuple[int, bool]]:
+        """(lanelet that shares a border with this one, whether it is driven the same way)."""
+        lanelet, turned = self.whole.lanelets[id], {"left": self.reversed_left, "right": self.reversed_right}
+        return [(neighbour, turned[role][id] == turned[other][neighbour]) for role in turned
+                for neighbour, other in self._by_border[lanelet.way(role)] if neighbour != id]
+
+    def crosses(self, id: int) -> bool:
+        """Whether it is a way through a junction: the map says how it turns, or others begin where it does and others end where it does."""
+        forks, meets = (len(by_ends[self.ends(id)[k]]) > 1 for k, by_ends in ((0, self._starts), (1, self._goals)))
+        return self.driven(id) and ("turn_direction" in self.whole.lanelets[id].tags or forks and meets)
 
     def driven(self, id: int) -> bool:
         """Whether vehicles use it."""
@@ -266,6 +283,9 @@ def _check_degrees(places, ids):
 
 PATTERN_OF_WAY = {"solid": "solid", "dashed": "dashed", "solid_solid": "double-solid",
                   "dashed_dashed": "double-dashed", "solid_dashed": "solid-dashed", "dashed_solid": "dashed-solid"}
+KIND_OF_WAY = {"traffic_light": "traffic_light", "traffic_sign": "sign", "pole": "pole", "post": "pole"}
+CARRIED = ("traffic_light", "traffic_sign", "speed_limit")   # rules of traffic that layers hold
+OURS = "lanewright:"   # of tags that the format does not have
 PAINTED_WAYS = ("line_thin", "line_thick")
 EDGE_WAYS = ("curbstone", "road_border", "guard_rail", "wall", "fence")
 NO_LAND = 1.0   # degrees from latitude and longitude 0
@@ -311,20 +331,27 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
     are edges. Raises RoadExtractionError as `node_places`.
     """
     places, crs = node_places(whole, crs)
-    network, rows = LaneletNetwork(whole, places), []
+    network, rows = LaneletNetwork(whole, places), {}
     shown = [id for id in network.left if network.driven(id)]
-    for count, id in enumerate(shown):
-        lanelet = whole.lanelets[id]
-        left, right = matched(places[network.left[id]], places[network.right[id]])
-        turned = {"left": network.reversed_left[id], "right": network.reversed_right[id]}
-        kinds, patterns = zip(*(_border(whole.ways[lanelet.way(role) or 0].tags, turned[role]) for role in turned))
-        rows.append(dict(
-            left=left, right=right, road=1, lane=count + 1, lane_id=str(id), direction=1,
-            type=LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "driving"),
-            left_kind=kinds[0], right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
-            successors=[str(following) for following in network.following(id) if network.driven(following)]))
-        progress.report((count + 1) / len(shown))
-    layers = MapLayers(Lanes.of_pieces(rows, crs), list(_lines(whole, places)))
+    number_of = {id: number for number, id in enumerate(shown, start=1)}
+    for along in _along_roads(network, shown):
+        for id, (left, right) in _borders_abreast(network, along).items():
+            lanelet = whole.lanelets[id]
+            kind = LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "connector" if network.crosses(id) else "driving")
+            turned = {"left": network.reversed_left[id], "right": network.reversed_right[id]}
+            sides = [(line, *_border(whole.ways[lanelet.way(role) or 0].tags, turned[role])) for role, line in (("left", left), ("right", right))]
+            driven = kind in ("driving", "connector")
+            if not driven and along[id] < 0:   # where nobody drives, borders are those along the road
+                sides = [(line[::-1], *about) for line, *about in sides[::-1]]
+            rows[id] = dict(
+                **{side + name: value for side, about in zip(("left", "right"), sides) for name, value in zip(("", "_kind", "_pattern"), about)},
+                road=1, lane=number_of[id], lane_id=str(id), direction=along[id] * driven, type=kind,
+                successors=[str(following) for following in network.following(id) * driven if network.driven(following)])
+            progress.report(len(rows) / len(shown))
+    layers = MapLayers(Lanes.of_pieces([rows[id] for id in shown], crs), list(_lines(whole, places)),
+                       outlines=list(_outlines(whole, places, network)),
+                       signals=_signals(whole, places, crs), left_out=_left_out(whole))
+    layers.attributes = {str(id): known for id in shown if (known := _known(whole, whole.lanelets[id]))}
     if not crs:
         layers.notes.append("The map has local coordinates: its place on the earth is not known, and the layers have no CRS.")
     left_out = len(whole.lanelets) - len(network.left)
@@ -345,17 +372,123 @@ def _lines(whole, places):
             yield MapLine(1, "edge" if kind in EDGE_WAYS else "marking", "lane", pattern, points, edge="curb" if kind == "curbstone" else "pavement")
 
 
-def matched(left: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Two borders with vertices at the same shares of their lengths, so that each has those of both."""
+def _outlines(whole, places, network):
+    """(class as in MARKINGS, corners) of crossings and stop lines."""
+    for id in network.left:
+        if whole.lanelets[id].tags.get("subtype") == "crosswalk":
+            yield "crosswalk", np.concatenate([places[network.left[id]], places[network.right[id]][::-1]])
+    for way in whole.ways.values():
+        ends = places[whole.rows(way)[[0, -1]]] if way.tags.get("type") == "stop_line" and len(whole.rows(way)) > 1 else np.zeros((2, 3))
+        if (length := plan_length(ends)) > LEAST_LED:
+            aside = np.array([ends[0, 1] - ends[1, 1], ends[1, 0] - ends[0, 0], 0.0]) / length * _number(way.tags.get("width"), STOP_LINE_WIDTH) / 2
+            yield "stop_line", np.concatenate([ends - aside, ends[::-1] + aside])
+
+
+def _signals(whole, places, crs):
+    """The layer SIGNALS of the ways of lights, signs and poles, with the lanelets that obey them."""
+    layer, obeying = Features("PointZ", SIGNALS, crs=crs), defaultdict(list)
+    for lanelet in whole.lanelets.values():
+        for rule in (whole.others.get(id) for _, id in lanelet.members.get("regulatory_element", ())):
+            for _, id in rule.members.get("refers", ()) if rule is not None else ():
+                obeying[id].append(str(lanelet.id))
+    for way in whole.ways.values():
+        points, kind = places[whole.rows(way)], KIND_OF_WAY.get(way.tags.get("type", ""))
+        if kind and len(points):
+            (x, y), width = (points[-1] - points[0])[:2], plan_length(points[[0, -1]])
+            heading = (90 - np.degrees(np.arctan2(x, -y))) % 360 if width > LEAST_LED else np.nan   # a light is drawn from left to right
+            height = np.ptp(points[:, 2]) if kind == "pole" else _number(way.tags.get("height"), np.nan)
+            named = re.fullmatch(r"([A-Za-z]{2})(\w+?)(?:-(.+))?", way.tags.get("subtype", "")) if kind == "sign" else None
+            code = dict(zip(("country", "code", "subcode"), named.groups())) if named else {}
+            told = {name[len(OURS):]: value for name, value in way.tags.items() if name.startswith(OURS)}
+            layer.add(shapely.Point(*points[:, :2].mean(0), points[:, 2].min()), kind=kind, lanes=",".join(obeying[way.id]), heading=heading,
+                      height_m=height or np.nan, width_m=width if width > LEAST_LED else np.nan,
+                      **{**code, **told, "value": _number(told.get("value"), np.nan)})
+    return layer
+
+
+def _known(whole, lanelet):
+    """What a map says of the road of a lanelet, as ROAD_ATTRIBUTES."""
+    tags = lanelet.tags
+    signs = [whole.others[id].tags.get("sign_type", "") for _, id in lanelet.members.get("regulatory_element", ())
+             if id in whole.others and whole.others[id].tags.get("subtype") == "speed_limit"]
+    speed = kmh(tags.get("speed_limit", "")) or next((kmh(sign.rpartition("-")[2]) for sign in signs), None)
+    known = {"speed_kmh": speed, "name": tags.get("road_name"), "surface": tags.get("road_surface")}
+    return {name: value for name, value in known.items() if value}
+
+
+def _left_out(whole):
+    """How often a map has what no layer of ours holds."""
+    count = Counter(f"{lanelet.tags['subtype']} lanelet" for lanelet in whole.lanelets.values()
+                    if lanelet.tags.get("subtype") in NEVER_DRIVEN and lanelet.tags["subtype"] != "crosswalk")
+    return count + Counter(f"{kind} {relation.tags.get('subtype', '')}".strip() for relation in whole.others.values()
+                           if (kind := relation.tags.get("type", "relation")) != "regulatory_element" or relation.tags.get("subtype") not in CARRIED)
+
+
+def kmh(text: str) -> float | None:
+    """A speed of a tag in km/h, with or without a unit; None where it is no number."""
+    found = re.fullmatch(r"(\d+(?:\.\d+)?) ?(km/h|kmh|kph|mph|m/s|mps)?", text.strip())
+    return float(found[1]) * {"mph": 1.609344, "m/s": 3.6, "mps": 3.6}.get(found[2], 1.0) if found else None
+
+
+def _number(text, missing):
+    """A length of a tag, in metres."""
+    try:
+        return float(str(text).removesuffix("m"))
+    except ValueError:
+        return missing
+
+
+def _along_roads(network, shown):
+    """For lanelets that lie side by side id -> 1 or -1, the way they are driven along the road; what follows them is driven the same way along."""
+    roads, direction = [], {}
+    waiting = deque()
+    for first in shown:
+        waiting.append((first, 1))
+        while waiting:
+            id, way = waiting.popleft()
+            if id in direction:
+                continue
+            road, beside = {id: way}, deque([id])
+            while beside:
+                here = beside.popleft()
+                for neighbour, same in network.abreast(here):
+                    if neighbour not in road and network.driven(neighbour):
+                        road[neighbour] = road[here] * (1 if same else -1)
+                        beside.append(neighbour)
+            direction |= road
+            roads.append(road)
+            waiting += [(following, road[member]) for member in road for following in network.following(member) if network.driven(following)]
+    return roads
+
+
+def _borders_abreast(network, along):
+    """id -> (left, right) of lanelets side by side, with vertices at the same places along all of them, so that neighbours share them."""
+    lines = {}
+    for id, way in along.items():
+        for role, rows in (("left", network.left[id]), ("right", network.right[id])):
+            lines[network.whole.lanelets[id].way(role)] = network.places[rows[::way]]
+    if len({len(line) for line in lines.values()}) > 1 or not all(
+            _is_abreast(*(network.places[side[id]] for side in (network.left, network.right))) for id in along):
+        lines = dict(zip(lines, matched(*lines.values())))
+    return {id: tuple(lines[network.whole.lanelets[id].way(role)][::way] for role in ("left", "right")) for id, way in along.items()}
+
+
+def _is_abreast(left, right):
+    """Whether the vertices of two borders lie across from each other, one by one."""
+    across, ahead = (right - left)[:, :2], np.gradient((left + right)[:, :2], axis=0)
+    return bool((np.abs((across * ahead).sum(1)) <= np.abs(across[:, 0] * ahead[:, 1] - across[:, 1] * ahead[:, 0]) + LEAST_LED).all())
+
+
+def matched(*borders: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Borders with vertices at the same shares of their lengths, so that each has those of all."""
     shares = []
-    for border in (left, right):
+    for border in borders:
         along = np.append(0.0, np.cumsum(np.hypot(*np.diff(border[:, :2], axis=0).T)))
         shares.append(along / along[-1] if along[-1] > 0 else np.linspace(0, 1, len(border)))
     merged = np.unique(np.concatenate(shares))
     merged = merged[np.append(True, np.diff(merged) > 1e-9)]
     merged[-1] = 1.0
-    return tuple(np.stack([np.interp(merged, share, values) for values in border.T], axis=1)     # type: ignore[return-value]
-                 for border, share in zip((left, right), shares))
+    return tuple(np.stack([np.interp(merged, share, values) for values in border.T], axis=1) for border, share in zip(borders, shares))
 
 
 def _border(tags, turned):
@@ -376,6 +509,7 @@ SUBTYPE_OF_LANE = {"driving": "road", "connector": "road", "bicycle": "bicycle_l
 PARTICIPANTS = {"bicycle": "participant:bicycle", "shoulder": "participant:vehicle:emergency"}
 SUBTYPE_OF_PATTERN = {"solid": "solid", "dashed": "dashed", "double-solid": "solid_solid", "double-dashed": "dashed_dashed", "double": "solid_solid",
                       "solid-dashed": "solid_dashed", "dashed-solid": "dashed_solid"}
+STOP_LINE_WIDTH, SIGNAL_WIDTH = 0.3, 0.4   # m, where a map does not say it
 TURN = 0.5              # rad from which a way through a junction is a turn
 
 
@@ -407,16 +541,19 @@ class _MadeLanelet:
 
 
 @dataclass
-class LaneletDraft:
+class _LaneletDraft:
     """A map before it gets ids and degrees."""
 
     nodes: np.ndarray   # (N, 3) metres in the CRS of the survey
     ways: list[_MadeWay] = field(default_factory=list)
     lanelets: list[_MadeLanelet] = field(default_factory=list)
+    rules: list[tuple[str, list[tuple[str, int]], list[int]]] = field(default_factory=list)   # (subtype, (role, way) members, lanelets that obey)
     skipped: dict[str, int] = field(default_factory=dict)   # type of lane -> pieces that are no lanelets
+    unmet: int = 0   # links of lanes whose ends lie too far apart to be one
+    added: int = 0   # links of lanes that meet though the map does not say that they do
 
 
-def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSettings()) -> LaneletDraft:
+def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSettings()) -> _LaneletDraft:
     """Lanelets of the lanes that are driven, with crossings and stop lines of the markings.
 
     A border between neighbours is one way. Where a lane begins or ends beside another, that other one is cut too, at the same place, so
@@ -427,13 +564,53 @@ def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSet
     return _Drafting(source, settings).run()
 
 
+def _bridged(lanes: Lanes) -> tuple[Lanes, np.ndarray, int]:
+    """(lanes of a map from elsewhere that reach those that they are linked to, (V,) whether a vertex was an end before, links that are left out as
+    their ends lie too far apart).
+
+    A lane whose corner misses that of the other one begins or ends there with a further vertex; so do all that share its corner.
+    """
+    nodes, first = numbered(np.concatenate([lanes.left, lanes.right]))
+    corners = {(k, end): (row, row + len(lanes.left)) for k in range(len(lanes)) for end, row in ((0, lanes.start[k]), (1, lanes.start[k + 1] - 1))}
+    places, row_of = np.concatenate([lanes.left, lanes.right]), {name: k for k, name in enumerate(lanes.lane_id)}
+    links = [((k, 1), (row_of[name], 0)) for k, names in enumerate(lanes.successors) for name in names if name in row_of]
+    met = {nodes[row] for one, other in links for row, goal in zip(corners[one], corners[other]) if nodes[row] == nodes[goal]}
+    goal_of, broken = {}, set()
+    for one, other in links:
+        # a connector reaches out for its lane; else it is always the same of two roads
+        reaching, fixed = sorted((one, other), key=lambda end: (lanes.type[end[0]] != "connector", lanes.road[end[0]], end[0]))
+        pairs = [(nodes[row], int(first[nodes[goal]])) for row, goal in zip(corners[reaching], corners[fixed]) if nodes[row] != nodes[goal]]
+        far = any(np.hypot(*(places[goal] - places[row])[:2]) > WIDEST_DOUBLE for row, goal in zip(corners[reaching], corners[fixed]))
+        if far or any(node in met or goal_of.get(node, goal) != goal for node, goal in pairs):
+            broken.add((one[0], other[0]))
+        else:
+            goal_of.update(pairs)
+    extra = {end: [goal_of.get(nodes[row], row) for row in rows] for end, rows in corners.items() if any(nodes[row] in goal_of for row in rows)}
+    sides, was_end = ([], []), []
+    for k in range(len(lanes)):
+        inside = np.zeros(int(np.diff(lanes.start)[k]), bool)
+        inside[0], inside[-1] = (k, 0) in extra, (k, 1) in extra
+        was_end.append(np.concatenate([[False] * ((k, 0) in extra), inside, [False] * ((k, 1) in extra)]))
+        for number, border in enumerate(lanes.borders(k)):
+            ends = [places[[extra[k, end][number]]] if (k, end) in extra else border[:0] for end in (0, 1)]
+            sides[number].append(np.concatenate([ends[0], border, ends[1]]))
+    start = np.append(0, np.cumsum([len(border) for border in sides[0]], dtype=int))
+    successors = [tuple(name for name in names if (k, row_of.get(name)) not in broken) for k, names in enumerate(lanes.successors)]
+    bridged = replace(lanes, left=np.concatenate(sides[0]), right=np.concatenate(sides[1]), start=start, successors=successors)
+    return bridged, np.concatenate(was_end).astype(bool), len(broken)
+
+
 class _Drafting:
     def __init__(self, source: RoadMapSource, settings: LaneletSettings) -> None:
+        unmet, self.was_end = 0, np.zeros(len(source.lanes.left), bool)
+        if is_stated(source.lanes):
+            lanes, self.was_end, unmet = _bridged(source.lanes)
+            source = replace(source, lanes=lanes, middles=None)
         self.source, self.settings, self.lanes = source, settings, source.lanes
         lanes = source.lanes
         places = np.concatenate([lanes.left, lanes.right])
         numbers, first = numbered(places, LEAST_CURB if is_stated(lanes) else SAME_RISE)
-        self.draft = LaneletDraft(places[first])
+        self.draft = _LaneletDraft(places[first], unmet=unmet)
         self.left, self.right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
         self.way_of: dict[tuple[int, ...], int] = {}
         # beside a double line the bounds meet in its middle, and the line to drive on stays between the stripes
@@ -441,21 +618,34 @@ class _Drafting:
         self.curb_heights = NearestValues(source.road_edges, "height_m")
         self.sigma = sigma_of_lanes(lanes, source.driving_lines)
 
-    def run(self) -> LaneletDraft:
+    def run(self) -> _LaneletDraft:
         lanes = self.lanes
         used = [k for k in range(len(lanes)) if lanes.type[k] in SUBTYPE_OF_LANE]
         for k in range(len(lanes)):
             if lanes.type[k] not in SUBTYPE_OF_LANE:
                 self.draft.skipped[lanes.type[k]] = self.draft.skipped.get(lanes.type[k], 0) + 1
-        cuts = cuts_beside(lanes, self.left, self.right, np.repeat(np.isin(np.arange(len(lanes)), used), np.diff(lanes.start)))
+        among = np.repeat(np.isin(np.arange(len(lanes)), used), np.diff(lanes.start)) & ~self.was_end
+        cuts = cuts_beside(lanes, self.left, self.right, among)
         for k in used:
-            first = lanes.start[k]
-            bounds = [first, *(row for row in range(first + 1, lanes.start[k + 1] - 1) if self.left[row] in cuts or self.right[row] in cuts),
-                      lanes.start[k + 1] - 1]
-            for a, b in zip(bounds[:-1], bounds[1:]):
+            bounds, last = [lanes.start[k]], lanes.start[k + 1] - 1
+            for row in range(bounds[0] + 1, last):
+                # where one border stands still there is no lanelet to cut off
+                if among[row] and (self.left[row] in cuts or self.right[row] in cuts) and all(
+                        self.left[row] != self.left[end] and self.right[row] != self.right[end] for end in (bounds[-1], last)):
+                    bounds.append(row)
+            for a, b in zip(bounds, [*bounds[1:], last]):
                 self._lanelet(k, slice(a, b + 1))
         self._objects()
+        self.draft.added = self._added_links(used)
         return self.draft
+
+    def _added_links(self, used):
+        """How many lanes end where one begins that they are not linked to: in this format the one leads to the other."""
+        starts = defaultdict(set)
+        for k in used:
+            starts[self.left[self.lanes.start[k]], self.right[self.lanes.start[k]]].add(self.lanes.lane_id[k])
+        ends = ((k, starts[self.left[self.lanes.start[k + 1] - 1], self.right[self.lanes.start[k + 1] - 1]]) for k in used if self.lanes.direction[k])
+        return sum(len(names - {self.lanes.lane_id[k], *self.lanes.successors[k]}) for k, names in ends)
 
     def _lanelet(self, k: int, rows: slice) -> None:
         lanes = self.lanes
@@ -464,8 +654,10 @@ class _Drafting:
             return
         tags = {"type": "lanelet", "subtype": SUBTYPE_OF_LANE[lanes.type[k]], "location": self.settings.location, "one_way": "yes"}
         tags[PARTICIPANTS.get(lanes.type[k], "participant:vehicle")] = "yes"
-        if self.settings.speed_limit and lanes.type[k] not in PARTICIPANTS:
-            tags["speed_limit"] = str(int(self.settings.speed_limit))
+        known = self.source.attributes.get(lanes.lane_id[k], {})
+        if (speed := known.get("speed_kmh") or self.settings.speed_limit) and lanes.type[k] not in PARTICIPANTS:
+            tags["speed_limit"] = f"{speed:.4g}"
+        tags |= {tag: known[name] for name, tag in (("name", "road_name"), ("surface", "road_surface")) if known.get(name)}
         if lanes.type[k] == "connector":
             tags["turn_direction"] = _turn((lanes.left[rows] + lanes.right[rows]) / 2)
         if np.isfinite(self.sigma[k]):
@@ -519,6 +711,36 @@ class _Drafting:
                 self.draft.ways.append(_MadeWay(self._new_nodes(side), {"type": "pedestrian_marking", "subtype": "dashed"}))
             self.draft.lanelets.append(_MadeLanelet(len(self.draft.ways) - 2, len(self.draft.ways) - 1, -1, {
                 "type": "lanelet", "subtype": "crosswalk", "location": self.settings.location, "one_way": "no", "participant:pedestrian": "yes"}))
+        parts = defaultdict(list)
+        for number, lanelet in enumerate(self.draft.lanelets):
+            parts[lanelet.name].append(number)
+        for point, row in self.source.signals or ():
+            self._signal(shapely.get_coordinates(point, include_z=True)[0], row, parts)
+
+    def _signal(self, place, row, parts):
+        """A light, sign or pole as a way, and as a rule of the lanelets that are nearest to it of each lane that it holds for."""
+        kind, height = row["kind"], row.get("height_m")
+        if kind not in KIND_OF_WAY.values():
+            return
+        heading, width = np.radians(row.get("heading") or 0.0), row.get("width_m") or SIGNAL_WIDTH
+        reach = np.array([0.0, 0.0, height or width]) if kind == "pole" else np.array([np.cos(heading), -np.sin(heading), 0.0]) * width
+        nodes = self._new_nodes(np.array([place, place + reach]) - (kind != "pole") * reach / 2)
+        tags = {"type": {"sign": "traffic_sign"}.get(kind, kind)}
+        if kind != "pole":
+            known = {name: f"{row[name]}" for name in ("country", "code", "subcode", "value", "unit", "text") if row.get(name) not in (None, "")}
+            code = known.get("country", "") + known.get("code", "") + ("-" + known["subcode"] if "subcode" in known else "")
+            tags["subtype"] = "red_yellow_green" if kind == "traffic_light" else code or "unknown"
+            tags |= {OURS + name: value for name, value in known.items()} | ({"height": f"{height:.2f}"} if height else {})
+        self.draft.ways.append(_MadeWay(nodes, tags))
+        named = [parts[name.strip()] for name in str(row.get("lanes") or "").split(",") if name.strip() in parts]
+        obeying = [min(numbers, key=lambda number: self._apart(number, place)) for numbers in named]
+        if obeying and kind != "pole":
+            self.draft.rules.append((tags["type"], [("refers", len(self.draft.ways) - 1)], obeying))
+
+    def _apart(self, number, place):
+        """Metres of a lanelet from a place."""
+        nodes = self.draft.ways[self.draft.lanelets[number].centre].nodes
+        return float(np.hypot(*(self.draft.nodes[list(nodes), :2] - place[:2]).T).min())
 
 
 def _without_repeats(nodes: np.ndarray) -> tuple[int, ...]:
@@ -572,7 +794,7 @@ def to_degrees(places: np.ndarray, crs: str) -> Degrees:
     return Degrees(np.c_[lon, lat], transformer.description, transformer.accuracy if transformer.accuracy is not None else -1.0, vertical)
 
 
-def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) -> str:
+def lanelet2_text(draft: _LaneletDraft, degrees: Degrees, local: bool = False) -> str:
     """The file as text, of a draft and the degrees of its nodes.
 
     `local`: also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them.
@@ -595,17 +817,23 @@ def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) ->
         places = "".join(map('<nd ref="{}"/>'.format, map(ids.__getitem__, way.nodes)))
         lines.append(f'  <way id="{first_way + number}" visible="true" version="1">{places}{_tags_as_xml(way.tags)}</way>')
     first_lanelet = first_way + len(draft.ways)
+    first_rule = first_lanelet + len(draft.lanelets)
     for number, lanelet in enumerate(draft.lanelets):
-        lines.append(f'  <relation id="{first_lanelet + number}" visible="true" version="1">{_content(lanelet, first_way)}</relation>')
+        rules = [first_rule + rule for rule, (_, _, obeying) in enumerate(draft.rules) if number in obeying]
+        lines.append(f'  <relation id="{first_lanelet + number}" visible="true" version="1">{_content(lanelet, first_way, rules)}</relation>')
+    for number, (subtype, members, _) in enumerate(draft.rules):
+        content = "".join(f'<member type="way" ref="{first_way + way}" role="{role}"/>' for role, way in members)
+        content += _tags_as_xml({"type": "regulatory_element", "subtype": subtype})
+        lines.append(f'  <relation id="{first_rule + number}" visible="true" version="1">{content}</relation>')
     return "\n".join([*lines, "</osm>", ""])
 
 
-def _content(lanelet, first_way):
+def _content(lanelet, first_way, rules):
     """The members and tags of a lanelet."""
     tags = lanelet.tags | ({"lanewright:lane_id": lanelet.name} if lanelet.name else {})
     members = {"left": lanelet.left, "right": lanelet.right, "centerline": lanelet.centre}
     ways = (f'<member type="way" ref="{first_way + member}" role="{role}"/>' for role, member in members.items() if member >= 0)
-    return "".join(ways) + _tags_as_xml(tags)
+    return "".join((*ways, *(f'<member type="relation" ref="{rule}" role="regulatory_element"/>' for rule in rules))) + _tags_as_xml(tags)
 
 
 def _tags_as_xml(tags):

@@ -28,7 +28,7 @@ FACING_TRIED = 4          # vertices around one that may face it
 
 
 @dataclass(frozen=True)
-class SharedBorders:
+class _SharedBorders:
     """lanes : Lanes with common borders; gaps : (P, 2) median metres between the stripes at each left and right border, 0 for one line;"""
 
     lanes: Lanes
@@ -91,7 +91,7 @@ def _fading(line, at_end):
     return share**2 * (3 - 2 * share)
 
 
-def share_borders(lanes: Lanes) -> SharedBorders:
+def share_borders(lanes: Lanes) -> _SharedBorders:
     """Lanes whose borders are the same line where they face each other.
 
     Maps for planners and simulators know one border between two lanes. A double line has two stripes, each the border of its lane; and a lane
@@ -100,7 +100,7 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     apart stays apart, and a curb between two lanes keeps its bottom and its top.
 
     lanes : Lanes in metres; lanes of one road with vertices in the same cross-sections, as the layer LANES has them
-    Returns SharedBorders; the number and order of vertices stay as they are
+    Returns _SharedBorders; the number and order of vertices stay as they are
     """
     rows = np.concatenate([lanes.left, lanes.right])
     nodes, first = numbered(rows)
@@ -113,7 +113,7 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     places[:, 2] = np.bincount(nodes, rows[:, 2]) / np.bincount(nodes)
     pairs, beyond = (np.empty((0, 2), int), np.empty(0)) if is_stated(lanes) else _facing(lanes, nodes, places)
     if not len(pairs):
-        return SharedBorders(replace(lanes, left=places[nodes[:count]], right=places[nodes[count:]]), np.zeros((len(lanes), 2)), 0.0)
+        return _SharedBorders(replace(lanes, left=places[nodes[:count]], right=places[nodes[count:]]), np.zeros((len(lanes), 2)), 0.0)
     apart = places[pairs[:, 1]] - places[pairs[:, 0]]
     move = np.zeros_like(places)
     np.add.at(move, pairs[:, 0], apart / 2)
@@ -124,7 +124,7 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     gap = np.zeros(len(places))
     gap[pairs.ravel()] = np.repeat(beyond, 2)
     gaps = np.stack([[_typical(gap[nodes[side + a:side + b]]) for a, b in zip(lanes.start[:-1], lanes.start[1:])] for side in (0, count)], axis=1)
-    return SharedBorders(replace(lanes, left=moved[:count], right=moved[count:]), gaps, float(np.hypot(*(target - places)[:, :2].T).max()))
+    return _SharedBorders(replace(lanes, left=moved[:count], right=moved[count:]), gaps, float(np.hypot(*(target - places)[:, :2].T).max()))
 
 
 def _typical(gaps):

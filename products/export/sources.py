@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
@@ -11,7 +12,7 @@ import shapely
 from scipy.spatial import cKDTree
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.features import DRIVING_LINES, MARKING_LINES, ROAD_EDGES, Features
+from ...core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_ATTRIBUTES, ROAD_EDGES, SIGNALS, Features
 from ...core.driving.layers import Lanes
 from ...core.io.crs import check_metric, horizontal_part, parse_crs, plane_wkt, same_crs
 from ...core.survey.store.road_points import RoadPoints
@@ -29,6 +30,7 @@ class RoadMapSource:
     """Lanes with the other layers of their road map.
 
     middles : (V, 3) of the lanes between their own stripes, vertex by vertex; None where they are the middles of the lanes
+    attributes : lane_id -> what is known of ROAD_ATTRIBUTES
     """
 
     lanes: Lanes   # Lanes in map coordinates
@@ -39,6 +41,8 @@ class RoadMapSource:
     notes: list[str] = field(default_factory=list)   # sentences for the user, filled by `checked`
     gaps: np.ndarray | None = None   # (P, 2) metres between the two stripes at the left and right border of each lane, None or 0 where there is one
     middles: np.ndarray | None = None
+    signals: Features | None = None
+    attributes: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def led_to_middles(self) -> np.ndarray:
         """(N, 2) places in the middle of lanes where a border was led along the middle of a double line, away from the lane's own stripe."""
@@ -56,7 +60,7 @@ class RoadMapSource:
     def others(self) -> Iterator[tuple[str, Features]]:
         """(what messages call it, layer) of the layers beside the lanes that there are."""
         for label, layer in (("Driving lines", self.driving_lines), ("Marking lines", self.marking_lines), ("Road edges", self.road_edges),
-                             ("Markings", self.markings)):
+                             ("Markings", self.markings), ("Signals and poles", self.signals)):
             if layer is not None and len(layer):
                 yield label, layer
 
@@ -156,6 +160,12 @@ def _check_layers(source):
         if west > high[0] or east < low[0] or south > high[1] or north < low[1]:
             raise RoadExtractionError(f"{label} do not lie where the lanes are: they begin at x {west:.0f}, y {south:.0f}, the lanes at "
                                       f"x {low[0] + FARTHEST_LAYER:.0f}, y {low[1] + FARTHEST_LAYER:.0f}. Choose the layers of one survey.")
+
+
+def known_of_roads(areas: Features) -> dict[str, dict[str, Any]]:
+    """lane_id -> what is known of ROAD_ATTRIBUTES, of the layer LANES with these fields."""
+    return {str(row.get("lane_id")): known for row in areas.rows
+            if (known := {one.name: row[one.name] for one in ROAD_ATTRIBUTES if row.get(one.name) not in (None, "")})}
 
 
 def wrapped(angle: Any) -> Any:
@@ -291,11 +301,12 @@ def stop_lines(markings: Features | None) -> list[np.ndarray]:
 
 def walked_crossings(markings: Features | None) -> list[tuple[np.ndarray, np.ndarray]]:
     """((2, 3) left, (2, 3) right) sides of every zebra crossing, along the way of those who cross: over the row of its stripes."""
-    stripes = _shapes(markings, ("zebra", "crosswalk", "zebra_crossing"))
+    stripes = _shapes(markings, ("zebra", "zebra_crossing"))
+    groups = [group for group in _groups(stripes) if len(group) >= LEAST_CROSSING or len(stripes) < LEAST_CROSSING]
     crossings = []
-    for group in _groups(stripes):
+    for group in groups + [[whole] for whole in _shapes(markings, ("crosswalk",))]:
         corners = _corners(shapely.unary_union(group)) if len(group) > 1 else _corners(group[0])
-        if not len(corners) or len(group) < LEAST_CROSSING and len(stripes) >= LEAST_CROSSING:
+        if not len(corners):
             continue
         across = np.mean([_long_side(stripe) for stripe in group], axis=0)
         along = corners[1] - corners[0]
@@ -372,10 +383,40 @@ class MapLayers:
     lanes: Lanes   # Lanes in map coordinates
     lines: list[MapLine] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)   # sentences for the user
+    outlines: list[tuple[str, np.ndarray]] = field(default_factory=list)   # (class as in MARKINGS, (N, 3) corners)
+    signals: Features = field(default_factory=lambda: Features("PointZ", SIGNALS))
+    attributes: dict[str, dict[str, Any]] = field(default_factory=dict)   # lane_id -> what is known of ROAD_ATTRIBUTES
+    left_out: Counter[str] = field(default_factory=Counter)   # what the file has beside all this, and how often
+
+    def source(self) -> RoadMapSource:
+        """The map as an export takes it, not yet checked."""
+        return RoadMapSource(self.lanes, self.driving_lines(), self.marking_lines(), self.road_edges(), self.markings(), signals=self.signals,
+                             attributes=self.attributes, notes=[*self.notes, *self.said_left_out()])
+
+    def said_left_out(self) -> list[str]:
+        """A sentence on what the layers do not hold, none where they hold all."""
+        named = ", ".join(f"{count} {what}" for what, count in sorted(self.left_out.items()))
+        return [f"Not carried over: {named}."] if named else []
 
     def lane_areas(self) -> Features:
-        """The layer LANES."""
-        return self.lanes.to_features()
+        """The layer LANES, with the fields of the roads."""
+        layer = self.lanes.to_features()
+        layer.schema += ROAD_ATTRIBUTES
+        for name, row in zip(self.lanes.lane_id, layer.rows):
+            row.update(self.attributes.get(name, {}))
+        return layer
+
+    def signal_points(self) -> Features:
+        """The layer SIGNALS."""
+        return self.signals
+
+    def markings(self) -> Features:
+        """Crossings, stop lines and other painted areas, as MARKINGS."""
+        layer = Features("PolygonZ", MARKINGS, crs=self.lanes.crs)
+        for kind, corners in self.outlines:
+            area = shapely.Polygon(corners)
+            layer.add(area, **{"road": 1, "class": kind, "use": "keep", "area_m2": area.area})
+        return layer
 
     def driving_lines(self) -> Features:
         """The middles of driven lanes, as DRIVING_LINES."""
@@ -479,7 +520,7 @@ LEAST_CHORD = 1.0     # m of a border's end, along which it goes straight on
 BEYOND_END = 10.0     # m: a road of four lanes whose end is cut oblique by 30 degrees
 
 
-class Misses(NamedTuple):
+class _Misses(NamedTuple):
     """Metres: mean, 95th percentile, largest; at how many places; and the (3,) place of the largest."""
 
     mean: float
@@ -489,7 +530,7 @@ class Misses(NamedTuple):
     worst: np.ndarray
 
 
-def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
+def border_misses(source: Lanes, exported: Lanes) -> tuple[_Misses, _Misses]:
     """(across, in height) of the source's border vertices from the borders that are read back, and of theirs from the source's.
 
     What lies beyond the end of a border of the source is left out: an export ends lanes square to the road.
@@ -533,7 +574,7 @@ def _gone_on(line):
 
 
 def driving_line_misses(driving_lines: Features | None, exported: Lanes, measured_only: bool = True,
-                        apart_from: np.ndarray | None = None) -> Misses:
+                        apart_from: np.ndarray | None = None) -> _Misses:
     """Across, of driving lines against the middles of the lanes that are read back.
 
     apart_from : (N, 2) places; what lies within LEFT_OUT_NEAR of one is left out
@@ -590,5 +631,5 @@ def _least(count, indices, values):
 def _summary(values, places):
     values, places = values[np.isfinite(values)], places[np.isfinite(values)]
     if not len(values):
-        return Misses(np.nan, np.nan, np.nan, 0, np.full(3, np.nan))
-    return Misses(float(values.mean()), float(np.percentile(values, 95)), float(values.max()), len(values), places[np.argmax(values)])
+        return _Misses(np.nan, np.nan, np.nan, 0, np.full(3, np.nan))
+    return _Misses(float(values.mean()), float(np.percentile(values, 95)), float(values.max()), len(values), places[np.argmax(values)])

@@ -11,9 +11,7 @@ import shapely
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import Features
 from ...core.common.setting import check_limits, setting
-from ...core.countries.catalogue import country
-from ...core.countries.model import Country, SectionLimits
-from ...core.countries.neutral import NEUTRAL
+from ...core.countries.catalogue import NEUTRAL, Country, SectionLimits, country
 from ...core.driving.layers import Lanes
 from ...core.survey.frame.placement import FrameLines, line_parts, lines_in_frame
 from ...core.survey.frame.road_frame import RoadFrame

@@ -145,7 +145,7 @@ _LATITUDE, _LONGITUDE = ("GpsLatitude", "GPSLatitude"), ("GpsLongitude", "GpsLon
 
 
 @dataclass(frozen=True)
-class PositionTags:
+class _PositionTags:
     """Where a camera hung and how it looked; None where the image does not say."""
 
     latitude: float   # latitude, longitude: degrees, WGS 84
@@ -162,8 +162,8 @@ class PositionTags:
 
 
 @gdal_exceptions()
-def read_position_tags(image: SourceImage) -> PositionTags | None:
-    """The PositionTags of an image; None where it has no latitude and longitude."""
+def read_position_tags(image: SourceImage) -> _PositionTags | None:
+    """The _PositionTags of an image; None where it has no latitude and longitude."""
 
     dataset = open_raster(image.path)
     packets = dataset.GetMetadata("xml:XMP")
@@ -177,7 +177,7 @@ def _text(value):
     return value.decode("latin-1") if isinstance(value, bytes) else value
 
 
-def position_tags(exif: Mapping[str, str], xmp: str = "") -> PositionTags | None:
+def position_tags(exif: Mapping[str, str], xmp: str = "") -> _PositionTags | None:
     """The same from EXIF items, named as GDAL names them, and from the text of an XMP packet."""
     latitude = _first(_xmp_degrees(xmp, _LATITUDE), _exif_degrees(exif, "Latitude"))
     longitude = _first(_xmp_degrees(xmp, _LONGITUDE), _exif_degrees(exif, "Longitude"))
@@ -187,7 +187,7 @@ def position_tags(exif: Mapping[str, str], xmp: str = "") -> PositionTags | None
     pitch = _xmp_number(xmp, "GimbalPitchDegree")
     heading = _first(_xmp_number(xmp, "GimbalYawDegree") if pitch is None or pitch < -_STEEP else None,
                      _xmp_number(xmp, "FlightYawDegree"), _numbers(exif.get("EXIF_GPSImgDirection", "")))
-    return PositionTags(
+    return _PositionTags(
         latitude, longitude, heading, _xmp_number(xmp, "RelativeAltitude"),
         _first(_numbers(exif.get("EXIF_FocalLengthIn35mmFilm", "")), _xmp_number(xmp, "FocalLengthIn35mmFilm")))
 

@@ -100,7 +100,7 @@ def _outcome_map(layer, background=None, filled=False):
         return None
     bounds = shapely.total_bounds(np.array(layer.geometries, object)) + MAP_MARGIN * np.array([-1, -1, 1, 1])
     width, height = bounds[2:] - bounds[:2]
-    style = tuple(("outcome", ("outcome", name), _bgr(OUTCOME_COLOURS[name]), 2 if filled else 4, filled)
+    style = tuple(("outcome", ("outcome", name), tuple(bytes.fromhex(OUTCOME_COLOURS[name][1:])[::-1]), 2 if filled else 4, filled)
                   for name in ("excluded", "correct", "missed", "false"))
     if background is not None:
         grey, extent = background
@@ -197,7 +197,3 @@ def _centimetres(value: float | None) -> float | None:
 def _errors_row(errors: Errors) -> list[float | None]:
     """Mean, RMSE, 95th percentile and maximum in centimetres."""
     return [_centimetres(value) for value in (errors.mean, errors.rmse, errors.p95, errors.maximum)]
-
-
-def _bgr(colour):
-    return tuple(int(colour[k:k + 2], 16) for k in (5, 3, 1))

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from ...core.common.arrays import round_step
 from ...core.common.texts import language, told, tr, word
 from ...core.io.crs import NO_PLACE, place_of_raster
 from ...core.io.geotiff import GEOTIFF_TILE, filled_tiles
@@ -35,7 +36,8 @@ def templates() -> Any:
 
     environment = Environment(loader=FileSystemLoader(str(TEMPLATES)), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
                               lstrip_blocks=True, keep_trailing_newline=True)
-    environment.globals.update(tr=tr, told=told, word=word, language=language, number=number, pick=_pick, collected=_Rows)
+    environment.globals.update(tr=tr, told=told, word=word, language=language, number=number, collected=_Rows,
+                               pick=lambda row, names: [row.get(name) for name in names.split()])
     environment.filters.update(shown=_shown, percent=percent, base64_png=_base64_png)
     environment.tests.update(figure=_is_figure, figures=_are_figures)
     parts = vars(environment.get_template("parts.html").module)
@@ -87,11 +89,6 @@ def _shown(value: Any, decimals: int | None = None) -> Any:
 def percent(share: float) -> float | None:
     """A share as a percentage; None for NaN."""
     return None if share != share else 100.0 * share
-
-
-def _pick(row: Any, names: str) -> list[Any]:
-    """The values of fields, their names separated by spaces."""
-    return [row.get(name) for name in names.split()]
 
 
 def _base64_png(image: np.ndarray) -> str:
@@ -200,9 +197,7 @@ class Chart:
 
 def ticks(low: float, high: float, count: int) -> np.ndarray:
     """About `count` round values from low to high: steps of 1, 2 or 5 times a power of ten."""
-    rough = (high - low) / count
-    power = 10.0 ** math.floor(math.log10(rough))
-    step = power * next(m for m in (1, 2, 5, 10) if m * power >= rough * 0.999)
+    step = round_step(0.999 * (high - low) / count)
     return np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1) * step
 
 

@@ -5,6 +5,7 @@
       <category label="Pole" value="pole" type="string" uuid="{7207e142-90a2-4e4d-9767-4537eda27b59}" render="true" symbol="0"/>
       <category label="Sign" value="sign" type="string" uuid="{e8932296-f270-4d1c-a817-878e7b4cf565}" render="true" symbol="1"/>
       <category label="Tree trunk" value="trunk" type="string" uuid="{6ca19b05-0ca0-49a6-9605-f70a804025d8}" render="true" symbol="2"/>
+      <category label="Traffic light" value="traffic_light" type="string" uuid="{0b7d9a51-6a6c-4f0e-8f3c-3a2f1c5d7e94}" render="true" symbol="3"/>
     </categories>
     <symbols>
       <symbol is_animated="0" type="marker" name="0" clip_to_extent="1" frame_rate="10" force_rhr="0" alpha="1">
@@ -101,6 +102,45 @@
             <Option value="1" type="QString" name="horizontal_anchor_point"/>
             <Option value="bevel" type="QString" name="joinstyle"/>
             <Option value="circle" type="QString" name="name"/>
+            <Option value="0,0" type="QString" name="offset"/>
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="offset_map_unit_scale"/>
+            <Option value="MM" type="QString" name="offset_unit"/>
+            <Option value="34,34,34,255,rgb:0.13333333333333333,0.13333333333333333,0.13333333333333333,1" type="QString" name="outline_color"/>
+            <Option value="solid" type="QString" name="outline_style"/>
+            <Option value="0.2" type="QString" name="outline_width"/>
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="outline_width_map_unit_scale"/>
+            <Option value="MM" type="QString" name="outline_width_unit"/>
+            <Option value="diameter" type="QString" name="scale_method"/>
+            <Option value="3" type="QString" name="size"/>
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="size_map_unit_scale"/>
+            <Option value="MM" type="QString" name="size_unit"/>
+            <Option value="1" type="QString" name="vertical_anchor_point"/>
+          </Option>
+          <data_defined_properties>
+            <Option type="Map">
+              <Option value="" type="QString" name="name"/>
+              <Option name="properties"/>
+              <Option value="collection" type="QString" name="type"/>
+            </Option>
+          </data_defined_properties>
+        </layer>
+      </symbol>
+      <symbol is_animated="0" type="marker" name="3" clip_to_extent="1" frame_rate="10" force_rhr="0" alpha="1">
+        <data_defined_properties>
+          <Option type="Map">
+            <Option value="" type="QString" name="name"/>
+            <Option name="properties"/>
+            <Option value="collection" type="QString" name="type"/>
+          </Option>
+        </data_defined_properties>
+        <layer pass="0" locked="0" id="{5c1e2a7b-93d4-4b1f-9a60-2f7c8d1e6b35}" class="SimpleMarker" enabled="1">
+          <Option type="Map">
+            <Option value="0" type="QString" name="angle"/>
+            <Option value="square" type="QString" name="cap_style"/>
+            <Option value="214,40,40,255,rgb:0.83921568627450982,0.15686274509803921,0.15686274509803921,1" type="QString" name="color"/>
+            <Option value="1" type="QString" name="horizontal_anchor_point"/>
+            <Option value="bevel" type="QString" name="joinstyle"/>
+            <Option value="triangle" type="QString" name="name"/>
             <Option value="0,0" type="QString" name="offset"/>
             <Option value="3x:0,0,0,0,0,0" type="QString" name="offset_map_unit_scale"/>
             <Option value="MM" type="QString" name="offset_unit"/>

@@ -91,11 +91,10 @@ class Scanner:
         """The N pulses of (L,) consecutive turns.
 
         Returns
-        -------
-        origin : (3, N) m, local
-        direction : (3, N) unit vectors
-        times : (N,) s since the start of the drive
-        angle : (N,) degrees, scan angle
+            origin : (3, N) m, local
+            direction : (3, N) unit vectors
+            times : (N,) s since the start of the drive
+            angle : (N,) degrees, scan angle
         """
         share, along = self.line()
         x, y, z, roll, pitch, heading = drive.pose(np.append(lines, lines[-1] + 1) / self.rotation_rate)

@@ -46,10 +46,9 @@ class Drive:
         """Position and attitude of the vehicle at (N,) s since the start.
 
         Returns
-        -------
-        x, y, z : (N,) m, local
-        roll, pitch, heading : (N,) radians; roll is positive with the right side down, pitch with the nose up, heading
-            clockwise from grid north
+            x, y, z : (N,) m, local
+            roll, pitch, heading : (N,) radians; roll is positive with the right side down, pitch with the nose up, heading
+                clockwise from grid north
         """
         s, d, x, y = self._ground_track(t)
         *_, ahead_x, ahead_y = self._ground_track(t + 0.01)

@@ -5,10 +5,3 @@ In: length, seed and curb height. Out: a `PlanScene` for the scanners, with its 
 The ground is a terrain of gentle slopes (heights on a grid); the carriageway is an area of it, and beyond its edges strips rise or
 fall: curb, sidewalk, verge. Paint is polygons, objects stand on the ground, and each pass follows a path.
 """
-
-from ...core.lazy import public
-
-__getattr__, __all__ = public(__name__, {
-    "builder": ("PlanBuilder",),
-    "scene": ("PlanScene",),
-})

@@ -131,8 +131,6 @@ class PlanBuilder:
               gutter: float = 0.0) -> PlanScene:
         """The PlanScene of what was collected.
 
-        Parameters
-        ----------
         carriageway : polygon, m, local, its ends outside of the surveyed area
         height : of the terrain at (N, 2) places, m
         profiles : strips beyond the edges, each a Side whose first border is 0

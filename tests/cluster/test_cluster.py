@@ -35,7 +35,7 @@ from lanewright.core.survey.blocks import sensor_height_of
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.survey import SurveySettings
 from lanewright.library import run
-from lanewright.simulator import SampleSettings, make_sample_survey
+from lanewright.simulator.survey import SampleSettings, make_sample_survey
 
 ROOT = Path(__file__).resolve().parents[2]
 PHASES = ["steps_of_section", "corners_of_section", "plan_steps_of_section"]

@@ -1,4 +1,4 @@
-"""Makes what several tests share importable by the tests beside it, and ends what a test leaves: its windows and what runs behind them."""
+"""Makes what several tests share importable by the tests beside it, loads the algorithms, and ends what a test leaves in the window."""
 
 import sys
 from pathlib import Path
@@ -9,7 +9,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 
 @pytest.fixture(autouse=True)
-def nothing_is_left(qgis_app):
+def nothing_is_left(qgis_app, provider):
     """After a test its windows are gone and nothing that it began runs on.
 
     A window whose buttons call lambdas about itself is never collected by Python: it would go on listening to the project of later tests. A

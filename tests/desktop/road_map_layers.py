@@ -1,13 +1,14 @@
 """Layers of a road map in a project, as a run leaves them there."""
 
 from datetime import datetime, timezone
+from pathlib import Path
 
 from lanewright.algorithms.provenance import Provenance
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.results.attributes import explain_attributes
 from lanewright.processing_provider.results.layer_tree import place_layer
 from lanewright.processing_provider.results.runs import Run
-from qgis.core import QgsFeature, QgsGeometry, QgsVectorLayer
+from qgis.core import QgsFeature, QgsGeometry, QgsVectorFileWriter, QgsVectorLayer
 
 EAST, NORTH = 500_000.0, 5_400_000.0
 
@@ -21,8 +22,8 @@ def run_at(hour, clouds=CLOUDS, survey="B12", algorithm="roadmap", **values):
     return Run(provenance, survey, f"{survey}, {hour}:00")
 
 
-def added(project, output, schema, *rows, kind="LineStringZ", run=None):
-    """A layer of a road map; rows of (WKT about EAST, NORTH, fields)."""
+def added(project, output, schema, *rows, kind="LineStringZ", run=None, package=""):
+    """A layer of a road map, in memory or as a table of a GeoPackage; rows of (WKT about EAST, NORTH, fields)."""
     layer = QgsVectorLayer(f"{kind}?crs=EPSG:32650", output, "memory")
     layer.dataProvider().addAttributes(list(qgis_fields(schema, with_aliases=False)))
     layer.updateFields()
@@ -35,6 +36,13 @@ def added(project, output, schema, *rows, kind="LineStringZ", run=None):
             feature[name] = value
         layer.dataProvider().addFeature(feature)
     layer.updateExtents()
+    if package:
+        options = QgsVectorFileWriter.SaveVectorOptions()
+        options.layerName, options.actionOnExistingFile = output.lower(), QgsVectorFileWriter.ActionOnExistingFile.CreateOrOverwriteLayer
+        if not Path(package).exists():
+            options.actionOnExistingFile = QgsVectorFileWriter.ActionOnExistingFile.CreateOrOverwriteFile
+        QgsVectorFileWriter.writeAsVectorFormatV3(layer, str(package), project.transformContext(), options)
+        layer = QgsVectorLayer(f"{package}|layername={output.lower()}", output, "ogr")
     explain_attributes(layer, output, schema)
     run = run or run_at(8)
     project.addMapLayer(layer, False)

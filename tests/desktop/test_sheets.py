@@ -11,15 +11,15 @@ import pytest
 import shapely
 from lanewright.algorithms.export import SheetSettings
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import CROSS_SECTIONS, DRIVING_LINES, ROAD_EDGES
+from lanewright.core.common.features import CROSS_SECTIONS, DRIVING_LINES, MARKING_LINES, ROAD_EDGES
 from lanewright.core.common.progress import Progress
 from lanewright.core.common.texts import language
 from lanewright.desktop.layout.axes import axes_of, road_line
 from lanewright.desktop.layout.charts import profile_pages, section_pages
-from lanewright.desktop.layout.map_lines import accuracy_of, lines_of
+from lanewright.desktop.layout.map_lines import accuracy_of, lines_of, road_lines
 from lanewright.desktop.layout.pages import OVERLAP, sheets_along
 from lanewright.desktop.layout.print_sheets import unused_name, write_pdf
-from lanewright.desktop.layout.sheets import BY_ITSELF, PAPERS, axes_of_layers, sheet_layout
+from lanewright.desktop.layout.sheets import BY_ITSELF, PAPERS, map_crs, sheet_layout
 from lanewright.desktop.layout.shown import credit_of, sheet_values, shown_layers
 from lanewright.processing_provider.results.attributes import explain_attributes
 from lanewright.processing_provider.results.road_maps import road_maps
@@ -53,6 +53,11 @@ from qgis.PyQt.QtGui import QImage
 from road_map_layers import EAST, NORTH, added
 
 # -- axes and sheets, of numbers alone ------------------------------------------------------------
+
+
+def axes_of_layers(layers, project):
+    """The axes that sheets of these layers follow."""
+    return axes_of(road_lines(lines_of(layers, map_crs(list(layers.values()), project), project, 1.0)))
 
 
 def line_of(course, offset, first, last, rank=0, height=100.0):
@@ -164,6 +169,13 @@ def test_the_axis_crosses_a_junction_straight_where_edges_turn_around_its_corner
     edge = road_line(0, 2, np.array([(500_000.0 + x, 5_400_000.0 + y, 100.0) for x, y in corner]), 138.0, 154.0)
     axis, = axes_of(lanes + [edge])
     assert np.abs(axis.places[:, 1] - 5_400_000.0).max() < 0.05 and axis.length > 395
+
+
+def test_pieces_of_a_line_that_know_no_road_lead_one_axis_along_all_of_them(project):
+    """Lines that were divided by outcome: each has stations of its own."""
+    pieces = [(f"LINESTRING Z ({first} 0 100, {last} 0 100)", dict(lane=1)) for first, last in ((0, 24), (24, 30), (30, 118))]
+    axis, = axes_of_layers({"BY_OUTCOME": added(project, "BY_OUTCOME", DRIVING_LINES, *pieces)}, project)
+    assert axis.length == pytest.approx(118.0, abs=1.0)
 
 
 def test_lines_against_or_across_the_road_do_not_lead_its_axis(project):
@@ -468,6 +480,13 @@ def test_the_legend_lists_the_classes_that_there_are(project, attribute):
     model = item(layout, QgsLayoutItemLegend).model()
     nodes = model.layerLegendNodes(model.rootGroup().findLayers()[0])
     assert [str(node.data(Qt.ItemDataRole.DisplayRole)).partition(",")[0] for node in nodes] == ["solid", "dashed"]
+
+
+def test_the_legend_says_nothing_of_a_layer_without_features(project):
+    empty = added(project, "MARKING_LINES", MARKING_LINES)
+    layout, _ = sheet_layout(project, {"ROAD_EDGES": street(project), "MARKING_LINES": empty}, PLAN)
+    model = item(layout, QgsLayoutItemLegend).model()
+    assert empty.name() not in [node.layer().name() for node in model.rootGroup().findLayers()]
 
 
 @pytest.mark.parametrize("angle", [0, 45])

@@ -7,6 +7,7 @@ from lanewright.core.common.features import DRIVING_LINES, LANES, MARKING_LINES,
 from lanewright.desktop.review.corrections_layer import add_correction, new_corrections_layer, take_back
 from lanewright.desktop.review.doubt_dock import ARRIVED
 from lanewright.desktop.review.steps import steps_of, values_again
+from lanewright.processing_provider.results.layer_tree import place_layer
 from lanewright.processing_provider.results.road_maps import road_maps
 from qgis import utils
 from qgis.core import QgsGeometry, QgsProject
@@ -119,10 +120,33 @@ def test_the_window_goes_on_in_the_map_that_is_made_again_before_the_results_vie
     results.show()
     added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, piece(10), run=run_at(9))
     QTest.qWait(ARRIVED + 300)
-    assert window.road_map.layers != old.layers and len(window.places) == 1 and "9:00" in window.where.text()
+    assert window.road_map.layers != old.layers and "Place 1 of 1" in window.where.text()
     assert results in main.tabifiedDockWidgets(window), "it is not squeezed below the report"
     window.go(window.road_map)
     assert "Place 1 of 1" in window.where.text()
     added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, piece(20), run=run_at(10, survey="B13", clouds=["/data/B13/a.laz"]))
     QTest.qWait(ARRIVED + 300)
     assert window.places[0].station == 10.0, "another survey is another matter"
+
+
+def test_a_map_that_was_saved_is_made_again_in_its_place_and_the_window_goes_on_where_it_was(window, provider, tmp_path):  # noqa: F811
+    project, package = QgsProject.instance(), tmp_path / "roadmap.gpkg"
+    piece = lambda at: (f"LINESTRING Z ({at} 0 100, {at + 8} 0 100)", dict(  # noqa: E731
+        road=0, side="left", status="bridged", station_m=float(at), length_m=8.0, kind="along"))
+    added(project, "ROAD_EDGES", ROAD_EDGES, piece(10), piece(50), piece(90), run=run_at(9, survey="B14"), package=package)
+    (tmp_path / "report.html").touch()
+    first = road_maps(project)[0]
+    values = values_again(first)
+    assert values["ROAD_EDGES"] == f"ogr:dbname='{package}' table=\"road_edges\" (geom)" and values["REPORT"] == str(tmp_path / "report.html")
+    assert "REPORT" not in values_again(road_maps(project)[1]), "its layers are in memory"
+    window.order.setCurrentIndex(1)
+    for _ in range(3):
+        window.go(first)
+    assert window.place.station == 90
+    layer, run = first.layers[0], run_at(10, survey="B14")
+    layer.dataProvider().deleteFeatures([feature.id() for feature in layer.getFeatures() if feature["station_m"] == 50])
+    project.layerTreeRoot().insertGroup(0, run.group)   # as QGIS does, which then leaves the layer where it is
+    place_layer(layer, project, "ROAD_EDGES", run)
+    QTest.qWait(ARRIVED + 300)
+    assert [group.name() for group in project.layerTreeRoot().findGroups()] == ["B14, 10:00", "B12, 8:00"]
+    assert "Place 2 of 2" in window.where.text() and window.place.station == 90

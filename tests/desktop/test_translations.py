@@ -168,7 +168,7 @@ def test_a_run_that_fails_says_why_in_german(german, provider, tmp_path):
 
 def test_a_report_of_a_german_qgis_is_german(german):
     from lanewright.products.export.check.findings import Finding, Findings
-    from lanewright.products.report import map_check_report
+    from lanewright.products.report.hd_map import map_check_report
 
     page = map_check_report(Findings([Finding("kink", "road 1, section 2, lane -1", "The rule is XYZ.", (0.0, 0.0, 0.0))]), "map.xodr")
     assert '<html lang="de">' in page and "Prüfung einer HD-Karte" in page

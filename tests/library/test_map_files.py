@@ -10,6 +10,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.library import run
 from map_files import geometry, lanelet_street, opendrive, road, street_section, written
+from osm_files import osm_text
 
 
 def test_an_opendrive_file_becomes_layers_that_the_assessment_takes(tmp_path):
@@ -178,3 +179,67 @@ def test_a_road_as_long_as_the_earth_is_wide_costs_no_memory(tmp_path, algorithm
     with pytest.raises(RoadExtractionError, match="1,200 km long; at most 1,000 km"):
         run(algorithm, INPUT=path, **{"OUTPUT" if algorithm == "checkhdmap" else "LANES": tmp_path / "layer.gpkg"})
     assert sorted(os.listdir(tmp_path)) == ["map.xodr"]
+
+
+def lit_street(folder):
+    """A street with a traffic light and a speed limit."""
+    text = road(geometry(0, 0, 0, 0, 40), 40).replace("<planView>", '<type s="0" type="town"><speed max="50" unit="km/h"/></type><planView>')
+    signal = '<signal id="1" s="38" t="-5" zOffset="2" orientation="+" dynamic="yes" type="1000001" subtype="-1" name="A" height="1" width="0.4"/>'
+    return written(folder, opendrive([text.replace("</road>", f"<signals>{signal}</signals></road>")], offset=(602000, 5792000)))
+
+
+def test_a_map_is_converted_there_and_back_with_its_light_and_speed_limit(tmp_path):
+    there = run("converthdmap", INPUT=lit_street(tmp_path), OUTPUT=tmp_path / "there.osm", REPORT=tmp_path / "report.html")
+    assert there["SIGNAL_COUNT"] == 1 and there["FINDINGS"] == 0 and "map.xodr" in (tmp_path / "report.html").read_text()
+    back = run("converthdmap", INPUT=there["OUTPUT"], OUTPUT=tmp_path / "back.xodr", CRS="EPSG:25832")
+    assert back["SIGNAL_COUNT"] == 1 and back["FINDINGS"] == 0
+    results = run("importopendrive", INPUT=back["OUTPUT"], LANES=tmp_path / "lanes.gpkg", SIGNALS=tmp_path / "signals.gpkg")
+    with fiona.open(results["LANES"]) as layer:
+        assert len(layer) == 2 and layer.bounds == pytest.approx((602000, 5791996.5, 602040, 5792003.5), abs=0.02)
+        assert {row.properties["speed_kmh"] for row in layer} == {50.0}
+    with fiona.open(results["SIGNALS"]) as layer:
+        assert [(row.properties["kind"], row.properties["text"]) for row in layer] == [("traffic_light", "A")]
+    again = run("exportlanelet2", LANES=results["LANES"], SIGNALS=results["SIGNALS"], OUTPUT=tmp_path / "again.osm")
+    text = (tmp_path / "again.osm").read_text()
+    assert again["FINDINGS"] == 0 and 'v="50"' in text and "regulatory_element" in text
+
+
+@pytest.mark.parametrize("text, output, said", [
+    (lanelet_street(), "out.osm", "is Lanelet2 already"), (opendrive([road(geometry(0, 0, 0, 0, 40), 40)]), "out.xodr", "is OpenDRIVE already"),
+    (opendrive([]), "out.osm", "no road that can be read"), (opendrive([road(geometry(0, 0, 0, 0, 40), 40)])[:-40], "out.osm", "not well-formed"),
+    ("<osm></osm>", "out.xodr", "no relation of type lanelet"), ("<gpx/>", "out.osm", "neither as OpenDRIVE nor as Lanelet2"),
+    (lanelet_street(), "out.txt", "written as")])
+def test_what_cannot_be_converted_is_refused_in_one_sentence_and_leaves_nothing(tmp_path, text, output, said):
+    with pytest.raises(RoadExtractionError, match=said):
+        run("converthdmap", INPUT=written(tmp_path, text, "map.any"), OUTPUT=tmp_path / output)
+    assert os.listdir(tmp_path) == ["map.any"]
+
+
+def test_lanes_get_names_and_limits_of_a_file_or_layer_and_hand_them_to_the_exports(tmp_path):
+    lanes = lane_layer(tmp_path, made_lanes.street())
+    places = [tuple(place) for place in made_lanes.street().borders(0)[0][[0, -1], :2].tolist()]
+    file = written(tmp_path, osm_text((places, {"name": "Long Street", "maxspeed": "30"})), "streets.osm")
+    results = run("roadattributes", LANES=lanes, OSM_FILE=file, OUTPUT=tmp_path / "known.gpkg")
+    assert results["KNOWN"] == results["SPEEDS"] == results["NAMES"] == results["LANE_COUNT"] == 2
+    run("exportlanelet2", LANES=results["OUTPUT"], OUTPUT=tmp_path / "map.osm", SPEED_LIMIT=50)
+    text = (tmp_path / "map.osm").read_text()
+    assert text.count('k="speed_limit" v="30"') == 2 and 'v="50"' not in text and 'k="road_name" v="Long Street"' in text
+    run("exportopendrive", LANES=results["OUTPUT"], OUTPUT=tmp_path / "map.xodr")
+    text = (tmp_path / "map.xodr").read_text()
+    assert 'name="Long Street"' in text and '<speed max="30" unit="km/h"/>' in text
+    schema = {"geometry": "LineString", "properties": {"name": "str", "maxspeed": "str"}}
+    with fiona.open(tmp_path / "ways.gpkg", "w", driver="GPKG", schema=schema, crs="EPSG:25832") as layer:
+        layer.write({"geometry": {"type": "LineString", "coordinates": places}, "properties": {"name": "Other Street", "maxspeed": None}})
+    results = run("roadattributes", LANES=results["OUTPUT"], WAYS=tmp_path / "ways.gpkg", OUTPUT=tmp_path / "again.gpkg")
+    with fiona.open(results["OUTPUT"]) as layer:
+        assert {(row.properties["name"], row.properties["speed_kmh"]) for row in layer} == {("Other Street", 30.0)}
+
+
+@pytest.mark.parametrize("given, said", [
+    ({}, "Give either"), ({"OSM_FILE": "nowhere.osm"}, "there is no file"), ({"WAYS": "lanes.gpkg"}, "layer of lines")])
+def test_attributes_need_one_source_of_roads(tmp_path, monkeypatch, given, said):
+    monkeypatch.chdir(tmp_path)
+    lane_layer(tmp_path, made_lanes.street())
+    with pytest.raises(RoadExtractionError, match=said):
+        run("roadattributes", LANES="lanes.gpkg", **given, OUTPUT="known.gpkg")
+    assert os.listdir(tmp_path) == ["lanes.gpkg"]

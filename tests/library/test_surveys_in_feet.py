@@ -159,3 +159,16 @@ def test_cad_files_have_the_feet_of_the_layers(maps, tmp_path):
 def test_no_file_tells_of_the_metres_that_were_worked_in(maps):
     for path in map(Path, maps["feet"].values()):
         assert MARK.encode() not in path.read_bytes(), path.name
+
+
+def test_clouds_that_are_given_back_stay_in_feet_and_have_the_classes_of_metres(surveys, maps, tmp_path):
+    for name, (cloud, driven) in surveys.items():
+        run("classifycloud", POINT_CLOUDS=[cloud], TRAJECTORY=driven, OUTPUT=tmp_path,
+            **{layer: maps[name][layer] for layer in ("ROAD_SURFACE", "ROAD_EDGES", "MARKINGS")})
+    feet, metres = (laspy.read(tmp_path / f"{name}.laz") for name in ("feet", "metres"))
+    before = laspy.read(surveys["feet"][0])
+    np.testing.assert_array_equal(before.xyz, feet.xyz)
+    assert (before.header.scales == feet.header.scales).all() and feet.header.parse_crs() == before.header.parse_crs()
+    assert (feet.classification == metres.classification).mean() > 0.999 and (feet.classification == 64).sum() > 1000
+    inside = np.asarray(metres.road) == 0
+    np.testing.assert_allclose(np.asarray(feet.station)[inside], np.asarray(metres.station)[inside], atol=0.0021)

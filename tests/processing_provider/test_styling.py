@@ -1,5 +1,8 @@
 """Layers arrive in the project named, grouped and styled."""
 
+import html
+import re
+
 import numpy as np
 import pytest
 from lanewright.core.common.features import (
@@ -271,3 +274,14 @@ def test_an_image_made_without_a_window_opens_stretched(qgis_app, tmp_path):
     embed_style("INTENSITY_IMAGE", path, "Intensity image")
     stretch = QgsRasterLayer(path, "image").renderer().contrastEnhancement()
     assert 3000 <= stretch.minimumValue() < 3300 and 8700 < stretch.maximumValue() <= 9000
+
+
+@pytest.mark.parametrize("path", sorted(STYLES.rglob("*.qml")), ids=lambda path: path.stem)
+def test_no_style_makes_the_window_wait(path):
+    """Where functions stand within each other, QGIS copies the inner ones twice at every level: for twenty levels that takes seconds."""
+    for value in re.findall(r'"([^"]*\([^"]*)"', path.read_text(encoding="utf-8")):
+        depth, deepest = 0, 0
+        for letter in re.sub(r"'[^']*'", "", html.unescape(value).replace("''", "")):
+            depth += {"(": 1, ")": -1}.get(letter, 0)
+            deepest = max(deepest, depth)
+        assert deepest <= 12, value

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ndtr
 
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from .candidates import Candidates
 from .evidence import Evidence
 from .weights import CURB, DOUBLE, ISLAND, PAVEMENT, SAME_LANE, SURFACE_END, EstimateWeights
@@ -23,8 +23,6 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
     These are its width, m, the next probable one, by how many nats that is less so, inf without one, and, where it lies apart from the boundary, the
     room beyond it, m, else NaN.
 
-    Parameters
-    ----------
     usual : m, width of lanes of the road; shown : whether the lines of the road show it
     """
     result = np.empty((*c.left.shape, 2, 4))

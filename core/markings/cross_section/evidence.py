@@ -99,14 +99,11 @@ def _apart(p, road):
 def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where the road surface was scanned, and where it ends; found once for points that are asked for again, as for lines and then for lanes.
 
-    Parameters
-    ----------
     s : (K,) metres, stations of a grid with steps of STATION_STEP
 
     Returns
-    -------
-    covered : (K, BINS) bool, whether there are road points in a cell of STATION_STEP by BIN metres; read-only
-    ends : (2, K) metres, offsets of the left and the right end of the surface, NaN where unknown; read-only
+        covered : (K, BINS) bool, whether there are road points in a cell of STATION_STEP by BIN metres; read-only
+        ends : (2, K) metres, offsets of the left and the right end of the surface, NaN where unknown; read-only
     """
     count, first = len(s), int(np.floor(s[0] / STATION_STEP + 0.5))
     coverages, key = _known.setdefault(points.store, {}), (road, first, count, points.store.count)
@@ -199,8 +196,6 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
                 divided: np.ndarray | None = None, bare: np.ndarray | None = None) -> Evidence:
     """The Evidence of each interval, from what is known at each station.
 
-    Parameters
-    ----------
     driven, directions : as `driven_offsets` gives them; divided : (K,) bool as `other_carriageway` gives it; bare : (K,) bool as in Evidence
     covered, hatched : (K, BINS) bool; arrows : (A, 3) as `arrows_of` gives them; markings : of which stop lines count; each may be None
     """

@@ -9,11 +9,12 @@ import numpy as np
 import shapely
 
 from ...common.arrays import mask_runs
-from ...common.parallel import check_cancelled, ordered_map
+from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from ...countries.traffic_side import side_of_traffic
 from ...curves.robust import median
+from ...execution.phase import THREADS, NoSource, Phase
 from ...io.crs import horizontal_part, parse_crs, place_on_ground
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
@@ -22,7 +23,7 @@ from ..objects.marking_objects import MarkingObjects
 from ..weights import ROADS
 from .beside import lanes_beside
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
-from .estimate import RoadEstimate, estimate_road, lane_spans
+from .estimate import RoadEstimate, estimate_of_road, lane_spans
 from .evidence import between_ends, borders_of_hatching, driven_offsets, evidence_of, hatched_places, other_carriageway, surface_coverage
 from .sections import STATION_STEP, CrossSections, no_lines
 from .weights import PAVEMENT, EstimateWeights, TakenReading
@@ -55,8 +56,6 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                    progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> RoadEstimates:
     """Estimate lines and lanes.
 
-    Parameters
-    ----------
     lines : {number of the road: CrossSections}
     usual_width : metres, of lanes where the lines do not tell
     side : "right", "left" or "automatic"
@@ -77,13 +76,14 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                                              usual_width, weights, taken, bare[number])
         progress.report(0.4 * (k + 1) / len(lines))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
-    estimates = _estimates(evidence, sides, usual_width, weights, progress.part(0.4, 0.7))
+    executor = THREADS if road_points is None else road_points.executor
+    estimates = _estimates(evidence, sides, usual_width, weights, executor, progress.part(0.4, 0.7))
     best, behind, opposite = _best_side(estimates, usual_side(frame), weights)
     used = tuple(first for first in sides if first == best or behind < ROADS.sure_side or opposite < weights.doubt)
     width, shown = (usual_width, True) if width_asked else _usual_width(evidence, estimates[best], usual_width)
     # the road's own width tells lanes better than that of a country
     if width != usual_width:
-        estimates = _estimates(evidence, used, width, weights, progress.part(0.7, 1.0), shown)
+        estimates = _estimates(evidence, used, width, weights, executor, progress.part(0.7, 1.0), shown)
     roads = {}
     for number, estimate in estimates[best].items():
         if len(used) > 1:
@@ -206,15 +206,15 @@ def _likely_ends(lines, width):
     return ends + np.array([[width], [-width]])
 
 
-def _estimates(known, sides, width, weights, progress, shown=False):
+def _estimates(known, sides, width, weights, executor, progress, shown=False):
     """{side of traffic: {number of the road: RoadEstimate}}; `shown` : whether lines of the survey show the width."""
     widths = {number: replace(candidates, beside=lanes_beside(candidates, evidence, width, shown, weights))
               for number, (_, candidates, evidence) in known.items()}
 
-    def of_side(first):
-        return {number: estimate_road(widths[number], evidence, first, width, weights) for number, (_, _, evidence) in known.items()}
-
-    return dict(zip(sides, ordered_map(of_side, sides, progress)))
+    phase = Phase(estimate_of_road, NoSource(), (width, weights), lambda item: "the lanes of a road")
+    items = [(widths[number], evidence, first) for first in sides for number, (_, _, evidence) in known.items()]
+    results = executor.run(phase, items, progress)
+    return {first: {number: next(results) for number in known} for first in sides}
 
 
 def _usual_width(known, estimates, usual):

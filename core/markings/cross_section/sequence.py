@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.parallel import check_cancelled
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from ..weights import LANES
 from .beside import BEYOND, WIDTH
 from .candidates import FAR, Candidates
@@ -48,8 +48,6 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     several are no wider than usual; beside an island, where nothing else has room, they share the strip too, but are as wide as usual where it
     reaches somewhat into them. Elsewhere the surface may end at what hides it, and reach into side streets: beside its end the room says nothing.
 
-    Parameters
-    ----------
     left, right : m, offsets of the two boundaries of each strip; made_left, made_right : SOLID ... ISLAND, what they are made of
     number : lanes in the strip; usual : m, the usual width of a lane
     beside : (..., 4) as of `lanes_beside`, of one lane beside the one of the two that is painted
@@ -424,8 +422,6 @@ def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, l
                 weights: EstimateWeights) -> np.ndarray:
     """(N - 1, K, K) nats of going from each cross-section of an interval to each of the next of those of which something is known.
 
-    Parameters
-    ----------
     known : (N,) int, intervals, ascending, of the candidates and sections of all intervals
     lane_width : m, usual
     left : of what was known of lanes, and of directions, what is left after the way to the next one, (N - 1,) 0 to 1 each

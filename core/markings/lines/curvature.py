@@ -39,8 +39,6 @@ def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[flo
     The mean curvature of the quadric z = f(x, y) through the neighbours of each point, in the frame of their own plane, as point cloud software
     computes it and the thesis shows it for its fitted markings. It measures how rough the markings are, not how the road curves.
 
-    Parameters
-    ----------
     points : Points on paint; of a few of them columns are read, and all others some at a time
     lines : fitted lines with Z in map coordinates
     origin : (3,) map coordinates of the local origin
@@ -103,7 +101,7 @@ def _before_and_after(xyz, which, nearest, segments):
 
     Points in the kernel are brought to the line that is nearest to the middle of the kernel, which on 0.2 m is as good as the line nearest to each.
     """
-    tree, result = _tree(xyz), np.full((2, len(which)), np.nan)
+    tree, result = cKDTree(xyz, balanced_tree=False, compact_nodes=False), np.full((2, len(which)), np.nan)
     heading = segments.heading_at(nearest.line, nearest.station)
     ahead = np.stack([np.cos(heading), np.sin(heading)], axis=1)
     for first in range(0, len(which), KERNELS_PER_BATCH):
@@ -122,35 +120,6 @@ def _before_and_after(xyz, which, nearest, segments):
     return result
 
 
-def mean_curvature(xyz: np.ndarray, which: np.ndarray, radius: float = CURVATURE_KERNEL) -> np.ndarray:
-    """Mean curvature of a surface of points.
-
-    ::
-
-        H = ((1 + fx²) fyy - 2 fx fy fxy + (1 + fy²) fxx) / (2 (1 + fx² + fy²)^1.5)
-
-    of f(x, y) = a + b x + c y + d x² + e xy + g y², fitted in the frame of the neighbours' principal directions.
-
-    Parameters
-    ----------
-    xyz : (N, 3) metres
-    which : (K,) rows whose curvature is computed
-    radius : of the neighbourhood, metres
-
-    Returns (K,) 1/m; NaN with fewer than 12 neighbours, or if these lie in one or two lines
-    """
-    tree, result = _tree(xyz), np.full(len(which), np.nan)
-    for first in range(0, len(which), KERNELS_PER_BATCH):
-        centres = which[first:first + KERNELS_PER_BATCH]
-        owner, member = _around(tree, xyz, centres, radius)
-        result[first:first + KERNELS_PER_BATCH] = _quadrics(xyz[member] - xyz[centres][owner], np.bincount(owner, minlength=len(centres)), radius)
-    return result
-
-
-def _tree(xyz):
-    return cKDTree(xyz, balanced_tree=False, compact_nodes=False)
-
-
 def _around(tree, xyz, which, radius):
     """(owner, member): which of the rows `which` has which point in its kernel, owner by owner."""
     around = tree.query_ball_point(xyz[which], radius)
@@ -158,7 +127,11 @@ def _around(tree, xyz, which, radius):
 
 
 def _quadrics(off, count, radius):
-    """Mean curvature of neighbourhoods: (N, 3) points about each one's point, `count` (K,) of them after each other, none empty."""
+    """Mean curvature of neighbourhoods: (N, 3) points about each one's point, `count` (K,) of them after each other, none empty.
+
+    H = ((1 + fx²) fyy - 2 fx fy fxy + (1 + fy²) fxx) / (2 (1 + fx² + fy²)^1.5) of f(x, y) = a + b x + c y + d x² + e xy + g y², fitted in the frame
+    of the neighbours' principal directions; NaN with fewer than 12 neighbours, or if these lie in one or two lines.
+    """
     values, normal, right = np.empty((len(count), 3)), np.empty((len(count), 6, 6)), np.empty((len(count), 6))
     terms, scale = np.ones((7, int(count.max()))), np.array([[radius], [radius], [1.0]])
     # hundreds of neighbours each: a matrix product of a neighbourhood is faster than sums over all of them

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from ...common.parallel import check_cancelled
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import NEUTRAL
 from ...curves.robust import median
 from ..objects.marking_objects import MarkingObjects
 from ..weights import LINKS, SELECTION
@@ -48,8 +48,6 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
     A line needs paint: `min_paint` m of it, or two dashes of a pattern. What runs close beside a much longer line is that line's ragged edge; what
     frames a hatched area belongs to that area.
 
-    Parameters
-    ----------
     hatched : (K, 4) as `hatching_bars` gives them
     longest_dash : m, longer paint is solid line
     """

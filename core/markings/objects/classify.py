@@ -66,8 +66,6 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
                       covered: float | Sequence[float] = 0.0, blocks: bool | np.ndarray = False) -> list[tuple[str, str]]:
     """Class and use of every cluster of one road: class "" for what is not paint, use "keep" for lines, else "other".
 
-    Parameters
-    ----------
     half_widths : (N,) m from the reference line to the road edge on each cluster's side
     covered : (N,) share of each cluster's points that lie beneath or right beside something standing on the road
     blocks : (N,) bool of `give_way_blocks`, which looks at all roads at once

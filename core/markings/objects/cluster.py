@@ -24,7 +24,7 @@ from ...survey.store.road_points import RoadPoints
 from ..road_grid import CELL_UNITS, occupied, track_reach
 from ..weights import CLASSES, ROWS, SHAPES
 from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, filled, relative_contrast, too_pale
-from .figures import Candidate, figures_of_group, painted_figures
+from .figures import figure_of_cells, painted_figures
 from .grouping import connected_points
 from .marking_objects import MarkingObjects, make_marking_objects
 from .repeating import Comb, Crossing, Stripe, blocks_of_strip, comb_of_window, give_way_blocks, stripes_of_crossing, zebra_stripes
@@ -53,14 +53,11 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
                      progress: Progress = Progress(), executor: Executor = THREADS) -> tuple[MarkingObjects, RoadPoints]:
     """Group road points on paint into markings with class, size and outline.
 
-    Parameters
-    ----------
     executor : who links points, looks for crossings, divides compound clusters and measures clusters
 
     Returns
-    -------
-    markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has several, with one `cluster` number
-    clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
+        markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has several, with one `cluster` number
+        clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
     """
     clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
     roads = marking_points.roads()
@@ -420,10 +417,10 @@ class ApartWork:
 
         return self._run(outlines_of_markings, columns, np.cumsum([0, *map(len, rows)]), progress, looks=looks, arguments=(road,), read=_polygons)
 
-    def figures(self, groups: list[list[Candidate]], begin: float, end: float, progress: Progress) -> Iterator[list[tuple[int, str]]]:
-        """What `figures_of_group` finds in each group; they are the work from a fraction `begin` of the progress to `end`."""
-        phase = Phase(figures_of_group, NoSource(), (), lambda item: f"markings of road {self.road}")
-        return self.executor.run(phase, groups, progress.part(begin, end))
+    def figures(self, cells: list[tuple[np.ndarray, np.ndarray]], begin: float, end: float, progress: Progress) -> Iterator[str]:
+        """What `figure_of_cells` finds in each of some markings together; they are the work from a fraction `begin` of the progress to `end`."""
+        phase = Phase(figure_of_cells, NoSource(), (), lambda item: f"markings of road {self.road}", together=4)
+        return self.executor.run(phase, cells, progress.part(begin, end))
 
     def _run(self, function: Callable[..., Any], columns: Callable[[int, int], tuple[np.ndarray, ...]], bounds: np.ndarray, progress: Progress,
              looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),

@@ -33,15 +33,12 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     Points of one 4 cm cell are one member, at their mean place: points of dense paint would otherwise have hundreds of neighbours each. Cells are
     fixed in station, and windows are joined through the cells they share, so neither window nor section length shows in the result.
 
-    Parameters
-    ----------
     distance : m, by which points of one marking are joined
     executor : who links the points of windows
 
     Returns
-    -------
-    records : Columns PAINT_COLUMNS of the N points of the road, by station, which are read when they are asked for and not kept
-    labels : (N,) int32 component of each; its numbering follows station
+        records : Columns PAINT_COLUMNS of the N points of the road, by station, which are read when they are asked for and not kept
+        labels : (N,) int32 component of each; its numbering follows station
     """
     records = columns_of_roads(marking_points.store, [road], PAINT_COLUMNS)
     labels, links = [], []

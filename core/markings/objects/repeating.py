@@ -59,8 +59,6 @@ def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Seque
                   stripes_of: Callable[[Sequence[Crossing]], list[list[Stripe]]] | None = None) -> list[Stripe]:
     """The stripes of crossings.
 
-    Parameters
-    ----------
     places : (N, 2) m, spots of paint on the ground, one a cell. Where the road bends, station and offset would bend stripes, too
     way : (N,) radians, the direction of the road at each, in the same axes
     combs_of : what applies `comb_of_window` to the spots of windows, given their rows; by default one after the other
@@ -451,8 +449,6 @@ def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -
     Where no more of a row was seen than two squares, they count if they lie at the pace of a sure row. A row goes on where a piece lies at its pace
     and in line with it, though wear or stray points leave it no square.
 
-    Parameters
-    ----------
     filled : (N,) bool, whether most of the smallest rectangle about a piece is painted
     sides : (N, 2) m, of that rectangle; 0 for what is larger than any block
     middle : (N, 2) m, in one frame

@@ -311,8 +311,6 @@ def even_strip(cells: np.ndarray) -> tuple[np.ndarray, float]:
 def complete_bar(parts: np.ndarray, bar: np.ndarray, turned: np.ndarray, along: np.ndarray) -> None:
     """Give a bar, in `parts`, what is left over between its front and its rear: where it is worn it is no less its paint.
 
-    Parameters
-    ----------
     parts : (K,) int, the part of every cell, below 0 for what is left over; bar : (N,) the numbers of the bar's cells, ascending
     turned : (K, 2) int cells, across the road first, sorted along it; along : (K,) its second column
     """

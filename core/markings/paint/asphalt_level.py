@@ -210,8 +210,6 @@ def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, e
     Half of a zebra crossing is stripes, and of the cells of a bin that lies on one most may be. Where the median of a bin tells that, what is so
     bright is left out of all of them.
 
-    Parameters
-    ----------
     values : (rows, columns) brightness
     counted : (rows, columns) bool, cells away from the road's rim, where `values` has no NaN
     offsets : (columns,) m, ascending; edges : (B + 1,) of `bin_edges`
@@ -257,8 +255,6 @@ def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: li
                highest: float = np.inf) -> list[_OtsuSplit]:
     """Otsu's split of each of the `bins` of one window.
 
-    Parameters
-    ----------
     z : (rows, columns) spreads above asphalt; counted : (rows, columns) bool, cells that are no gutter, where z has no NaN
     offsets : (columns,) m, ascending
     separation : spreads that the bright class must lie above the dark one

@@ -34,8 +34,6 @@ def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: Road
     Multi-thresholds after Guan et al. (2014) and the driving-line thesis (Waterloo, 2017); our own are the local level of asphalt, the treatment of
     gutters and patches, and the averages for noisy scanners.
 
-    Parameters
-    ----------
     image : of the same points, in memory or on disk; a method on points needs it for the mask alone
     mask_path : where to write the mask of markings as GeoTIFF in the image's own pixels, or None
 

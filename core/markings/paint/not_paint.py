@@ -41,8 +41,6 @@ def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, settings: Ma
     brightness of its cells must sum up to the `evidence` of the settings: a faint line of some length is as sure as a bright speck. It is brighter
     than what lies on either side of it: the rim of a repair is so on one side alone, or fades out into the repair.
 
-    Parameters
-    ----------
     z : (rows, columns) float32 spreads above asphalt, no more than the highest threshold of each cell counts
     mask, seen : (rows, columns) bool, bright cells and those whose brightness is known
     above : (rows, columns) float32 spreads above the asphalt of the bin, local levels not taken off; None where the sides are not compared

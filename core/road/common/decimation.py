@@ -10,19 +10,17 @@ import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...common.arrays import decimate_cells
 from ...execution.phase import Executor, Recipe
+from ...survey.frame.passes import Pass
+from ...survey.open_survey import Survey
 from ...survey.store.array_file import ArrayFile
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from ..weights import CURBS
-
-if TYPE_CHECKING:
-    from ...survey.frame.passes import Pass
-    from ...survey.open_survey import Survey
 
 LEVEL_CELL_LIMITS = CURBS.points_per_level_cell, CURBS.points_per_level_cell_in_plan
 PROFILE_BOUND_TOLERANCE = 1e-6   # derived: 0.1 mm; bounds between profiles are whole numbers of it, except for rounding
@@ -392,9 +390,7 @@ def _find_level_strip(track: np.ndarray, count: np.ndarray, total: np.ndarray, s
     size : width of a cell, 0.1 mm
     min_height : the least step, 0.1 mm
 
-    Returns
-    -------
-    low, high, height : as of LevelStrip
+    Returns low, high, height: as of LevelStrip
     """
     half = min(int(CURBS.max_strip_offset / COORDINATE_SCALE) // size, count.shape[2])
     count, total, squares = (np.concatenate([v[:, 1, :half][:, ::-1], v[:, 0, :half]], axis=1) for v in (count, total, squares))

@@ -32,9 +32,8 @@ def lowest_layers(place: np.ndarray, h: np.ndarray, layer_jump: float) -> tuple[
     layer_jump : m of height between two layers
 
     Returns
-    -------
-    ground : (N,) bool, the points of the lowest layers
-    first, count : (C,) index of the first point and number of points of the lowest layer of every occupied cell
+        ground : (N,) bool, the points of the lowest layers
+        first, count : (C,) index of the first point and number of points of the lowest layer of every occupied cell
     """
     if not len(place):
         empty = np.empty(0, np.int64)
@@ -65,9 +64,7 @@ def expand_ranges(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.nd
 
     start, end : (M,) first index of each range, and the one after its last
 
-    Returns
-    -------
-    owner, index : (N,) number of the range, and the index
+    Returns owner, index: (N,) number of the range, and the index
     """
     length = np.maximum(end - start, 0)
     owner = np.repeat(np.arange(len(start)), length)
@@ -219,9 +216,8 @@ def cells_of_points(u: np.ndarray, s: np.ndarray, h: np.ndarray, rows: np.ndarra
     origin : m, outward offset at which the first cell begins
 
     Returns
-    -------
-    inside : (N,) indices of the points within
-    place : (N,) (profile - first) * cells + cell
+        inside : (N,) indices of the points within
+        place : (N,) (profile - first) * cells + cell
     """
     u, s, h = u.take(rows), s.take(rows), h.take(rows)
     profile = np.floor(s / width).astype(np.int32)

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ...survey.frame.road_frame import RoadFrame
+from ...survey.open_survey import Survey
+from ...survey.store.records import Points
 from ..weights import CURBS
+from .curb_limits import CurbSettings
 from .curb_points import CurbPoints, curb_points_at
 from .decimation import PointDecimation, limit_points_per_cell
 from .occlusion import OcclusionGrid
 from .pseudo_scanlines import PseudoScanLines, cells_of_points, expand_ranges, ground_of_profiles, join_profile_runs
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.open_survey import Survey
-    from ...survey.store.records import Points
-    from .curb_limits import CurbSettings
 
 SIDE_SIGNS = {"left": 1, "right": -1}   # derived: side -> sign of its offsets
 

@@ -4,26 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
 from ...common.arrays import mask_runs
+from ...survey.frame.passes import Pass
+from ...survey.frame.road import Road
+from ..common.curb_limits import CurbSettings
 from ..common.sides import SIDE_SIGNS
 from ..common.tracking import is_clean, is_road
+from ..surface.road_look import RoadLook
 from ..weights import CURBS, RETURN
-from .main_curbs import CurbLines
+from .main_curbs import CurbLines, SearchLimit
 from .steps import PlanSteps
 from .tracking import PlanStepChain, group_lines
-
-if TYPE_CHECKING:
-    from ...survey.frame.passes import Pass
-    from ...survey.frame.road import Road
-    from ..common.curb_limits import CurbSettings
-    from ..surface.road_look import RoadLook
-    from .main_curbs import SearchLimit
 
 
 @dataclass

@@ -9,18 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.progress import Progress
 from ...survey.frame.placement import PlaceIndex
 from ...survey.weights import FRAME
+from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import phase_along
 from ..common.sides import SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden_beside, work_sections
+from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_curbs, has_road_before, is_curb_like
@@ -31,10 +32,6 @@ from .main_curbs import KnownPlaces, SearchLimit, main_curbs_of, main_runs, plac
 from .side_streets import with_curbs_beyond
 from .steps import PlanSteps, measure_plan_steps, step_places
 from .tracking import join_chains, link_plan_steps
-
-if TYPE_CHECKING:
-    from ..common.curb_limits import CurbSettings
-    from ..surface.ground_grid import MeasuredGround
 
 KIND_TITLES = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
 

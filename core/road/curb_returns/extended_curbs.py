@@ -14,26 +14,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.arrays import Rows
 from ...common.progress import Progress
 from ..common.corners import RunningSums, SideLines
+from ..common.curb_limits import CurbSettings
 from ..common.decimation import PointDecimation
 from ..common.side_curbs import phase_along
 from ..common.sides import ahead_of_vehicle, expected_height
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_continuation
 from .ground_raster import GroundRaster, averaged, ground_raster
-from .main_curbs import CurbLines
+from .main_curbs import CurbLines, KnownPlaces, SearchLimit
 from .steps import PATCH_HALF_WIDTH, PlanSteps, points_about, steps_of_points
 from .tracking import LineEnds, PlanStepChain
-
-if TYPE_CHECKING:
-    from ..common.curb_limits import CurbSettings
-    from .main_curbs import KnownPlaces, SearchLimit
 
 LEAD_IN_STEPS = int(round(RETURN.line_direction_length / RETURN.led_step))   # averages that begin on the sure curb, so that the course is its own
 # errors of an average that are independent

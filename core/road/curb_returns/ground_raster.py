@@ -63,9 +63,8 @@ class GroundRaster:
         """The points sorted by cell.
 
         Returns
-        -------
-        x, y, h : (N,) m, the points
-        starts : (rows * columns + 1,) index of the first point of every cell
+            x, y, h : (N,) m, the points
+            starts : (rows * columns + 1,) index of the first point of every cell
         """
         order = order_by(self.place)
         starts = np.zeros(self.low.size + 1, np.int64)
@@ -207,9 +206,8 @@ def driven_ground(raster: GroundRaster, slopes: Sequence[np.ndarray], track_x: n
     min_height : m, the least step
 
     Returns
-    -------
-    driven : (rows, columns) bool
-    stepped : (rows, columns) bool, occupied cells about which the ground rises more than its slope explains
+        driven : (rows, columns) bool
+        stepped : (rows, columns) bool, occupied cells about which the ground rises more than its slope explains
     """
     filled = np.isfinite(raster.low)
     window = np.ones((RETURN.level_window_cells, RETURN.level_window_cells), np.uint8)

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.arrays import stretch_of
+from ...survey.open_survey import Survey
 from ..common.curb_points import CurbPoints
 from ..common.occlusion import OcclusionGrid
 from ..common.sides import SIDE_SIGNS, expected_height
@@ -22,9 +22,6 @@ from ..weights import CURBS, RETURN
 from .classify import CurbReturn
 from .ground_raster import GroundRaster
 from .steps import PlanSteps, line_directions, points_about
-
-if TYPE_CHECKING:
-    from ...survey.open_survey import Survey
 
 
 def on_main_islands(points: CurbPoints, survey: Survey,

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
+from ...survey.frame.road import Road
+from ...survey.open_survey import Survey
 from ...survey.weights import FRAME
 from ..common.curb_points import CurbPoints
 from ..common.sides import SIDE_SIGNS, expected_height
 from ..weights import CURBS, RETURN
-
-if TYPE_CHECKING:
-    from ...survey.frame.road import Road
-    from ...survey.open_survey import Survey
-    from .steps import PlanSteps
+from .steps import PlanSteps
 
 
 def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[dict[str, np.ndarray], int]:

@@ -191,9 +191,8 @@ def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.n
     wanted : function, local x, y -> (N,) bool: only these are returned, and squares without such a cell are not looked at
 
     Returns
-    -------
-    x, y : (M,) local m
-    nx, ny : (M,) unit vector uphill
+        x, y : (M,) local m
+        nx, ny : (M,) unit vector uphill
     """
     near_road = grown(driven, diamond(RETURN.max_cells_from_road))
     row, column = np.nonzero(stepped & near_road)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -12,11 +11,9 @@ import shapely
 from ...common.features import NEAREST_PASS, ROAD_EDGES, SIGMA, Features
 from ...common.layer_rows import LayerRows, column
 from ...survey.frame.placement import COORDINATE_DECIMALS, FrameLines, as_written, line_parts, lines_in_frame
+from ...survey.frame.road_frame import RoadFrame
 from ...survey.frame.row_table import cuts_where_it_changes
 from ..weights import CURBS, EDGE, EdgeUncertainty
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
 
 EDGE_DECIMALS = dict(station=3, end=3, height=3, length=3, rmse=4, sigma=4, agree=1)   # derived: of numbers in the layer, finer than they are known
 

@@ -13,7 +13,6 @@ paper are those between the planes and the vertical; here they are those between
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,11 +20,8 @@ from ...common.arrays import Rows
 from ..common.corners import CurbSteps
 from ..common.pseudo_scanlines import SIGMA_PER_MEAN_DEVIATION, expand_ranges
 from ..weights import CURBS, SCANLINE
-from .candidates import CurbCandidates, ScanlineSamples
+from .candidates import CurbCandidates, ScanlineBoundarySettings, ScanlineSamples
 from .grid import LINE_SEPARATION, nearest_distance
-
-if TYPE_CHECKING:
-    from .candidates import ScanlineBoundarySettings
 
 TRUNCATED_SIGMA_FACTOR = 1.35   # derived: sigma of a normal distribution over that of its part within SCANLINE.inlier_sigmas
 

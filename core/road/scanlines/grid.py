@@ -171,8 +171,6 @@ class Scanlines:
     Every line lies in the section plane at its station, perpendicular to the reference line of the road. A line is
     connected: where the surface is interrupted, a new line begins. Lines are sorted by station, pass, scanner and offset.
 
-    Attributes
-    ----------
     station : (L,) float64 m along the road
     pass_number, scanner : (L,) int; a line holds points of one pass and one scanner
     first : (L + 1,) int; vertices first[i]:first[i + 1] belong to line i

@@ -13,20 +13,16 @@ The paper on normalized scanlines (ISPRS Archives, 2020), section 2.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.arrays import Rows
-from ...survey.lattice.scan_lattice import time_order
+from ...survey.frame.passes import Pass
+from ...survey.lattice.scan_lattice import MirrorPhase, time_order
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, take_rows
+from ..common.decimation import LevelStrip
 from ..weights import SCANLINE
-
-if TYPE_CHECKING:
-    from ...survey.frame.passes import Pass
-    from ...survey.lattice.scan_lattice import MirrorPhase
-    from ...survey.store.columns import Columns
-    from ..common.decimation import LevelStrip
 
 LINE_OFFSET_UNITS = 2 * 10**10   # derived: 2 km between the offsets of consecutive lines in one sorted array
 PHASE_STEPS = 65535   # derived: steps of a turn by which vertices are sorted, 16 bits
@@ -256,9 +252,8 @@ class PlaneVertices:
         """Connect the vertices to L polylines.
 
         Returns
-        -------
-        order : (N,) int, order of the vertices, or None where it does not change
-        first : (L + 1,) int, first vertex of each line in that order
+            order : (N,) int, order of the vertices, or None where it does not change
+            first : (L + 1,) int, first vertex of each line in that order
         """
         count = len(self.d)
         begin = np.r_[0, np.flatnonzero(~self.side_by_side(slice(0, count - 1), slice(1, count))) + 1]

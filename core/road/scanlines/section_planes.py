@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,23 +20,19 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice, scanner_runs
+from ...survey.open_survey import Survey
+from ..common.decimation import LevelStrip
 from ..common.pseudo_scanlines import pseudo_scan_lines
 from ..common.sides import expected_height, fixed_sections
 from ..weights import CURBS, SCANLINE
 from .grid import Scanlines
 from .mesh import PlaneVertices, Ribs, increasing, plane_order, ribs_of, scanner_lines, slanting_edges
 
-if TYPE_CHECKING:
-    from ...survey.open_survey import Survey
-    from ..common.decimation import LevelStrip
-
 
 @dataclass(frozen=True)
 class ScanlineSettings:
     """Section planes.
 
-    Attributes
-    ----------
     interval : m between section planes
     corridor : m either side of the reference line of the road
     rotation_frequency : Hz, scan lines per second of each scanner; 0 = from the data
@@ -105,13 +100,9 @@ def all_scanlines(survey: Survey, road: int, settings: ScanlineSettings = Scanli
                   progress: Progress = Progress()) -> Iterator[Scanlines]:
     """The normalized scanlines of a whole road, section by section; sections are computed in parallel.
 
-    Parameters
-    ----------
     survey, road, settings, lattice : as in `scanlines_of`
 
-    Yields
-    ------
-    Scanlines, in order of station
+    Yields Scanlines, in order of station
     """
     if lattice is None:
         lattice = find_lattice(survey, settings.rotation_frequency)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -18,18 +18,16 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ...survey.density import counted_cubes, cube_density
+from ...survey.frame.road_frame import RoadFrame
+from ...survey.open_survey import Survey
 from ...survey.store.road_points import RoadPoints
+from ..edges.road_edges import RoadEdges
 from ..weights import SURFACE
 from .ground_change import follow_road, smooth_road
 from .ground_grid import GroundCells, MeasuredGround, windows_of
 from .pavement_edge import Carriageway, edge_offsets, grown_limit, rows_with_edge
 from .road_points import surface_about, surface_points
 from .road_surface import SurfaceOutlines, outlines
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.open_survey import Survey
-    from ..edges.road_edges import RoadEdges
 
 
 @dataclass(frozen=True)
@@ -63,9 +61,8 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     counted : whether the density of points is asked for
 
     Returns
-    -------
-    road_points : RoadPoints with `half_width` and `covered`; the survey lives as long as they do
-    surface : SurfaceOutlines
+        road_points : RoadPoints with `half_width` and `covered`; the survey lives as long as they do
+        surface : SurfaceOutlines
 
     Raises RoadExtractionError if no road surface is found.
     """

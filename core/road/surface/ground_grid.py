@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import solveh_banded
@@ -16,14 +15,12 @@ from scipy.linalg import solveh_banded
 from ...common.arrays import order_by
 from ...common.progress import Progress
 from ...execution.phase import Phase
+from ...survey.open_survey import Survey
 from ...survey.store.array_file import ArrayFile
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.weights import FRAME
 from ..common.sides import ahead_of_vehicle
 from ..weights import SURFACE
-
-if TYPE_CHECKING:
-    from ...survey.open_survey import Survey
 
 GOLDEN_RATIO_32 = 0x9E3779B9   # source: golden ratio times 2^32; its multiples, modulo 2^32, are evenly distributed (Knuth, TAOCP 3, 6.4)
 
@@ -360,9 +357,8 @@ class MeasuredGround:
         profiled : whether the profiles of each window are wanted
 
         Returns
-        -------
-        cells : GroundCells of all windows
-        profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
+            cells : GroundCells of all windows
+            profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
         self._measure(road, rows, profiled, progress)
         half = _ground_columns(FRAME.corridor, SURFACE.column_width)
@@ -408,10 +404,9 @@ def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> l
     windows : what is wanted of each window
 
     Returns
-    -------
-    for each window, None where it is not wanted:
-    cells : (3, R, C) float32, the attributes CELL_NAMES of its GroundCells
-    profiles : (5, P, K) float32, the attributes NAMES of its SurfaceProfiles
+        for each window, None where it is not wanted:
+        cells : (3, R, C) float32, the attributes CELL_NAMES of its GroundCells
+        profiles : (5, P, K) float32, the attributes NAMES of its SurfaceProfiles
     """
     result = []
 

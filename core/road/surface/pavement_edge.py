@@ -6,19 +6,16 @@ The edge is a change of height, tilt, roughness or brightness across profiles of
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.arrays import stretch_of
 from ...common.parallel import by_rows
+from ..edges.road_edges import RoadEdges
 from ..weights import EDGE, SURFACE
 from .ground_change import HalfProfiles, other_ground_begins
 from .ground_grid import GroundCells, SurfaceProfiles, known_median
 from .pavement_limit import cheapest_path, pavement_limits
-
-if TYPE_CHECKING:
-    from ..edges.road_edges import RoadEdges
 
 
 def _pooled(values):

@@ -9,17 +9,13 @@ differ in nothing but their noise, which follows from the points in a cell. Pain
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import median_filter, uniform_filter1d
 
 from ...common.parallel import check_cancelled
 from ..weights import SURFACE
-from .ground_grid import known_median
-
-if TYPE_CHECKING:
-    from .ground_grid import SurfaceProfiles
+from .ground_grid import SurfaceProfiles, known_median
 
 USUAL_QUANTILE, USUAL_SIGMAS = 0.5, 0.67   # derived: median of what the cells of the road are off themselves, and its sigmas in a normal distribution
 

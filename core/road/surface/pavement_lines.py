@@ -7,7 +7,6 @@ Where nothing tells the pavement from what lies beside it, there is no line, nor
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -17,22 +16,20 @@ from scipy.ndimage import uniform_filter1d
 from ...common.arrays import stretch_of
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
+from ...survey.frame.road_frame import RoadFrame
+from ...survey.open_survey import Survey
 from ..common.tracking import GapLine
 from ..edges.fit import EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
 from ..weights import EDGE, SURFACE
 from .extract import SurfaceSettings, find_carriageway
+from .ground_grid import MeasuredGround
 from .pavement_edge import Carriageway, edge_offsets
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.open_survey import Survey
-    from .ground_grid import MeasuredGround
 
 MIN_OWN_LENGTH = 0.5 * SURFACE.agreeing_length   # derived: m of a line without that curb; which rows begin it is no better known
 
 
-def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings = EdgeSettings(), surface: SurfaceSettings = SurfaceSettings(),
+def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings = EdgeSettings(),
                         progress: Progress = Progress(), ground: MeasuredGround | None = None) -> RoadEdges:
     """The edges and, where there is no curb, edges of the pavement.
 
@@ -45,7 +42,7 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
     pieces: list[EdgePiece] = []
     roads = survey.store.roads()
     for k, road in enumerate(roads):
-        carriageway = find_carriageway(survey, road, edges, surface, progress.part(k / len(roads), (k + 1) / len(roads)), ground)
+        carriageway = find_carriageway(survey, road, edges, SurfaceSettings(), progress.part(k / len(roads), (k + 1) / len(roads)), ground)
         if carriageway is not None:
             pieces += _pavement_pieces(survey.frame, road, carriageway, edges, settings.max_gap, len(pieces))
     if pieces:

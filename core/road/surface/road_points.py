@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage
@@ -13,9 +12,7 @@ from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import StoreIndex, Stretch
 from ..weights import SURFACE
-
-if TYPE_CHECKING:
-    from .pavement_edge import Carriageway
+from .pavement_edge import Carriageway
 
 
 def covered_by_obstacles(road_points: Points, above: Points) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -12,11 +12,9 @@ import shapely
 from ...common.features import ROAD_SURFACE
 from ...common.layer_rows import LayerRows, column
 from ...survey.frame.placement import COORDINATE_DECIMALS
+from ...survey.frame.road_frame import RoadFrame
 from ..weights import SURFACE
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
-    from .pavement_edge import Carriageway
+from .pavement_edge import Carriageway
 
 
 @dataclass(frozen=True)

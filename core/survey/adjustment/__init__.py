@@ -2,7 +2,3 @@
 
 In: a `Survey` whose passes disagree. Out: corrections along each pass, which are applied to its points and its track.
 """
-
-from ...lazy import public
-
-__getattr__, __all__ = public(__name__, {"adjust": ("adjust_passes",), "register": ("PassCorrections", "pass_offsets")})

@@ -37,8 +37,6 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
                       progress: Progress = Progress()) -> _FittedTrajectory:
     """The trajectory as the scanners were carried, where the one given is not.
 
-    Parameters
-    ----------
     files : headers of the clouds
     trajectory : Trajectory in their CRS and, where it has times, in their time system
     scanner_field : as of `ScannerCensus.choose`
@@ -203,8 +201,6 @@ class _Sample:
 def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "automatic") -> _Sample:
     """First returns of PLACE_WINDOWS of time, or more, at each of PLACES_READ places spread evenly over the points of the files.
 
-    Parameters
-    ----------
     files : headers of the clouds
     scanner_field : as of `ScannerCensus.choose`
     """
@@ -257,8 +253,6 @@ def _first_returns(block):
 def scanner_mountings(sample: _Sample, trajectory: Trajectory, stretch: float = 1.0) -> list[_Mounting]:
     """The _Mounting of every scanner whose mirror is seen to turn.
 
-    Parameters
-    ----------
     sample : of `read_places`
     trajectory : Trajectory with times, in the CRS and time system of the sample
     stretch : by which heights of points and trajectory are multiplied before, to try other units of them

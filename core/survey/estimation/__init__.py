@@ -2,7 +2,3 @@
 
 In: point cloud files. Out: an `EstimatedTrajectory`.
 """
-
-from ...lazy import public
-
-__getattr__, __all__ = public(__name__, {"estimate": ("EstimatedTrajectory", "estimate_trajectory", "splitter_of")})

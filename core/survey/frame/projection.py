@@ -221,9 +221,8 @@ class RoadProjection:
         s, d : (N,) int32, overwritten; undefined where `inside` is False
 
         Returns
-        -------
-        pass_number : (N,) int16; -1 where no pass was driven at the time of the point
-        inside : (N,) bool, which points lie in the road frame; None if all do
+            pass_number : (N,) int16; -1 where no pass was driven at the time of the point
+            inside : (N,) bool, which points lie in the road frame; None if all do
         """
         passes, inside = self._owner(time), None
         for first in range(0, len(x), FRAME.points_per_projection):

@@ -53,8 +53,6 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
                units: FileUnits = METRES) -> Any:
     """Open a LAS, LAZ or COPC file with laspy: a LasReader whose header has scales, offsets and bounds in metres.
 
-    Parameters
-    ----------
     layers : names of the layers of a LAZ 1.4 file that are decoded beside x, y and the return numbers ("z", "intensity" ...); all by default
     known : the file's header, where it was read and checked for damage before
     sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
@@ -69,7 +67,7 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
 
 def cloud_crs(header: Any) -> str:
     """WKT, metric, of the CRS that a laspy header states; "" where there is none that is understood and does not contradict itself."""
-    crs, problem = crs_of_records(header)
+    crs, problem = _crs_of_records(header)
     return "" if problem else in_metres(crs)[0]
 
 
@@ -155,7 +153,7 @@ def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
             cloud_crs(header), "gps_time" in names, "scanner_channel" in names,
             bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names,
-            tuple(f"The file {path} contradicts its header: {note}." for note in (*mended.notes, *overflow)), units, crs_of_records(header)[1])
+            tuple(f"The file {path} contradicts its header: {note}." for note in (*mended.notes, *overflow)), units, _crs_of_records(header)[1])
 
 
 def _overflow(header):
@@ -196,8 +194,6 @@ def _bounds_of_points(path, units):
 def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], None] = lambda note: None, given: str = "") -> list[CloudHeader]:
     """The headers of several files, in the order given; a file that is given twice, by whatever path, is read once.
 
-    Parameters
-    ----------
     warn : is told what headers state otherwise than their files show
     given : WKT of the CRS of those that state none
 
@@ -275,7 +271,7 @@ PROJECTED, GEODETIC, LENGTH_UNIT, LENGTH_SIZE, VERTICAL, HEIGHT_UNIT = 3072, 204
 EPSG_CODES = range(1024, 32767)   # source: OGC 19-008r4, as are those of the records and keys above
 
 
-def crs_of_records(header: Any) -> tuple[str, str]:
+def _crs_of_records(header: Any) -> tuple[str, str]:
     """The CRS that a laspy header states, as WKT with the unit of its heights, and a sentence on why it cannot be used; "" for either."""
     records = [record for record in [*header.vlrs, *(header.evlrs or ())] if record.user_id == RECORDS_OF]
     texts = [record.record_data_bytes() for record in records if record.record_id == WKT_RECORD]
@@ -287,7 +283,7 @@ def crs_of_records(header: Any) -> tuple[str, str]:
 
 @lru_cache(maxsize=256)
 def _stated(text, keys, doubles, place):
-    """As of `crs_of_records`, of the contents of the records."""
+    """As of `_crs_of_records`, of the contents of the records."""
     written, (plane, vertical, problem) = _parsed(text.split(b"\0")[0].decode("utf-8", "replace")), _of_keys(_key_values(keys, doubles))
     if _of_heights(written):
         written, vertical = plane, written

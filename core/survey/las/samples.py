@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import gcd
 
 import numpy as np
 import shapely
 
-from ...common.progress import Progress
 from ..weights import LAS
 from .parallel_reader import ParallelCloudReader
-from .reader import CloudHeader, read_blocks, read_headers
+from .reader import CloudHeader, read_blocks
 
 
 @dataclass(frozen=True)
@@ -113,39 +111,6 @@ class TimeSlots:
         with np.errstate(invalid="ignore"):   # infinite times
             nearest -= slot
         return nearest == 0
-
-
-# Points about a place, for a look at it.
-
-def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, radius: float, progress: Progress = Progress()) -> np.ndarray:
-    """The points within a square about a place, (N, 4) x, y, z in map coordinates and intensity, in file order.
-
-    Files whose bounds lie elsewhere are not opened beyond their header. Only these points and the block being read are held in memory.
-
-    Parameters
-    ----------
-    paths : of point clouds
-    x, y : map coordinates of the middle
-    radius : m, half the side of the square
-
-    Raises RoadExtractionError if a file is missing or cannot be read.
-    """
-    files = read_headers(paths, progress.warn)
-    units = files[0].units   # of the map, in which the results of these clouds are
-    place = units.in_metres((x, y))
-    low, high = place - radius, place + radius
-    files = [file for file in files if file.count and (file.minimum[:2] <= high).all() and (file.maximum[:2] >= low).all()]
-    total, read = sum(file.count for file in files), 0
-    parts = [np.empty((0, 4))]
-    for file in files:
-        for block in read_blocks(file.path, layers=("z", "intensity"), units=file.units):
-            read += len(block)
-            progress.report(read / total)
-            distance = np.abs(np.stack([np.asarray(block.x), np.asarray(block.y)]) - place[:, None])
-            near = np.flatnonzero((distance <= radius).all(axis=0))
-            places = np.stack([np.asarray(block[name])[near] for name in "xyz"], axis=1)
-            parts.append(np.c_[places if units.metric else units.in_file(places), np.asarray(block.intensity)[near]])
-    return np.concatenate(parts)
 
 
 # Copies of files and of points among the files of a survey: they would count twice.

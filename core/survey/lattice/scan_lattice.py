@@ -400,17 +400,10 @@ class MirrorPhase:
         turns = np.asarray(turns, float)
         return _interpolate(turns, self.turns, self.time, 1.0 / abs(self.frequency))
 
-    def lines_and_phase(self, time: np.ndarray, angle: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Line number (N,) int64 and mirror phase (N,) in turns of points at (N,) seconds: 0 at the zenith, 0.5 below.
-
-        An angle about the trajectory, (N,) radians from the zenith, decides on which side of the zenith a point lies, so that a ceiling is split
-        exactly above the vehicle whatever the error of the phase; the phase may leave [0, 1) then.
-        """
+    def lines_and_phase(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Line number (N,) int64 and mirror phase (N,) in turns of points at (N,) seconds: 0 at the zenith, 0.5 below."""
         turns = self.turns_at(time)
         line = np.floor(turns)
-        if angle is not None:
-            share = np.sign(self.frequency) * np.asarray(angle) / (2 * np.pi)
-            line = np.round(turns - np.where(share < 0, share + 1.0, share))
         return line.astype(np.int64), turns - line
 
 

@@ -16,8 +16,6 @@ class Columns:
     `columns["z"]` is one column; `columns[mask]`, `columns[indices]` and `columns[2:5]` are Columns of those rows. Evaluation is lazy: rows are
     taken, and parts are concatenated, only when a column of the result is asked for, since most steps use few columns.
 
-    Parameters
-    ----------
     arrays : {name: (N,) array} of the columns that are in memory already
     dtype : structured dtype that names all columns
     length : N; by default the length of the first array

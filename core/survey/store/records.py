@@ -58,8 +58,6 @@ def road_of(number: int) -> int:
 class Points:
     """A metric view of the records of points; metres are computed on access.
 
-    Attributes
-    ----------
     records : (N,) Columns or structured array
     x, y, z, s, d : (N,) float64, metres
     half_width, spacing : (N,) float64, metres

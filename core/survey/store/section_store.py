@@ -86,8 +86,6 @@ class SectionStore:
     A section is a fixed interval of station of one road, counted from 0. What is read back is sorted by station, offset, height and time, so it does
     not depend on the order of appending, and a window is a range of rows. A section is sorted once, when it is first read.
 
-    Parameters
-    ----------
     dtype : structured dtype of the points, with at least the columns of SURVEY_POINT where points are appended
     section_length : metres
     folder : where the points go, so that others can read them; None for temporary files without a name

@@ -188,7 +188,7 @@ def _time(columns, meaning, label, notes, doubts):
 
 def _written_time(columns, place, label):
     """The ClockTimes of a table whose time is a clock, in one column or several, or counts days; None where it counts seconds."""
-    column, date = columns[place["time"]], _date_column(columns, place)
+    column, date = columns[place["time"]], columns[place["date"]] if place.get("date", place["time"]) != place["time"] else None
     days = _days(columns, place, date)
     texts = list(column.written()) if column.is_text else _clock_in_numbers(columns, place, days)
     if texts is None:
@@ -198,10 +198,6 @@ def _written_time(columns, place, label):
     if times is not None and not times.dated and days is not None:
         times = clock_times([f"{day} {text}" for day, text in zip(days, texts)]) or times
     return times
-
-
-def _date_column(columns, place):
-    return columns[place["date"]] if place.get("date", place["time"]) != place["time"] else None
 
 
 def _days(columns, place, date):

@@ -29,8 +29,6 @@ WGS84 = "EPSG:4326"
 def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str = "", columns: str = "") -> Trajectory:
     """A trajectory from a CSV or text file, with or without header, a log of a receiver, a GPX or KML track, or an Applanix SBET file.
 
-    Parameters
-    ----------
     crs : WKT or "EPSG:n" of its coordinates; by default the one that the file states, and WGS 84 for longitude and latitude
     target_crs : WKT or "EPSG:n"; where it is given and the trajectory's CRS is known, the trajectory is reprojected
     columns : of a text table, as `assigned_columns` takes them; "" recognises them
@@ -56,8 +54,6 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
                             notes: Sequence[str] = (), stated_units: Sequence[tuple[str, str]] = ()) -> Trajectory:
     """A trajectory, not yet cleaned, from columns of numbers.
 
-    Parameters
-    ----------
     columns : {role: (N,) array}; roles are time, x, y, z, roll, pitch, heading, and lon, lat instead of x, y. Without `time` the positions are in
         driving order
     crs : WKT or "EPSG:n" of x, y, in its units; "" where unknown
@@ -87,8 +83,6 @@ def trajectory_from_rows(titles: Sequence[str], rows: Sequence[Sequence[object]]
                          label: str = "The trajectory", heights_needed: bool = True) -> Trajectory:
     """A trajectory, not yet cleaned, from the rows of a layer, by the same names and units as those of a file.
 
-    Parameters
-    ----------
     titles, rows : names of the fields, and a list of their values for each position, None where one is missing
     given : {role: (N,) array} of what the fields need not tell, such as x and y from the points of the layer
     crs : WKT or "EPSG:n" of x, y; "" where unknown

@@ -251,8 +251,6 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
     Leap seconds are never guessed: where a shift of 18 s (or 17, 37 ...) would make the two agree, the note or the message says so, and the user
     decides.
 
-    Parameters
-    ----------
     time : (N,) seconds of the trajectory, in driving order where the count starts again from zero
     cloud_span : (first, last) gps_time of the cloud, seconds
     system : "gps" (seconds since 1980), "adjusted" (the same minus 1e9), "week", "day", or "automatic"

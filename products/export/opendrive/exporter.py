@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-import shapely
 
-from ....core.common.features import Features
 from ....core.common.progress import Progress
 from ....core.common.setting import Limited, setting
 from ..shared_borders import with_driven_middles
-from ..sources import NearestValues, RoadMapSource, sigma_of_lanes, stop_lines, walked_crossings
+from ..sources import NearestValues, RoadMapSource, is_stated, sigma_of_lanes
 from .geometry import Cubics
 from .model import OPEN_END, STEP, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
+from .objects import LANE_ID, add_objects
 from .reference_line import side_by_side
 from .road_shape import RoadShape, add_heights, add_lanes, centre_of, fit_borders, heights_above_road, shape_steps
 from .strips import (
@@ -59,7 +57,7 @@ class OpenDriveSettings(Limited):
 
 
 @dataclass
-class OpenDriveDraft:
+class _OpenDriveDraft:
     """The map, the place of every cell in it, and notes for the user.
 
     place : id of a cell -> (road, section, lane); cells : list of Cell
@@ -70,7 +68,7 @@ class OpenDriveDraft:
     notes: list[str] = field(default_factory=list)
 
 
-def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDriveSettings(), progress: Progress = Progress()) -> OpenDriveDraft:
+def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDriveSettings(), progress: Progress = Progress()) -> _OpenDriveDraft:
     """Roads with reference line, sections, widths, heights, marks, objects, links and junctions.
 
     Lanes that share borders lie side by side in one road; it goes on while one slice of lanes follows another. Connectors, and the lanes that
@@ -84,7 +82,7 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     origin = np.append(np.floor(places[:, :2].mean(0) / ROUND_ORIGIN) * ROUND_ORIGIN, 0.0)
     local = replace(source, lanes=replace(lanes, left=lanes.left - origin, right=lanes.right - origin))
     drafting = _Drafting(local, origin, settings)
-    draft = OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
+    draft = _OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
     draft.notes += drafting.notes
     strips = drafting.strips()
     directions = directions_where_met([cell for strip, _ in strips for part in strip for cell in part.cells])
@@ -97,7 +95,7 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
         progress.report(0.5 + 0.5 * number / len(strips))
     draft.notes += _link_roads(draft.map, draft.roads)
     draft.notes += _said_open_ends(draft.map)
-    _add_objects(draft.map, source.markings, origin)
+    add_objects(draft.map, source.markings, source.signals, origin)
     return draft
 
 
@@ -131,7 +129,7 @@ class _Drafting:
         inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)}
         ordinary, between = _between_junctions(ordinary, inside_ids)
         return (_ordinary_roads(ordinary) + [(strip, False) for strip in strips_of(beside, set())]
-                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors))
+                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors, is_stated(self.lanes)))
 
     def _parted(self) -> tuple[list[Slice], list[Slice], list[Slice]]:
         """(slices of ordinary roads, slices within junctions, slices that nobody drives and that touch a junction).
@@ -162,7 +160,9 @@ class _Drafting:
     def road(self, shape: RoadShape, strip: list[Slice], centres: list[int], borders: list[list[Cubics]], number: int, single: bool) -> _DraftRoad:
         tolerance = self.settings.tolerance
         roads = sorted({int(self.lanes.road[cell.piece]) for part in strip for cell in part.cells})
-        road = MapRoad(str(number), shape.plan.length, shape.plan, f"Road {', '.join(map(str, roads))}", rule="LHT" if self.left_hand else "RHT")
+        names = Counter(known.get("name") or known.get("ref") for known in map(self._known, (cell for part in strip for cell in part.cells)))
+        name = names.most_common(1)[0][0] or f"Road {', '.join(map(str, roads))}"
+        road = MapRoad(str(number), shape.plan.length, shape.plan, name, rule="LHT" if self.left_hand else "RHT")
         numbers = add_lanes(road, shape, strip, centres, borders)
         add_heights(road, shape, tolerance)
         status: dict[str, float] = defaultdict(float)
@@ -179,16 +179,23 @@ class _Drafting:
             self._add_curbs(section.lanes, part, ids)
             section.order = sorted(section.lanes, reverse=True)
         road.data = _shares(status)
+        speeds = {speed for section in road.sections for lane in section.lanes.values() for _, speed in lane.speeds}
+        road.speeds = [(0.0, speed) for speed in speeds if len(speeds) == 1]   # simulators read that of the road
         return _DraftRoad(road, strip, numbers, single)
 
     def _describe(self, lane: MapLane, cell: Cell) -> None:
         lane.type = TYPE_OF_LANE[self.lanes.type[cell.piece]]
-        lane.data = {"lanewright:lane_id": str(self.lanes.lane_id[cell.piece])}
+        lane.data = {LANE_ID: str(self.lanes.lane_id[cell.piece])}
+        lane.speeds = [(0.0, float(speed)) for speed in [self._known(cell).get("speed_kmh")] if speed]
         if np.isfinite(self.sigma[cell.piece]):
             lane.data["lanewright:sigma_m"] = f"{self.sigma[cell.piece]:.3f}"
         if self.lanes.status[cell.piece] != "measured":
             lane.data |= {"lanewright:status": str(self.lanes.status[cell.piece]),
                           "lanewright:confidence": f"{self.lanes.confidence[cell.piece]:.2f}"}
+
+    def _known(self, cell: Cell) -> dict[str, Any]:
+        """What is known of the road of a cell."""
+        return self.source.attributes.get(self.lanes.lane_id[cell.piece], {})
 
     def _about(self, cell: Cell, left: bool) -> tuple[str, str, str]:
         """(kind, pattern, line) of the border on one side along the road."""
@@ -283,12 +290,14 @@ def _ordinary_roads(slices):
     return [(_along_traffic(strip), False) for strip in strips_of(slices, breaks)]
 
 
-def _ways_through(parts):
-    """(slices of a road, whether it is a way through a junction) of single lanes, all along their traffic."""
+def _ways_through(parts, stated):
+    """(slices of a road, whether it is a way through a junction) of single lanes, all along their traffic.
+
+    stated : whether the map states all ways, so that one that comes from nowhere or leads nowhere is a way all the same
+    """
     parts = [part for given in parts for part in _along_traffic([given])]
     part_of = {id(cell): part for part in parts for cell in part.driven}
-    # what comes from nowhere or leads nowhere is no way through
-    return [([part_of[id(cell)] for cell in way], bool(way[0].before and way[-1].after))
+    return [([part_of[id(cell)] for cell in way], bool(way[0].before and way[-1].after or stated and (way[0].before or way[-1].after)))
             for way in end_to_end([cell for part in parts for cell in part.driven])]
 
 
@@ -491,67 +500,3 @@ def _forget_junctions(road, known):
             setattr(road, name, None)
     if road.junction not in known:
         road.junction = "-1"
-
-
-# Crossings, stop lines, arrows, bicycle symbols, the word BUS and hatched areas as objects of the roads that they lie on.
-
-SAMPLES = 1.0          # m between places of reference lines that objects are held against
-FARTHEST = 25.0        # m from a reference line
-SIMPLER = 0.02         # m by which an outline may be straightened
-STOP_LINE_HALF = 0.15  # m, half of the breadth of a stop line whose outline is not known
-THINNEST = 0.01        # m of an object's length and width at the least: the format has none of 0
-NAME_OF_CLASS = {"hatch": "hatched area", "arrow": "arrow", "bicycle": "bicycle symbol", "bus": "word BUS"}
-
-
-def _add_objects(whole: OpenDriveMap, markings: Features | None, origin: np.ndarray) -> None:
-    """Give the roads the objects of the layer MARKINGS, in map coordinates, that lie on them; `origin` is the file's false origin, (3,) m."""
-    shapes = list(_painted_shapes(markings))
-    if not shapes:
-        return
-    roads = [road for road in whole.roads if road.junction == "-1"] or whole.roads
-    tree, owner, station = _places(roads)
-    for number, (kind, name, corners) in enumerate(shapes):
-        local = corners - origin
-        near = tree.query_nearest(shapely.Point(local[:, :2].mean(0)), max_distance=FARTHEST, all_matches=False)
-        if len(near):
-            roads[owner[near[0]]].objects.append(_object(number, kind, name, local, roads[owner[near[0]]], float(station[near[0]])))
-
-
-def _painted_shapes(markings: Features | None) -> Iterator[tuple[str, str, np.ndarray]]:
-    """(kind, name, (N, 3) corners) of every object."""
-    for left, right in walked_crossings(markings):
-        yield "crosswalk", "zebra crossing", np.concatenate([left, right[::-1]])
-    for line in stop_lines(markings):
-        way = line[1] - line[0]
-        across = np.array([-way[1], way[0], 0.0]) / max(float(np.hypot(*way[:2])), 1e-6) * STOP_LINE_HALF
-        yield "roadMark", "stop line", np.array([line[0] - across, line[1] - across, line[1] + across, line[0] + across])
-    for geometry, row in markings if markings is not None else ():
-        label = next((name for start, name in NAME_OF_CLASS.items() if str(row.get("class")).startswith(start)), "")
-        for part in shapely.get_parts(geometry) if label and geometry is not None and not geometry.is_empty else ():
-            yield "roadMark", label, shapely.get_coordinates(shapely.simplify(part, SIMPLER).exterior, include_z=True)[:-1]
-
-
-def _places(roads: list[MapRoad]) -> tuple[shapely.STRtree, np.ndarray, np.ndarray]:
-    """(tree of places on reference lines, road of each, s of each)."""
-    stations = [np.linspace(0, road.plan.length, max(int(road.plan.length / SAMPLES), 1) + 1) for road in roads]
-    places = np.concatenate([road.plan.at(s)[0] for road, s in zip(roads, stations)])
-    owner = np.repeat(np.arange(len(roads)), [len(s) for s in stations])
-    return shapely.STRtree(shapely.points(places)), owner, np.concatenate(stations)
-
-
-def _object(number: int, kind: str, name: str, corners: np.ndarray, road: MapRoad, near: float) -> dict[str, Any]:
-    """The attributes of an object; its outline is told along the road, or beside its own place where it reaches beyond the road's end."""
-    s, t = road.plan.feet(corners[:, :2], np.full(len(corners), near))
-    station, aside = float(np.clip(s.mean(), 0.0, road.length)), float(t.mean())
-    local = bool(s.min() < 0.0 or s.max() > road.length)
-    if local:
-        (place,), (heading,), _ = road.plan.at(np.array([station]))
-        way = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
-        u, v = ((corners[:, :2] - place) @ way).T
-        outline = np.c_[u, v - aside, corners[:, 2] - road.elevation.at(station)]
-    else:
-        outline = np.c_[s, t, corners[:, 2] - road.elevation.at(s)]
-    outline[:, 2] = np.round(outline[:, 2], 4)
-    length, width = (max(float(size), THINNEST) for size in np.ptp(outline[:, :2], axis=0))
-    return {"id": str(number), "type": kind, "subtype": "", "name": name, "orientation": "none", "s": station, "t": aside, "zOffset": 0.0,
-            "length": length, "width": width, "hdg": 0.0, "height": 0.0, "corners": outline, "local": local}

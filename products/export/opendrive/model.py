@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -55,6 +56,7 @@ class MapLane:
     heights: np.ndarray = field(default_factory=lambda: np.empty((0, 3)))
     border: bool = False    # `width` holds the distance of its outer border from the reference line instead
     data: dict[str, str] = field(default_factory=dict)
+    speeds: list[tuple[float, float]] = field(default_factory=list)   # (metres from the section's start, km/h from there on, NaN for no limit)
 
     def links(self, end: str) -> list[int]:
         """Numbers of the lanes that its "start" or "end" is linked to."""
@@ -81,7 +83,7 @@ class RoadLink:
 
 @dataclass
 class MapRoad:
-    """A road. `shape` : (N, 6) s, t, a, b, c, d of the cross-section. `objects` : dict of the attributes of each."""
+    """A road. `shape` : (N, 6) s, t, a, b, c, d of the cross-section. `objects`, `signals` : dict of the attributes of each."""
 
     id: str
     length: float
@@ -97,12 +99,14 @@ class MapRoad:
     lane_offset: Cubics = field(default_factory=Cubics.constant)
     sections: list[LaneSection] = field(default_factory=list)
     objects: list[dict[str, Any]] = field(default_factory=list)
+    signals: list[dict[str, Any]] = field(default_factory=list)   # references to signals of other roads too
+    speeds: list[tuple[float, float]] = field(default_factory=list)   # (s, km/h from there on, NaN for no limit) of lanes that say none
     data: dict[str, str] = field(default_factory=dict)
 
     @cached_property
-    def surface(self) -> RoadSurface:
+    def surface(self) -> _RoadSurface:
         """Where its borders lie, once it is whole."""
-        return RoadSurface(self)
+        return _RoadSurface(self)
 
     def section_end(self, number: int) -> float:
         """Metres at which a section ends."""
@@ -163,6 +167,11 @@ class OpenDriveMap:
 
 
 # Which lane follows which on a map of OpenDRIVE.
+
+def lane_name(road: str, lane: int, section: int) -> str:
+    """The lane_id of a lane's section; commas part lists of them."""
+    return f"{re.sub('[,.]', '_', road)}.{lane}.{section}"
+
 
 LaneKey = tuple[str, int, int]   # road, number of the section, lane
 STEP, OTHER_END = {"start": -1, "end": 1}, {"start": "end", "end": "start"}   # from section to section beyond an end of a lane
@@ -251,7 +260,7 @@ LONGEST_FOLD = 200      # places before and after a step back among which its cr
 GAP, KINK = 1e-4, 1e-4  # m and rad between elements of the reference line from which a border jumps there: it is cut on both sides
 
 
-class RoadSurface:
+class _RoadSurface:
     """The borders of one road's lanes.
 
     """

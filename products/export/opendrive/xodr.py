@@ -12,9 +12,23 @@ from ....core.common.errors import RoadExtractionError
 from ....core.common.progress import Progress
 from ....core.driving.layers import Lanes
 from ..sources import LEAST_CURB, MapLayers, MapLine, plan_length, without_repeats
-from ..xml_tree import XmlElement, read_xml, xml_text
+from ..xml_tree import XmlElement, read_xml, written, xml_text
 from .geometry import Cubics, PlanElement, PlanView
-from .model import DRIVEN_TYPES, Connection, Junction, LaneNetwork, LaneSection, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
+from .model import (
+    DRIVEN_TYPES,
+    Connection,
+    Junction,
+    LaneNetwork,
+    LaneSection,
+    MapLane,
+    MapRoad,
+    OpenDriveMap,
+    RoadLink,
+    RoadMark,
+    lane_name,
+    travel,
+)
+from .objects import FIELD_OF, left_out_of, outlines_of, signals_of
 
 # kind of a geometry -> attributes of its values
 GEOMETRIES = {"line": (), "arc": ("curvature",), "spiral": ("curvStart", "curvEnd"), "poly3": tuple("abcd"),
@@ -83,7 +97,17 @@ def _road_of(element, problems):
     if not road.sections:
         problems.append((element.line, f"road {road.id} has no lane section."))
     road.objects = [_object(child) for child in element.all("objects", "object")]
+    road.signals = [_signal(child) for name in ("signal", "signalReference") for child in element.all("signals", name)]
+    road.speeds = sorted((child.number("s", 0.0), _speed(child.find("speed"))) for child in element.all("type"))
     return road
+
+
+def _speed(element):
+    """km/h of a record of a speed limit; NaN where there is none."""
+    try:
+        return element.number("max") * {"km/h": 1.0, "mph": 1.609344}.get(element.get("unit"), 3.6) if element is not None else np.nan
+    except RoadExtractionError:   # it says that there is no limit
+        return np.nan
 
 
 def _geometry(element):
@@ -132,6 +156,7 @@ def _lane_of(element):
             getattr(lane, child.tag + "s").append(int(child.number("id")))
     rows = [[child.number(name, 0.0) for name in ("sOffset", "inner", "outer")] for child in element.all("height")]
     lane.heights = np.array(sorted(rows), float).reshape(-1, 3)
+    lane.speeds = sorted((child.number("sOffset", 0.0), _speed(child)) for child in element.all("speed"))
     lane.data = {child.get("code"): child.get("value") for child in element.all("userData")}
     return lane
 
@@ -156,6 +181,13 @@ def _object(element):
                for corner in (outline.children if outline is not None else ()) if corner.tag in ("cornerRoad", "cornerLocal")]
     local = outline is not None and outline.find("cornerLocal") is not None
     return {**texts, **numbers, "corners": np.array(corners, float).reshape(-1, 3), "local": local}
+
+
+def _signal(element):
+    texts = {name: element.get(name) for name in ("id", "dynamic", "orientation", *FIELD_OF)}
+    numbers = {name: element.number(name, 0.0) for name in ("s", "t", "zOffset", "hOffset", "height", "width")}
+    pairs = [(int(child.number("fromLane", 0.0)), int(child.number("toLane", 0.0))) for child in element.all("validity")]
+    return {**texts, **numbers, "value": element.number("value", -1.0), "validity": pairs, "own": element.tag == "signal"}
 
 
 def _junction(element):
@@ -204,6 +236,8 @@ def _road_element(road: MapRoad, minor: int) -> XmlElement:
     link = element.add("link") if targets else element
     for name, target in targets:
         link.add(name, elementType=target.element, elementId=target.id, contactPoint=target.contact or None)
+    for s, speed in road.speeds:
+        element.add("type", s=s, type="unknown").add("speed", max=speed, unit="km/h")
     element.append(_plan(road.plan.elements))
     _rows(element.add("elevationProfile"), "elevation", road.elevation)
     lateral = element.add("lateralProfile")
@@ -218,7 +252,22 @@ def _road_element(road: MapRoad, minor: int) -> XmlElement:
     objects = element.add("objects") if road.objects else element
     for item in road.objects:
         _add_object(objects, item, minor)
+    signals = element.add("signals") if road.signals else element
+    for item in road.signals:
+        _add_signal(signals, item)
     return _with_data(element, road.data)
+
+
+def _add_signal(signals: XmlElement, item: dict) -> None:
+    place = {"s": item["s"], "t": item["t"], "id": item["id"], "orientation": item["orientation"]}
+    if item["own"]:
+        element = signals.add("signal", **place, dynamic=item["dynamic"], zOffset=item["zOffset"], type=item["type"] or "-1", name=item["name"],
+                              subtype=item["subtype"] or "-1", country=item["country"] or None, value=item["value"],
+                              unit=item["unit"] or None, height=item["height"], width=item["width"], hOffset=item["hOffset"])
+    else:
+        element = signals.add("signalReference", **place)
+    for first, last in item["validity"]:
+        element.add("validity", fromLane=first, toLane=last)
 
 
 def _plan(elements: tuple[PlanElement, ...]) -> XmlElement:
@@ -256,6 +305,8 @@ def _lane_element(lane: MapLane) -> XmlElement:
     _rows(element, "width", lane.width, "sOffset")
     for mark in lane.marks:
         _add_mark(element, mark)
+    for s, speed in lane.speeds:
+        element.add("speed", sOffset=s, max=speed, unit="km/h")
     for s, inner, outer in lane.heights:
         element.add("height", sOffset=s, inner=inner, outer=outer)
     return _with_data(element, lane.data)
@@ -281,6 +332,9 @@ def _add_mark(lane: XmlElement, mark: RoadMark) -> None:
 def _add_object(objects: XmlElement, item: dict, minor: int) -> None:
     element = objects.add("object", id=item["id"], type=item["type"], name=item["name"], s=item["s"], t=item["t"], zOffset=item["zOffset"],
                           orientation=item["orientation"], length=item["length"], width=item["width"], hdg=item["hdg"])
+    if not len(item["corners"]):
+        element.attributes["height"] = written(item["height"])
+        return
     outline = element.add("outlines").add("outline", id=0, fillType="paint" if minor >= FILLED_BY_PAINT else None, outer="true", closed="true")
     tag, names = ("cornerLocal", ("u", "v", "z")) if item["local"] else ("cornerRoad", ("s", "t", "dz"))
     for number, corner in enumerate(item["corners"]):
@@ -323,6 +377,8 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
                 _add_section(rows, layers.lines, whole, network, surface, number, numbers[road.id], faults)
         progress.report((count + 1) / len(whole.roads))
     layers.lanes = Lanes.of_pieces(_existing(rows), crs)
+    layers.attributes = {row["lane_id"]: row["known"] for row in rows if row["known"]}
+    layers.outlines, layers.signals, layers.left_out = list(outlines_of(whole)), signals_of(whole, crs), left_out_of(whole)
     if whole.problems:
         line, text = whole.problems[0]
         layers.notes.append(f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
@@ -407,11 +463,21 @@ def _lane(network, surface, number, id, s, inner, outer):
     left, right = sides[::-1] if id > 0 else sides
     if driven and way < 0:
         left, right = ((border[::-1], kind, pattern) for border, kind, pattern in (right, left))
-    return {"left": left[0], "right": right[0], "lane": id, "lane_id": _lane_name(road.id, id, number), "direction": way * driven,
+    return {"left": left[0], "right": right[0], "lane": id, "lane_id": lane_name(road.id, id, number), "direction": way * driven,
             "type": ("connector" if road.junction != "-1" else "driving") if driven else LANE_TYPE_OF.get(lanes[id].type, "shoulder"),
             "left_kind": left[1], "right_kind": right[1], "left_pattern": left[2], "right_pattern": right[2],
-            "successors": [_lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],
-            "station": float(s[0]), "end": float(s[-1])}
+            "successors": [lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],
+            "station": float(s[0]), "end": float(s[-1]), "known": _known(road, number, id)}
+
+
+def _known(road, number, id):
+    """What a map says of a lane's road: the speed limit in the middle of the section, and its name where that is none by number."""
+    section = road.sections[number]
+    middle = (section.s + road.section_end(number)) / 2
+    said = [(s + section.s, speed) for s, speed in section.lanes[id].speeds if s + section.s <= middle] or [
+        (s, speed) for s, speed in road.speeds if s <= middle]
+    known = {"speed_kmh": said[-1][1]} if said and np.isfinite(said[-1][1]) else {}
+    return known | ({"name": road.name} if road.name and not re.fullmatch(r"Road [\d, ]+", road.name) else {})
 
 
 def _following(network, key, passed=()):
@@ -441,11 +507,6 @@ def _existing(rows):
     for row in rows:
         row["successors"] = [name for name in row["successors"] if name in lane_ids]
     return rows
-
-
-def _lane_name(road: str, lane: int, section: int) -> str:
-    """The lane_id of a lane's section; commas part lists of them."""
-    return f"{re.sub('[,.]', '_', road)}.{lane}.{section}"
 
 
 def _road_numbers(whole: OpenDriveMap) -> dict[str, int]:

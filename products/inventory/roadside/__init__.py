@@ -2,7 +2,3 @@
 
 In: an open `Survey` and the layers that say where the carriageway ends. Out: `Roadside`, and its layers.
 """
-
-from ....core.lazy import public
-
-__getattr__, __all__ = public(__name__, {"find": ("Roadside", "find_roadside", "roadside_to_features")})

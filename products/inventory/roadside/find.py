@@ -119,11 +119,6 @@ def _edges_of(survey, road, borders):
     return SideEdges(s, *sides, borders.given)
 
 
-def _down(d):
-    """The next border of a cell of the ground, so that cells are the same in every window."""
-    return float(np.floor(d / GROUND_CELL) * GROUND_CELL)
-
-
 def _above_view(survey, road, uprights, height):
     """(N,) bool, whether uprights are as high as the scanner, m above the road, whose view is level; None is one that sees all round."""
     if height is None:
@@ -170,7 +165,8 @@ def _look(survey, road, start, edges, settings, level):
         return {}, []
     s, d, z, number, time = s[near], d[near], z[near], points.pass_number[near], points.time[near]
     h = z - survey.road_height(road, s)
-    ground = local_ground(s, d, h, wide[0], int(round(wide[1] - wide[0])), (_down(d.min()), float(d.max()) + 1e-3))
+    lowest = float(np.floor(d.min() / GROUND_CELL) * GROUND_CELL)   # the border of a cell, so that cells are the same in every window
+    ground = local_ground(s, d, h, wide[0], int(round(wide[1] - wide[0])), (lowest, float(d.max()) + 1e-3))
     above = h - ground.at(s, d)
     result, poles = {}, []
     slices = int(round(start / UPRIGHT_SLICE)), int(round((start + ROADSIDE_WINDOW) / UPRIGHT_SLICE))

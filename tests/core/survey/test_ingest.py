@@ -1,7 +1,6 @@
 """Point cloud files read block by block, by any number of threads."""
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -70,7 +69,6 @@ def test_the_times_looked_at_span_the_file(tmp_path, suffix):
 @pytest.mark.parametrize("block", [700, 5000])
 def test_neither_threads_nor_blocks_nor_compression_change_a_point(street, monkeypatch, threads, block):
     trajectory, las, laz = street
-    monkeypatch.setattr(reading, "READING", replace(reading.READING, max_threads=threads))
     monkeypatch.setattr(reading.os, "cpu_count", lambda: threads)
     one, other = open_survey([las], trajectory, SurveySettings(block=block)), open_survey([laz], trajectory)
     np.testing.assert_array_equal(contents(one), contents(other))

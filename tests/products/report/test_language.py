@@ -10,7 +10,8 @@ from lanewright.core.common.texts import set_translation, word
 from lanewright.products.assess.layers import boundary_layer
 from lanewright.products.assess.lines import assess_boundaries
 from lanewright.products.export.check.findings import FAULTS, Finding, Findings
-from lanewright.products.report import boundary_report, map_check_report
+from lanewright.products.report.assessment import boundary_report
+from lanewright.products.report.hd_map import map_check_report
 from lanewright.products.report.page import templates
 from shapely.geometry import LineString
 

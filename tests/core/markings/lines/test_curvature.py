@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.lines.curvature import marking_curvature, mean_curvature
+from lanewright.core.markings.lines.curvature import CURVATURE_KERNEL, _around, _quadrics, marking_curvature
 from lanewright.core.survey.store.columns import Columns
 from lanewright.core.survey.store.records import Points, to_units
+from scipy.spatial import cKDTree
 from shapely.geometry import LineString
 
 
@@ -20,6 +21,11 @@ def inner(x, y):
 
 def paint(x, y, z):
     return Points(Columns({name: to_units(values) for name, values in zip("xyz", (x, y, z))}, [(name, "i4") for name in "xyz"]))
+
+
+def mean_curvature(xyz, which):
+    owner, member = _around(cKDTree(xyz), xyz, which, CURVATURE_KERNEL)
+    return _quadrics(xyz[member] - xyz[which][owner], np.bincount(owner, minlength=len(which)), CURVATURE_KERNEL)
 
 
 def test_a_plane_has_no_curvature_however_it_slopes():

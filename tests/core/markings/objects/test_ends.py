@@ -11,7 +11,7 @@ def test_ends_of_lines_are_unbiased_however_far_apart_scan_lines_lie(pitch):
     off = []
     for k in range(8):
         start, end = 10.0 + 0.137 * k, 25.0 + 0.091 * k
-        records = paint(FRAME, [strip(start, end, 1.0, 1.15)], density=20000)
+        records = paint(FRAME, [strip(start, end, 1.0, 1.15)], density=5000)
         records = records[(records["s"] * 1e-4) % pitch < 0.01]
         markings, _ = layer_of(road_points(records, FRAME), FRAME)
         x = np.array(markings.geometries[0].exterior.coords)[:, 0] - FRAME.origin[0]

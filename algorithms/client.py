@@ -1,0 +1,92 @@
+"""The road map under the names, codes and fields of whoever ordered it."""
+
+from dataclasses import replace
+
+from ..core.common.errors import RoadExtractionError
+from ..core.common.features import (
+    CROSS_SECTIONS,
+    DRIVING_LINES,
+    LANES,
+    MARKING_LINES,
+    MARKINGS,
+    ROAD_EDGES,
+    ROAD_SURFACE,
+    ROADSIDE,
+    ROADSIDE_OBJECTS,
+)
+from .algorithm import Algorithm
+from .call import existing_file
+from .texts import tr
+
+# parameter, which is the name of the layer in a template -> label, fields and geometry
+MAP_LAYERS = {
+    "ROAD_EDGES": (tr("Road edges"), ROAD_EDGES, "LineStringZ"), "ROAD_SURFACE": (tr("Road surface"), ROAD_SURFACE, "PolygonZ"),
+    "MARKINGS": (tr("Markings"), MARKINGS, "PolygonZ"), "MARKING_LINES": (tr("Marking lines"), MARKING_LINES, "LineStringZ"),
+    "DRIVING_LINES": (tr("Driving lines"), DRIVING_LINES, "LineStringZ"), "LANES": (tr("Lanes"), LANES, "PolygonZ"),
+    "ROADSIDE": (tr("Roadside"), ROADSIDE, "LineStringZ"), "ROADSIDE_OBJECTS": (tr("Poles, signs and trunks"), ROADSIDE_OBJECTS, "PointZ"),
+    "CROSS_SECTIONS": (tr("Cross-sections"), CROSS_SECTIONS, "LineStringZ"),
+}
+
+
+class ExportTemplate(Algorithm):
+    ID, TITLE, GROUP = "exporttemplate", "Export by template", "Export"
+    SUMMARY = "Writes the road map with a client's own layers, feature codes, fields and units, as a table of the client's says it."
+    HELP = ("The template is a table that any spreadsheet saves as CSV in UTF-8. Each row says what becomes what: from is the name of a "
+            "layer below, where its conditions (class=zebra,stop & width_m>0.2), layer the client's layer (- leaves it out), geometry "
+            "what it becomes (point, line or polygon; empty as it is), and all further columns are the client's fields. WIDTH:int in "
+            "the first line makes whole numbers; real and text are the other types.\n\n"
+            "A cell holds a code as it stands, or one of our fields in braces: {width_m}, {width_m:mm} in another unit, "
+            "{side:left=L,right=R} by a list of values, {number} the number of the feature; texts may stand around them. Of the rows "
+            "about one layer of the client, the first that fits counts. Lines that begin with # are left out. The folder "
+            "resources/templates of the plugin holds two, for public catalogues of Germany and the Netherlands.\n\n"
+            "The template is checked before anything is read: what is not known is named with its line. With the client's own "
+            "GeoPackage the layers are filled in a copy of it, and must have the fields that the template names. Features that no row "
+            "takes are counted in the log. DXF has layers but no fields: points stand as texts.")
+    TAGS = ("client", "feature code", "catalogue", "schema", "mapping", "GeoPackage", "DXF")
+    NUMBERS = (("FEATURES", tr("Features")), ("LAYERS", tr("Layers")), ("LEFT_OUT", tr("Features that no row takes")))
+
+    def declare(self):
+        self.add_input("file", "TEMPLATE", tr("Template"), tr("A table of rows that say what becomes what, in UTF-8."),
+                       file_filter="CSV (*.csv *.CSV *.tsv *.txt);;All files (*.*)")
+        for name, (label, _, geometry) in MAP_LAYERS.items():
+            self.add_input("layer", name, label, tr("Rows with {name} in the column from are about it.").format(name=name), geometry, optional=True)
+        self.add_input("file", "OFFICE", tr("GeoPackage of the client"), tr(
+            "With the client's layers, which may be empty. It stays as it is; the result is a copy with the features added."),
+            optional=True, file_filter="GeoPackage (*.gpkg *.GPKG);;All files (*.*)")
+        self.add_output("file", "OUTPUT", tr("Client's map"), tr("A GeoPackage, or a DXF drawing by its ending .dxf."), suffixes=(".gpkg", ".dxf"),
+                        file_filter="GeoPackage (*.gpkg);;DXF (*.dxf)")
+
+    def work(self, call, progress):
+        from ..core.io.crs import parse_crs, same_crs
+        from ..products.client_fields import apply_template, layers_of_file, read_template, write_client_layers
+
+        drawing = str(call.output_path("OUTPUT")).lower().endswith(".dxf")
+        office = existing_file(call.file("OFFICE"), call.label("OFFICE")) if call.given("OFFICE") else ""
+        if drawing and office:
+            raise RoadExtractionError(tr("The client's GeoPackage cannot be filled as a DXF drawing. Leave it out, or name the result .gpkg."))
+        known = {name: (schema, geometry) for name, (_, schema, geometry) in MAP_LAYERS.items()}
+        template = read_template(existing_file(call.file("TEMPLATE"), call.label("TEMPLATE")), known, mixed=drawing)
+        layers = {name: call.features(name, [replace(field, needed=False) for field in schema], geometry)
+                  for name, (schema, geometry) in known.items() if call.given(name)}
+        if not layers:
+            raise RoadExtractionError(tr("No layer of the road map was given. Choose at least one of those that the template names."))
+        for name in sorted({rule.source for rule in template.rules} - set(layers)):
+            progress.info(tr("{label} was not given: the rows about it are not used.").format(label=call.label(name)))
+        crs = next(iter(layers.values())).crs
+        for name, features in layers.items():
+            if features.crs and crs and not same_crs(parse_crs(features.crs), parse_crs(crs)):
+                raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.").format(
+                    label=call.label(name)))
+        made = apply_template(template, layers, layers_of_file(office, crs) if office else None)
+        if drawing:
+            from ..products.cad import drawn_layers, write_dxf
+
+            write_dxf(drawn_layers(made.layers), call.new_file("OUTPUT"), crs)
+        else:
+            write_client_layers(made.layers, call.new_file("OUTPUT"), office)
+        for name, features in made.layers.items():
+            progress.info(tr("{name}: {count:,} features").format(name=name, count=len(features)))
+        for what, count in sorted(made.left_out.items()):
+            progress.warn(tr("No row of the template takes {count} feature(s) of {what}.").format(count=count, what=what))
+        return {"FEATURES": float(sum(map(len, made.layers.values()))), "LAYERS": float(len(made.layers)),
+                "LEFT_OUT": float(sum(made.left_out.values()))}

@@ -1,0 +1,105 @@
+"""The survey's own point clouds, given back with classes and the fields of the road."""
+
+from ..core.common.errors import RoadExtractionError
+from ..core.common.features import MARKINGS, ROAD_EDGES, ROAD_SURFACE, ROADSIDE, ROADSIDE_OBJECTS
+from .algorithm import Algorithm, SettingSpec
+from .survey_input import READING_SETTINGS, check_layers_on_roads, open_survey_of
+from .texts import tr
+
+CLOUD = "products.cloud.classify:CloudSettings"
+
+CLOUD_SETTINGS = (
+    SettingSpec("GROUND_THICKNESS", CLOUD, "ground", tr("Ground and road lie within (m)"),
+                tr("Points so far above and below the ground are ground, road surface or paint. Larger for noisy scanners and passes that differ in "
+                   "height, but then low curbs and grass are taken for ground.")),
+    SettingSpec("CURB_WIDTH", CLOUD, "curb", tr("Curbs lie within, either side of the road edge (m)"),
+                tr("Wider takes more of the top of broad curb stones, narrower the upright face alone.")),
+    SettingSpec("REACH_BESIDE", CLOUD, "beside", tr("Rails, walls and poles lie within (m)"),
+                tr("So far either side of a line of the layer Roadside its points lie. Larger for deep guard rails and thick walls, but it takes in "
+                   "what stands close behind; hedges have twice as much, shafts of poles half of it.")),
+)
+# parameter -> label, fields that are read, geometry, help; in the order of CloudLayers
+CLOUD_LAYERS = {
+    "ROAD_SURFACE": (tr("Road surface"), [field for field in ROAD_SURFACE if field.name in ("road", "station_m")], "PolygonZ",
+                     tr("Ground within it is road surface (class 11); without it all ground is class 2.")),
+    "ROAD_EDGES": (tr("Road edges"), [field for field in ROAD_EDGES if field.name in ("road", "station_m", "height_m", "edge")], "LineStringZ",
+                   tr("Faces and tops of curbs are those of its lines that have a height.")),
+    "MARKINGS": (tr("Markings"), [field for field in MARKINGS if field.name in ("road", "class")], "PolygonZ",
+                 tr("Ground within it is paint.")),
+    "ROADSIDE": (tr("Roadside"), [field for field in ROADSIDE if field.name in ("road", "kind", "height_m")], "LineStringZ",
+                 tr("Made by Roadside: what stands on its lines is guard rail, barrier, wall, fence or, of hedges, vegetation.")),
+    "ROADSIDE_OBJECTS": (tr("Poles, signs and trunks"),
+                         [field for field in ROADSIDE_OBJECTS if field.name in ("road", "kind", "height_m", "diam_m")], "PointZ",
+                         tr("Made by Roadside: points about them are poles and signs; trunks are vegetation.")),
+}
+
+
+class ClassifyCloud(Algorithm):
+    ID, TITLE, GROUP = "classifycloud", "Classify point cloud", "Export"
+    SUMMARY = "Gives the survey's point clouds back: every point with its class and its station, offset and height above the road."
+    HELP = ("Every input file is written to a file of the same name with all of its points in their order, and all that they had: "
+            "coordinates, times, intensity, colours, returns, extra fields and CRS. Classes are those of ASPRS (LAS 1.4): 2 ground, "
+            "3 to 5 low, medium (from 0.5 m) and high (from 2 m) vegetation, 7 noise below the road, 11 road surface. Where users "
+            "may define them, they are: 64 paint, 65 curb, 66 guard rail, 67 concrete barrier, 68 wall, 69 fence, 70 pole, 71 sign. "
+            "The files name these classes themselves.\n\n"
+            "The layers of the map decide, so that a map that was corrected by hand can be given back. Of the rest only the ground "
+            "is known, and no ground is looked for far above or below the road. Vegetation is what hedges and trunks of the layers "
+            "show. Whatever is not known keeps its class, or is 1 where it had none; noise (7, 18) and withheld points stay as they "
+            "are. Worn places within a marking are paint too.\n\n"
+            "Further fields of each point are road, station, offset (left positive) and height_above_road (above the surface below "
+            "the reference line), in metres; beyond the corridor they have no value. Files whose points have room for 31 classes "
+            "alone (formats 0 to 5) become LAS 1.4 with the format 6, 7, 9 or 10 that holds the same. A COPC file is written as "
+            "LAZ, in the order of its points; QGIS makes a COPC of it (Processing, Create COPC). Points are compared with the map "
+            "where their scanner measured them.")
+    TAGS = ("classification", "ASPRS", "LAS", "LAZ", "unroll", "straighten", "station", "offset")
+    NUMBERS = (("FILES", tr("Files")), ("POINTS", tr("Points")), ("ROAD_POINTS", tr("Points of the road surface")),
+               ("PAINT_POINTS", tr("Points of paint")), ("CURB_POINTS", tr("Points of curbs")))
+
+    def declare(self):
+        self.add_survey()
+        for name, (label, _, geometry, text) in CLOUD_LAYERS.items():
+            self.add_input("layer", name, label, text, geometry, optional=True)
+        self.add_settings(CLOUD_SETTINGS, advanced=True)
+        self.add_settings(READING_SETTINGS)
+        self.add_output("folder", "OUTPUT", tr("Classified clouds"), tr("A folder for the files, which have the names of the inputs."))
+        self.add_output("folder", "UNROLLED", tr("Unrolled clouds"), tr(
+            "A folder for copies with the road laid out straight, to draw along it quickly: x is the station, y the offset (100 m farther down for "
+            "every further road), z the height above the road. Points beyond the corridor are left out."), optional=True, by_default=False)
+
+    def work(self, call, progress):
+        from collections import Counter
+
+        from ..core.survey.las.reader import read_headers
+        from ..products.cloud import CloudLayers, PointClass, PointClassifier, classified_copy
+
+        files = read_headers(call.point_clouds(), given=call.crs())
+        copies = _copies(call, files, progress)
+        layers = {name: call.features(name, schema, geometry) for name, (_, schema, geometry, _) in CLOUD_LAYERS.items()}
+        survey = open_survey_of(call, progress.part(0.0, 0.4))
+        check_layers_on_roads(call, layers, survey.frame, progress)
+        classifier = PointClassifier(survey, CloudLayers(*layers.values()), call.settings(CLOUD_SETTINGS), call.value("CORRIDOR"))
+        total, done, counts = sum(file.count for file in files), 0, Counter()
+        for file, copy in zip(files, copies):
+            part = progress.part(0.4 + 0.6 * done / total, 0.4 + 0.6 * (done + file.count) / total)
+            counts.update(classified_copy(file, classifier, *copy, part))
+            done += file.count
+        for number, count in sorted(counts.items()):
+            name = PointClass(number).name.lower().replace("_", " ") if number in set(PointClass) else ""
+            progress.info(tr("Class {number} {name}: {count:,} points").format(number=number, name=name, count=count))
+        return {"FILES": float(len(files)), "POINTS": float(done), "ROAD_POINTS": float(counts[PointClass.ROAD_SURFACE]),
+                "PAINT_POINTS": float(counts[PointClass.PAINT]), "CURB_POINTS": float(counts[PointClass.CURB])}
+
+
+def _copies(call, files, progress):
+    """(path, path of the unrolled copy) for each of the files, whose names must differ."""
+    from pathlib import Path
+
+    names = [Path(file.path).name for file in files]
+    plain = [f"{name[:-len('.copc.laz')]}.laz" if name.lower().endswith(".copc.laz") else name for name in names]
+    twice = next((name for k, name in enumerate(plain) if name.lower() in {other.lower() for other in plain[:k]}), None)
+    if twice:
+        raise RoadExtractionError(
+            tr("Two of the point clouds would be written to {name}. Rename one, or run once for each folder.").format(name=twice))
+    if plain != names:
+        progress.info(tr("COPC files are written as LAZ: their octree is not kept. QGIS makes a COPC of a LAZ by Create COPC."))
+    return [(call.new_file_in("OUTPUT", name), call.new_file_in("UNROLLED", name)) for name in plain]

@@ -1,0 +1,421 @@
+"""The layers of a road map under the names, codes, fields and units of whoever ordered it, by a table that says what becomes what."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+import shutil
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+
+from ..core.common.errors import RoadExtractionError
+from ..core.common.features import Features, Field
+from ..core.common.texts import vocabulary
+from ..core.io.crs import FOOT, UNDEFINED_CARTESIAN, US_SURVEY_FOOT, as_in_file, parse_crs, same_crs
+from ..core.io.local_files import gdal_exceptions
+
+OWN_COLUMNS = "from", "where", "layer", "geometry"   # of the table; all others are the client's fields
+TYPES: dict[str, type] = {"text": str, "int": int, "real": float}
+GEOMETRIES = {"point": "PointZ", "line": "LineStringZ", "polygon": "PolygonZ"}
+IN_WORDS = "class", "kind", "pattern", "edge", "status", "side", "use", "type", "part"   # fields whose values are words that are known
+REFERENCE = re.compile(r"\{([^{}]*)\}")
+CONDITION = re.compile(r"\s*(\w+)\s*(<=|>=|!=|=|<|>)\s*(.*?)\s*")
+NOT_WANTED = "-"   # as the client's layer, of what is left out on purpose
+NUMBER = "number"   # what a template calls the number of a feature in its layer, from 1
+
+
+@dataclass(frozen=True)
+class _Rule:
+    """A row of a template: features of one of our layers on which all conditions hold become features of a layer of the client."""
+
+    line: int   # of the table, from 1
+    source: str   # name of our layer
+    conditions: tuple[tuple[str, str, tuple[str, ...]], ...]   # field, how it compares, with which values
+    layer: str   # the client's
+    geometry: str   # of it, a key of GEOMETRIES
+    cells: Mapping[str, str]   # field of the client to text with references to our fields; those that are not empty
+
+    def holds(self, row: Mapping[str, Any]) -> bool:
+        return all(_compared(row.get(field), how, values) for field, how, values in self.conditions)
+
+
+@dataclass(frozen=True)
+class _Template:
+    """A template that was checked."""
+
+    path: str
+    rules: tuple[_Rule, ...]
+    types: Mapping[str, type | None]   # of the client's fields; None where the table does not say it
+
+    def layer_of(self, name: str) -> list[_Rule]:
+        """The rules that fill a layer of the client, in their order."""
+        return [rule for rule in self.rules if rule.layer == name]
+
+
+def read_template(path: str | os.PathLike[str], sources: Mapping[str, tuple[Sequence[Field], str]], mixed: bool = False) -> _Template:
+    """Read and check a template.
+
+    path : table in UTF-8 with commas, semicolons or tabs. Its columns are `from` (name of our layer), `where` (conditions, may be empty),
+        `layer` (of the client, or - for what is left out on purpose), `geometry` (point, line or polygon; empty as it is), and the client's
+        fields, such as `WIDTH` or `WIDTH:int`. Lines that begin with # say what people should know
+    sources : fields and geometry type of our layers, by name
+    mixed : whether a layer may hold geometries of several kinds, as in a drawing
+
+    Raises RoadExtractionError, with the line of the table, for what is not known: a layer, field, value, unit, type or geometry.
+    """
+    lines = _rows_of(path)
+    number, header = lines[0]
+    names = [name.strip().lower() if name.strip().lower() in OWN_COLUMNS else name.strip() for name in header]
+    for needed in ("from", "layer"):
+        if needed not in names:
+            raise RoadExtractionError(f"{path}, line {number}: there is no column “{needed}”. The first line names the columns: from, where, layer, "
+                                      "geometry, and the fields of the client.")
+    types = {}
+    for name in names:
+        field, _, kind = name.partition(":")
+        if kind and kind not in TYPES:
+            raise RoadExtractionError(f"{path}, line {number}: {field} is to be of the type “{kind}”; known are {', '.join(TYPES)}.")
+        types[field] = TYPES.get(kind)
+    fields = [name.partition(":")[0] for name in names]
+    if double := next((name for name, count in Counter(field.lower() for field in fields).items() if count > 1), ""):
+        raise RoadExtractionError(f"{path}, line {number}: two columns are called {double}.")
+    rules = []
+    for line, cells in lines[1:]:
+        try:
+            rules.append(_rule(line, dict(zip(fields, (cell.strip() for cell in cells))), sources))
+        except ValueError as problem:
+            raise RoadExtractionError(f"{path}, line {line}: {problem}") from problem
+    for rule in (rule for rule in rules if not mixed and rule.layer != NOT_WANTED):
+        first = next(other for other in rules if other.layer == rule.layer)
+        if first.geometry != rule.geometry:
+            raise RoadExtractionError(f"{path}, line {rule.line}: layer {rule.layer} would hold a {rule.geometry} and, from line {first.line}, a "
+                                      f"{first.geometry}. Give it another layer, or say in the column geometry what it becomes.")
+    return _Template(str(path), tuple(rules), types)
+
+
+def _rows_of(path):
+    """(number, cells) of the lines of a table that say something; the first names the columns."""
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as problem:
+        raise RoadExtractionError(f"{path} cannot be read as a table in UTF-8 ({problem}).") from problem
+    said = [(number, line) for number, line in enumerate(lines, 1) if line.strip(" ;,\t") and not line.lstrip(' "').startswith("#")]
+    if len(said) < 2:
+        raise RoadExtractionError(f"{path} holds no rows. Its first line names the columns, and each further one says what becomes what.")
+    delimiter = max(";,\t", key=said[0][1].count)
+    return [(number, next(csv.reader([line], delimiter=delimiter))) for number, line in said]
+
+
+def _rule(line, cells, sources):
+    """The rule of a row; ValueError, in one sentence, for what is not known."""
+    source, layer, geometry = cells.get("from", "").upper(), cells.get("layer", ""), cells.get("geometry", "").lower()
+    if source not in sources:
+        raise ValueError(f"there is no layer {source or 'without a name'}{_like(source, sources)}.")
+    if not layer:
+        raise ValueError("the client's layer has no name.")
+    schema, of = sources[source]
+    given = next(name for name, kind in GEOMETRIES.items() if kind == of)
+    order = list(GEOMETRIES)
+    if geometry and (geometry not in order or order.index(geometry) > order.index(given)):
+        raise ValueError(f"a {given} of {source} cannot become a “{geometry}”; it may become {' or '.join(order[:order.index(given) + 1])}.")
+    known = {field.name: field for field in schema}
+    conditions = tuple(_condition(text, known, source) for text in cells.get("where", "").split("&") if text.strip())
+    values = {name: text for name, text in cells.items() if name not in OWN_COLUMNS and text}
+    for text in values.values():
+        for reference in REFERENCE.findall(text):
+            _check_reference(reference, known, source)
+    return _Rule(line, source, conditions, layer, geometry or given, values)
+
+
+def _condition(text, known, source):
+    parts = CONDITION.fullmatch(text)
+    if parts is None:
+        raise ValueError(f"“{text.strip()}” is no condition. Write a field, one of = != < <= > >=, and values with commas between them.")
+    name, how, values = parts[1], parts[2], tuple(value.strip() for value in parts[3].split(","))
+    _check_field(name, known, source)
+    if known[name].type is not str:
+        for value in values:
+            _number(value, name)
+    elif how not in ("=", "!="):
+        raise ValueError(f"{name} is a text, which is compared by = or != alone.")
+    else:
+        _check_words(name, values)
+    return name, how, values
+
+
+def _check_field(name, known, source):
+    if name not in known:
+        raise ValueError(f"{source} has no field {name}{_like(name, known)}.")
+
+
+def _check_words(name, values):
+    words = {key.removeprefix(f"{name}.") for key in vocabulary() if "." not in key or key.startswith(f"{name}.")}
+    for value in values:
+        if name in IN_WORDS and value not in words:
+            raise ValueError(f"{value} is no {name} that Lanewright writes{_like(value, words)}.")
+
+
+def _check_reference(reference, known, source):
+    name, _, option = (part.strip() for part in reference.partition(":"))
+    if name == NUMBER and not option:
+        return
+    _check_field(name, known, source)
+    if "=" in option:
+        _check_words(name, tuple(_list_of(option)))
+    elif option and option not in _units_of(name):
+        units = _units_of(name)
+        raise ValueError(f"{name} cannot be given in “{option}”" + (f"; known are {', '.join(units)}." if units else ", since it has no unit."))
+
+
+def _like(name, known):
+    near = get_close_matches(str(name).lower(), {str(other).lower(): other for other in known}, 1)
+    return f" (is {next(other for other in known if str(other).lower() == near[0])} meant?)" if near else f"; known are {', '.join(sorted(known))}"
+
+
+def _number(text, name):
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{name} is a number, and “{text}” is none.") from None
+
+
+def _list_of(option):
+    """{our value: the client's} of a list such as left=L, right=R."""
+    return dict((part.strip() for part in pair.split("=", 1)) for pair in option.split(",") if "=" in pair)
+
+
+def _units_of(name):
+    """{unit: how many of it make one of the field's own}, which the end of its name tells."""
+    units = {"m": {"m": 1.0, "dm": 10.0, "cm": 100.0, "mm": 1000.0, "km": 0.001, "ft": 1 / FOOT, "ftUS": 1 / US_SURVEY_FOOT},
+             "cm": {"m": 0.01, "cm": 1.0, "mm": 10.0}, "mm": {"m": 0.001, "cm": 0.1, "mm": 1.0},
+             "m2": {"m2": 1.0, "cm2": 1e4, "ft2": 1 / FOOT**2}, "pct": {"%": 1.0, "1": 0.01}, "deg": {"deg": 1.0, "gon": 10 / 9, "rad": np.pi / 180}}
+    return units.get(name.rpartition("_")[2] if "_" in name else "", {})
+
+
+def _compared(value, how, values):
+    """Whether the value of a row is, or compares with, one of several texts."""
+    if value is None:
+        return how == "!="
+    if how in ("=", "!="):
+        same = value in values if isinstance(value, str) else float(value) in map(float, values)
+        return same == (how == "=")
+    return any({"<": value < limit, "<=": value <= limit, ">": value > limit, ">=": value >= limit}[how] for limit in map(float, values))
+
+
+# The features of a map as the template has them.
+
+
+@dataclass(frozen=True)
+class _ClientMap:
+    """What is handed over."""
+
+    layers: Mapping[str, Features]   # the client's, by name, in the order of the template
+    left_out: Mapping[str, int]   # features of our layers that no row takes, by layer and what they are
+
+
+def apply_template(template: _Template, layers: Mapping[str, Features],
+                   office: Mapping[str, tuple[str, Mapping[str, type]]] | None = None) -> _ClientMap:
+    """The layers of the client. In each of them a feature of ours becomes what the first row that fits says.
+
+    layers : ours, by name, in map coordinates in metres; rows about layers that are not given are passed over
+    office : geometry and fields of the layers that the client's own file has, see `layers_of_file`; None where there is no such file
+
+    Raises RoadExtractionError if the client's file lacks a layer or field, or a value is none of its type.
+    """
+    taken: dict[str, set[int]] = {name: set() for name in layers}
+    result: dict[str, Features] = {}
+    for name in dict.fromkeys(rule.layer for rule in template.rules if rule.layer != NOT_WANTED):
+        rules = [rule for rule in template.layer_of(name) if rule.source in layers]
+        types = _types(template, name, layers, office)
+        made = Features(GEOMETRIES[template.layer_of(name)[0].geometry], [Field(field, kind) for field, kind in types.items()])
+        for source in dict.fromkeys(rule.source for rule in rules):
+            made.crs = made.crs or layers[source].crs
+            for k, (shape, row) in enumerate(layers[source]):
+                rule = next((rule for rule in rules if rule.source == source and rule.holds(row)), None)
+                if rule is not None:
+                    taken[source].add(k)
+                    row = {**row, NUMBER: len(made) + 1}
+                    made.add(_as(rule.geometry, shape), **{field: _filled(template, rule, field, row, types[field]) for field in rule.cells})
+        if rules:
+            result[name] = made
+    left: Counter[str] = Counter()
+    for source in {rule.source: None for rule in template.rules if rule.source in layers}:
+        unwanted = [rule for rule in template.layer_of(NOT_WANTED) if rule.source == source]
+        for k, row in enumerate(layers[source].rows):
+            if k not in taken[source] and not any(rule.holds(row) for rule in unwanted):
+                left[" ".join(filter(None, (source, row.get("class") or row.get("kind") or row.get("type"), row.get("pattern"))))] += 1
+    return _ClientMap(result, left)
+
+
+def _types(template, name, layers, office):
+    """{field: type} of a layer of the client, its file's or else as the template says or its values are."""
+    rules = template.layer_of(name)
+    used = [field for field in template.types if any(field in rule.cells for rule in rules)]
+    if office is None:
+        return {field: template.types.get(field) or _guessed([rule.cells[field] for rule in rules if field in rule.cells], rules, layers)
+                for field in used}
+    there, line = office.get(name), rules[0].line
+    if there is None:
+        raise RoadExtractionError(f"{template.path}, line {line}: the file of the client has no layer {name}{_like(name, office)}.")
+    if there[0] not in ("", rules[0].geometry):
+        raise RoadExtractionError(f"{template.path}, line {line}: layer {name} of the client's file holds a {there[0]}, and a {rules[0].geometry} "
+                                  "is to be written.")
+    missing = next((field for field in used if field not in there[1]), None)
+    if missing:
+        raise RoadExtractionError(f"{template.path}, line {line}: layer {name} of the client's file has no field {missing}"
+                                  f"{_like(missing, there[1])}.")
+    return {field: there[1][field] for field in used}
+
+
+def _guessed(texts, rules, layers):
+    """The type that holds all of these values: whole numbers, numbers or texts."""
+    fields = {field.name: field.type for rule in rules if rule.source in layers for field in layers[rule.source].schema}
+    kinds = set()
+    for text in texts:
+        reference = REFERENCE.fullmatch(text)
+        name, _, option = reference[1].partition(":") if reference else ("", "", "")
+        plain = re.fullmatch(r"-?(0|[1-9]\d*)", text)
+        kinds.add(int if plain or name == NUMBER else str if not reference or "=" in option else float if option else fields.get(name.strip(), str))
+    return int if kinds == {int} else float if kinds <= {int, float} else str
+
+
+def _filled(template, rule, field, row, kind):
+    """The value of a field of the client; None where ours has none."""
+    text = rule.cells[field]
+    whole = REFERENCE.fullmatch(text)
+    value = _referred(whole[1], row) if whole else REFERENCE.sub(lambda found: _written(_referred(found[1], row)), text)
+    if value is None or kind is str:
+        return None if value is None else _written(value)
+    try:
+        number = float(value)
+    except ValueError:
+        raise RoadExtractionError(f"{template.path}, line {rule.line}: {field} of {rule.layer} holds numbers, and “{value}” is none.") from None
+    return round(number) if kind is int else number
+
+
+def _referred(reference, row):
+    """What a reference to one of our fields gives."""
+    name, _, option = (part.strip() for part in reference.partition(":"))
+    value = row.get(name)
+    if value is None or not option:
+        return value
+    return _list_of(option).get(str(value)) if "=" in option else value * _units_of(name)[option]
+
+
+def _written(value):
+    """A value within a text: lengths to the millimetre."""
+    return "" if value is None else f"{value:.3f}".rstrip("0").rstrip(".") if isinstance(value, float) else str(value)
+
+
+def _as(kind, shape):
+    """A shape as a point, line or polygon: the outline of an area, the middle of a line or area."""
+    given = shape.geom_type
+    if kind == "line" and given == "Polygon":
+        return shapely.LineString(shape.exterior.coords)
+    if kind == "point" and given != "Point":
+        if given == "LineString":
+            return shapely.line_interpolate_point(shape, 0.5, normalized=True)
+        middle, heights = shapely.point_on_surface(shape), shapely.get_coordinates(shape, include_z=True)[:, 2]
+        return shapely.Point(middle.x, middle.y, float(heights.mean()))
+    return shape
+
+
+# Files with layers of their own.
+
+
+def _gdal():
+    try:
+        from osgeo import gdal, ogr
+    except ImportError as problem:
+        raise RoadExtractionError("A GeoPackage of a client is written by GDAL's own Python package, which is not installed. Install it by "
+                                  "conda-forge (gdal) or Debian (python3-gdal), or write a DXF drawing.") from problem
+    return gdal, ogr
+
+
+def layers_of_file(path: str | os.PathLike[str], crs: str) -> dict[str, tuple[str, dict[str, type]]]:
+    """{layer: (geometry, {field: type})} of the client's GeoPackage; the geometry is "" where the layer takes any.
+
+    crs : WKT, metric, of the map; "" where unknown. RoadExtractionError if the file is none, or a layer is in another CRS.
+    """
+    gdal, ogr = _gdal()
+    kinds = {ogr.wkbPoint: "point", ogr.wkbLineString: "line", ogr.wkbPolygon: "polygon", ogr.wkbMultiPoint: "point",
+             ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon"}
+    types = {ogr.OFTInteger: int, ogr.OFTInteger64: int, ogr.OFTReal: float}
+    ours = parse_crs(as_in_file(crs)[0]) if crs else None
+    try:
+        with gdal_exceptions():
+            dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=["GPKG"])
+            result = {}
+            for k in range(dataset.GetLayerCount()):
+                layer = dataset.GetLayer(k)
+                theirs = layer.GetSpatialRef()
+                if ours is not None and theirs is not None and not same_crs(parse_crs(theirs.ExportToWkt()), ours):
+                    raise RoadExtractionError(f"Layer {layer.GetName()} of {path} is in {theirs.GetName()}, and the map in {ours.name}. Give the "
+                                              "client's file the CRS of the map, or bring the map's layers to that of the file.")
+                defined = layer.GetLayerDefn()
+                fields = (defined.GetFieldDefn(number) for number in range(defined.GetFieldCount()))
+                result[layer.GetName()] = kinds.get(ogr.GT_Flatten(layer.GetGeomType()), ""), {
+                    field.GetName(): types.get(field.GetType(), str) for field in fields}
+            return result
+    except RuntimeError as problem:
+        raise RoadExtractionError(f"{path} cannot be read as a GeoPackage ({problem}).") from problem
+
+
+def write_client_layers(layers: Mapping[str, Features], path: str, office: str = "") -> None:
+    """Write a GeoPackage, in the units of the survey's own CRS; into a copy of the client's file, whose layers are filled, where there is one.
+
+    RoadExtractionError if there is no GDAL that writes it, or the client's file does not take the features.
+    """
+    gdal, ogr = _gdal()
+    if office:
+        shutil.copyfile(office, path)
+    try:
+        with gdal_exceptions():
+            dataset = gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_UPDATE) if office \
+                else gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)
+            for name, features in layers.items():
+                layer = dataset.GetLayerByName(name) if office else _new_layer(dataset, name, features)
+                _fill(layer, features)
+            layer = dataset = None
+    except RuntimeError as problem:
+        raise RoadExtractionError(f"The layers of the client could not be written: {problem}.") from problem
+
+
+def _new_layer(dataset, name, features):
+    from osgeo import ogr, osr
+
+    crs = osr.SpatialReference(as_in_file(features.crs)[0] if features.crs else UNDEFINED_CARTESIAN)
+    kinds = {"PointZ": ogr.wkbPoint25D, "LineStringZ": ogr.wkbLineString25D, "PolygonZ": ogr.wkbPolygon25D}
+    layer = dataset.CreateLayer(name, crs, kinds[features.geometry_type])
+    types = {int: ogr.OFTInteger64, float: ogr.OFTReal, str: ogr.OFTString}
+    for field in features.schema:
+        layer.CreateField(ogr.FieldDefn(field.name, types[field.type]))
+    return layer
+
+
+def _fill(layer, features):
+    """Add features to a layer of an open file, as its kind of geometry has them: flat, or of one part in a layer of several."""
+    from osgeo import ogr
+
+    units = as_in_file(features.crs)[1]
+    kind = layer.GetGeomType()
+    layer.StartTransaction()
+    for shape, row in features:
+        if not units.metric:
+            shape = shapely.transform(shape, units.in_file, include_z=True)
+        made = ogr.CreateGeometryFromWkb(shapely.to_wkb(shape, output_dimension=3, flavor="iso"))
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetGeometry(made if kind == ogr.wkbUnknown else ogr.ForceTo(made, kind))
+        for name, value in row.items():
+            if value is not None:
+                feature.SetField(name, value)
+        layer.CreateFeature(feature)
+    layer.CommitTransaction()

@@ -1,0 +1,296 @@
+"""What every point of a survey belongs to, by the ground below it and the layers of the road map."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+import shapely
+from scipy.ndimage import distance_transform_edt, grey_dilation, grey_erosion, map_coordinates
+from scipy.spatial import cKDTree
+
+from ...core.common.features import Features
+from ...core.common.setting import Limited, setting
+from ...core.road.surface.ground_grid import MeasuredGround, windows_of
+from ...core.road.weights import SURFACE
+from ...core.survey.blocks import unwrap_week
+from ...core.survey.frame.projection import RoadProjection
+from ...core.survey.frame.road_frame import RoadFrame
+from ...core.survey.store.columns import Columns
+from ...core.survey.store.records import COORDINATE_SCALE
+from ...core.survey.survey import Survey
+from ...core.survey.trajectory.time_systems import SECONDS_PER_WEEK
+
+
+class PointClass(IntEnum):
+    """Classes of points: up to 18 those of ASPRS (LAS 1.4 R15, table 17), from 64 on, where users define them, those of Lanewright."""
+
+    UNCLASSIFIED = 1
+    GROUND = 2
+    LOW_VEGETATION = 3
+    MEDIUM_VEGETATION = 4
+    HIGH_VEGETATION = 5
+    LOW_NOISE = 7
+    ROAD_SURFACE = 11
+    HIGH_NOISE = 18
+    PAINT = 64
+    CURB = 65
+    GUARD_RAIL = 66
+    BARRIER = 67
+    WALL = 68
+    FENCE = 69
+    POLE = 70
+    SIGN = 71
+
+
+@dataclass(frozen=True)
+class CloudSettings(Limited):
+    """How near a point must lie to what it belongs to. The numbers without limits are not asked for."""
+
+    ground: float = setting(0.05, 0.01, 0.3, "The thickness of the ground", "m")   # m above and below the ground of points that are ground
+    curb: float = setting(0.10, 0.02, 0.5, "The width of a curb", "m")   # m either side of a road edge within which its face and top lie
+    beside: float = setting(0.30, 0.05, 1.0, "The reach about lines and poles", "m")   # m either side of a rail, or about a shaft
+    object_height: float = 0.20   # m: what is narrower than `object_width` and rises so far above its surroundings is no ground, such as a car
+    object_width: tuple[float, float] = (6.0, 2.75)   # m along and across the road
+    reach: float = 1.0   # m from a measured place of the ground to points whose ground it is
+    noise: float = 0.25   # m below the road surface: no scanner sees through asphalt
+    level: float = 1.5   # m either side of the reference line whose ground is the level of the road
+    curb_share: float = 0.25   # of its height from which on the face of a curb begins
+    slack: float = 0.05   # m above the top of a thing
+    panel: tuple[float, float] = (0.5, 1.0)   # m about the shaft of a sign, and above its foot, where its panel may hang
+    hedge: float = 2.0   # times `beside`: hedges are not as thin as rails
+    vegetation: tuple[float, float] = (0.5, 2.0)   # m of height at which medium and high vegetation begin
+    spacing: float = 0.05   # m between the vertices of lines that are compared with points
+
+
+@dataclass(frozen=True)
+class CloudLayers:
+    """Layers of a road map in map coordinates; None for those that are not given."""
+
+    road_surface: Features | None = None   # PolygonZ
+    road_edges: Features | None = None   # LineStringZ along bottoms of curbs, with the fields height_m and edge
+    markings: Features | None = None   # PolygonZ
+    roadside: Features | None = None   # LineStringZ along the ground, with the fields kind, foot_m and height_m
+    roadside_objects: Features | None = None   # PointZ on the ground, with the fields kind, height_m and diam_m
+
+    def given(self) -> dict[str, Features]:
+        """Those that are given, by name."""
+        return {layer.name: getattr(self, layer.name) for layer in fields(self) if getattr(self, layer.name) is not None}
+
+
+class _RoadPlaces(NamedTuple):
+    """Where N points lie on the road, and what they belong to."""
+
+    classes: np.ndarray   # (N,) uint8 PointClass; 0 where nothing is known of a point
+    road: np.ndarray   # (N,) int, number of the road; -1 beyond the corridor, where the three below are NaN
+    s: np.ndarray   # (N,) m, station
+    d: np.ndarray   # (N,) m, offset, left positive
+    h: np.ndarray   # (N,) m above the road under the reference line at the station
+
+
+class PointClassifier:
+    """Classifies points of a survey that is open, block by block."""
+
+    def __init__(self, survey: Survey, layers: CloudLayers, settings: CloudSettings = CloudSettings(), corridor: float = 25.0):
+        self.survey, self.settings, self.corridor = survey, settings, corridor
+        frame = survey.frame
+        self._projection = RoadProjection(frame, corridor) if survey.has_time else None
+        self._roads = np.array([p.road for p in frame.passes] + [-1])
+        last = max(float(p.time[-1]) for p in frame.passes)
+        self._week_ends = survey.has_time and SECONDS_PER_WEEK < last < 2 * SECONDS_PER_WEEK
+        self._ground = _Ground(survey, settings)
+        self._surface, self._paint = (_Areas(layer, frame) for layer in (layers.road_surface, layers.markings))
+        self._edges, self._lines, self._objects = (_Near(layer, frame, settings.spacing) for layer in (
+            _curbs_of(layers.road_edges), layers.roadside, layers.roadside_objects))
+
+    def places(self, points: Any) -> _RoadPlaces:
+        """Those of a block of N laspy points, whose coordinates are in metres."""
+        origin = self.survey.frame.origin
+        x, y, z = (np.asarray(points[name], float) - start for name, start in zip("xyz", origin))
+        road, s, d, (x, y, z) = self._placed(points, x, y, z)
+        classes, h = np.zeros(len(x), np.uint8), np.full(len(x), np.nan)
+        for number in np.unique(road[road >= 0]).tolist():
+            rows = np.flatnonzero(road == number)
+            ground, level = self._ground.at(number, s[rows], d[rows])
+            h[rows] = z[rows] - level
+            classes[rows] = self._classes(x[rows], y[rows], z[rows], z[rows] - ground)
+        return _RoadPlaces(classes, road, s, d, h)
+
+    def _placed(self, points, x, y, z):
+        """Road, station and offset of points, and where they lie once the passes are laid on each other, as the layers have it."""
+        frame = self.survey.frame
+        if self._projection is None:
+            return *frame.locate_nearest(x, y, self.corridor), (x, y, z)
+        time = np.array(points["gps_time"], float)
+        if self._week_ends and time.max(initial=0.0) < SECONDS_PER_WEEK:
+            time = unwrap_week(time)
+        passes, s, d = self._projection.project(x, y, time)
+        road = np.where(np.isfinite(s), self._roads[passes], -1)
+        if self.survey.moves is not None:
+            stations = np.rint(np.nan_to_num(s) / COORDINATE_SCALE).astype(np.int32)
+            records = Columns(dict(pass_number=np.where(road >= 0, passes, -1).astype(np.int32), s=stations), [("pass_number", "i4"), ("s", "i4")])
+            x, y, z = (values + moved * COORDINATE_SCALE for values, moved in zip((x, y, z), self.survey.moves.units(records)))
+            _, s, d = self._projection.project(x, y, time)
+            road = np.where(np.isfinite(s), road, -1)
+        return road, s, d, (x, y, z)
+
+    def _classes(self, x, y, z, h):
+        """Classes of points `h` metres above the ground, NaN where it is not known; what is found later overrules."""
+        chosen, classes = self.settings, np.zeros(len(x), np.uint8)
+        low = np.abs(h) < chosen.ground
+        deep = h < -chosen.noise
+        classes[low] = PointClass.GROUND
+        within = self._surface.holds(x, y, low | deep)
+        classes[within & low] = PointClass.ROAD_SURFACE
+        classes[within & deep] = PointClass.LOW_NOISE
+        self._mark_curbs(classes, x, y, z, ~(np.abs(h) > 1.0))
+        classes[self._paint.holds(x, y, low) & (classes != PointClass.CURB)] = PointClass.PAINT
+        # layers overrule what is taken for ground, where that is a rail far away of which alone anything was seen
+        beside = ~within & ~np.isin(classes, (PointClass.CURB, PointClass.PAINT))
+        self._mark_lines(classes, x, y, z, beside)
+        self._mark_objects(classes, x, y, z, beside)
+        return classes
+
+    def _mark_curbs(self, classes, x, y, z, which):
+        rows, near, rise, _ = self._edges.of(x, y, z, which, self.settings.curb)
+        height = self._edges.column("height_m")[near]
+        classes[rows[(rise > self.settings.curb_share * height) & (rise < height + self.settings.slack)]] = PointClass.CURB
+
+    def _mark_lines(self, classes, x, y, z, which):
+        chosen = self.settings
+        rows, near, rise, away = self._lines.of(x, y, z, which, chosen.hedge * chosen.beside)
+        hedge = self._lines.words("hedge")[near]
+        on_it = ((away < chosen.beside) | hedge) & (rise > chosen.ground) & (rise < self._lines.column("height_m")[near] + chosen.slack)
+        rows, near, rise, hedge = (values[on_it] for values in (rows, near, rise, hedge))
+        for kind, number in (("guard_rail", PointClass.GUARD_RAIL), ("barrier", PointClass.BARRIER), ("wall", PointClass.WALL),
+                             ("fence", PointClass.FENCE)):
+            classes[rows[self._lines.words(kind)[near]]] = number
+        classes[rows[hedge]] = self._vegetation(rise[hedge])
+
+    def _mark_objects(self, classes, x, y, z, which):
+        chosen = self.settings
+        reach = np.nan_to_num(self._objects.column("diam_m")) / 2 + chosen.beside / 2
+        rows, near, rise, away = self._objects.of(x, y, z, which, max(reach.max(initial=0.0), chosen.panel[0]))
+        panel = self._objects.words("sign")[near] & (away < chosen.panel[0]) & (rise > chosen.panel[1])
+        taken = ((away < reach[near]) | panel) & (rise > chosen.ground) & (rise < self._objects.column("height_m")[near] + chosen.slack)
+        rows, near, rise = rows[taken], near[taken], rise[taken]
+        for kind, number in (("pole", PointClass.POLE), ("sign", PointClass.SIGN)):
+            classes[rows[self._objects.words(kind)[near]]] = number
+        trunk = self._objects.words("trunk")[near]
+        classes[rows[trunk]] = self._vegetation(rise[trunk])
+
+    def _vegetation(self, rise):
+        return PointClass.LOW_VEGETATION + np.searchsorted(self.settings.vegetation, rise).astype(np.uint8)
+
+
+def _curbs_of(edges):
+    """Those road edges that are curbs: edges of a pavement have no height."""
+    if edges is None:
+        return None
+    kept = [k for k, row in enumerate(edges.rows) if row.get("edge") != "pavement" and (row.get("height_m") or 0.0) > 0.0]
+    return Features(edges.geometry_type, edges.schema, [edges.geometries[k] for k in kept], [edges.rows[k] for k in kept], edges.crs)
+
+
+class _Ground:
+    """Height of the ground below points, without cars and other narrow things on it, and level of the road; local z, m."""
+
+    def __init__(self, survey: Survey, settings: CloudSettings):
+        self.survey, self.settings, self.measured = survey, settings, MeasuredGround(survey)
+        self._windows = {number: windows_of(survey, number) for number in survey.store.roads() if number >= 0}
+
+    def at(self, road: int, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The ground below (N,) places, NaN where none was measured near, and the level of the road at their stations."""
+        # so far beyond the points that nothing narrow is seen in part
+        beyond = 2 * self.settings.object_width[0]
+        cells = self._cells(road, s.min() - beyond, s.max() + beyond)
+        if cells is None:
+            return np.full(len(s), np.nan), self.survey.road_height(road, s)
+        stations, offsets = cells.stations, cells.offsets
+        prior = self.survey.road_height(road, stations)
+        height, known = self._without_objects(cells.height - prior[:, None], cells.row_size, cells.column_size)
+        places = (s - stations[0]) / cells.row_size, (d - offsets[0]) / cells.column_size
+        ground = map_coordinates(height, places, order=1, mode="nearest")
+        row, column = (np.rint(at).astype(int) for at in places)
+        inside = (row >= 0) & (row < len(height)) & (column >= 0) & (column < height.shape[1])
+        base = self.survey.road_height(road, s)
+        ground = np.where(inside & known[row * inside, column * inside], ground + base, np.nan)
+        level = np.median(height[:, np.abs(offsets) <= self.settings.level], axis=1)
+        return ground, base + np.interp(s, stations, level)
+
+    def _cells(self, road, first, last):
+        """GroundCells between two stations; None where nothing was measured."""
+        rows = [row for row in self._windows.get(road, ()) if (row + SURFACE.window_rows) * SURFACE.row_length > first
+                and row * SURFACE.row_length < last]
+        cells = self.measured.windows(road, rows, [False] * len(rows))[0] if rows else None
+        return None if cells is None or not np.isfinite(cells.height).any() else cells
+
+    def _without_objects(self, height, row_size, column_size):
+        """Heights of all cells, of the nearest ground where a cell has none, and whether that is near enough."""
+        sampling, chosen = (row_size, column_size), self.settings
+        seen, size = np.isfinite(height), [2 * round(metres / step / 2) + 1 for metres, step in zip(chosen.object_width, sampling)]
+        # an opening by seen cells alone: in the shadow of a wall its height would go on
+        lowest = np.where(seen, grey_erosion(np.where(seen, height, np.inf), size=size, mode="nearest"), -np.inf)
+        bare = seen & (height - grey_dilation(lowest, size=size, mode="nearest") < chosen.object_height)
+        if not bare.any():
+            return height, bare
+        away, nearest = distance_transform_edt(~bare, sampling=sampling, return_indices=True)
+        return height[tuple(nearest)], away <= chosen.reach
+
+
+class _Areas:
+    """Polygons of a layer, of which many points are asked whether they lie inside."""
+
+    def __init__(self, layer: Features | None, frame: RoadFrame):
+        shapes = [] if layer is None else [shapely.force_2d(shape) for shape in layer.geometries if shape is not None]
+        self._shapes = shapely.transform(np.array(shapes, object), lambda places: places - frame.origin[:2])
+        shapely.prepare(self._shapes)
+        self._tree = shapely.STRtree(self._shapes)
+
+    def holds(self, x: np.ndarray, y: np.ndarray, which: np.ndarray) -> np.ndarray:
+        """(N,) bool: which of the points `which`, (N,) bool, lie in a polygon. Local coordinates in metres."""
+        inside, rows = np.zeros(len(x), bool), np.flatnonzero(which)
+        if not len(rows) or not len(self._shapes):
+            return inside
+        low, high = (np.array([end(x[rows]), end(y[rows])]) for end in (np.min, np.max))
+        main = int(np.argmax(high - low))   # along this axis a polygon meets the fewest points
+        rows = rows[np.argsort((x, y)[main][rows])]
+        x, y = x[rows], y[rows]
+        along = (x, y)[main]
+        for number in self._tree.query(shapely.box(*low, *high)).tolist():
+            shape = self._shapes[number]
+            first, last = np.searchsorted(along, [shape.bounds[main], shape.bounds[main + 2]])
+            span = slice(first, last + 1)
+            inside[rows[span][shapely.contains_xy(shape, x[span], y[span])]] = True
+        return inside
+
+
+class _Near:
+    """Lines or points of a layer as close vertices, to find what points lie near."""
+
+    def __init__(self, layer: Features | None, frame: RoadFrame, spacing: float):
+        self._rows: Sequence[dict[str, Any]] = [] if layer is None else layer.rows
+        shapes = np.array([] if layer is None else layer.geometries, object)
+        places, self._owner = shapely.get_coordinates(shapely.segmentize(shapes, spacing), include_z=True, return_index=True)
+        places = places.reshape(-1, 3) - frame.origin
+        self._z, self._tree = places[:, 2], cKDTree(places[:, :2]) if len(places) else None
+
+    def column(self, name: str) -> np.ndarray:
+        """The numbers of a field, (R,) by row of the layer; NaN where there is none."""
+        return np.array([np.nan if row.get(name) is None else row[name] for row in self._rows], float)
+
+    def words(self, kind: str) -> np.ndarray:
+        """(R,) bool: which rows are of a kind."""
+        return np.array([row.get("kind") == kind for row in self._rows], bool)
+
+    def of(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, which: np.ndarray, reach: float) -> tuple[np.ndarray, ...]:
+        """Of the points `which` those within `reach` metres: their indices, the row that is nearest, metres above it and metres away."""
+        rows = np.flatnonzero(which)
+        if self._tree is None or not len(rows):
+            return np.empty(0, int), np.empty(0, int), np.empty(0), np.empty(0)
+        away, vertex = self._tree.query(np.c_[x[rows], y[rows]], distance_upper_bound=reach)
+        near = np.flatnonzero(np.isfinite(away))
+        rows, vertex = rows[near], vertex[near]
+        return rows, self._owner[vertex], z[rows] - self._z[vertex], away[near]

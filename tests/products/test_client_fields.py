@@ -1,0 +1,119 @@
+"""A road map under a client's names: what the template says happens, and what is not known is said with its line."""
+
+import pytest
+import shapely
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.common.features import MARKING_LINES, MARKINGS, ROADSIDE_OBJECTS, Features
+from lanewright.products.cad import drawn_layers
+from lanewright.products.client_fields import apply_template, layers_of_file, read_template, write_client_layers
+
+UTM = "EPSG:32632"
+SOURCES = {"MARKINGS": (MARKINGS, "PolygonZ"), "MARKING_LINES": (MARKING_LINES, "LineStringZ"), "ROADSIDE_OBJECTS": (ROADSIDE_OBJECTS, "PointZ")}
+
+
+def square(x):
+    return shapely.Polygon([(x, 0, 5), (x + 2, 0, 5), (x + 2, 2, 7), (x, 2, 7)])
+
+
+@pytest.fixture
+def street():
+    """A zebra crossing, a stop line 29.6 cm wide, a dashed line to the left and a pole."""
+    markings = Features("PolygonZ", MARKINGS, crs=UTM)
+    markings.add(square(0), **{"class": "zebra", "width_m": 4.0, "station_m": 12.3456})
+    markings.add(square(5), **{"class": "stop", "width_m": 0.296, "station_m": 20.0})
+    lines = Features("LineStringZ", MARKING_LINES, crs=UTM)
+    lines.add(shapely.LineString([(0, 9, 1), (10, 9, 3)]), kind="lane", pattern="dashed", width_m=0.12, line=4)
+    poles = Features("PointZ", ROADSIDE_OBJECTS, crs=UTM)
+    poles.add(shapely.Point(1, 2, 3), kind="pole", side="left", height_m=5.5)
+    return {"MARKINGS": markings, "MARKING_LINES": lines, "ROADSIDE_OBJECTS": poles}
+
+
+def template(tmp_path, *rows, mixed=False):
+    path = tmp_path / "office.csv"
+    path.write_text("\n".join(rows), encoding="utf-8")
+    return read_template(path, SOURCES, mixed)
+
+
+def test_codes_fields_units_lists_and_texts_are_those_of_the_client(street, tmp_path):
+    made = apply_template(template(
+        tmp_path, "# of the office, 2026", "from;where;layer;geometry;CODE;WIDTH:int;PLACE;SIDE;NO",
+        "MARKINGS;class = zebra;AREA;;K12;{width_m:mm};km {station_m:km};;{number}", "MARKINGS;;AREA;;K99;{width_m:mm};;;{number}",
+        "ROADSIDE_OBJECTS;height_m >= 5 & kind=pole,sign;POLE;;P1;{height_m:cm};;{side:left=L,right=R};"), street)
+    assert made.layers["AREA"].rows == [{"CODE": "K12", "WIDTH": 4000, "PLACE": "km 0.012", "NO": 1}, {"CODE": "K99", "WIDTH": 296, "NO": 2}]
+    assert made.layers["POLE"].rows == [{"CODE": "P1", "WIDTH": 550, "SIDE": "L"}]
+    assert [(field.name, field.type) for field in made.layers["AREA"].schema] == [("CODE", str), ("WIDTH", int), ("PLACE", str), ("NO", int)]
+    assert made.left_out == {}, "lines were not asked for"
+
+
+def test_what_no_row_takes_is_counted_and_what_is_left_out_on_purpose_is_not(street, tmp_path):
+    rows = ["from,where,layer,CODE", "MARKINGS,class=stop,AREA,1"]
+    assert apply_template(template(tmp_path, *rows), street).left_out == {"MARKINGS zebra": 1}
+    assert apply_template(template(tmp_path, *rows, "MARKINGS,class=zebra,-,"), street).left_out == {}
+
+
+def test_areas_become_outlines_or_points_and_lines_their_middles(street, tmp_path):
+    made = apply_template(template(tmp_path, "from\twhere\tlayer\tgeometry", "MARKINGS\t\tOUTLINE\tline", "MARKINGS\t\tMIDDLE\tpoint",
+                                   "MARKING_LINES\t\tMIDDLE\tpoint"), street).layers
+    assert made["OUTLINE"].geometries[0].length == pytest.approx(8.0)
+    assert [shape.coords[0] for shape in made["MIDDLE"].geometries][::2] == [pytest.approx((1, 1, 5.8)), pytest.approx((5, 9, 2))]
+
+
+@pytest.mark.parametrize(("rows", "said"), [
+    (["where;layer", "class=zebra;A"], "line 1: there is no column “from”"),
+    (["from;where;layer", "", "ZEBRAS;;A"], "line 3: there is no layer ZEBRAS"),
+    (["from;where;layer", "MARKING;;A"], r"line 2: there is no layer MARKING \(is MARKINGS meant\?\)"),
+    (["from;where;layer", "MARKINGS;class=zebras;A"], r"line 2: zebras is no class that Lanewright writes \(is zebra meant\?\)"),
+    (["from;where;layer", "MARKINGS;klass=zebra;A"], "line 2: MARKINGS has no field klass"),
+    (["from;where;layer", "MARKINGS;class;A"], "line 2: “class” is no condition"),
+    (["from;where;layer", "MARKINGS;width_m>wide;A"], "line 2: width_m is a number, and “wide” is none"),
+    (["from;where;layer;W", "MARKINGS;;A;{width_m:inch}"], "line 2: width_m cannot be given in “inch”; known are m, dm, cm"),
+    (["from;where;layer;W", "MARKINGS;;A;{breadth_m}"], "line 2: MARKINGS has no field breadth_m"),
+    (["from;where;layer;W:date", "MARKINGS;;A;{width_m}"], "line 1: W is to be of the type “date”"),
+    (["from;where;layer;w;W", "MARKINGS;;A;1;2"], "line 1: two columns are called w"),
+    (["from;where;layer;geometry", "ROADSIDE_OBJECTS;;A;line"], "line 2: a point of ROADSIDE_OBJECTS cannot become a “line”"),
+    (["from;where;layer", "MARKINGS;;A", "MARKING_LINES;;A"], "line 3: layer A would hold a line and, from line 2, a polygon"),
+    (["from;where;layer"], "holds no rows"),
+])
+def test_what_is_not_known_is_said_with_its_line(rows, said, tmp_path):
+    with pytest.raises(RoadExtractionError, match=said):
+        template(tmp_path, *rows)
+
+
+def test_a_text_in_a_field_of_numbers_is_refused(street, tmp_path):
+    with pytest.raises(RoadExtractionError, match="line 2: CODE of AREA holds numbers, and “K12” is none"):
+        apply_template(template(tmp_path, "from;where;layer;CODE:int", "MARKINGS;;AREA;K12"), street)
+
+
+def test_the_file_of_the_client_is_filled_as_its_layers_are(street, tmp_path):
+    """Of several parts and flat, with fields that the template does not name; what it does not have is refused."""
+    gdal, ogr, osr = (pytest.importorskip(f"osgeo.{name}") for name in ("gdal", "ogr", "osr"))
+    path, filled = str(tmp_path / "office.gpkg"), str(tmp_path / "filled.gpkg")
+    dataset = gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)
+    crs = osr.SpatialReference()
+    crs.ImportFromEPSG(32632)
+    layer = dataset.CreateLayer("AREA", crs, ogr.wkbMultiPolygon)
+    layer.CreateField(ogr.FieldDefn("CODE", ogr.OFTString))
+    layer.CreateField(ogr.FieldDefn("CHECKED", ogr.OFTString))
+    layer = dataset = None
+    office = layers_of_file(path, UTM)
+    assert office == {"AREA": ("polygon", {"CODE": str, "CHECKED": str})}
+    said = template(tmp_path, "from;where;layer;CODE", "MARKINGS;;AREA;12")
+    write_client_layers(apply_template(said, street, office).layers, filled, path)
+    layer = (dataset := ogr.Open(filled)).GetLayerByName("AREA")
+    assert [(feature["CODE"], feature["CHECKED"]) for feature in layer] == [("12", None)] * 2
+    assert layer.GetGeomType() == ogr.wkbMultiPolygon and layer.GetExtent() == (0, 7, 0, 2)
+    assert ogr.Open(path).GetLayer(0).GetFeatureCount() == 0, "the client's own file stays as it is"
+    layer = dataset = None
+    for row, problem in (("MARKINGS;;AREAS;1", r"no layer AREAS \(is AREA meant"), ("MARKING_LINES;;AREA;1", "holds a polygon, and a line")):
+        with pytest.raises(RoadExtractionError, match=problem):
+            apply_template(template(tmp_path, "from;where;layer;CODE", row), street, office)
+    with pytest.raises(RoadExtractionError, match="has no field KODE"):
+        apply_template(template(tmp_path, "from;where;layer;KODE", "MARKINGS;;AREA;1"), street, office)
+    with pytest.raises(RoadExtractionError, match="is in WGS 84 / UTM zone 32N, and the map in"):
+        layers_of_file(path, "EPSG:32633")
+
+
+def test_a_drawing_has_the_layers_of_the_client_and_points_as_texts(street, tmp_path):
+    made = apply_template(template(tmp_path, "from;where;layer;CODE", "MARKINGS;;ROAD;1", "ROADSIDE_OBJECTS;;ROAD;P7", mixed=True), street)
+    drawn = [(line.layer, line.closed, line.text) for line in drawn_layers(made.layers)]
+    assert drawn == [("ROAD", True, ""), ("ROAD", True, ""), ("ROAD", False, "P7")]
