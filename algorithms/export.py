@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_ATTRIBUTES, ROAD_EDGES, SIGNALS
 from ..core.common.setting import Limited, setting
+from ..core.lazy import shapely
 from .algorithm import Algorithm, SettingSpec
 from .call import existing_file
 from .survey_input import road_points_of
@@ -191,8 +192,6 @@ class RoadAttributes(Algorithm):
 
 def _ways_of_layer(source, crs):
     """The roads of a layer of lines in the CRS of the lanes."""
-    import shapely
-
     from ..products.export.road_attributes import ways_in
     from .vector_source import LINE
 
