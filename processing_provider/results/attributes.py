@@ -11,6 +11,7 @@ from qgis.core import QgsEditorWidgetSetup, QgsProviderRegistry, QgsVectorLayer
 
 from ...core.common.features import OTHER
 from ...core.common.texts import vocabulary
+from ...core.lazy import gdal
 from ..texts import tr
 
 # Unit at the end of a field's name -> decimals that mean something
@@ -117,7 +118,6 @@ def _values(layer, index):
     """Values of a field. Those of a file are read without QGIS, whose connections would keep it open after the run."""
     if layer.providerType() != "ogr":
         return layer.uniqueValues(index)
-    from osgeo import gdal
 
     uri = QgsProviderRegistry.instance().decodeUri("ogr", layer.source())
     data = gdal.OpenEx(uri["path"], gdal.OF_VECTOR)

@@ -16,6 +16,7 @@ from ...core.common.progress import Progress
 from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
 from ...core.io.crs import as_in_file, horizontal_part, parse_crs
+from ...core.lazy import pyproj
 from .shared_borders import WIDEST_DOUBLE, cuts_beside, numbered
 from .sources import (
     LEAST_CURB,
@@ -302,8 +303,6 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
         crs : WKT, "" where coordinates are local
     Raises RoadExtractionError if the CRS is not in metres, or nodes have neither latitude nor local coordinates.
     """
-    from pyproj import Transformer
-
     located = np.isfinite(whole.degrees).all(1)
     heights = np.nan_to_num(whole.heights)
     at_sea = located.any() and np.abs(whole.degrees[located]).max() < NO_LAND
@@ -314,10 +313,10 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
             raise RoadExtractionError(f"Node {whole.node_ids[~located][0]} has neither lat and lon nor local_x and local_y. "
                                       "Export the map with them.")
         if not crs:
-            x, y = Transformer.from_crs("EPSG:4326", LOCAL_CRS, always_xy=True).transform(*whole.degrees.T)
+            x, y = pyproj.Transformer.from_crs("EPSG:4326", LOCAL_CRS, always_xy=True).transform(*whole.degrees.T)
             return np.c_[x, y, heights], ""
     target = metric_wkt(crs, "The chosen CRS") if crs else utm_of(*whole.degrees.mean(0))
-    x, y = Transformer.from_crs("EPSG:4326", parse_crs(target), always_xy=True).transform(*whole.degrees.T)
+    x, y = pyproj.Transformer.from_crs("EPSG:4326", parse_crs(target), always_xy=True).transform(*whole.degrees.T)
     places = np.c_[x, y, heights]
     if not np.isfinite(places).all():
         raise RoadExtractionError("The map does not lie where the chosen CRS holds. Choose the CRS of its country, or leave it empty.")
