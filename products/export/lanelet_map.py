@@ -575,7 +575,8 @@ def _bridged(lanes: Lanes) -> tuple[Lanes, np.ndarray, int]:
     places, row_of = np.concatenate([lanes.left, lanes.right]), {name: k for k, name in enumerate(lanes.lane_id)}
     links = [((k, 1), (row_of[name], 0)) for k, names in enumerate(lanes.successors) for name in names if name in row_of]
     met = {nodes[row] for one, other in links for row, goal in zip(corners[one], corners[other]) if nodes[row] == nodes[goal]}
-    goal_of, broken = {}, set()
+    goal_of: dict[int, int] = {}
+    broken = set()
     for one, other in links:
         # a connector reaches out for its lane; else it is always the same of two roads
         reaching, fixed = sorted((one, other), key=lambda end: (lanes.type[end[0]] != "connector", lanes.road[end[0]], end[0]))
@@ -586,7 +587,8 @@ def _bridged(lanes: Lanes) -> tuple[Lanes, np.ndarray, int]:
         else:
             goal_of.update(pairs)
     extra = {end: [goal_of.get(nodes[row], row) for row in rows] for end, rows in corners.items() if any(nodes[row] in goal_of for row in rows)}
-    sides, was_end = ([], []), []
+    sides: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    was_end = []
     for k in range(len(lanes)):
         inside = np.zeros(int(np.diff(lanes.start)[k]), bool)
         inside[0], inside[-1] = (k, 0) in extra, (k, 1) in extra

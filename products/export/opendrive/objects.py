@@ -32,14 +32,15 @@ def outlines_of(whole: OpenDriveMap) -> Iterator[tuple[str, np.ndarray]]:
     for road in whole.roads:
         for item in road.objects:
             kind = _class_of(item)
-            corners = _corners(road, item) if kind else ()
+            corners = _corners(road, item) if kind else np.empty((0, 3))
             if len(corners) > 2 and shapely.Polygon(corners).area > THINNEST**2:
                 yield kind, whole.placed(corners)
 
 
 def signals_of(whole: OpenDriveMap, crs: str = "") -> Features:
     """The layer SIGNALS: signals with the lanes that they hold for, on their own road and by reference, and poles."""
-    layer, lanes = Features("PointZ", SIGNALS, crs=crs), defaultdict(list)
+    layer = Features("PointZ", SIGNALS, crs=crs)
+    lanes: dict[str, list[str]] = defaultdict(list)
     for road in whole.roads:
         for item in road.signals:
             lanes[item["id"]] += _lanes_obeying(road, item)
@@ -61,10 +62,15 @@ def left_out_of(whole: OpenDriveMap) -> Counter[str]:
     """How often a map has what no layer of ours holds."""
     count = Counter(item["type"] if item["type"] not in ("", "-1") else "object of no type" for road in whole.roads for item in road.objects
                     if not _class_of(item) and item["type"] not in POLES)
+    for road in whole.roads:
+        starts = [section.s for section in road.sections]
+        changes = [s for s, _ in road.speeds if s > 0 and min((abs(s - start) for start in starts), default=0.0) > SAMPLES]
+        changes += [s for section in road.sections for lane in section.lanes.values() for s, _ in lane.speeds[1:]]
+        count.update({"change of a speed limit within a lane section": len(changes)})
     for element in whole.tree.children if whole.tree is not None else ():
         count += Counter(inner.tag for inner in (element, *element.children) if inner.tag in ("controller", "junctionGroup", "station", "railroad"))
-        count += Counter(inner.tag for inner in element.all("objects") for inner in inner.children if inner.tag in ("tunnel", "bridge"))
-    return count
+        count += Counter(inner.tag for objects in element.all("objects") for inner in objects.children if inner.tag in ("tunnel", "bridge"))
+    return +count
 
 
 def _class_of(item):

@@ -136,6 +136,9 @@ def test_the_name_of_a_road_is_carried_and_its_number_is_none(tmp_path):
 def test_what_no_layer_holds_is_counted(tmp_path):
     layers = read_in(tmp_path, street())
     assert layers.said_left_out() == ["Not carried over: 1 building, 1 controller."]
+    changes = '<type s="0" type="town"><speed max="30" unit="km/h"/></type><type s="25" type="town"><speed max="50" unit="km/h"/></type>'
+    layers = read_in(tmp_path, street(objects="", types=changes))
+    assert layers.said_left_out() == ["Not carried over: 1 change of a speed limit within a lane section, 1 controller."]
     walkway = lanelet_street().replace('<tag k="subtype" v="road"/>', '<tag k="subtype" v="walkway"/>', 1)
     text = walkway.replace("</osm>", '<relation id="900"><tag k="type" v="multipolygon"/><tag k="subtype" v="parking"/></relation></osm>')
     lanelets = layers_of_lanelets(read_lanelet2(written(tmp_path, text, "map.osm")), CRS)
