@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.products.export.check.lanelets import check_lanelets
-from lanewright.products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
+from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
 from lanewright.products.export.opendrive.exporter import draft_opendrive
 from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
 from lanewright.products.export.shared_borders import with_shared_borders
