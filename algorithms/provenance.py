@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..core.common.texts import told
+from ..core.lazy import gdal
 from .texts import tr
 
 if TYPE_CHECKING:
@@ -155,8 +156,6 @@ def sign_file(path: str | os.PathLike[str], provenance: Provenance) -> None:
 
 
 def _sign_raster(path, provenance):
-    from osgeo import gdal
-
     from ..core.io.local_files import gdal_exceptions
 
     with gdal_exceptions():

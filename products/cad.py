@@ -241,7 +241,7 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
     root.add("Application", name="Lanewright")
     if surface is not None:
         _surface(root.add("Surfaces").add("Surface", name=name), surface)
-    group = root.add("Alignments", name=name) if alignments else None
+    group = XmlElement("Alignments", {"name": name})
     for alignment in alignments:
         element = group.add("Alignment", name=alignment.name, length=alignment.length, staStart=0.0, desc=alignment.description)
         geometry = element.add("CoordGeom")
@@ -259,6 +259,8 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
             for station, ground in alignment.sections:
                 section = sections.add("CrossSect", sta=station, name=f"{station:.2f}").add("CrossSectSurf", name="Ground")
                 section.add("PntList2D", " ".join(f"{-offset:.3f} {height:.4f}" for offset, height in ground))
+    if alignments:
+        root.append(group)
     return xml_text(root)
 
 

@@ -10,9 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
+from ..lazy import shapely
 from .frame.road_frame import RoadFrame
 from .store.road_points import RoadPoints
 from .weights import FRAME, MIRROR, VEHICLE
@@ -28,8 +30,6 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
 
     Raises RoadExtractionError if more than half of them disagree.
     """
-    import shapely
-
     agree, aside, above = [], [], []
     for geometry, row in features:
         if row.get("station_m") is None:
@@ -54,9 +54,6 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
 
     Returns what to tell of it, "" where all lies near
     """
-    import shapely
-    from scipy.spatial import cKDTree
-
     shapes = np.asarray(features.geometries, object)
     if not len(shapes):
         return ""

@@ -190,6 +190,7 @@ class _PointsByPlace:
 
     def cut(self, section, thickness):
         """As `Section.cut`."""
-        box = section.line().boundingBox().buffered(thickness)
-        rows = self.index.within((box.xMinimum(), box.yMinimum()), (box.xMaximum(), box.yMaximum()))
-        return section.cut(self.points[rows], thickness)
+        offsets = np.arange(-HALF_WIDTH, HALF_WIDTH + 1.0)[:, None]
+        places = np.array([section.x, section.y]) + offsets * section.left   # boxes of a metre about them hold little else
+        rows = [self.index.within(np.minimum(*ends) - thickness, np.maximum(*ends) + thickness) for ends in zip(places[:-1], places[1:])]
+        return section.cut(self.points[np.unique(np.concatenate(rows))], thickness)

@@ -14,6 +14,7 @@ from ...core.common.features import SIGNALS, Features
 from ...core.common.progress import Progress
 from ...core.driving.layers import Lanes
 from ...core.io.crs import parse_crs
+from ...core.lazy import pyproj
 from .sources import LEAST_LED, LOCAL_CRS, STOP_LINE_HALF, MapLayers, MapLine, metric_wkt, plan_length, utm_of, without_repeats
 from .xml_tree import XmlElement, read_xml
 
@@ -283,8 +284,6 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
         crs : WKT, "" where coordinates are local
     Raises RoadExtractionError if the CRS is not in metres, or nodes have neither latitude nor local coordinates.
     """
-    from pyproj import Transformer
-
     located = np.isfinite(whole.degrees).all(1)
     heights = np.nan_to_num(whole.heights)
     at_sea = located.any() and np.abs(whole.degrees[located]).max() < NO_LAND
@@ -295,10 +294,10 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
             raise RoadExtractionError(f"Node {whole.node_ids[~located][0]} has neither lat and lon nor local_x and local_y. "
                                       "Export the map with them.")
         if not crs:
-            x, y = Transformer.from_crs("EPSG:4326", LOCAL_CRS, always_xy=True).transform(*whole.degrees.T)
+            x, y = pyproj.Transformer.from_crs("EPSG:4326", LOCAL_CRS, always_xy=True).transform(*whole.degrees.T)
             return np.c_[x, y, heights], ""
     target = metric_wkt(crs, "The chosen CRS") if crs else utm_of(*whole.degrees.mean(0))
-    x, y = Transformer.from_crs("EPSG:4326", parse_crs(target), always_xy=True).transform(*whole.degrees.T)
+    x, y = pyproj.Transformer.from_crs("EPSG:4326", parse_crs(target), always_xy=True).transform(*whole.degrees.T)
     places = np.c_[x, y, heights]
     if not np.isfinite(places).all():
         raise RoadExtractionError("The map does not lie where the chosen CRS holds. Choose the CRS of its country, or leave it empty.")

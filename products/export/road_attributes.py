@@ -15,6 +15,8 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
+from ...core.lazy import pyproj
+from ...core.lazy import pyproj
 from .lanelet_map import kmh
 from .sources import without_repeats
 from .xml_tree import read_xml
@@ -63,9 +65,7 @@ def ways_in(ways: Iterable[tuple[np.ndarray, Mapping[str, Any]]], stored: str, c
 
     The field other_tags, as GDAL writes it, is read too.
     """
-    from pyproj import Transformer
-
-    transformer = Transformer.from_crs(stored, crs, always_xy=True)
+    transformer = pyproj.Transformer.from_crs(stored, crs, always_xy=True)
     roads = []
     for line, fields in ways:
         tags = dict(re.findall(r'"([^"]+)"=>"([^"]*)"', str(fields.get("other_tags") or "")))

@@ -2,11 +2,3 @@
 
 In: an open `Survey` and the layers of its road map. Out: a `SurfaceModel`, its layers, its raster of heights; `cad` writes it as LandXML and DXF.
 """
-
-from ...core.lazy import public
-
-__getattr__, __all__ = public(__name__, {
-    "breaklines": ("Breakline",),
-    "model": ("SurfaceModel", "SurfaceSettings", "make_surface_model"),
-    "triangulation": ("Triangulation",),
-})

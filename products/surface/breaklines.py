@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
 from ...core.common.arrays import mask_runs
-from ...core.common.features import Features
 from ...core.common.progress import Progress
 from ...core.driving.layers import Lanes
-from ...core.survey.frame.placement import FrameLines, line_parts, lines_in_frame
+from ...core.survey.frame.placement import line_parts, lines_in_frame
 from ...core.survey.survey import Survey
 from ..inventory.borders import BorderLayers
 from ..inventory.roadside.uprights import lowest_along
@@ -52,7 +50,7 @@ def road_breaklines(survey: Survey, ground: RoadGround, layers: BorderLayers, pr
     for side in (1, -1):
         result += _along("gutter_flow_line", ground, frame, *_gutter(ground, side))
     result += _along("crown", ground, frame, *_crown(ground))
-    lines = _lines_of_road(*_lane_borders(layers), ground.road, frame)
+    lines = _lines_of_road(_lane_borders(layers), ground.road, frame)
     z, sigma = ground.at(lines.s, lines.d), ground.at(lines.s, lines.d, ground.sigma)
     # a lane that ends at the curb ends at the edge's own line
     edges = shapely.union_all([shapely.linestrings(line.places[:, :2]) for line in result if line.kind.startswith("edge")])
@@ -73,22 +71,26 @@ def _lane_borders(layers):
     return _parts_of(layers.marking_lines)
 
 
-def _parts_of(layer: Features | None):
-    parts, rows = line_parts([] if layer is None else layer.geometries)
+def _parts_of(layer):
+    """The same of a layer of lines."""
+    if layer is None:
+        return [], []
+    parts, rows = line_parts(layer.geometries)
     return parts, [-1 if layer.rows[row].get("road") is None else int(layer.rows[row]["road"]) for row in rows]
 
 
-def _lines_of_road(shapes, roads, road, frame) -> FrameLines:
-    """Lines of a road with vertices a slice apart."""
+def _lines_of_road(lines_and_roads, road, frame):
+    """FrameLines of a road with vertices a slice apart."""
+    shapes, roads = lines_and_roads
     even = [shapely.linestrings(shapely.get_coordinates(shapely.line_interpolate_point(
         shape, np.linspace(0.0, 1.0, max(int(round(shape.length / SLICE_LENGTH)), 2) + 1), normalized=True), include_z=True)) for shape in shapes]
     lines = lines_in_frame(even, roads, frame, None)
     return lines[lines.road == road]
 
 
-def _edges(survey, ground, layer, progress) -> Iterator[Breakline]:
+def _edges(survey, ground, layer, progress):
     """Foot and top of every edge. Which side is the higher one is measured, so that it does not matter which way a line was drawn."""
-    lines = _lines_of_road(*_parts_of(layer), ground.road, survey.frame)
+    lines = _lines_of_road(_parts_of(layer), ground.road, survey.frame)
     u, z, normal = edge_profiles(survey, ground, lines, progress)
     higher = np.nan_to_num(_line(u, z, PLATEAU)[0] - _line(-u, z, PLATEAU)[0]) < 0
     z = np.where(higher[:, None], z[:, ::-1], z)
@@ -163,14 +165,15 @@ def _hinge(x, heights):
         return None
     fits = [np.linalg.lstsq(np.stack([np.ones(len(x)), x - place, np.abs(x - place)], axis=1), heights, rcond=None)[:2] for place in places]
     best = int(np.argmin([squares.sum() for _, squares in fits]))
-    (level, slope, bend), squares, place = *fits[best], float(places[best])
+    (level, slope, bend), squares = fits[best]
+    place = float(places[best])
     # left of the ridge the road falls outward by slope + bend < 0, right of it by slope - bend > 0
     if slope - bend < CROWN_FALL or slope + bend > -CROWN_FALL:
         return None
     return place, level, float(np.sqrt(squares.sum() / max(len(x) - 3, 1)))
 
 
-def _along(kind, ground, frame, d, z, sigma) -> list[Breakline]:
+def _along(kind, ground, frame, d, z, sigma):
     """Lines along a road of (I,) offsets, heights and sigmas; places that leap aside of their neighbours do not count."""
     middle = _running_median(d)
     z = np.where(np.abs(d - middle) < MOST_ASIDE, z, np.nan)
@@ -187,7 +190,7 @@ def _running_median(values):
     return ordered[np.arange(len(values)), np.maximum((count - 1) // 2, 0)]
 
 
-def _pieces(kind: str, road: int, places: np.ndarray, station: np.ndarray, sigma: np.ndarray, step: np.ndarray | None = None) -> list[Breakline]:
+def _pieces(kind, road, places, station, sigma, step=None):
     """The stretches of a line whose heights were measured; short gaps are drawn straight."""
     seen = np.abs(places[:, 2] - _running_median(places[:, 2])) < MAX_LEAP
     if not seen.any():

@@ -23,9 +23,10 @@ from ..objects.marking_objects import MarkingObjects
 from ..weights import ROADS
 from .beside import lanes_beside
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
-from .estimate import RoadEstimate, estimate_of_road, lane_spans
+from .estimate import RoadEstimate, estimate_of_road
 from .evidence import between_ends, borders_of_hatching, driven_offsets, evidence_of, hatched_places, other_carriageway, surface_coverage
 from .sections import STATION_STEP, CrossSections, no_lines
+from .sequence import lane_strips
 from .weights import PAVEMENT, EstimateWeights, TakenReading
 
 
@@ -222,18 +223,16 @@ def _usual_width(known, estimates, usual):
     widths, lengths = [], []
     for number, estimate in estimates.items():
         boundaries, candidates, _ = known[number]
-        lines = boundaries.painted
-        for span in lane_spans(estimate):
+        strips = lane_strips(estimate.sections.chosen(estimate.choice))
+        left, right = candidates.rows[strips.interval, strips.left, 1], candidates.rows[strips.interval, strips.right, 0]
+        for interval, *sides, count in zip(*(values.tolist() for values in (strips.interval, left, right, strips.number))):
             check_cancelled()
-            rows = slice(candidates.first[span.interval], candidates.last[span.interval] + 1)
-            if span.place:
-                continue
-            painted = lines[[span.left, span.right]]
-            edge = [np.mean(boundaries.patterns[row, rows] == PAVEMENT) > 0.5 for row in (span.left, span.right)]
+            rows, painted = slice(candidates.first[interval], candidates.last[interval] + 1), boundaries.painted[sides]
+            edge = [np.mean(boundaries.patterns[row, rows] == PAVEMENT) > 0.5 for row in sides]
             if (painted | edge).all():
-                apart = boundaries.d[span.left, rows] - boundaries.d[span.right, rows]
+                apart = boundaries.d[sides[0], rows] - boundaries.d[sides[1], rows]
                 apart = apart[~np.isnan(apart)]
-                width = median(apart) / span.count if len(apart) else np.nan
+                width = median(apart) / count if len(apart) else np.nan
                 # beside the edge of the pavement a lane may be narrower than the strip
                 widths.append(width if painted.all() else min(width, usual))
                 lengths.append(STATION_STEP * (rows.stop - rows.start))

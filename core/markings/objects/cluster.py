@@ -13,7 +13,7 @@ import shapely
 from ...common.arrays import members_of, order_by
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...common.setting import check_limits, setting
+from ...common.setting import Limited, setting
 from ...curves.robust import median
 from ...execution.phase import THREADS, Executor, NoSource, Phase
 from ...survey.frame.road import Road
@@ -35,7 +35,7 @@ STRIP_KINDS = LINE_KINDS + ("stop",)  # drawn as even strips, the others cell by
 
 
 @dataclass(frozen=True)
-class ClusterSettings:
+class ClusterSettings(Limited):
     """How points join, and how small a marking may be.
 
     distance : m between points of one marking (twice as much along the road, half as much across it)
@@ -44,9 +44,6 @@ class ClusterSettings:
     distance: float = setting(0.20, 0.02, 2.0, "The clustering distance", "m")
     min_points: int = setting(8, 1, 100000, "The least number of points of a marking")
     classes: ClassSettings = field(default_factory=ClassSettings)
-
-    def __post_init__(self) -> None:
-        check_limits(self)
 
 
 def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: ClusterSettings = ClusterSettings(),

@@ -12,6 +12,7 @@ import numpy as np
 from ...common.features import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION, Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ...lazy import shapely
 from ...survey.open_survey import Survey
 from ..common.corners import CurbSteps
 from ..common.curb_limits import CurbSettings
@@ -128,8 +129,6 @@ def find_principal_points(survey: Survey, settings: CurbSettings, progress: Prog
     Returns Features PRINCIPAL_POINTS: PointZ at the middle of the cell, in map coordinates; `height_m` is
     the height above the expected road
     """
-    import shapely
-
     features = Features("PointZ", list(PRINCIPAL_POINTS), crs=survey.crs)
     roads = survey.store.roads()
     for i, road in enumerate(roads):
