@@ -16,7 +16,6 @@ from ...core.common.progress import Progress
 from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
 from ...core.lazy import pyproj
-from ...core.lazy import pyproj
 from .lanelet_map import kmh
 from .sources import without_repeats
 from .xml_tree import read_xml
