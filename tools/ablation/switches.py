@@ -138,9 +138,9 @@ def _without_curbs(original):
 
 NO_ROWS, NO_NUMBERS = np.empty((0, 2), np.int64), np.empty(0, np.int64)
 ROWS = (
-    _set("curbs", "profiles method", "curbs", "road.profiles road:_points_of_both",
+    _set("curbs", "profiles method", "curbs", "road.profiles road:_curbs_of_side",
          boundary_method="scanlines"),
-    _set("curbs", "scanlines method", "curbs", "road.scanlines road:_points_of_both",
+    _set("curbs", "scanlines method", "curbs", "road.scanlines road:_curbs_of_side",
          boundary_method="profiles"),
     Switch("chains along the road (else the nearest step)", "curbs", (
         ("road.common.tracking:curb_chains", nearest_steps), ("road.common.tracking:select_along_road", _whole),
