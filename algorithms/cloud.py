@@ -1,5 +1,8 @@
 """The survey's own point clouds, given back with classes and the fields of the road."""
 
+from collections import Counter
+from pathlib import Path
+
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import MARKINGS, ROAD_EDGES, ROAD_SURFACE, ROADSIDE, ROADSIDE_OBJECTS
 from .algorithm import Algorithm, SettingSpec
@@ -68,8 +71,6 @@ class ClassifyCloud(Algorithm):
             "every further road), z the height above the road. Points beyond the corridor are left out."), optional=True, by_default=False)
 
     def work(self, call, progress):
-        from collections import Counter
-
         from ..core.survey.las.point_fields import intensity_source_of
         from ..core.survey.las.reader import read_headers
         from ..core.survey.las.samples import sample_files
@@ -97,8 +98,6 @@ class ClassifyCloud(Algorithm):
 
 def _copies(call, files, progress):
     """(path, path of the unrolled copy) for each of the files, whose names must differ."""
-    from pathlib import Path
-
     names = [Path(file.path).name for file in files]
     plain = [f"{name[:-len('.copc.laz')]}.laz" if name.lower().endswith(".copc.laz") else name for name in names]
     twice = next((name for k, name in enumerate(plain) if name.lower() in {other.lower() for other in plain[:k]}), None)

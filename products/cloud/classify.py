@@ -13,6 +13,7 @@ from scipy.ndimage import distance_transform_edt, grey_dilation, grey_erosion, m
 from scipy.spatial import cKDTree
 
 from ...core.common.features import Features
+from ...core.common.parallel import check_cancelled
 from ...core.common.setting import Limited, setting
 from ...core.road.surface.ground_grid import MeasuredGround, windows_of
 from ...core.road.weights import SURFACE
@@ -99,7 +100,13 @@ class _RoadPlaces(NamedTuple):
 
 
 class PointClassifier:
-    """Classifies points of a survey that is open, block by block."""
+    """Classifies points of a survey that is open, block by block.
+
+    survey : whose files the points are of
+    layers : of its road map, in its CRS
+    corridor : m either side of the reference line within which points lie on the road
+    intensity : how the survey reads the brightness of points
+    """
 
     def __init__(self, survey: Survey, layers: CloudLayers, settings: CloudSettings = CloudSettings(), corridor: float = 25.0,
                  intensity: IntensitySource = IntensitySource()):
@@ -152,6 +159,7 @@ class PointClassifier:
         for road in self.survey.store.roads() if len(self._paint) else ():
             first, last = self.survey.store.span(road) if road >= 0 else (0.0, 0.0)
             for start in np.arange(first, last, self.settings.stretch):
+                check_cancelled()
                 points = self.survey.window(road, start, min(start + self.settings.stretch, last))
                 x, y = points.x, points.y
                 low = np.abs(points.z - self._ground.at(road, points.s, points.d)[0]) < self.settings.ground if len(points) else np.zeros(0, bool)
@@ -178,8 +186,9 @@ class PointClassifier:
         classes[painted[brightness[painted] >= self._paint_from[marking[painted]]]] = PointClass.PAINT
         # layers overrule what is taken for ground, where that is a rail far away of which alone anything was seen
         beside = ~within & ~np.isin(classes, (PointClass.CURB, PointClass.PAINT))
-        self._mark_lines(classes, x, y, z, beside)
-        self._mark_objects(classes, x, y, z, beside)
+        wide = np.where(self._lines.words("hedge"), chosen.hedge, 1.0)
+        self._mark_things(classes, x, y, z, beside, self._lines, wide * chosen.beside)
+        self._mark_things(classes, x, y, z, beside, self._objects, 0.5 * (np.nan_to_num(self._objects.column("diam_m")) + chosen.beside))
         return classes
 
     def _mark_curbs(self, classes, x, y, z, which):
@@ -188,31 +197,17 @@ class PointClassifier:
         begins = np.maximum(self.settings.curb_share * height, self.settings.curb_rise)
         classes[rows[(rise > begins) & (rise < height + self.settings.slack)]] = PointClass.CURB
 
-    def _mark_lines(self, classes, x, y, z, which):
+    def _mark_things(self, classes, x, y, z, which, things, reach):
+        """Mark points on lines or about shafts, `reach` metres (R,) from each; what grows is vegetation by its height above the ground."""
         chosen = self.settings
-        rows, near, rise, away = self._lines.of(x, y, z, which, chosen.hedge * chosen.beside)
-        hedge = self._lines.words("hedge")[near]
-        on_it = ((away < chosen.beside) | hedge) & (rise > chosen.ground) & (rise < self._lines.column("height_m")[near] + chosen.slack)
-        rows, near, rise, hedge = (values[on_it] for values in (rows, near, rise, hedge))
-        for kind, number in (("guard_rail", PointClass.GUARD_RAIL), ("barrier", PointClass.BARRIER), ("wall", PointClass.WALL),
-                             ("fence", PointClass.FENCE)):
-            classes[rows[self._lines.words(kind)[near]]] = number
-        classes[rows[hedge]] = self._vegetation(rise[hedge])
-
-    def _mark_objects(self, classes, x, y, z, which):
-        chosen = self.settings
-        reach = np.nan_to_num(self._objects.column("diam_m")) / 2 + chosen.beside / 2
-        rows, near, rise, away = self._objects.of(x, y, z, which, max(reach.max(initial=0.0), chosen.panel[0]))
-        panel = self._objects.words("sign")[near] & (away < chosen.panel[0]) & (rise > chosen.panel[1])
-        taken = ((away < reach[near]) | panel) & (rise > chosen.ground) & (rise < self._objects.column("height_m")[near] + chosen.slack)
-        rows, near, rise = rows[taken], near[taken], rise[taken]
-        for kind, number in (("pole", PointClass.POLE), ("sign", PointClass.SIGN)):
-            classes[rows[self._objects.words(kind)[near]]] = number
-        trunk = self._objects.words("trunk")[near]
-        classes[rows[trunk]] = self._vegetation(rise[trunk])
-
-    def _vegetation(self, rise):
-        return PointClass.LOW_VEGETATION + np.searchsorted(self.settings.vegetation, rise).astype(np.uint8)
+        rows, near, rise, away = things.of(x, y, z, which, max(reach.max(initial=0.0), chosen.panel[0]))
+        panel = things.words("sign")[near] & (rise > chosen.panel[1]) & (away < chosen.panel[0])
+        on_it = ((away < reach[near]) | panel) & (rise > chosen.ground) & (rise < things.column("height_m")[near] + chosen.slack)
+        rows, near, rise = rows[on_it], near[on_it], rise[on_it]
+        for kind in ("guard_rail", "barrier", "wall", "fence", "pole", "sign"):
+            classes[rows[things.words(kind)[near]]] = PointClass[kind.upper()]
+        grows = (things.words("hedge") | things.words("trunk"))[near]
+        classes[rows[grows]] = PointClass.LOW_VEGETATION + np.searchsorted(chosen.vegetation, rise[grows]).astype(np.uint8)
 
 
 def _steps_of(intensity):
