@@ -306,7 +306,7 @@ def _report(name, whole, found, shown, misses, notes):
     return map_export_report(tr("OpenDRIVE map"), name, facts, tables + fault_table(found), notes, shown)
 
 
-LANELETS = "products.export.lanelet_map:LaneletSettings"
+LANELETS = "products.export.lanelet_export:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
 LANELET_SETTINGS = (
     SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
@@ -352,7 +352,8 @@ class ExportLanelet2(Algorithm):
 def write_lanelet2(call, source, name, progress):
     """Write a RoadMapSource with shared borders as OUTPUT, and its report; returns the numbers. `name`: of what it was made of."""
     from ..products.export.check.lanelets import check_lanelets
-    from ..products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
+    from ..products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+    from ..products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
     from ..products.report.hd_map import map_export_report
 
     progress.report(0.2)

@@ -290,6 +290,7 @@ def _along_borders(change, vertices, start):
 
 STRIPE_GAP = 1.5     # m between stripes of one crossing: a gap of one stripe, worn on both sides
 LEAST_CROSSING = 3   # stripes
+STOP_LINE_HALF = 0.15   # m, half of the breadth of a stop line whose outline is not known
 
 
 def stop_lines(markings: Features | None) -> list[np.ndarray]:

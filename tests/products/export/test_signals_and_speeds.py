@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.products.export.check.lanelets import check_lanelets
-from lanewright.products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
+from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
 from lanewright.products.export.opendrive.exporter import draft_opendrive
 from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
 from lanewright.products.export.shared_borders import with_shared_borders
@@ -104,6 +105,17 @@ def test_a_reference_names_lanes_of_another_road_and_a_validity_some_of_a_road(t
     assert by_kind(layers_of_opendrive(as_roads(tmp_path, layers), CRS))["traffic_light"][1]["lanes"] == "2.-1.0"
 
 
+def test_roads_state_signals_before_references_and_countries_in_capitals(tmp_path):
+    sign = '<signal id="{}" s="9" t="-4" zOffset="3" orientation="+" dynamic="no" type="31" subtype="-1" country="{}"/></signals></road>'
+    reference = '<signals><signalReference id="2" s="1" t="-4" orientation="+"/>'
+    roads = [road(geometry(0, x, 0, 0, 40), 40, str(id)).replace("</road>", before + sign.format(id, country))
+             for id, x, before, country in ((1, 0, reference, "se"), (2, 50, "<signals>", "GERMANY"))]
+    whole = as_roads(tmp_path, read_in(tmp_path, opendrive(roads)))
+    order = [[one.tag for one in element.find("signals").children] for element in whole.tree.all("road")]
+    assert order == [["signal", "signalReference"], ["signal"]]
+    assert [item["country"] for item in whole.roads[0].signals + whole.roads[1].signals if item["own"]] == ["SE", "Germany"]
+
+
 def test_every_crossing_and_the_stop_line_lie_where_they_lay(tmp_path):
     layers = read_in(tmp_path, street())
     expected = {(round(x, 1), round(y, 1)) for x, y in ((6, 0), (18, 0), (24, 0), (34, 0), (37, -1.8))}
@@ -136,6 +148,9 @@ def test_the_name_of_a_road_is_carried_and_its_number_is_none(tmp_path):
 def test_what_no_layer_holds_is_counted(tmp_path):
     layers = read_in(tmp_path, street())
     assert layers.said_left_out() == ["Not carried over: 1 building, 1 controller."]
+    changes = '<type s="0" type="town"><speed max="30" unit="km/h"/></type><type s="25" type="town"><speed max="50" unit="km/h"/></type>'
+    layers = read_in(tmp_path, street(objects="", types=changes))
+    assert layers.said_left_out() == ["Not carried over: 1 change of a speed limit within a lane section, 1 controller."]
     walkway = lanelet_street().replace('<tag k="subtype" v="road"/>', '<tag k="subtype" v="walkway"/>', 1)
     text = walkway.replace("</osm>", '<relation id="900"><tag k="type" v="multipolygon"/><tag k="subtype" v="parking"/></relation></osm>')
     lanelets = layers_of_lanelets(read_lanelet2(written(tmp_path, text, "map.osm")), CRS)
