@@ -1,5 +1,9 @@
 """A road map under a client's names: what the template says happens, and what is not known is said with its line."""
 
+import sqlite3
+from contextlib import closing
+
+import pyproj
 import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
@@ -7,7 +11,7 @@ from lanewright.core.common.features import MARKING_LINES, MARKINGS, ROADSIDE_OB
 from lanewright.products.cad import drawn_layers
 from lanewright.products.client_fields import apply_template, layers_of_file, read_template, write_client_layers
 
-UTM = "EPSG:32632"
+UTM = pyproj.CRS.from_epsg(32632).to_wkt()
 SOURCES = {"MARKINGS": (MARKINGS, "PolygonZ"), "MARKING_LINES": (MARKING_LINES, "LineStringZ"), "ROADSIDE_OBJECTS": (ROADSIDE_OBJECTS, "PointZ")}
 
 
@@ -73,10 +77,51 @@ def test_areas_become_outlines_or_points_and_lines_their_middles(street, tmp_pat
     (["from;where;layer;geometry", "ROADSIDE_OBJECTS;;A;line"], "line 2: a point of ROADSIDE_OBJECTS cannot become a “line”"),
     (["from;where;layer", "MARKINGS;;A", "MARKING_LINES;;A"], "line 3: layer A would hold a line and, from line 2, a polygon"),
     (["from;where;layer"], "holds no rows"),
+    (["from,where,layer,W", "MARKINGS,class=stop,zebra,AREA,1"], "line 2: “1” stands in a column without a name"),
+    (["from;where;layer", "MARKINGS;width_m>0,2;A"], "line 2: “width_m>0,2” compares width_m with 2 numbers"),
+    (["from;where;layer;W", "MARKINGS;;A;{width_m"], "line 2: “{width_m” has a brace without its partner"),
+    (["from;where;layer;S", "ROADSIDE_OBJECTS;;A;{side:left=L,R}"], "line 2: “R” in the list of side is no pair"),
 ])
 def test_what_is_not_known_is_said_with_its_line(rows, said, tmp_path):
     with pytest.raises(RoadExtractionError, match=said):
         template(tmp_path, *rows)
+
+
+def test_a_table_as_a_spreadsheet_saves_it_has_marks_of_bytes_quotes_and_empty_columns_and_lines(street, tmp_path):
+    path = tmp_path / "office.csv"
+    path.write_bytes('from;where;layer;NAME;WIDTH : INT;;\r\nMARKINGS;class=zebra;"Straße ""A""";"a;b";{width_m:mm};;\r\n;;;;;;\r\n\r\n'
+                     .encode("utf-8-sig"))
+    made = apply_template(read_template(path, SOURCES), street)
+    assert made.layers['Straße "A"'].rows == [{"NAME": "a;b", "WIDTH": 4000}]
+
+
+def test_what_the_client_has_just_written_is_in_the_copy_of_its_file(street, tmp_path):
+    """A GeoPackage that a program has open keeps its latest rows in a file beside it."""
+    gdal, ogr, osr = (pytest.importorskip(f"osgeo.{name}") for name in ("gdal", "ogr", "osr"))
+    path, filled = str(tmp_path / "office.gpkg"), str(tmp_path / "filled.gpkg")
+    dataset = gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)
+    dataset.CreateLayer("AREA", osr.SpatialReference(UTM), ogr.wkbPolygon25D, ["SPATIAL_INDEX=NO"]).CreateField(ogr.FieldDefn("CODE", ogr.OFTString))
+    dataset = None
+    with closing(sqlite3.connect(path)) as program:
+        program.execute("PRAGMA journal_mode=WAL")
+        program.execute("INSERT INTO AREA (CODE) VALUES ('theirs')")
+        program.commit()
+        made = apply_template(template(tmp_path, "from;where;layer;CODE", "MARKINGS;;AREA;12"), street, layers_of_file(path, UTM))
+        write_client_layers(made.layers, filled, path)
+    layer = (dataset := ogr.Open(filled)).GetLayerByName("AREA")
+    assert [feature["CODE"] for feature in layer] == ["theirs", "12", "12"]
+    layer = dataset = None
+
+
+@pytest.mark.parametrize("name", ["fid", "geom"])
+def test_names_of_fields_that_a_geopackage_has_itself_are_the_clients_too(name, street, tmp_path):
+    ogr = pytest.importorskip("osgeo.ogr")
+    made = apply_template(template(tmp_path, f"from;where;layer;{name}", "MARKINGS;;AREA;{number}"), street)
+    write_client_layers(made.layers, str(tmp_path / "client.gpkg"))
+    layer = (dataset := ogr.Open(str(tmp_path / "client.gpkg"))).GetLayerByName("AREA")
+    assert layer.GetFeatureCount() == 2 and layer.GetExtent() == (0, 7, 0, 2)
+    assert [feature[name] for feature in layer] == [1, 2]
+    layer = dataset = None
 
 
 def test_a_text_in_a_field_of_numbers_is_refused(street, tmp_path):
