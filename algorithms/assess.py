@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS
+from ..core.lazy import shapely
 from .algorithm import Algorithm, SettingSpec, settings_class
 from .texts import tr
 
@@ -66,8 +67,6 @@ def layer_and_excluded(call, name):
 
 def _read(source):
     """(AssessedLayer, place of each of its rows among those of the source)."""
-    import shapely
-
     from ..products.assess.layers import AssessedLayer
 
     layer, indices = AssessedLayer(source.label, [], [], source.crs), []
@@ -93,8 +92,6 @@ def compared_lines(result, reference, progress):
 
 def painted_of(call, name, progress):
     """(AssessedLayer of polygons and lines, whether it was a raster) of a vector or raster layer."""
-    import shapely
-
     from ..core.io.crs import in_metres
     from ..products.assess.layers import AssessedLayer, polygons_of_raster
 
@@ -122,8 +119,6 @@ def frame_of_drive(call, crs):
 
 def area_of(call, crs, warn):
     """The union of AREA's polygons in the CRS; None where it was not given."""
-    import shapely
-
     from ..products.assess.layers import check_kind, in_crs
 
     layer = layer_of(call, "AREA")

@@ -13,6 +13,7 @@ from pathlib import Path
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_memory, out_of_memory
 from ..core.common.progress import RememberedMessages
+from ..core.lazy import gdal
 from .algorithm import WARNINGS, settings_class
 from .destinations import Unfinished, check_folder, check_suffix, check_writable, destination_path
 from .provenance import provenance_now, run_facts, sign_file, sign_report
@@ -157,7 +158,6 @@ class Call:
         """The file of an optional raster input, reprojected by a small VRT where it lies in another CRS; None where it was not given."""
         if not self.parameters.get(name):
             return None
-        from osgeo import gdal
 
         from ..core.io.crs import parse_crs, place_of_raster, same_crs
         from ..core.io.local_files import gdal_exceptions, open_raster

@@ -9,7 +9,7 @@ ALGORITHMS = tuple(value for module in MODULES for value in vars(module).values(
 
 
 def toolbox_number(ID):
-    """"2.3" for the third algorithm of the second group: the toolbox sorts by name, and the number keeps the order of the work."""
+    """"2.3" for the third algorithm of the second group, "6.03" where a group has ten or more: the toolbox sorts by name."""
     declared = next(algorithm for algorithm in ALGORITHMS if algorithm.ID == ID)
     group = [algorithm.ID for algorithm in ALGORITHMS if algorithm.GROUP == declared.GROUP]
-    return f"{GROUPS.index(declared.GROUP) + 1}.{group.index(ID) + 1}"
+    return f"{GROUPS.index(declared.GROUP) + 1}.{group.index(ID) + 1:0{len(str(len(group)))}}"

@@ -70,7 +70,8 @@ class ClassifyCloud(Algorithm):
         from collections import Counter
 
         from ..core.survey.las.reader import read_headers
-        from ..products.cloud import CloudLayers, PointClass, PointClassifier, classified_copy
+        from ..products.cloud.classify import CloudLayers, PointClass, PointClassifier
+        from ..products.cloud.rewrite import classified_copy
 
         files = read_headers(call.point_clouds(), given=call.crs())
         copies = _copies(call, files, progress)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_ATTRIBUTES, ROAD_EDGES, SIGNALS
 from ..core.common.setting import Limited, setting
+from ..core.lazy import shapely
 from .algorithm import Algorithm, SettingSpec
 from .call import existing_file
 from .survey_input import road_points_of
@@ -127,6 +128,80 @@ def fault_table(found):
     return [(tr("Findings of the check"), (tr("Fault"), tr("Count")), counts)] if counts else []
 
 
+ATTRIBUTES = "products.export.road_attributes:AttributeSettings"
+ATTRIBUTE_SETTINGS = (
+    SettingSpec("CORRIDOR", ATTRIBUTES, "corridor", tr("Corridor either side of a way (m)"),
+                tr("How far the middle of a lane may lie from the way of its road. Raise it for roads of many lanes that are one way; lower it where "
+                   "side roads run beside the road.")),
+)
+
+
+class RoadAttributes(Algorithm):
+    ID, TITLE, GROUP = "roadattributes", "Attributes of OpenStreetMap", "Export"
+    SUMMARY = "Gives lanes the name, number, speed limit, surface and number of lanes of the OpenStreetMap way that they lie along."
+    HELP = ("The ways come from a file of yours, in the XML of OpenStreetMap (.osm) or as a layer of lines with the tags as fields; nothing is "
+            "fetched from the network. A lane belongs to the nearest way within the corridor that runs as the lane does; a one-way road counts "
+            "for lanes in its direction of travel alone. A value that holds along more than half of a lane becomes the lane's; what no way says "
+            "stays empty, or as it was.\n\n"
+            "The exports write the names and speed limits of such lanes into OpenDRIVE and Lanelet2. Limits that a way names by a law, such as "
+            "DE:urban, are not taken for numbers. Data of OpenStreetMap are under the ODbL: name the source.")
+    TAGS = ("OpenStreetMap", "OSM", "speed limit", "maxspeed", "street name", "surface", "HD map")
+    LOOKS = {"OUTPUT": "LANES"}
+    NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("KNOWN", tr("Lanes of which something is known")),
+               ("SPEEDS", tr("Lanes with a speed limit")), ("NAMES", tr("Lanes with a name")))
+
+    def declare(self):
+        self.add_input("layer", "LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
+        self.add_input("file", "OSM_FILE", tr("OpenStreetMap file"), tr("An extract in XML with the ending .osm, that holds the roads."),
+                       optional=True, file_filter="OpenStreetMap (*.osm *.OSM *.xml);;All files (*.*)")
+        self.add_input("layer", "WAYS", tr("Ways"), tr("Instead of the file: lines with the fields name, ref, maxspeed, lanes, oneway, surface, "
+                                                       "highway, as far as there are, or other_tags."), optional=True)
+        self.add_settings(ATTRIBUTE_SETTINGS)
+        self.add_sink("OUTPUT", tr("Lanes with attributes"), tr("The same lanes."), fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ")
+
+    def work(self, call, progress):
+        from ..core.driving.layers import Lanes
+        from ..products.export.road_attributes import attributes_along, read_osm_ways
+
+        if bool(call.file("OSM_FILE")) == call.given("WAYS"):
+            raise RoadExtractionError(tr("Give either {file} (OSM_FILE) or {layer} (WAYS).").format(
+                file=call.label("OSM_FILE"), layer=call.label("WAYS")))
+        areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
+        lanes = Lanes.from_features(areas)
+        if not len(lanes):
+            raise RoadExtractionError(
+                tr("The layer of lanes is empty. Run Driving lines or Road map where there are marking lines or road edges."))
+        if not lanes.crs:
+            raise RoadExtractionError(
+                tr("The layer of lanes has no CRS, so its latitude and longitude are unknown. Set the CRS of the layer and run again."))
+        if call.file("OSM_FILE"):
+            ways = read_osm_ways(existing_file(call.file("OSM_FILE"), call.label("OSM_FILE")), lanes.crs, progress.part(0.0, 0.5))
+        else:
+            ways = _ways_of_layer(call.source("WAYS"), lanes.crs)
+        known = attributes_along(lanes, ways, call.settings(ATTRIBUTE_SETTINGS))
+        for row in areas.rows:
+            row.update(known.get(str(row["lane_id"]), {}))
+        if not known:
+            progress.warn(tr("No lane lies along a way that says anything. Do the ways cover the survey?"))
+        progress.info(tr("{known} of {count} lanes and pieces lie along ways that say something.").format(known=len(known), count=len(lanes)))
+        call.layer("OUTPUT", areas)
+        counts = {name: float(sum(row.get(field) is not None for row in areas.rows))
+                  for name, field in (("SPEEDS", "speed_kmh"), ("NAMES", "name"))}
+        return {"LANE_COUNT": float(len(lanes)), "KNOWN": float(len(known)), **counts}
+
+
+def _ways_of_layer(source, crs):
+    """The roads of a layer of lines in the CRS of the lanes."""
+    from ..products.export.road_attributes import ways_in
+    from .vector_source import LINE
+
+    if source.kind != LINE or not source.stored_crs:
+        raise RoadExtractionError(tr("{label} must be a layer of lines with a CRS.").format(label=source.label))
+    lines = [(shapely.get_coordinates(part), dict(zip(source.names, values))) for wkb, values in source.stored_rows() if wkb
+             for part in shapely.get_parts(shapely.from_wkb(wkb))]
+    return ways_in(lines, source.stored_crs, crs)
+
+
 ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
 VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
 ROAD_SETTINGS = (
@@ -152,8 +227,8 @@ class ExportOpenDrive(Algorithm):
             "shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra crossings, stop "
             "lines, arrows and hatched areas are objects. What was inferred or bridged, and the uncertainty of every lane, is said in userData.\n\n"
             "The file is read back and checked before it is handed over: the report says how far its borders lie from the survey's. OpenDRIVE "
-            "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Signals, signs, "
-            "speed limits and buildings are not there.")
+            "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Speed limits and "
+            "names of roads are written where the lanes have these fields, signals and poles where their layer is given.")
     TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
     NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
                ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
@@ -261,7 +336,8 @@ class ExportLanelet2(Algorithm):
             "markings. What was inferred or bridged has the tags lanewright:status and lanewright:confidence, and "
             "lanewright:sigma_m is the uncertainty of the lane.\n\n"
             "The file is read back and checked before it is handed over; the report names the transformation to latitude and longitude and what "
-            "the heights are. Traffic lights, signs, right of way and regulatory elements are not there.")
+            "the heights are. Speed limits and names of roads are written where the lanes have these fields. Traffic lights and signs, where their "
+            "layer is given, are regulatory elements of the lanelets that they hold for; right of way is not there.")
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
     NUMBERS = (("LANELETS", tr("Lanelets")), ("WAYS", tr("Ways")), ("NODES", tr("Nodes")), ("SUCCESSORS", tr("Links from one lane to the next")),
                ("FINDINGS", tr("Findings of the check")))
@@ -296,6 +372,12 @@ def write_lanelet2(call, source, name, progress):
     progress.report(0.8)
     notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
                               for kind, count in draft.skipped.items())]
+    if draft.added:
+        notes.append(tr("{count} lanes end where another begins that they are not linked to; in Lanelet2 the one leads to the other.").format(
+            count=draft.added))
+    if draft.unmet:
+        notes.append(tr("{count} links of the map join lanes whose ends do not meet; Lanelet2 cannot say them, and they were left out.").format(
+            count=draft.unmet))
     if degrees.local:
         notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
     warn_of_faults(notes, check, progress)
@@ -329,7 +411,7 @@ class ExportCad(Algorithm):
             "with a colour. LandXML 1.2: the axis of every road and every driving line as an alignment of the fitted lines, curves and spirals, "
             "with a profile of tangents; a line that no elements follow within the tolerance is an irregular line.\n\n"
             "DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US "
-            "survey feet. Surfaces and texts are not there; Cross-sections draws sections as DXF.")
+            "survey feet. Surface model writes the surface, Cross-sections the sections.")
     TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
     NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
 
@@ -384,8 +466,7 @@ def _landxml(call, source, progress):
 
     tolerance = call.value("TOLERANCE")
     alignments = alignments_of(source, tolerance)
-    now = datetime.now()
-    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))
+    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), datetime.now())
     Path(call.new_file("OUTPUT")).write_text(text, encoding="utf-8")
     irregular = sum(alignment.plan is None for alignment in alignments)
     if irregular:
@@ -493,7 +574,8 @@ class ImportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "importopendrive", "Import OpenDRIVE", "Export"
     SUMMARY = "Reads an OpenDRIVE map (1.1 to 1.8) into layers like those of the road map, to lay it over a survey and assess it."
     HELP = ("Lines, arcs, spirals and polynomials of the reference line, elevation, superelevation and shape, lane offsets, widths and borders, road "
-            "marks, heights of curbs and the links of lanes are read. Signals, objects, bridges, railways and the lines of their paint are not.\n\n"
+            "marks, heights of curbs and the links of lanes are read; signals with the lanes that they hold for, poles, crossings, stop lines, "
+            "arrows and hatched areas, speed limits and names of roads too. What is not read, such as buildings, is counted in the log.\n\n"
             "Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one "
             "begins, with the height of its curb. Gaps of reference lines, borders that fold back in a tight curve, and widths below 0 are named "
             "with their road; folds are cut off. Files that declare entities, or are not what a map can be, are refused.")
@@ -524,8 +606,9 @@ def _road_layers(call, progress):
 class ImportLanelet2(Algorithm):
     ID, TITLE, GROUP = "importlanelet2", "Import Lanelet2", "Export"
     SUMMARY = "Reads a Lanelet2 map into layers like those of the road map, to lay it over a survey and assess it."
-    HELP = ("Every lanelet becomes a lane between its two borders, with the lanelets that begin where it ends as successors. Footways, areas and "
-            "regulatory elements are not read. Heights are the tag ele of the nodes, as they stand in the file.\n\n"
+    HELP = ("Every lanelet becomes a lane between its two borders, with the lanelets that begin where it ends as successors. Traffic "
+            "lights and signs with the lanes that obey them, poles, crosswalks, stop lines and speed limits are read. Footways, areas and "
+            "right of way are not read and counted in the log. Heights are the tag ele of the nodes, as they stand in the file.\n\n"
             "Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone, or whose latitudes and longitudes are all about 0, "
             "gets layers in local coordinates, without CRS.")
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")

@@ -1,6 +1,19 @@
-"""What else the road shows: cross-sections, and what stands beside it."""
+"""What else the road shows: its cross-sections and surface, and what stands beside it."""
 
-from ..core.common.features import CROSS_SECTIONS, DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES, ROADSIDE, ROADSIDE_OBJECTS
+from datetime import datetime
+from pathlib import Path
+
+from ..core.common.features import (
+    BREAKLINES,
+    CROSS_SECTIONS,
+    DRIVING_LINES,
+    LANES,
+    MARKING_LINES,
+    ROAD_EDGES,
+    ROADSIDE,
+    ROADSIDE_OBJECTS,
+    SURFACE_FACES,
+)
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, SettingSpec
 from .survey_input import READING_SETTINGS, check_layers_on_roads, open_survey_of
@@ -15,10 +28,11 @@ BORDER_LAYERS = {
 }
 
 
-def add_borders(algorithm, *helps):
-    """Declare the layers of the road map, each with what it is good for."""
+def add_borders(algorithm, *helps, needed=()):
+    """Declare the layers of the road map, each with what it is good for, "" where it is not asked for; those `needed` must be given."""
     for (name, (label, _, geometry)), text in zip(BORDER_LAYERS.items(), helps, strict=True):
-        algorithm.add_input("layer", name, label, text, geometry, optional=True)
+        if text:
+            algorithm.add_input("layer", name, label, text, geometry, optional=name not in needed)
 
 
 def survey_with_borders(call, progress, above_road):
@@ -31,7 +45,8 @@ def survey_with_borders(call, progress, above_road):
     from ..core.io.crs import check_same_crs
     from ..products.inventory.borders import BorderLayers
 
-    layers = {name: call.features(name, schema, geometry) for name, (_, schema, geometry) in BORDER_LAYERS.items()}
+    layers = {name: call.features(name, schema, geometry) if call.algorithm.parameter(name) is not None else None
+              for name, (_, schema, geometry) in BORDER_LAYERS.items()}
     for name, features in layers.items():
         if features is not None and not len(features):
             progress.warn(tr("{label} holds no features and is not used.").format(label=call.label(name)))
@@ -104,6 +119,12 @@ class CrossSections(Algorithm):
         self.add_output("file", "DRAWING", tr("Drawing of the sections"), tr(
             "Every section true to scale, one below the other, with stations, heights and slopes, for CAD; lengths are metres."),
                         suffixes=(".dxf",), file_filter="DXF (*.dxf)", optional=True, by_default=False)
+        self.add_output("file", "LANDXML", tr("Sections as LandXML"), tr(
+            "LandXML 1.2: the reference line of every road as an alignment with its sections, offsets positive to the right as that format has "
+            "them."), suffixes=(".xml", ".landxml"), file_filter="LandXML (*.xml *.landxml)", optional=True, by_default=False)
+        self.add_output("file", "HEIGHTS", tr("Table of stations, offsets and heights"), tr(
+            "A row for every place of every section: road, station, offset, left positive, and height, in metres."),
+                        suffixes=(".csv",), file_filter="CSV (*.csv)", optional=True, by_default=False)
         self.add_report()
 
     def work(self, call, progress):
@@ -116,10 +137,14 @@ class CrossSections(Algorithm):
         lines, table = sections_to_features(sections)
         call.layer("OUTPUT", lines)
         call.layer("TABLE", table)
-        if call.wants("DRAWING"):
-            from ..products.cad import section_drawing, write_dxf
+        from ..products.cad import landxml_text, section_alignments, section_drawing, section_table, write_dxf
 
+        if call.wants("DRAWING"):
             write_dxf(section_drawing(sections), call.new_file("DRAWING"))
+        if call.wants("LANDXML"):
+            call.text("LANDXML", landxml_text(section_alignments(sections), survey.crs, tr("Cross-sections"), datetime.now()))
+        if call.wants("HEIGHTS"):
+            call.text("HEIGHTS", section_table(sections))
         call.text("REPORT", cross_section_report(sections, table))
         return _numbers(table, len(sections.sections))
 
@@ -129,6 +154,88 @@ def _numbers(table, count):
     clear = [value for value in table.column("clear_m") if value is not None]
     counts = {"SECTIONS": float(count), "EXCEEDED": float(sum(bool(row["exceeds"]) for row in table.rows))}
     return {**counts, **({"LARGEST_RUT": max(ruts)} if ruts else {}), **({"LEAST_CLEARANCE": min(clear)} if clear else {})}
+
+
+SURFACE = "products.surface.model:SurfaceSettings"
+ABOVE_SURFACE = 3.0  # m of height above the road that are read: banks beside it, and what stands on it, which is told from the ground
+
+SURFACE_SETTINGS = (
+    SettingSpec("TOLERANCE", SURFACE, "tolerance", tr("Tolerance (m)"),
+                tr("By how much the triangles may miss the ground of the carriageway (root mean square). Smaller shows ruts and settlements "
+                   "with more triangles, down to what noise leaves, 2 to 3 mm; 0.01 or more is enough for volumes.")),
+    SettingSpec("REACH", SURFACE, "reach", tr("Ground beside the carriageway (m)"),
+                tr("How far beyond the road edges the surface reaches. Farther takes in sidewalk, verge and ditch, but also walls and hedges "
+                   "whose foot looks like a bank.")),
+    SettingSpec("CELL_SIZE", SURFACE, "cell_size", tr("Cell size of the heights (m)"),
+                tr("Of the raster alone. Smaller shows curbs more sharply in a larger file.")),
+    SettingSpec("MAX_GAP", SURFACE, "max_gap", tr("Longest gap bridged (m)"),
+                tr("Stretches of road that nobody saw up to this length are covered by triangles of status bridged; longer ones are left out. Higher "
+                   "closes the surface under long shadows, but nothing was measured there."), advanced=True),
+)
+
+
+class SurfaceOfRoad(Algorithm):
+    ID, TITLE, GROUP = "surfacemodel", "Surface model", "Inventory"
+    SUMMARY = "Makes the ground of the road for design: breaklines, and triangles between them that keep to a tolerance, for CAD and as a raster."
+    HELP = ("Breaklines are the bottom of every edge and, where it has a step, its top; the flow line of a gutter; the crown of a road that falls to "
+            "both sides; and the borders of lanes. Their heights are measured across them; where the ground was hidden there is no line. The "
+            "triangles follow them, edges first, then gutter, crown and lanes. A line within 10 cm of a stronger one is in the layer alone.\n\n"
+            "Triangles get their vertices where they miss the ground most, until they keep to the tolerance. The ground is the median of the points "
+            "over 1 m along and 5 cm across the road, without vehicles and whatever else stands on it, and freed of the steps between scanners and "
+            "passes. The vertices are joined by constrained Delaunay triangles.\n\n"
+            "The file has breaklines and triangles as LandXML 1.2 (surface) or DXF (3DFACE and polylines), by its ending.")
+    TAGS = ("TIN", "DTM", "DEM", "terrain", "breakline", "LandXML", "DXF", "triangulation")
+    NUMBERS = (("VERTICES", tr("Vertices of the triangles")), ("TRIANGLES", tr("Triangles")),
+               ("RMSE", tr("Ground of the carriageway against the triangles, root mean square (m)")),
+               ("SHARE", tr("Vertices for every hundred points of the ground")))
+
+    def declare(self):
+        self.add_survey()
+        add_borders(self,
+                    tr("Lines along whose bottom and top the surface breaks; between them the carriageway lies."),
+                    tr("Without Lanes the surface follows the painted lines."),
+                    "",
+                    tr("With it the surface follows the borders of lanes."), needed=("ROAD_EDGES",))
+        self.add_settings(SURFACE_SETTINGS)
+        self.add_settings(READING_SETTINGS)
+        self.add_sink("BREAKLINES", tr("Breaklines"), tr("A line for every stretch that was measured."), fields=BREAKLINES, geometry="LineStringZ")
+        self.add_sink("TIN", tr("Triangles"), tr("A triangle where status is bridged lies over ground that was not seen."), fields=SURFACE_FACES,
+                      geometry="PolygonZ", optional=True)
+        self.add_output("file", "SURFACE_FILE", tr("Surface for CAD"), tr(
+            "With the ending .xml for LandXML, or .dxf, which names no CRS. Both have the units of the survey's CRS."),
+                        suffixes=(".xml", ".landxml", ".dxf"), file_filter="LandXML (*.xml *.landxml);;DXF (*.dxf)", optional=True, by_default=False)
+        self.add_output("raster", "DEM", tr("Heights"), tr("A raster of the heights of the triangles."), optional=True, by_default=False)
+
+    def work(self, call, progress):
+        from ..products.surface.model import make_surface_model, surface_to_features, write_heights
+
+        settings = call.settings(SURFACE_SETTINGS)
+        survey, layers = survey_with_borders(call, progress.part(0.0, 0.4), ABOVE_SURFACE)
+        model = make_surface_model(survey, layers, settings, progress.part(0.4, 0.9))
+        for note in model.notes:
+            progress.warn(note)
+        lines, faces = surface_to_features(model)
+        call.layer("BREAKLINES", lines)
+        call.layer("TIN", faces)
+        if call.wants("SURFACE_FILE"):
+            _write_surface(call, model)
+        if call.wants("DEM"):
+            write_heights(model, call.new_file("DEM"), settings.cell_size, progress.part(0.9, 1.0))
+        share = 100 * model.vertices / max(model.points, 1)
+        progress.info(tr("{triangles} triangles with {vertices} vertices, {share:.2f} for every hundred points; they miss the ground of the "
+                         "carriageway by {rmse:.1f} mm (root mean square).").format(triangles=len(faces), vertices=model.vertices, share=share,
+                                                                                   rmse=1000 * model.rmse))
+        return {"VERTICES": float(model.vertices), "TRIANGLES": float(len(faces)), "RMSE": model.rmse, "SHARE": share}
+
+
+def _write_surface(call, model):
+    from ..products.cad import cad_surface, landxml_text, surface_lines, write_dxf
+
+    surface, path = cad_surface(model), call.new_file("SURFACE_FILE")
+    if path.lower().endswith(".dxf"):
+        write_dxf(surface_lines(surface), path, model.crs, surface.vertices[surface.faces])
+    else:
+        Path(path).write_text(landxml_text((), model.crs, tr("Surface"), datetime.now(), surface), encoding="utf-8")
 
 
 ROADSIDE_OF = "products.inventory.borders:RoadsideSettings"

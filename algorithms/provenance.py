@@ -8,10 +8,12 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..core.common.texts import told
+from ..core.lazy import gdal
 from .texts import tr
 
 if TYPE_CHECKING:
@@ -104,6 +106,7 @@ def _without_folders(value, folders):
     return FOLDER.sub(lambda found: found["before"], value)
 
 
+@lru_cache(maxsize=256)   # every look at the layers of a project reads them all
 def _read(algorithm, version, parameters, time):
     """A Provenance of its texts; None where they are cut off or somebody else's."""
     try:
@@ -153,8 +156,6 @@ def sign_file(path: str | os.PathLike[str], provenance: Provenance) -> None:
 
 
 def _sign_raster(path, provenance):
-    from osgeo import gdal
-
     from ..core.io.local_files import gdal_exceptions
 
     with gdal_exceptions():

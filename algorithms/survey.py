@@ -1,6 +1,7 @@
 """What was measured: trajectories imported and estimated, files inspected, a survey with known truth made."""
 
 from ..core.common.features import CONTROL_POINTS, ESTIMATED_TRAJECTORY, TRAJECTORY
+from ..core.lazy import np
 from .algorithm import Algorithm, SettingSpec
 from .survey_files import trajectory_features
 from .survey_input import SURVEY_SETTINGS, imported_trajectory
@@ -93,8 +94,6 @@ class EstimateTrajectory(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        import numpy as np
-
         from ..core.survey.estimation.estimate import estimate_trajectory
         from ..products.report.survey import estimated_trajectory_report
 

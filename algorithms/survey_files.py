@@ -10,6 +10,7 @@ from glob import glob, has_magic
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
+from ..core.lazy import np, shapely
 from .texts import tr
 from .vector_source import LINE, POINT, vertices_of
 
@@ -103,9 +104,6 @@ def read_trajectory_source(source, crs="", heights_needed=True):
 
     Without heights, where none are needed, all are 0.
     """
-    import numpy as np
-    import shapely
-
     from ..core.common.features import ESTIMATED_TRAJECTORY
     from ..core.survey.trajectory.reader import trajectory_from_columns, trajectory_from_rows
 
@@ -141,8 +139,6 @@ def _refuse_empty(source, count):
 
 def _line_columns(source):
     """Vertices in drawing order; M, where there is one, is the time."""
-    import numpy as np
-
     rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb]
     x, y, z, time = np.concatenate([np.empty((0, 4)), *rows]).T
     return {"x": x, "y": y, **({"z": z} if source.has_z else {}), **({"time": time} if source.has_m else {})}
@@ -153,9 +149,6 @@ def trajectory_features(trajectory, **further):
 
     `further` columns, name to (N,) values, belong to an estimated trajectory.
     """
-    import numpy as np
-    import shapely
-
     from ..core.common.features import ESTIMATED_TRAJECTORY, TRAJECTORY, Features
     from ..core.io.crs import parse_crs
 
@@ -177,8 +170,6 @@ def trajectory_features(trajectory, **further):
 
 def _road_pass_station(trajectory):
     """(road, pass, station) of every row; None in stretches too short to be a pass."""
-    import numpy as np
-
     from ..core.survey.frame.road_frame import build_frame
 
     locations = [(None, None, None)] * len(trajectory)

@@ -1,11 +1,10 @@
 """Opening what the stages work on: the survey, the road frame, the road points."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import CORRECTIONS, Features
+from ..core.lazy import shapely
 from .algorithm import SettingSpec
 from .texts import tr
 
@@ -246,8 +245,6 @@ def read_corrections(source):
 
     Raises RoadExtractionError if one of these two is missing.
     """
-    import shapely
-
     index = {name.lower(): k for k, name in enumerate(source.names)}
     missing = [name for name in NEEDED if name not in index]
     if missing:

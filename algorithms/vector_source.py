@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
+from ..core.lazy import np, shapely
 from .texts import tr
 
 POINT, LINE, POLYGON, TABLE, UNKNOWN = "point", "line", "polygon", "table", "unknown"
@@ -56,9 +57,6 @@ class VectorSource:
 
 def _checked(source, rows):
     """The rows of a layer whose geometries have vertices enough, and coordinates that are numbers and lie on earth."""
-    import numpy as np
-    import shapely
-
     read, ids = [], []
     for row in rows:
         read.append(row)
@@ -95,9 +93,6 @@ def read_features(source, schema, geometry_type):
     Multi-part geometries become one row a part. Raises RoadExtractionError where a
     field that is needed is missing, the geometry is of another kind, or carries no heights.
     """
-    import numpy as np
-    import shapely
-
     indices = _columns(source, schema)
     _check_kind(source, geometry_type)
     measured = geometry_type.endswith("ZM")
@@ -158,8 +153,6 @@ def _measured_parts(wkb, label):
 
 def vertices_of(wkb):
     """(V, 4) x, y, z and m of all vertices of points or lines, in one part or many; NaN where there is no z or m."""
-    import numpy as np
-
     runs = [np.empty((0, 4))]
     for first_byte, count, has_z, has_m in _runs(wkb):
         runs.append(np.full((count, 4), np.nan))
@@ -169,8 +162,6 @@ def vertices_of(wkb):
 
 def scaled_wkb(wkb, across, up):
     """Little endian WKB with x and y times `across` and z times `up`; measures stay."""
-    import numpy as np
-
     data = bytearray(wkb)
     for first_byte, count, has_z, has_m in _runs(data):
         values = np.frombuffer(data, "<f8", count * (2 + has_z + has_m), first_byte).reshape(count, -1)
@@ -204,7 +195,6 @@ def in_file_units(features):
         return features
     if features.geometry_type.endswith("ZM"):
         return MeasuredInFileUnits(features, wkt, units)
-    import shapely
 
     moved = [geometry if geometry is None else shapely.transform(geometry, units.in_file, include_z=True) for geometry in features.geometries]
     on_map = [field.name for field in features.schema if field.on_map]

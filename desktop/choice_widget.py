@@ -1,7 +1,5 @@
 """A choice in the user's language; its value stays the word of commands and models."""
 
-from __future__ import annotations
-
 from ..algorithms.texts import choice_word
 from .dialog_wrapper import DialogWrapper
 from .widgets import choices

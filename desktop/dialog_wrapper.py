@@ -1,7 +1,5 @@
 """Base of our own widgets in Processing's dialogs."""
 
-from __future__ import annotations
-
 from processing.gui.wrappers import WidgetWrapper
 from qgis.gui import QgsGui
 

@@ -7,6 +7,7 @@ from qgis.PyQt.QtCore import QObject, QUrl
 from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
 
+from ..algorithms.destinations import destination_path
 from ..core.pipeline.kept_run import WINDOW
 from ..processing_provider.results.layer_tree import NAMES_ONLY, REPLACES_LAST_RUN
 from ..processing_provider.results.road_maps import clouds_of, road_maps
@@ -174,11 +175,15 @@ class Menu(QObject):
 
     def run_again(self, road_map, corrections):
         """Road map with all that a road map was made from, and the corrections made in it, if any."""
-        from .review.steps import values_again
+        from .review.steps import saved, values_again
 
         clouds, missing = clouds_of(road_map, QgsProject.instance())
         self.open_road_map(**{**values_again(road_map), **({} if missing else {"POINT_CLOUDS": clouds}),
                               "CORRECTIONS": None if corrections is None else corrections.id()})
+        places = saved(road_map)
+        folders = [path.parent for path in map(destination_path, places.values()) if path is not None]
+        if folders and self.dialog is not None:
+            self.dialog.say_places(str(folders[0]), places)
 
     def _fill_layer_menu(self, menu):
         """"Run this stage again" for a layer of ours."""

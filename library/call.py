@@ -1,7 +1,5 @@
 """One run of an algorithm on files, without QGIS."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The program `lanewright`: every algorithm with the names and values of QGIS Processing, on files."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

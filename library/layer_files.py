@@ -1,7 +1,5 @@
 """Vector files without QGIS: layers read and written by fiona."""
 
-from __future__ import annotations
-
 import logging
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,6 +8,7 @@ from ..algorithms.destinations import package_and_table
 from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import OFFLINE, VECTOR_DRIVERS, check_crs_of_geojson
+from ..core.lazy import fiona, np, shapely
 from . import measured_lines
 
 DRIVERS = {"gpkg": "GPKG", "fgb": "FlatGeobuf", "shp": "ESRI Shapefile", "geojson": "GeoJSON"}
@@ -21,7 +20,6 @@ COLUMN_TYPES = {int: "int64", float: "float", str: "str"}
 
 def _shape(geometry):
     """A geometry of fiona as shapely has it; lines and areas by arrays, whose coordinates shapely does not look at one by one."""
-    import numpy as np
     from shapely.geometry import LineString, Polygon, shape
 
     if geometry.type == "LineString":
@@ -61,8 +59,6 @@ def first_table(path):
 @contextmanager
 def _opened(path, table):
     """A layer of a file, for reading; nothing is fetched for it."""
-    import fiona
-
     with fiona.Env(**OFFLINE), fiona.open(path, layer=table, enabled_drivers=list(VECTOR_DRIVERS)) as layer:
         yield layer
 
@@ -93,14 +89,10 @@ class LayerFile(VectorSource):
         self.has_m = self.kind == LINE and self.has_z and measured_lines.may_have_measures(self.path, self.table)
 
     def _check_crs(self):
-        import fiona
-
         with fiona.open(self.path, layer=self.table, NATIVE_DATA="YES") as layer:
             check_crs_of_geojson(self.path, layer.tags(ns="NATIVE_DATA").get("NATIVE_DATA"))
 
     def stored_rows(self, measures=False, check_validity=True):
-        import shapely
-
         if measures and self.has_m:
             for number, wkb, values in measured_lines.rows(self.path, self.table, self.names, self.label):
                 self.feature_id = number
@@ -177,7 +169,6 @@ def write_layer(path, table, features, check_cancelled):
     if features.geometry_type.endswith("ZM"):
         measured_lines.write(path, table, features, check_cancelled)
         return
-    import fiona
 
     driver = DRIVERS[Path(path).suffix.lower().lstrip(".")]
     schema = {"geometry": GEOMETRIES[features.geometry_type],

@@ -1,7 +1,5 @@
 """Lines with measures (M) in vector files: fiona leaves measures out, so GDAL's own Python module reads and writes these."""
 
-from __future__ import annotations
-
 import sqlite3
 from contextlib import closing
 from importlib.util import find_spec
@@ -10,6 +8,7 @@ from pathlib import Path
 from ..algorithms.vector_source import crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import open_vector
+from ..core.lazy import gdal, ogr, osr
 
 DRIVERS = {".gpkg": "GPKG", ".shp": "ESRI Shapefile"}  # formats that keep measures
 
@@ -25,8 +24,6 @@ def check_gdal(why):
 def may_have_measures(path, table):
     """Whether a layer of lines has measures; where GDAL's Python module is missing, also True where nobody can tell."""
     if find_spec("osgeo") is not None:
-        from osgeo import ogr
-
         dataset = open_vector(path)
         layer = None if dataset is None else dataset.GetLayerByName(table)
         return layer is not None and bool(ogr.GT_HasM(layer.GetGeomType()))
@@ -48,7 +45,6 @@ def check_format(path, label):
 def rows(path, table, names, label):
     """(feature id, ISO WKB or None, values) of every row, as VectorSource gives them."""
     check_gdal(f"{label} has lines with measures")
-    from osgeo import ogr
 
     dataset = open_vector(path)
     layer = dataset.GetLayerByName(table)
@@ -60,8 +56,6 @@ def rows(path, table, names, label):
 
 def write(path, table, features, check_cancelled):
     """A layer of lines with Z and M into a new file, or as a table of a GeoPackage."""
-    from osgeo import gdal, ogr, osr
-
     from ..core.io.local_files import gdal_exceptions
 
     suffix = Path(path).suffix.lower()

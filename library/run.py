@@ -1,7 +1,5 @@
 """Run an algorithm on files."""
 
-from __future__ import annotations
-
 from ..algorithms.call import run as run_call
 from ..algorithms.catalogue import ALGORITHMS
 from ..algorithms.texts import languages

@@ -1,7 +1,5 @@
 """What users write for a parameter, as a text or a Python value, in the type that the parameter has."""
 
-from __future__ import annotations
-
 import math
 from difflib import get_close_matches
 from os import PathLike, fspath

@@ -8,6 +8,7 @@ from qgis.core import QgsDataSourceUri, QgsMapLayer, QgsProcessingFeatureSourceD
 from ..algorithms.destinations import destination_path
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import check_local, gdal_exceptions
+from ..core.lazy import gdal
 from .texts import tr
 
 OPENED_BY_QGIS = ("source", "vector", "raster", "layer")
@@ -125,8 +126,6 @@ def add_tables(written, path):
     written, path : Path
     Raises RoadExtractionError if another program keeps the database locked, or there is no room; then the tables of before stand.
     """
-    from osgeo import gdal
-
     try:
         with gdal_exceptions():
             target = gdal.OpenEx(str(path), gdal.OF_VECTOR | gdal.OF_UPDATE)

@@ -18,6 +18,7 @@ from qgis.PyQt.QtCore import QDate, QDateTime, QMetaType, Qt, QTime
 
 from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, plain_value
 from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.lazy import gdal, shapely
 from .texts import tr
 
 WKB_TYPES = {
@@ -52,8 +53,6 @@ def keeps_aliases(path):
     Of every other (scratch layers with path None, CSV, Shapefile, a GeoPackage before GDAL 3.7) QGIS warns for
     each field, and of comments too wherever there is an alias.
     """
-    from osgeo import gdal
-
     driver = gdal.GetDriverByName(QgsVectorFileWriter.driverForExtension(path.suffix)) if path else None
     kept = (driver.GetMetadataItem("DMD_CREATION_FIELD_DEFN_FLAGS") or "").split() if driver else ()
     return "AlternativeName" in kept and "Comment" in kept
@@ -74,8 +73,6 @@ def qgis_features(features, fields):
 
 def _as_wkb(features):
     """(WKB or None, row) of every feature; what is WKB already passes through."""
-    import shapely
-
     if features.geometry_type.endswith("ZM"):
         return iter(features)
     if features.geometry_type == "None" or not len(features):

@@ -1,19 +1,18 @@
-"""The layers of a road map for CAD: a DXF drawing of 3D polylines, one layer a class; and LandXML with alignments and profiles."""
+"""The road map for CAD: DXF drawings of 3D polylines and faces, one layer a class; LandXML with alignments, profiles, sections and surfaces."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import Any
 
 import numpy as np
 import shapely
 
-from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
 from ..core.common.texts import word
 from ..core.io.crs import FOOT, US_SURVEY_FOOT, FileUnits, as_in_file, horizontal_part, parse_crs
-from ..core.io.local_files import gdal_exceptions
 from ..core.io.weights import IO
 from .export.opendrive.exporter import OpenDriveSettings, draft_opendrive
 from .export.opendrive.geometry import PlanElement, PlanView
@@ -21,9 +20,12 @@ from .export.opendrive.reference_line import fit_reference
 from .export.sources import RoadMapSource
 from .export.xml_tree import XmlElement, xml_text
 from .inventory.cross_sections import RoadSections, exceeded
+from .surface.model import SurfaceModel
 
-COLOURS = {"LANE_BORDER": "#808080", "DRIVING_LINE": "#00a0ff", "MARKING_EDGE": "#ffffff", "MARKING_LANE": "#e0e0e0", "MARKING_CENTRE": "#ffd040",
-           "ROAD_EDGE": "#ff8000", "MARKING_AREA": "#ffff00", "SECTION_EXCEEDED": "#ff0000", "SECTION_GROUND": "#ffffff"}
+# source: AutoCAD Color Index, 7 white or black, 9 light grey
+COLOURS = {"LANE_BORDER": 8, "DRIVING_LINE": 150, "MARKING_EDGE": 7, "MARKING_LANE": 254, "MARKING_CENTRE": 40, "ROAD_EDGE": 30, "MARKING_AREA": 2,
+           "SECTION_EXCEEDED": 1, "SECTION_GROUND": 7, "SURFACE": 8, "BREAKLINE_EDGE": 30, "BREAKLINE_GUTTER": 150, "BREAKLINE_CROWN": 3,
+           "BREAKLINE_LANE": 6}
 LETTER = 0.25         # source: m of a text in a drawing of sections, 2.5 mm at 1 : 100 (ISO 3098)
 SECTIONS_IN_COLUMN = 10   # cost: a column of sections more or less
 
@@ -58,6 +60,34 @@ def dxf_lines(source: RoadMapSource) -> list[_DxfLine]:
     return lines
 
 
+def _on_map(sections, section):
+    """(offsets, heights on the map) of what was seen of a section."""
+    seen = np.isfinite(section.z)
+    d = section.d[seen]
+    return d, sections.frame.to_map(section.road, np.full(len(d), section.station), d, section.z[seen])[2]
+
+
+def section_alignments(sections: RoadSections) -> list[Alignment]:
+    """The reference line of every road with its sections."""
+    alignments = []
+    for road in sorted({section.road for section in sections.sections}):
+        members = [section for section in sections.sections if section.road == road]
+        length = sections.frame.road(road).length
+        s = np.linspace(0.0, length, max(int(length / AXIS_STEP), 1) + 1)
+        places = np.stack(sections.frame.to_map(road, s, 0.0 * s, 0.0 * s), axis=1)
+        alignments.append(Alignment(f"Road {road}", "Reference line of the stations", None, places, np.empty((0, 2)),
+                                    sections=[(section.station, np.stack(_on_map(sections, section), axis=1)) for section in members]))
+    return alignments
+
+
+def section_table(sections: RoadSections) -> str:
+    """Stations, offsets, left positive, and heights of all sections as CSV, in metres, one place a line."""
+    lines = ["road,station,offset,height"]
+    for section in sections.sections:
+        lines += [f"{section.road},{section.station:.3f},{offset:.3f},{height:.4f}" for offset, height in zip(*_on_map(sections, section))]
+    return "\n".join(lines) + "\n"
+
+
 def drawn_layers(layers: Mapping[str, Features]) -> list[_DxfLine]:
     """Lines and outlines of areas of layers under the names of these; a point is written as the first text of its row."""
     return [line for name, layer in layers.items() for line in _of(layer, lambda row, name=name: name)]  # type: ignore[misc]
@@ -70,9 +100,8 @@ def section_drawing(sections: RoadSections) -> list[_DxfLine]:
     """
     limits, placed = sections.settings.limits(), []
     for section in sections.sections:
-        seen = np.isfinite(section.z)
-        height = sections.frame.to_map(section.road, np.full(seen.sum(), section.station), section.d[seen], section.z[seen])[2]
-        placed.append((section, section.d[seen], height, np.floor(height.min()) - 1.0))
+        d, height = _on_map(sections, section)
+        placed.append((section, d, height, np.floor(height.min()) - 1.0))
     wide, lines, base = max(np.ptp(d) for _, d, _, _ in placed) + 40 * LETTER, [], 0.0
     for k, (section, d, height, datum) in enumerate(placed):
         left, top = k // SECTIONS_IN_COLUMN * wide, base if k % SECTIONS_IN_COLUMN else 0.0
@@ -125,40 +154,58 @@ def _of(layer: Features | None, name_of: Callable[[dict[str, Any]], str]) -> lis
     return lines
 
 
-def _colour_of(layer: str) -> str:
+def _colour_of(layer: str) -> int:
     """The colour of a layer by the beginning of its name."""
-    return next((colour for name, colour in COLOURS.items() if layer.startswith(name)), "#c0c0c0")
+    return next((colour for name, colour in COLOURS.items() if layer.startswith(name)), 9)
 
 
-def write_dxf(lines: list[_DxfLine], path: str, crs: str = "") -> None:
-    """Write the file by GDAL, in the units of the survey's own CRS, metric WKT, or ""; RoadExtractionError if there is none that writes DXF."""
-    try:
-        from osgeo import gdal, ogr
+def write_dxf(lines: list[_DxfLine], path: str, crs: str = "", faces: np.ndarray | None = None) -> None:
+    """Write lines, texts and the faces of a surface as a DXF of AutoCAD R12, which every CAD program reads.
 
-        driver = gdal.GetDriverByName("DXF")
-    except ImportError:
-        driver = None
-    if driver is None:  # gdal-wheel of PyPI has none
-        raise RoadExtractionError("DXF is written by GDAL, and there is no GDAL that does. Install it by conda-forge (gdal) or Debian "
-                                  "(python3-gdal), or choose FORMAT = landxml.")
+    crs : WKT, metric; the file has the units of the survey's own CRS. "" for metres
+    faces : (F, 3, 3) m, corners of triangles, in the layer SURFACE
 
+    References
+    ----------
+    AutoCAD R12 DXF reference: pairs of a group code and a value, a line each.
+    """
     units = as_in_file(crs)[1]
-    with gdal_exceptions():
-        dataset = driver.Create(path, 0, 0, 0, gdal.GDT_Unknown)
-        layer = dataset.CreateLayer("entities")
+    layers = sorted({line.layer for line in lines} | ({"SURFACE"} if faces is not None else set()))
+    with open(path, "w", encoding="cp1252", newline="\r\n") as file:
+        def put(*pairs):
+            file.write("".join(f"{code}\n{value}\n" for code, value in pairs))
+
+        put((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (9, "$DWGCODEPAGE"), (3, "ANSI_1252"), (0, "ENDSEC"),
+            (0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER"), (70, len(layers)))
+        for layer in layers:
+            put((0, "LAYER"), (2, _dxf_text(layer)), (70, 0), (62, _colour_of(layer)), (6, "CONTINUOUS"))
+        put((0, "ENDTAB"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES"))
         for line in lines:
-            feature, geometry = ogr.Feature(layer.GetLayerDefn()), ogr.Geometry(ogr.wkbPoint25D if line.text else ogr.wkbLineString25D)
-            for x, y, z in units.in_file(line.places):
-                geometry.AddPoint(float(x), float(y), float(z))
-            feature.SetField("Layer", line.layer)
-            text = line.text.replace('"', "'")
-            feature.SetStyleString(f'LABEL(f:"Arial",s:{LETTER / units.across:.4f}g,a:{line.turned:g},p:5,c:{_colour_of(line.layer)},t:"{text}")'
-                                   if text else f"PEN(c:{_colour_of(line.layer)},w:1px)")
-            feature.SetGeometryDirectly(geometry)
-            layer.CreateFeature(feature)
-            feature = None
-        layer = None
-        dataset = None
+            owner = 8, _dxf_text(line.layer)
+            places = [_dxf_place(place) for place in units.in_file(line.places)]
+            if line.text:
+                middle = [(code + 1, value) for code, value in places[0]]
+                put((0, "TEXT"), owner, *places[0], (40, f"{LETTER / units.across:.4f}"), (1, _dxf_text(line.text)),
+                    (50, f"{line.turned:g}"), (72, 1), *middle, (73, 2))
+            else:
+                put((0, "POLYLINE"), owner, (66, 1), (70, 9 if line.closed else 8), *_dxf_place((0, 0, 0)))
+                for place in places:
+                    put((0, "VERTEX"), owner, *place, (70, 32))
+                put((0, "SEQEND"), owner)
+        for corners in () if faces is None else units.in_file(faces):
+            # a triangle is a face whose last corner stands twice
+            put((0, "3DFACE"), (8, "SURFACE"), *(pair for k, corner in enumerate((*corners, corners[2])) for pair in _dxf_place(corner, k)))
+        put((0, "ENDSEC"), (0, "EOF"))
+
+
+def _dxf_place(place, corner=0):
+    """The pairs of a place: groups 10, 20 and 30, of the next corner of a face 11, 21 and 31."""
+    return [(10 * (axis + 1) + corner, f"{value:.5f}") for axis, value in enumerate(place)]
+
+
+def _dxf_text(text):
+    """A text of which letters that the file's encoding lacks are written by their numbers, as AutoCAD does."""
+    return "".join(letter if letter.encode("cp1252", "ignore") else f"\\U+{ord(letter):04X}" for letter in text)
 
 
 # Writes LandXML 1.2: alignments with their elements and profiles.
@@ -169,11 +216,14 @@ FEET_IN_LANDXML = {"USSurveyFoot": US_SURVEY_FOOT, "foot": FOOT}
 NAMESPACE = "http://www.landxml.org/schema/LandXML-1.2"
 
 
-def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Road map", date: str = "2000-01-01", time: str = "00:00:00") -> str:
+def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Road map", moment: datetime = datetime(2000, 1, 1),
+                 surface: _CadSurface | None = None) -> str:
     """The file as text.
 
     `crs`: WKT, metric, "" where unknown; where it is that of a survey in feet, so is the file, heights too. `name`: of the project.
+    `moment`: when it is written.
     """
+    date, time = moment.strftime("%Y-%m-%d"), moment.strftime("%H:%M:%S")
     root = XmlElement("LandXML", {"xmlns": NAMESPACE, "version": "1.2", "date": date, "time": time, "language": "English", "readOnly": "false"})
     file_wkt, units = as_in_file(crs)
     unit = next((name for name, foot in FEET_IN_LANDXML.items() if abs(units.across / foot - 1) < IO.same_unit), "")
@@ -182,13 +232,16 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
         root.add("Units").add("Imperial", areaUnit="squareFoot", linearUnit=unit, volumeUnit="cubicFeet", temperatureUnit="fahrenheit",
                               pressureUnit="inHG", angularUnit="decimal degrees", directionUnit="decimal degrees")
         alignments = [alignment.in_file(units) for alignment in alignments]
+        surface = None if surface is None else surface.in_file(units)
     else:
         root.add("Units").add("Metric", areaUnit="squareMeter", linearUnit="meter", volumeUnit="cubicMeter", temperatureUnit="celsius",
                               pressureUnit="milliBars", angularUnit="decimal degrees", directionUnit="decimal degrees")
     _add_crs(root, horizontal_part(parse_crs(crs)))
     root.add("Project", name=name)
     root.add("Application", name="Lanewright")
-    group = root.add("Alignments", name=name)
+    if surface is not None:
+        _surface(root.add("Surfaces").add("Surface", name=name), surface)
+    group = XmlElement("Alignments", {"name": name})
     for alignment in alignments:
         element = group.add("Alignment", name=alignment.name, length=alignment.length, staStart=0.0, desc=alignment.description)
         geometry = element.add("CoordGeom")
@@ -197,10 +250,36 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
         else:
             for piece in elements_without_reversal(alignment.plan):
                 _element(geometry, piece)
-        profile = element.add("Profile", name=alignment.name).add("ProfAlign", name=alignment.name)
-        for station, height in alignment.profile:
-            profile.add("PVI", f"{station:.4f} {height:.4f}")
+        if len(alignment.profile):
+            profile = element.add("Profile", name=alignment.name).add("ProfAlign", name=alignment.name)
+            for station, height in alignment.profile:
+                profile.add("PVI", f"{station:.4f} {height:.4f}")
+        if alignment.sections:
+            sections = element.add("CrossSects", name=alignment.name)
+            for station, ground in alignment.sections:
+                section = sections.add("CrossSect", sta=station, name=f"{station:.2f}").add("CrossSectSurf", name="Ground")
+                section.add("PntList2D", " ".join(f"{-offset:.3f} {height:.4f}" for offset, height in ground))
+    if alignments:
+        root.append(group)
     return xml_text(root)
+
+
+def _surface(element, surface):
+    """A surface of triangles with the breaklines that they follow. Vertices are numbered from 1."""
+    lines = element.add("SourceData").add("Breaklines")
+    for kind, places in surface.breaklines:
+        lines.add("Breakline", brkType="standard", name=kind).add("PntList3D", " ".join(_place3d(place) for place in places))
+    heights = surface.vertices[:, 2]
+    definition = element.add("Definition", surfType="TIN", elevMin=float(heights.min()), elevMax=float(heights.max()))
+    points, faces = definition.add("Pnts"), definition.add("Faces")
+    for number, place in enumerate(surface.vertices, start=1):
+        points.add("P", _place3d(place), id=number)
+    for corners in (surface.faces + 1).tolist():
+        faces.add("F", "{} {} {}".format(*corners))
+
+
+def _place3d(place: np.ndarray) -> str:
+    return f"{_place(place)} {place[2]:.4f}"
 
 
 def _add_crs(root, known):
@@ -263,6 +342,31 @@ def _intersection(start, first, end, last):
     return start + np.array([np.cos(first), np.sin(first)]) * (chord[0] * np.sin(last) - chord[1] * np.cos(last)) / turn
 
 
+@dataclass(frozen=True)
+class _CadSurface:
+    """vertices : (V, 3) map coordinates; faces : (F, 3) int; breaklines : (kind, (N, 3) places)"""
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    breaklines: list[tuple[str, np.ndarray]]
+
+    def in_file(self, units: FileUnits) -> _CadSurface:
+        """The same in the units of a file; its heights have those of x and y."""
+        return _CadSurface(self.vertices / units.across, self.faces, [(kind, places / units.across) for kind, places in self.breaklines])
+
+
+def cad_surface(model: SurfaceModel) -> _CadSurface:
+    """The surface of a survey in map coordinates, without vertices that no triangle has."""
+    used, faces = np.unique(model.surface.faces, return_inverse=True)
+    breaklines = [(kind, places + model.origin) for kind, places in model.followed]
+    return _CadSurface(model.surface.vertices[used] + model.origin, faces.reshape(-1, 3), breaklines)
+
+
+def surface_lines(surface: _CadSurface) -> list[_DxfLine]:
+    """The breaklines of a surface, by kind."""
+    return [_DxfLine(f"BREAKLINE_{kind.upper()}", places) for kind, places in surface.breaklines]
+
+
 # Axes of roads and driving lines as elements: lines, arcs and spirals, and a profile of tangents.
 
 NEAREST_PLACES = 0.005   # m between places of a line
@@ -280,6 +384,7 @@ class Alignment:
     places: np.ndarray   # (N, 3) map coordinates
     profile: np.ndarray   # (M, 2) station and height, metres, of the tangents' intersections
     missed: float = 0.0   # metres that a place lies beside the elements at most
+    sections: Sequence[tuple[float, np.ndarray]] = ()   # (station, (N, 2) offset, left positive, and height on the map) of cross-sections, m
 
     def in_file(self, units: FileUnits) -> Alignment:
         """The same in the units of a file; its heights have those of x and y."""
@@ -289,7 +394,8 @@ class Alignment:
         plan = None if self.plan is None else PlanView(tuple(
             replace(element, s=element.s * per_metre, x=element.x * per_metre, y=element.y * per_metre, length=element.length * per_metre,
                     values=tuple(bend / per_metre for bend in element.values)) for element in self.plan.elements))
-        return replace(self, plan=plan, places=self.places * per_metre, profile=self.profile * per_metre)
+        sections = [(station * per_metre, ground * per_metre) for station, ground in self.sections]
+        return replace(self, plan=plan, places=self.places * per_metre, profile=self.profile * per_metre, sections=sections)
 
     @property
     def length(self) -> float:

@@ -14,6 +14,7 @@ from ..core.common.progress import Progress
 from ..core.common.setting import Limited, setting
 from ..core.io.crs import check_projected, crs_note, place_raster
 from ..core.io.local_files import gdal_exceptions
+from ..core.lazy import gdal
 from ..core.survey.blocks import sensor_height_of
 from ..core.survey.frame.road_frame import build_frame
 from ..core.survey.las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
@@ -316,8 +317,6 @@ def _profile(driven, track_z, at, heights, drops, height):
 @gdal_exceptions()
 def write_density(found: Inspection, path: str | Path) -> None:
     """Write the density of an Inspection to a GeoTIFF: float32 points per m², NaN where no point lies."""
-    from osgeo import gdal
-
     density, (west, north) = found.density
     height, width = density.shape
     cell = found.settings.cell_size

@@ -14,6 +14,7 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.features import SCANLINES, Features, Field
 from ..core.common.progress import Progress
 from ..core.common.setting import Limited, setting
+from ..core.lazy import laspy
 from ..core.road.scanlines.grid import Scanlines
 from ..core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
 from ..core.survey.frame.road_frame import RoadFrame
@@ -247,8 +248,6 @@ class ResampledPoints:
     """
 
     def __init__(self, path: str, origin: np.ndarray, crs: str, settings: ResamplingSettings = ResamplingSettings(), farthest: float = 0.0):
-        import laspy
-
         self.path, self.settings = str(path), settings
         self._header = laspy.LasHeader(point_format=6, version="1.4")
         self._header.generating_software = "Lanewright"
@@ -267,8 +266,6 @@ class ResampledPoints:
 
     def add(self, lines: Scanlines, frame: RoadFrame, road: int) -> None:
         """Append points of the scanlines of a road."""
-        import laspy
-
         line, d, z, intensity = resample_scanlines(lines, self.settings.spacing)
         if not len(line):
             return

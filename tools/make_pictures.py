@@ -64,6 +64,8 @@ def stages(folder):
                            MARKINGS=clusters["MARKINGS"], ROAD_SURFACE=surface["ROAD_SURFACE"])
     made["crosssections"] = run("crosssections", **survey, ROAD_EDGES=edges, MARKING_LINES=lines["MARKING_LINES"], INTERVAL=5, MAX_CROSSFALL=2.6,
                                 DRIVING_LINES=driving["DRIVING_LINES"], OUTPUT=at("sections.gpkg"))
+    made["surfacemodel"] = run("surfacemodel", **survey, ROAD_EDGES=edges, MARKING_LINES=lines["MARKING_LINES"], BREAKLINES=at("breaklines.gpkg"),
+                               TIN=at("triangles.gpkg"))
     made["roadside"] = run("roadside", **survey, ROAD_EDGES=edges, OUTPUT=at("roadside.gpkg"), OBJECTS=at("objects.gpkg"))
     made["assessboundaries"] = run("assessboundaries", INPUT=edges, REFERENCE=sample["TRUTH_BOUNDARIES"], **drive, OUTPUT=at("a_b.gpkg"))
     made["assessmarkings"] = run("assessmarkings", INPUT=clusters["MARKINGS"], REFERENCE=sample["TRUTH_MARKINGS"], **drive,
@@ -105,6 +107,7 @@ DRAWN = {
     "drivinglines": (["DRIVING_LINES"], True, False),
     "roadmap": (["DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES", "MARKINGS", "ROAD_SURFACE"], False, False),
     "crosssections": ([("OUTPUT", "CROSS_SECTIONS")], True, False),
+    "surfacemodel": ([("BREAKLINES", "BREAKLINES"), ("TIN", "TIN")], False, False),
     "roadside": ([("OBJECTS", "ROADSIDE_OBJECTS"), ("OUTPUT", "ROADSIDE")], True, False),
     "assessboundaries": ([("OUTPUT", "ASSESSED_LINES")], True, False),
     "assessmarkings": ([("OUTPUT", "ASSESSED_POLYGONS")], True, True),

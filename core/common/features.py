@@ -148,6 +148,10 @@ CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part",
                   Field("curb_l_m", float, "Height of the left curb (m)"), Field("curb_r_m", float, "Height of the right curb (m)"),
                   Field("clear_m", float, "Clearance above (m)"), Field("seen_pct", float, "Surface seen (%)"),
                   Field("exceeds", str, "Limits not kept"), Field("why", str, "Value, limit and rule of each")]
+BREAKLINES = [ROAD, Field("kind", str, "Kind (crown/lane_border/edge_bottom/edge_top/gutter_flow_line)"), STATION, END, LENGTH,
+              Field("height_m", float, "Height of the top of an edge above its bottom (m)"),
+              Field("sigma_z_m", float, "Uncertainty of the height, one sigma (m)")]
+SURFACE_FACES = [STATUS, Field("slope_pct", float, "Slope (%)"), Field("area_m2", float, "Area (m²)")]
 EDGE_DISTANCE = Field("edge_m", float, "Distance from the carriageway's edge (m)")
 ROADSIDE = [ROAD, SIDE, Field("line", int, "Line"), Field("kind", str, "Kind (guard_rail/barrier/wall/fence/hedge/gutter)"), STATUS, STATION, END,
             OFFSET, EDGE_DISTANCE,

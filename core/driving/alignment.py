@@ -293,7 +293,7 @@ def without_short_status(status: np.ndarray) -> np.ndarray:
 def track_pieces(track: LaneTrack, s: np.ndarray) -> list[tuple[int, float, float]]:
     """(status, start station, end station) of the pieces of a lane, cut where its status changes and where doubt begins or ends; ends touch."""
     kinds = len(LANE_STATUS)
-    pieces = _status_pieces(without_short_status(track.status + kinds * track.in_doubt()), track.first, s)
+    pieces = _status_pieces(without_short_status(track.status + kinds * track.in_doubt), track.first, s)
     return [(code % kinds, start, end) for code, start, end in pieces]
 
 

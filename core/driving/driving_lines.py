@@ -14,7 +14,7 @@ from ..countries.catalogue import country
 from ..execution.phase import THREADS
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads, usual_side
-from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
+from ..markings.cross_section.sections import STATION_STEP, CrossSections, EdgeSections, sections_of_lines
 from ..markings.cross_section.weights import HATCHING, OUTSIDE, TakenReading, share_within
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
@@ -35,7 +35,7 @@ __all__ = ["DrivingSettings", "make_driving_lines"]
 
 
 def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: DrivingSettings = DrivingSettings(),
-                       progress: Progress = Progress(), markings: MarkingObjects | None = None, edges: RoadEdges | None = None,
+                       progress: Progress = Progress(), markings: MarkingObjects | None = None, edges: RoadEdges | EdgeSections | None = None,
                        road_points: RoadPoints | None = None, taken: Sequence[TakenReading] = ()) -> tuple[DrivingLines, CurveElements, Lanes]:
     """Lines to drive on.
 
@@ -43,7 +43,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     bridged one to one.
 
     markings : MarkingObjects or None: no lane leads along a hatched area
-    edges : RoadEdges or None: no lane leads over a curb
+    edges : RoadEdges or their EdgeSections, or None: no lane leads over a curb
     road_points : RoadPoints or None: the heights of the road
     taken : second readings that an analyst took
 
@@ -58,7 +58,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     areas: list[dict[str, Any]] = []
     lanes: dict[int, RoadLanes] = {}
     paint = marking_lines.scatter()
-    curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, {})
+    curbs, pavement = EdgeSections.of(edges)
     estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
                                settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width), pavement=pavement,
                                progress=progress.part(0.0, 0.4), taken=taken)
@@ -270,7 +270,7 @@ def _mean_square_bias(track, course, lines):
 
 def _mean_square_guess(track):
     """(N,) m², of a place that is a guess: from where its borders show the lane, and from the lanes of a second reading, about the place drawn."""
-    square, doubt = track.aside**2, track.in_doubt()
+    square, doubt = track.aside**2, track.in_doubt
     for k in np.flatnonzero(doubt).tolist():
         second = track.second[k]
         if second is not None and second.lanes:

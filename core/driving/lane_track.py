@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -74,7 +75,7 @@ class LaneTrack:
 
     def _each(self, change: Callable[[str, np.ndarray], np.ndarray]) -> dict[str, Any]:
         """{name: change(name, values)} of what is known at every station."""
-        return {name: change(name, v) for name, v in vars(self).items() if isinstance(v, np.ndarray)}
+        return {column.name: change(column.name, v) for column in fields(self) if isinstance(v := getattr(self, column.name), np.ndarray)}
 
     def without_jumps(self, s: np.ndarray) -> LaneTrack:
         """The track with borders that are led over where they jump aside: a lane has no steps at its sides.
@@ -95,10 +96,11 @@ class LaneTrack:
         rows = int(TRACKS.end_width_length / STATION_STEP)
         return float(np.median(self.width[:rows] if head else self.width[-rows:]))
 
-    def in_doubt(self, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
+    @cached_property
+    def in_doubt(self) -> np.ndarray:
         """(N,) bool, where a second reading is almost as probable, or the lane lies beside where its own borders show it."""
         behind = np.array([np.inf if reading is None else reading.nats for reading in self.second])
-        doubtful = (behind < weights.doubt) | (np.abs(self.aside) > SAME_LANE)
+        doubtful = (behind < EstimateWeights.doubt) | (np.abs(self.aside) > SAME_LANE)
         for first, end in mask_runs(~doubtful):
             if first and end < len(doubtful) and (end - first) * STATION_STEP < TRACKS.near_doubt:
                 doubtful[first:end] = True
@@ -107,7 +109,7 @@ class LaneTrack:
     def said_confidence(self, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
         """(N,) how often such lanes are right, at most `most_in_doubt` where there is a second reading."""
         confidence = confidence_of(self.confidence, self.directed, weights)
-        return np.where(self.in_doubt(weights), np.minimum(confidence, weights.most_in_doubt), confidence)
+        return np.where(self.in_doubt, np.minimum(confidence, weights.most_in_doubt), confidence)
 
     def said(self, rows: slice, weights: EstimateWeights = EstimateWeights()) -> dict[str, Any]:
         """The confidence of part of the lane, and `other`, its second reading as JSON where most of the part is in doubt, else "".
@@ -115,7 +117,7 @@ class LaneTrack:
         The JSON holds the nats by which that reading is less probable, and the lanes that then lie there.
         """
         confidence = float(self.confidence[rows].mean())
-        if 2 * np.count_nonzero(self.in_doubt(weights)[rows]) <= len(self.d[rows]):
+        if 2 * np.count_nonzero(self.in_doubt[rows]) <= len(self.d[rows]):
             return dict(confidence=confidence, other="")
         return dict(confidence=min(confidence, weights.most_in_doubt), other=self._other(rows, weights))
 

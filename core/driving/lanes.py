@@ -9,7 +9,7 @@ from scipy.ndimage import binary_dilation
 
 from ..common.parallel import check_cancelled
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
-from ..markings.cross_section.estimate import LaneSpan, RoadEstimate, lane_spans
+from ..markings.cross_section.estimate import RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.sequence import beside_surface_end, lane_places
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
@@ -25,11 +25,11 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
     """
     open_tracks: list[list[LaneTrack]] = []
     closed: list[list[LaneTrack]] = []
-    spans: dict[int, list[LaneSpan]] = {}
-    for span in lane_spans(estimate):
-        spans.setdefault(span.interval, []).append(span)
-    for i, (first, last) in enumerate(zip(estimate.candidates.first.tolist(), estimate.candidates.last.tolist())):
-        parts = [part for span in spans.get(i, []) for part in [_part(boundaries, span, first, last, lane_width, line_distance)] if part is not None]
+    parts_of: dict[int, list[LaneTrack]] = {}
+    for interval, part in _parts(boundaries, estimate, lane_width, line_distance):
+        parts_of.setdefault(interval, []).append(part)
+    for i, first in enumerate(estimate.candidates.first.tolist()):
+        parts = parts_of.get(i, [])
         follows = _followed(open_tracks, parts, first)
         closed += [lane for k, lane in enumerate(open_tracks) if k not in follows.values()]
         open_tracks = [[*open_tracks[follows[k]], part] if k in follows else [part] for k, part in enumerate(parts)]
@@ -109,26 +109,40 @@ def _led(rank, held):
     return np.minimum(led, np.clip(1 - distance / surer[0], 0, 1)) if len(surer) else led
 
 
-def _part(boundaries, span, first, last, lane_width, line_distance):
-    """The LaneTrack of a span, None where one of its borders is not known."""
-    rows, sides = slice(first, last + 1), (span.left, span.right)
-    left, right = (_filled(boundaries.d[row, rows]) for row in sides)
-    if left is None or right is None:
-        return None
+def _parts(boundaries, estimate, lane_width, line_distance):
+    """(interval, LaneTrack) of the spans of which both borders are known."""
+    known = []
+    for span in lane_spans(estimate):
+        rows, sides = slice(estimate.candidates.first[span.interval], estimate.candidates.last[span.interval] + 1), (span.left, span.right)
+        left, right = (_filled(boundaries.d[row, rows]) for row in sides)
+        if left is not None and right is not None:
+            known.append((span, rows, left, right, [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]))
+    if not known:
+        return
+    spans, _, left, right, made_of = zip(*known)
+    of = np.repeat(np.arange(len(spans)), [len(values) for values in left])
+    number, beside = np.array([span.count for span in spans]), np.array([span.beside for span in spans])
+    places = lane_places(np.concatenate(left), np.concatenate(right), *np.array(made_of).T[:, of], number[of], lane_width, beside[of])
+    bounds = np.flatnonzero(np.diff(of)) + 1
+    for (span, rows, _, _, drawn), begin, width in zip(known, *(np.split(values, bounds) for values in places)):
+        yield span.interval, _part(boundaries, span, rows, drawn, begin, width, line_distance)
+
+
+def _part(boundaries, span, rows, made_of, begin, width, line_distance):
+    """The LaneTrack of a span: `begin` and `width` of its lanes as of `lane_places` at the stations `rows`, between what its borders are made of."""
+    sides = span.left, span.right
     painted = [bool(boundaries.bounding[row]) for row in sides]
-    made_of = [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]
     seen = np.stack([boundaries.seen[row, rows] for row in sides])
-    begin, width = lane_places(left, right, *made_of, span.count, lane_width, span.beside)
     between_both = all(painted) or not any(painted)
     beside_one = any(painted) and not between_both
     if beside_one and (line_distance or beside_surface_end(*made_of)):
         # the end of the surface is ragged, a lane is not
-        even = np.full(len(left), 2 * line_distance or np.median(width))
+        even = np.full(len(width), 2 * line_distance or np.median(width))
         begin, width = begin if painted[0] else begin + (even - width) * span.count, even
     d = begin - width * (span.count - span.place - 0.5)
     shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 and any(painted) else INFERRED])
-    return _track_of(span, first, d, width, status, beside_one)
+    return _track_of(span, int(rows.start), d, width, status, beside_one)
 
 
 def _track_of(span, first, d, width, status, beside_one):

@@ -28,12 +28,21 @@ class RememberedResults(Executor):
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         if phase.state is None and not isinstance(phase.source, NoSource):
-            yield from self.executor.run(phase, items, progress, keep)
-            return
-        names = [digest((name_of(phase.function), phase.arguments, item, phase.state and phase.state(item))) for item in items]
+            return self.executor.run(phase, items, progress, keep)
+        return self._completed(phase, items, phase.state, lambda executor, missing: executor.run(phase, missing, progress), progress)
+
+    def run_together(self, phase: Phase, items: Sequence[Any], together: int, progress: Progress = Progress()) -> Iterator[Any]:
+        """As of `Executor`; each item is remembered by itself, whatever others it comes with."""
+        if phase.state is None and not isinstance(phase.source, NoSource):
+            return self.executor.run_together(phase, items, together, progress)
+        state = None if phase.state is None else lambda item, of_list=phase.state: of_list([item])
+        return self._completed(phase, items, state, lambda executor, missing: executor.run_together(phase, missing, together, progress), progress)
+
+    def _completed(self, phase, items, state, compute, progress):
+        """Yield the results of all items, of which `compute` has an executor give those that are not remembered."""
+        names = [digest((name_of(phase.function), phase.arguments, item, state and state(item))) for item in items]
         missing = {name: item for name, item in zip(names, items) if name not in self._results}
-        few = 2 * len(missing) < len(names)
-        results = (THREADS if few else self.executor).run(phase, list(missing.values()), progress)
+        results = iter(compute(THREADS if 2 * len(missing) < len(names) else self.executor, list(missing.values())))
         for name in names:
             if name in missing:
                 del missing[name]   # a later item may be the same

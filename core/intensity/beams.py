@@ -14,11 +14,13 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from ..execution.phase import Phase
 from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.columns import Columns
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
+from ..survey.store.section_store import Stretch
 from .asphalt_model import INTENSITY_LEVELS, asphalt_of_histograms, is_logarithmic, to_level, weighted_median
 from .weights import ASPHALT, BEAMS
 
@@ -162,23 +164,16 @@ class Beams:
         if not models:
             return None
         found = cls(models, {}, {}, {})
-        counts = np.zeros((len(models), ELEVATION_BINS, INTENSITY_LEVELS), np.int64)
-        for section in ordered_map(lambda key: found._count(road_points.section(*key)), road_points.all_sections(), progress):
-            counts += section
-        for scanner, levels in zip(models, counts):
+        counts = np.zeros((len(models), ELEVATION_BINS * INTENSITY_LEVELS), np.int64)
+        length = road_points.store.section_length
+        phase = Phase(_levels_at_elevations, road_points, (models,), lambda item: road_points.survey.stretch(
+            item[0], item[1] * length, item[2] * length), state=road_points.store.state)
+        for of_stretch in road_points.executor.run(phase, road_points.stretches(), progress):
+            for of_scanner, (place, number) in zip(counts, of_stretch):
+                of_scanner[place] += number
+        for scanner, levels in zip(models, counts.reshape(len(models), ELEVATION_BINS, INTENSITY_LEVELS)):
             found._estimate(scanner, levels)
         return found if found.corrections else None
-
-    def _count(self, points):
-        """(scanners with beams, ELEVATION_BINS, INTENSITY_LEVELS) how many points have each level at each elevation."""
-        counts = np.zeros((len(self.models), ELEVATION_BINS, INTENSITY_LEVELS), np.int64)
-        for k, (scanner, model) in enumerate(self.models.items()):
-            rows = np.flatnonzero(points.scanner == scanner)
-            bins = model.elevation_bin(points[rows])
-            valid = bins >= 0
-            flat = bins[valid] * INTENSITY_LEVELS + to_level(points.intensity[rows][valid])
-            counts[k] = np.bincount(flat, minlength=ELEVATION_BINS * INTENSITY_LEVELS).reshape(ELEVATION_BINS, INTENSITY_LEVELS)
-        return counts
 
     def _estimate(self, scanner, levels):
         """Corrections that bring each beam's asphalt to the level of all, from (ELEVATION_BINS, INTENSITY_LEVELS) counts."""
@@ -215,6 +210,23 @@ class Beams:
     @property
     def count(self) -> int:
         return sum(len(corrections) for corrections in self.corrections.values())
+
+
+def _levels_at_elevations(road_points: RoadPoints, stretch: Stretch, models: dict[int, _ElevationModel]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The phase that counts levels of intensity by elevation.
+
+    Returns of each scanner the places that are not empty in a flattened table (ELEVATION_BINS, INTENSITY_LEVELS), (K,) int, and (K,) points there.
+    """
+    places: list[list[np.ndarray]] = [[np.empty(0, int)] for _ in models]
+    for key in road_points.store.in_stretch(stretch):
+        points = road_points.section(*key)
+        for of_scanner, (scanner, model) in zip(places, models.items()):
+            rows = np.flatnonzero(points.scanner == scanner)
+            bins = model.elevation_bin(points[rows])
+            valid = bins >= 0
+            of_scanner.append(bins[valid] * INTENSITY_LEVELS + to_level(points.intensity[rows][valid]))
+    counts = [np.bincount(np.concatenate(of_scanner)) for of_scanner in places]
+    return [(np.flatnonzero(number), number[number > 0]) for number in counts]
 
 
 def _samples(road_points: RoadPoints, frame: RoadFrame, scanners: int) -> dict[int, list[Points]]:

@@ -168,7 +168,7 @@ class AsphaltLook:
         reason = _reason_against(road_points, frame)
         if reason:
             return cls(None, reason)
-        points_by_scanner = sum(ordered_map(lambda key: _points_by_scanner(road_points.section(*key)), road_points.all_sections()))
+        points_by_scanner = sum(_run(points_of_scanners, road_points, (), Progress()))
         scanners = int(np.flatnonzero(points_by_scanner)[-1]) + 1
         beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.4))
         step, before = _sampling_step(road_points), IntensityHistograms(scanners)
@@ -328,11 +328,10 @@ def _stripes(points, step):
     return points[np.repeat(begins - (np.cumsum(count) - count), count) + np.arange(count.sum())]
 
 
-def _points_by_scanner(points):
-    """(256,) how many points each scanner has."""
-    scanner, size = points.scanner, ASPHALT.points_at_once
-    return sum((np.bincount(scanner[k:k + size], minlength=SCANNER_NUMBERS) for k in range(0, len(scanner), size)),
-               np.zeros(SCANNER_NUMBERS, np.int64))
+def points_of_scanners(road_points: RoadPoints, stretch: Stretch) -> np.ndarray:
+    """The phase that counts points: (256,) how many each scanner has."""
+    sections = (road_points.section(*key).scanner for key in road_points.store.in_stretch(stretch))
+    return sum((np.bincount(scanner, minlength=SCANNER_NUMBERS) for scanner in sections), np.zeros(SCANNER_NUMBERS, np.int64))
 
 
 def _reason_against(road_points, frame):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from ..lazy import pyproj
 from .weights import IO
 
 if TYPE_CHECKING:
@@ -23,14 +24,11 @@ UNDEFINED_CARTESIAN = 'LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1]]'
 
 def parse_crs(text: str | None) -> CRS | None:
     """The pyproj.CRS of WKT, "EPSG:n" or PROJ text, None for an empty one; RoadExtractionError if the text is not understood."""
-    from pyproj import CRS
-    from pyproj.exceptions import CRSError
-
     if not text:
         return None
     try:
-        return CRS.from_user_input(text)
-    except CRSError as problem:
+        return pyproj.CRS.from_user_input(text)
+    except pyproj.exceptions.CRSError as problem:
         raise RoadExtractionError(f"The CRS {text[:60]!r} is not understood ({problem}). Give it as EPSG:number.") from problem
 
 
@@ -87,11 +85,9 @@ def same_crs(a: Any, b: Any) -> bool:
 
 def moved_by(a: Any, b: Any, place: tuple[float, float]) -> float:
     """How far apart (units of `b`) the coordinates (x, y) of `a` lie from those of the same place in `b`; infinite where it has none there."""
-    from pyproj import Transformer
-
     if same_crs(a, b):
         return 0.0
-    x, y = Transformer.from_crs(a, b, always_xy=True).transform(*place)
+    x, y = pyproj.Transformer.from_crs(a, b, always_xy=True).transform(*place)
     return float(np.hypot(x - place[0], y - place[1]))
 
 
@@ -236,12 +232,10 @@ def place_on_ground(crs: Any, x: float, y: float) -> _MapPlace:
     Tissot's indicatrix (Snyder, 1987, Map Projections: A Working Manual, USGS Professional Paper 1395, p. 20-26). Heights, which shorten lengths
     on the map by 0.16 per mille a kilometre, are not counted.
     """
-    from pyproj import Transformer
-
     datum = crs.geodetic_crs
     to_radians = datum.axis_info[0].unit_conversion_factor
     steps = IO.scale_step * np.array([(0, 0), (1, 0), (0, 1), (1, 1)])
-    u, v = (np.asarray(angle) * to_radians for angle in Transformer.from_crs(crs, datum, always_xy=True).transform(*(steps + (x, y)).T))
+    u, v = (np.asarray(angle) * to_radians for angle in pyproj.Transformer.from_crs(crs, datum, always_xy=True).transform(*(steps + (x, y)).T))
     if not np.isfinite([u, v]).all():
         return _MapPlace(np.nan, np.nan, np.nan)
     along_x, along_y, diagonal = np.array(crs.get_geod().inv(*([end[0]] * 3 for end in (u, v)), u[1:], v[1:], radians=True)[2]) / IO.scale_step
@@ -329,15 +323,13 @@ def _area_of_use(wkt, by_code):
 
     To find a CRS that states no code by its parameters takes half a second; with `by_code` it is not done.
     """
-    from pyproj import CRS
-
     crs = horizontal_part(parse_crs(as_in_file(wkt)[0]))
     crs = crs.source_crs if crs.is_bound else crs
     if crs.area_of_use is not None:
         return crs.area_of_use
     stated = crs.to_json_dict().get("id", {})
     code = stated["code"] if stated.get("authority") == "EPSG" else None if by_code else crs.to_epsg()
-    return None if code is None else CRS.from_epsg(code).area_of_use
+    return None if code is None else pyproj.CRS.from_epsg(code).area_of_use
 
 
 def _beside(place, area):
@@ -473,11 +465,9 @@ def _units_of(crs):
 
 def _metric_form(crs):
     """A pyproj.CRS with its lengths in metres and the same name, without the code, which is that of the original."""
-    from pyproj import CRS
-
     content = _with_metres(crs.to_json_dict())
     content["remarks"] = MARK + crs.to_wkt()
-    return CRS.from_json_dict(content)
+    return pyproj.CRS.from_json_dict(content)
 
 
 def _with_metres(content):

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
+from ..lazy import gdal
 from .crs import place_of_raster, place_raster
 from .local_files import gdal_exceptions, open_raster, reading, unfinished_path
 from .weights import IO
@@ -135,8 +136,6 @@ class IntensityImage:
 
 
 def _float32():
-    from osgeo import gdal
-
     return gdal.GDT_Float32
 
 
@@ -152,8 +151,6 @@ def filled_tiles(dataset: Any) -> list[tuple[int, int]]:
 
     Empty tiles are missing from the file. They are found by bisection, without reading pixels.
     """
-    from osgeo import gdal
-
     band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
     waiting, tiles = [(0, 0, -(-width // GEOTIFF_TILE), -(-height // GEOTIFF_TILE))], []
     while waiting:
@@ -178,8 +175,6 @@ class _NewGeoTiff:
 
     @gdal_exceptions()
     def __init__(self, path: str | os.PathLike[str], width: int, height: int, geotransform: Any, crs: str, byte: bool, nodata: float):
-        from osgeo import gdal
-
         options = [f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
                    "BIGTIFF=IF_SAFER", f"NUM_THREADS={IO.compression_threads}"]
         # Intensities are too noisy to be predicted from their neighbours: a predictor costs more time than it saves.

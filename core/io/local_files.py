@@ -19,6 +19,7 @@ from typing import Any
 from uuid import uuid4
 
 from ..common.errors import RoadExtractionError
+from ..lazy import gdal, ogr
 from .weights import IO
 
 # Formats that hold their pixels themselves; a VRT, which names other files, is read where its name says that it is one
@@ -38,8 +39,6 @@ OFFLINE = {"GDAL_HTTP_PROXY": "none://", "GDAL_HTTPS_PROXY": "none://", "CPL_VSI
 @contextmanager
 def offline() -> Iterator[None]:
     """A context in which GDAL asks no server in this thread; other threads, QGIS's among them, may."""
-    from osgeo import gdal
-
     before = {name: gdal.GetThreadLocalConfigOption(name) for name in OFFLINE}
     try:
         for name, value in OFFLINE.items():
@@ -55,8 +54,6 @@ def open_raster(path: str | Path, give: str = "Give a TIFF, JPEG or PNG.") -> An
 
     give : what to try then, a sentence
     """
-    from osgeo import gdal
-
     drivers = RASTER_DRIVERS + ("VRT",) * (Path(path).suffix.lower() == ".vrt")
     try:
         return gdal.OpenEx(str(path), gdal.OF_RASTER | gdal.OF_VERBOSE_ERROR, allowed_drivers=list(drivers))
@@ -75,8 +72,6 @@ def reading(path: str | Path) -> Iterator[None]:
 
 def check_local(path: str | Path) -> None:
     """Raise RoadExtractionError where a file that another program, such as QGIS, is to open describes data elsewhere."""
-    from osgeo import gdal
-
     with offline():
         driver = gdal.IdentifyDriverEx(str(path), gdal.OF_VECTOR | gdal.OF_RASTER)
         name = "" if driver is None else driver.ShortName
@@ -97,8 +92,6 @@ def check_crs_of_geojson(path: str | Path, members: str | None) -> None:
 
 def open_vector(path: str | Path) -> Any:
     """The gdal.Dataset of a vector file; None, or within `gdal_exceptions` a RuntimeError, where it is none of `VECTOR_DRIVERS`."""
-    from osgeo import gdal
-
     with offline():
         return gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=list(VECTOR_DRIVERS))
 
@@ -117,8 +110,6 @@ def gdal_exceptions() -> Iterator[None]:
     Whether GDAL raises is a state of the whole process, which all plugins of QGIS share. Since GDAL 3.7 a thread may have a state of its own, and
     only that is changed; with older versions, the state is restored when the last thread leaves.
     """
-    from osgeo import gdal, ogr
-
     modules = (gdal, ogr)
     with ExitStack() as stack:
         stack.enter_context(offline())

@@ -35,6 +35,7 @@ from ..intensity.correction import AsphaltLook, IntensitySettings, correct_inten
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..intensity.tiled_image import TiledImage
 from ..io.crs import check_projected
+from ..markings.cross_section.sections import EdgeSections
 from ..markings.lines.curvature import marking_curvature
 from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
@@ -267,13 +268,14 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     executor.forget()
     markings = correct_markings(markings, result.corrections)
     edges, readings = result.edges.densified(frame), result.corrections.taken(frame)
+    beside = EdgeSections.of(edges)
     lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines,
-                       edges=edges, road_points=result.road_points, taken=readings,
+                       edges=beside, road_points=result.road_points, taken=readings,
                        depends=(result.corrections.asked("marking"), readings, settings.lines))
     edge_places = np.c_[edges.course.x, edges.course.y, edges.course.z]
     corrected = correct_marking_lines(lines, frame, result.corrections, edge_places)
     if corrected is not lines:
-        lines = named_by_estimate(corrected, frame, country(settings.lines.country).usual_lane, markings, edges, result.road_points, clustered,
+        lines = named_by_estimate(corrected, frame, country(settings.lines.country).usual_lane, markings, beside, result.road_points, clustered,
                                   taken=readings)
     markings = named_by_lines(markings, lines)
     result.markings, result.marking_lines = markings.to_features(frame), lines.to_features(frame)
@@ -281,7 +283,7 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
-        markings=markings, edges=edges, road_points=result.road_points, taken=readings, depends=settings.driving)
+        markings=markings, edges=beside, road_points=result.road_points, taken=readings, depends=settings.driving)
     executor.release()
     driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
                                              settings.driving.lane_width or country(settings.driving.country).usual_lane, edge_places)

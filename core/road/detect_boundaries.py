@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -17,18 +18,18 @@ from ..survey.open_survey import Survey
 from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
-from .common.occlusion import OcclusionGrid
-from .common.side_curbs import SideChains, points_of_side
+from .common.side_curbs import curbs_along, grids_beside
 from .common.sides import SIDE_SIGNS
 from .curb_returns.detect import with_curb_returns
 from .edges.fit import EdgeSettings, edges_through, tell_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
-from .profiles.detect import detect_curbs
+from .profiles.detect import detect_curbs, steps_on_profiles, tell_points
 from .scanlines.candidates import ScanlineBoundarySettings
-from .scanlines.detect import SurveyScanlines, curbs_from_scanlines
+from .scanlines.detect import SurveyScanlines, steps_on_scanlines, tell_corners
 from .scanlines.section_planes import ScanlineSettings
 from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
+from .surface.road_look import RoadLook
 from .weights import BOUNDARY, CURBS, SCANLINE
 
 BOUNDARY_METHODS = ("profiles", "scanlines", "both")
@@ -89,25 +90,23 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 
 def _find_curb_points(decimation, settings, progress, ground):
     """`find_curb_points` with the points of a PointDecimation."""
-    survey, both_methods, points = decimation.survey, settings.method == "both", {}
-    occlusion: dict[int, dict[str, OcclusionGrid]] = {}
-    chains: list[dict[tuple[int, str], SideChains]] = [{}, {}]
-    if settings.method != "scanlines":
-        part = progress.part(0.0, BOUNDARY.profiles_progress) if both_methods else progress
-        points["profiles"] = detect_curbs(survey, settings.curbs, part, not both_methods, decimation, occlusion, chains[0], ground)
-    if settings.method != "profiles":
-        part = progress.part(BOUNDARY.profiles_progress if both_methods else 0.0, 1.0)
-        lattice = find_lattice(survey, settings.planes.rotation_frequency, part.part(0.0, BOUNDARY.lattice_progress))
-        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice,
-                                 level=_level_for(decimation, settings.scanlines))
-        corners = part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)
-        points["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, corners,
-                                                   None if both_methods else occlusion, chains[1], ground)
-        drawn = "both" if both_methods else "scanlines"
-        if both_methods:
-            points["both"] = _points_of_both(chains[::-1], occlusion, survey)
-        points[drawn] = with_curb_returns(points[drawn], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0), occlusion,
-                                           ground)
+    survey, steps, begun = decimation.survey, {}, 0.0
+    if settings.method == "profiles":
+        return {"profiles": detect_curbs(survey, settings.curbs, progress, True, decimation, None, ground)}
+    if settings.method == "both":
+        begun = BOUNDARY.profiles_progress
+        steps["profiles"] = steps_on_profiles(decimation, settings.curbs, progress.part(0.0, begun))
+    part = progress.part(begun, 1.0)
+    lattice = find_lattice(survey, settings.planes.rotation_frequency, part.part(0.0, BOUNDARY.lattice_progress))
+    source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice, level=_level_for(decimation, settings.scanlines))
+    steps["scanlines"] = steps_on_scanlines(source, settings.scanlines, settings.curbs.block_length,
+                                            part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress))
+    points = curbs_along(source, {method: steps[method] for method in METHODS if method in steps}, partial(RoadLook, ground))
+    tell_corners(points["scanlines"], progress)
+    if settings.method == "both":
+        tell_points(points["profiles"], progress)
+    points[settings.method] = with_curb_returns(points[settings.method], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0),
+                                                grids_beside(next(iter(steps.values()))), ground)
     return points
 
 
@@ -115,17 +114,6 @@ def _level_for(decimation, settings):
     """The ground that SurveyScanlines leaves out, which can have no corner."""
     along = settings.distance_along + SCANLINE.gap_fill_reach + BOUNDARY.level_strip_margin
     return LevelGround(decimation, settings.distance_across + BOUNDARY.level_strip_margin, along)
-
-
-def _points_of_both(chains, occlusion, survey):
-    """The curb points along the best path through the chains of all methods; those of the stricter model of a curb come first."""
-    parts = []
-    for road in survey.store.roads():
-        for side in SIDE_SIGNS:
-            of_side = [of_method[road, side] for of_method in chains if (road, side) in of_method]
-            if of_side:
-                parts.append(points_of_side(survey, road, side, of_side, occlusion[road][side]))
-    return CurbPoints.join(parts, survey.crs)
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
+from ..lazy import shapely
 from .frame.road_frame import RoadFrame
 from .store.road_points import RoadPoints
 from .weights import FRAME, MIRROR, VEHICLE
@@ -28,8 +29,6 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
 
     Raises RoadExtractionError if more than half of them disagree.
     """
-    import shapely
-
     agree, aside, above = [], [], []
     for geometry, row in features:
         if row.get("station_m") is None:
@@ -54,7 +53,6 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
 
     Returns what to tell of it, "" where all lies near
     """
-    import shapely
     from scipy.spatial import cKDTree
 
     shapes = np.asarray(features.geometries, object)

@@ -17,6 +17,7 @@ from ..execution.choice import ExecutionSettings, cluster_for, executor_for
 from ..execution.phase import THREADS, Executor, digest
 from ..execution.work_folder import KeptResults, WorkFolder, code_digest
 from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
+from ..lazy import pyproj
 from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_levels
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import fitted_trajectory
@@ -454,9 +455,7 @@ def _advice_on_units(low, high, x, y, crs, reach):
 
 def _angles_exchanged(x, y, crs):
     """x and y of a trajectory, had its longitude and latitude been exchanged."""
-    from pyproj import Transformer
-
-    to_degrees = Transformer.from_crs(crs, parse_crs(crs).geodetic_crs, always_xy=True)
+    to_degrees = pyproj.Transformer.from_crs(crs, parse_crs(crs).geodetic_crs, always_xy=True)
     lon, lat = to_degrees.transform(x, y)
     return to_degrees.transform(lat, lon, direction="INVERSE")
 

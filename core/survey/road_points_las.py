@@ -14,6 +14,7 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..io.crs import as_in_file, parse_crs
 from ..io.local_files import unfinished_path
+from ..lazy import laspy
 from .adjustment.register import PassCorrections, sigma_of_records, sigma_to_record
 from .las.reader import cloud_crs, open_cloud, read_blocks
 from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
@@ -60,8 +61,6 @@ def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
 
     RoadExtractionError if the file cannot be written.
     """
-    import laspy
-
     suffix = ".las" if str(path).lower().endswith(".las") else ".laz"
     unfinished = unfinished_path(path, suffix)
     try:
@@ -109,8 +108,6 @@ def write_road_points(road_points: RoadPoints, path: str | Path, progress: Progr
 
 
 def _header(road_points):
-    import laspy
-
     header = laspy.LasHeader(point_format=6, version="1.4")
     # times are written as they were read
     header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
@@ -143,8 +140,6 @@ def _whole(numbers, share):
 
 
 def _record(road_points, road, number, header):
-    import laspy
-
     records = road_points.store.section(road, number)
     out = laspy.ScaleAwarePointRecord.zeros(len(records), header=header)
     off = (0, 0, 0) if road_points.moves is None else road_points.moves.units(records)

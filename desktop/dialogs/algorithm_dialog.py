@@ -7,9 +7,10 @@ from pathlib import Path
 
 from processing.gui.AlgorithmDialog import AlgorithmDialog
 from qgis import utils
-from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsSettings
+from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProcessingUtils, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QInputDialog, QMenu, QTextBrowser, QWidget
 
+from ...algorithms.destinations import package_and_table
 from ...algorithms.survey_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.runs import last_run
@@ -29,7 +30,6 @@ class LanewrightDialog(AlgorithmDialog):
     """QGIS's dialog of an algorithm; `title` stands in its frame."""
 
     def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
-        self.before: set[str] = set()  # layers of the project when the run began
         super().__init__(algorithm, False, parent)
         self.setWindowTitle(title)
         if len(outputs_by_default(algorithm)) >= FEWEST_OUTPUTS:
@@ -58,18 +58,14 @@ class LanewrightDialog(AlgorithmDialog):
         self.batch = BatchAlgorithmDialog(self.algorithm().create(), self.windowTitle(), self.parentWidget())
         self.batch.show()
 
-    def runAlgorithm(self) -> None:
-        """Run it; the layers that are there before are no results."""
-        self.before = set(QgsProject.instance().mapLayers())
-        super().runAlgorithm()
-
     def finish(self, successful: bool, result: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback, in_place: bool = False) -> None:
         """Load the results as QGIS does, and say in its message bar where they are and what the run warned of."""
+        names = list(context.layersToLoadOnCompletion())
         super().finish(successful, result, context, feedback, in_place)
         run = last_run()
         if successful and run is not None and utils.iface is not None:
-            layers = [layer for name, layer in QgsProject.instance().mapLayers().items() if name not in self.before]
-            tell_result(utils.iface, run.title, layers, run.warnings)
+            layers = [QgsProcessingUtils.mapLayerFromString(name, context, False) for name in names]
+            tell_result(utils.iface, run.title, [layer for layer in layers if layer is not None], run.warnings)
 
     def _follow_survey(self):
         """Offer the corrections of the survey whose point clouds are chosen, and none of another."""
@@ -104,9 +100,13 @@ class LanewrightDialog(AlgorithmDialog):
         """Set the destinations of all results that are made by default."""
         places = destinations(self.algorithm(), folder)
         self.setParameters(places)
-        geopackage = Path(folder) / f"{self.algorithm().name()}.gpkg"
-        self._say(tr("The {count} results go to {folder}.").format(count=len(places), folder=folder)
-                  + (" " + tr("Those of the earlier run in {file} will be replaced.").format(file=geopackage.name) if geopackage.exists() else ""))
+        self.say_places(folder, places)
+
+    def say_places(self, folder: str, places: dict[str, str]) -> None:
+        """Say that results go to a folder, and which GeoPackage of an earlier run has some already."""
+        packages = {Path(found[0]) for found in map(package_and_table, places.values()) if found is not None and Path(found[0]).exists()}
+        self._say(" ".join([tr("The {count} results go to {folder}.").format(count=len(places), folder=folder),
+                            *(tr("Those of the earlier run in {file} will be replaced.").format(file=package.name) for package in sorted(packages))]))
 
     def choose_database(self) -> None:
         dialog = self.database = DatabaseDialog(self)

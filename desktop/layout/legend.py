@@ -46,8 +46,8 @@ def as_it_stands(text: str) -> str:
 
 
 def drawn(layers: list[QgsMapLayer]) -> list[QgsMapLayer]:
-    """The layers of which a legend says something: lines, points and areas."""
-    return [layer for layer in layers if layer.type() == Qgis.LayerType.Vector and layer.isSpatial()]
+    """The layers of which a legend says something: lines, points and areas, where there are any."""
+    return [layer for layer in layers if layer.type() == Qgis.LayerType.Vector and layer.isSpatial() and layer.featureCount() != 0]
 
 
 def classes_of(layer: QgsMapLayer) -> set[str]:

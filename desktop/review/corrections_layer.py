@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import datetime, timezone
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from qgis.core import (
     QgsGeometry,
     QgsProject,
     QgsRectangle,
+    QgsSpatialIndex,
     QgsVectorFileWriter,
     QgsVectorLayer,
 )
@@ -27,6 +29,7 @@ from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.styling import STYLES, apply_style
 from ...processing_provider.texts import tr
 from ..widgets import brought_to
+from .doubtful import DoubtfulPiece
 
 NAME = "CORRECTIONS"
 TABLE = "corrections"
@@ -146,15 +149,24 @@ def correction_at(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateRe
     return None
 
 
-def move_of(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateReferenceSystem, target: str, road: int, station: float) -> QgsFeature | None:
-    """The correction that moves a piece, by where the piece begins and lies; None where there is none."""
-    placed = _placed(line, crs, layer)
-    for feature in layer.getFeatures(placed.boundingBox().buffered(MOVED)):
-        begins = feature["road"], feature["station_m"]
-        if (feature["action"], feature["target"]) == ("move", target) and NULL not in begins and begins[0] == road \
-                and abs(begins[1] - station) < SAME_PLACE and feature.geometry().distance(placed) < MOVED:
-            return feature
-    return None
+def corrections_of(layer: QgsVectorLayer | None, pieces: Sequence[DoubtfulPiece], crs: QgsCoordinateReferenceSystem) -> dict[int, QgsFeature]:
+    """{number of a piece: the correction that was made of it}; one that moves a piece is known by where the piece begins and lies.
+
+    crs : of the pieces
+    """
+    index, made = QgsSpatialIndex(), {}
+    for number, piece in enumerate(pieces):
+        index.addFeature(number, piece.line.boundingBox())
+    for feature in layer.getFeatures() if layer is not None else ():
+        line = feature.geometry()
+        line.transform(QgsCoordinateTransform(layer.crs(), crs, QgsProject.instance()))
+        for number in index.intersects(line.boundingBox().buffered(MOVED)):
+            piece, begins = pieces[number], (feature["road"], feature["station_m"])
+            if feature["target"] == piece.target and (line.hausdorffDistance(piece.line) < SAME_PLACE or (
+                    feature["action"] == "move" and NULL not in begins and begins[0] == piece.road
+                    and abs(begins[1] - piece.station) < SAME_PLACE and line.distance(piece.line) < MOVED)):
+                made[number] = feature
+    return made
 
 
 def take_back(layer: QgsVectorLayer) -> bool:

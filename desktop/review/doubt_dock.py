@@ -30,7 +30,7 @@ from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
 from ...processing_provider.texts import tr
 from ..widgets import button, choices, give_map_back, row, say, show_extent, take_map, wrapped
-from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
+from .corrections_layer import add_correction, corrections_of, corrections_of_survey, lay_above, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .photos import PhotoButton, photo_of
 from .smart_pick import evidence, pick, prepare, snap
@@ -60,6 +60,7 @@ class DoubtDock(QDockWidget):
         self.setObjectName("LanewrightDoubtfulPlaces")
         self.iface = iface
         self.places: list[Doubt] = []
+        self.decided: dict[int, str] = {}   # id of a piece: what was decided about it and not yet run
         self.at = -1
         self.seen: Doubt | None = None   # what map and section show
         self.road_map: RoadMap | None = None
@@ -192,6 +193,7 @@ class DoubtDock(QDockWidget):
         newer = next((one for one in road_maps(QgsProject.instance()) if one.survey == survey and one.has_any(arrived)), None)
         if newer is not None:
             self._stop_drawing()
+            self._of = None
             self._take(newer)
             if place is not None and self.places:
                 self.at = min(range(len(self.places)), key=lambda at: self.places[at].middle.distance(place.middle))
@@ -222,6 +224,8 @@ class DoubtDock(QDockWidget):
         counts = [(layer.id(), layer.featureCount()) for layer in road_map.vectors]
         if counts != self._of:
             self._of, self.road_map = counts, road_map
+            for layer in road_map.layers:   # a run that writes a layer in its place says so in its metadata
+                layer.metadataChanged.connect(partial(self._note_layers, [layer]))
             self._list_places()
 
     # -- from place to place ----------------------------------------------------------------------
@@ -253,6 +257,7 @@ class DoubtDock(QDockWidget):
         kind = self.kinds.currentData()
         doubts = doubts_of(self.road_map, [kind] if kind else [])
         self.places, self.at = sorted(doubts, key=lambda place: -place.doubt) if self.order.currentData() else doubts, -1
+        self._note_decisions()
 
     def _begin_again(self):
         """The first place of another choice or order."""
@@ -263,6 +268,7 @@ class DoubtDock(QDockWidget):
     def _fill(self, chosen=0):
         """List the pieces of the place; the buttons are about one of them, until the user selects more."""
         place = self.place
+        self._note_decisions()
         self.list.clear()
         if place is None and self.places:
             self.where.setText(tr("<b>{name}</b>: {count} places. ▶ goes to the first.").format(name=self.road_map.name, count=len(self.places)))
@@ -281,19 +287,20 @@ class DoubtDock(QDockWidget):
     def _is_done(self, place):
         return all(self._decision(piece) for piece in place.pieces)
 
+    def _note_decisions(self):
+        """Look up what was decided, of all places at once: the corrections are many, and so are the pieces."""
+        pieces = [piece for place in self.places for piece in place.pieces]
+        made = corrections_of(self.layer, pieces, self.places[0].crs) if pieces else {}
+        self.decided = {id(piece): str(WORDS["action"]["accept"]) for piece in pieces if not piece.target and piece.key in self._seen()}
+        self.decided |= {id(pieces[number]): str(WORDS["action"].get(row["action"], row["action"])) for number, row in made.items()}
+
     def _decision(self, piece):
         """What was decided about a piece and not yet run; "" for nothing."""
-        if not piece.target:
-            return WORDS["action"]["accept"] if piece.key in self._seen() else ""
-        correction = self._former(piece)
-        return "" if correction is None else str(WORDS["action"].get(correction["action"], correction["action"]))
+        return self.decided.get(id(piece), "")
 
     def _former(self, piece):
         """The correction that was made of a piece, None where there is none."""
-        if (layer := self.layer) is None:
-            return None
-        return correction_at(layer, piece.line, self.places[0].crs, piece.target) or \
-            move_of(layer, piece.line, self.places[0].crs, piece.target, piece.road, piece.station)
+        return corrections_of(self.layer, [piece], self.places[0].crs).get(0)
 
     def _seen(self):
         return str(self.road_map.layers[0].customProperty(SEEN) or "").split("\n")
@@ -400,6 +407,7 @@ class DoubtDock(QDockWidget):
     def _go_on(self, last):
         """To the next piece that is not decided, after the row that was decided last, here or at the next place."""
         place, count = self.place, len(self.place.pieces)
+        self._note_decisions()
         left = [row % count for row in range(last + 1, last + 1 + count) if not self._decision(place.pieces[row % count])]
         self._fill(left[0] if left else last)
         self._look_at()

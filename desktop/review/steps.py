@@ -91,10 +91,10 @@ def values_again(road_map: RoadMap) -> dict[str, object]:
     values = road_map.values
     for origin in sorted((origin_of(layer) for layer in road_map.layers), key=lambda origin: origin.provenance.ended):
         values |= {name: value for name, value in origin.provenance.values.items() if name in values and name not in (CLOUDS, TRAJECTORY, NAME)}
-    return {**values, **_saved(road_map)}
+    return {**values, **saved(road_map)}
 
 
-def _saved(road_map):
+def saved(road_map: RoadMap) -> dict[str, str]:
     """{result: destination} of the layers that were saved, and of the report beside them: there a new run puts its own in their place."""
     places = {}
     for output, layer in zip(road_map.outputs, road_map.layers):

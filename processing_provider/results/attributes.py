@@ -11,6 +11,7 @@ from qgis.core import QgsEditorWidgetSetup, QgsProviderRegistry, QgsVectorLayer
 
 from ...core.common.features import OTHER
 from ...core.common.texts import vocabulary
+from ...core.lazy import gdal
 from ..texts import tr
 
 # Unit at the end of a field's name -> decimals that mean something
@@ -59,7 +60,8 @@ def _parts():
         "length": _part('format_number("length_m", 0) || \' m\'', "length_m"),
         "height": _part(f"'{tr('height')} ' || format_number(\"height_m\", 2) || ' m'", "height_m"),
         "status": _part(value("status"), "status"),
-        "sigma": _part("'± ' || format_number(\"sigma_m\" * 1000, 0) || ' mm'", "sigma_m"),
+        "sigma": _part("'± ' || CASE WHEN \"sigma_m\" < 0.1 THEN format_number(\"sigma_m\" * 1000, 0) || ' mm' ELSE "
+                       "format_number(\"sigma_m\" * 100, 0) || ' cm' END", "sigma_m"),
         "line": _part(f"CASE WHEN \"kind\" = 'edge' THEN '{tr('Edge line')}' WHEN \"kind\" = 'centre' THEN '{tr('Centre line')}' "
                       f"ELSE '{tr('Lane line')}' END || ' ' || \"line\"", "kind", "line"),
         "pattern": _part(value("pattern"), "pattern"),
@@ -116,7 +118,6 @@ def _values(layer, index):
     """Values of a field. Those of a file are read without QGIS, whose connections would keep it open after the run."""
     if layer.providerType() != "ogr":
         return layer.uniqueValues(index)
-    from osgeo import gdal
 
     uri = QgsProviderRegistry.instance().decodeUri("ogr", layer.source())
     data = gdal.OpenEx(uri["path"], gdal.OF_VECTOR)

@@ -39,6 +39,7 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
     node = project.layerTreeRoot().findLayer(layer.id())
     if node is not None:
         node.setExpanded(False)  # legends of thirty entries would hide the layers
+        _renew_group(node, run, project)
     layer.setCustomProperty(OUTPUT, output)
     describe_origin(layer, run.provenance, output)
     road_map = road_map_of(layer, project)
@@ -50,11 +51,17 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
         _remove_former(layer, output, former, project)
     else:
         _hide_former(output, road_map, former, project)
-        for run_before, old in [*((earlier, earlier.layer(output)) for earlier in former), *((road_map, old) for old in road_map.older)]:
-            if old is not None and old.source() == layer.source():   # the new one was written in its place
-                _remove(old, run_before, project)
     if output in IMAGES and road_map.group is not None:
         _lay_under_map(layer, road_map, project)
+
+
+def _renew_group(node, run, project):
+    """Call the group of a layer by the run that has written the layer in its place: QGIS leaves the layer there, and the run's own group empty."""
+    group = project.layerTreeRoot().findGroup(run.group) if run.group else None
+    if group is not None and not group.children():
+        if node.parent() is not project.layerTreeRoot():
+            node.parent().setName(run.group)
+        group.parent().removeChildNode(group)
 
 
 def _remove_former(layer, output, former, project):
@@ -64,15 +71,10 @@ def _remove_former(layer, output, former, project):
         old = run.layer(output)
         if old is None or origin_of(old).provenance.algorithm != algorithm:
             continue
-        _remove(old, run, project)
+        project.removeMapLayer(old.id())
+        if not run.group.children():
+            run.group.parent().removeChildNode(run.group)
         return
-
-
-def _remove(layer, run, project):
-    """Take a layer out of the project, and the group of its run once that is empty."""
-    project.removeMapLayer(layer.id())
-    if not run.group.children():
-        run.group.parent().removeChildNode(run.group)
 
 
 def _hide_former(output, this, former, project):

@@ -113,7 +113,7 @@ def _id(node):
 
 
 def _run_key(origin: Origin):
-    return origin.provenance.algorithm, origin.provenance.time, origin.provenance.parameters
+    return origin.provenance.algorithm, origin.provenance.time, repr(origin.provenance.values)
 
 
 def _place_key(node, project):

@@ -15,6 +15,7 @@ from ...core.common.progress import Progress
 from ...core.curves.line_segments import single_lines
 from ...core.io.crs import check_extent, check_metric, horizontal_part, parse_crs, same_crs
 from ...core.io.local_files import gdal_exceptions, open_raster, reading
+from ...core.lazy import gdal, ogr, pyproj
 from ...core.survey.weights import TRAJECTORY
 from .lines import MAX_MATCH_DISTANCE, SIDE_NAMES, BoundaryAccuracy, LineAccuracySettings, LineMatch, interval_lines
 from .markings import MarkingAccuracy
@@ -214,9 +215,8 @@ def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore
         return replace(layer, crs=wkt)
     if same_crs(source, target):
         return replace(layer, crs=wkt)
-    from pyproj import Transformer
 
-    move = Transformer.from_crs(horizontal_part(source), horizontal_part(target), always_xy=True)
+    move = pyproj.Transformer.from_crs(horizontal_part(source), horizontal_part(target), always_xy=True)
     moved = [shapely.transform(shape, lambda xyz: np.column_stack([*move.transform(*xyz[:, :2].T), xyz[:, 2:]]), include_z=bool(shape.has_z))
              for shape in layer.geometries]
     if not np.isfinite(shapely.get_coordinates(moved)).all():
@@ -406,8 +406,6 @@ def polygons_of_raster(path: str, progress: Progress = Progress()) -> tuple[list
 
     Values outside 1 to 65534 and fractions below 1 count as 1. Raises RoadExtractionError if GDAL cannot read the file.
     """
-    from osgeo import gdal, ogr
-
     raster = open_raster(path)
     copy = f"/vsimem/lanewright_{id(raster)}.tif"
     try:
@@ -432,8 +430,6 @@ def polygons_of_raster(path: str, progress: Progress = Progress()) -> tuple[list
 
 def _polygonize(band, layer, progress):
     """GDAL cannot pass an exception through its own code: the one that a cancellation raises is stored and raised again."""
-    from osgeo import gdal
-
     stopped = []
 
     def report(share, *_):
@@ -455,8 +451,6 @@ def _polygonize(band, layer, progress):
 
 def _values(raster, path, progress):
     """A copy of the raster with whole numbers, 0 where nothing is painted."""
-    from osgeo import gdal
-
     width, height = raster.RasterXSize, raster.RasterYSize
     copy = gdal.GetDriverByName("GTiff").Create(path, width, height, 1, gdal.GDT_UInt16, ["TILED=YES", "COMPRESS=LZW", "SPARSE_OK=TRUE"])
     copy.SetGeoTransform(raster.GetGeoTransform())

@@ -14,7 +14,7 @@ from ...core.common.progress import Progress
 from ...core.common.setting import check_limits, setting
 from ...core.io.crs import NO_PLACE, place_of_raster, place_raster
 from ...core.io.local_files import gdal_exceptions, open_raster
-from ...core.lazy import cv2
+from ...core.lazy import cv2, gdal, ogr
 from .matching import Rates
 
 HIT, MISSED, FALSE, MISSED_BESIDE, FALSE_BESIDE = 1, 2, 3, 4, 5  # values of the outcome raster
@@ -218,8 +218,6 @@ class _PolygonRasteriser:
 
     @gdal_exceptions()
     def __init__(self, polygons: Sequence[Any]) -> None:
-        from osgeo import ogr
-
         self._source = ogr.GetDriverByName("Memory").CreateDataSource("polygons")
         self._layer = self._source.CreateLayer("polygons", None, ogr.wkbUnknown)
         self._layer.CreateField(ogr.FieldDefn("number", ogr.OFTInteger))
@@ -233,8 +231,6 @@ class _PolygonRasteriser:
     @gdal_exceptions()
     def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
         """(rows, columns) int32 numbers of polygons, from 1 on, 0 elsewhere, within (min x, min y, max x, max y); the later of two that overlap."""
-        from osgeo import gdal
-
         rows, columns = shape
         raster = gdal.GetDriverByName("MEM").Create("", columns, rows, 1, gdal.GDT_Int32)
         size = (bounds[2] - bounds[0]) / columns
@@ -254,16 +250,12 @@ class _DataMask:
 
     @gdal_exceptions()
     def __init__(self, path: str) -> None:
-        from osgeo import gdal
-
         self._raster = open_raster(path)
         self._inverse = gdal.InvGeoTransform(place_of_raster(self._raster)[0] or NO_PLACE)
 
     @gdal_exceptions()
     def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
         """(rows, columns) bool: whether the raster has a value at the centre of each cell. Parameters as of `_PolygonRasteriser.burn`."""
-        from osgeo import gdal
-
         size = (bounds[2] - bounds[0]) / shape[1]
         x = bounds[0] + (np.arange(shape[1]) + 0.5) * size
         y = bounds[3] - (np.arange(shape[0]) + 0.5) * size
@@ -317,8 +309,6 @@ class OutcomeRaster:
 
     @gdal_exceptions()
     def __init__(self, path: str, polygons: Iterable[Any], cell_size: float, crs: str, margin: int = 0) -> None:
-        from osgeo import gdal
-
         tiles = np.array(_covering_tiles(list(polygons), cell_size, margin) or [(0, 0)])
         (self._west, south), (east, self._north) = tiles.min(axis=0), tiles.max(axis=0)
         columns, rows = (east - self._west + 1) * BURN_TILE, (self._north - south + 1) * BURN_TILE

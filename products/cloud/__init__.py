@@ -2,10 +2,3 @@
 
 In: an open `Survey` and the layers of its road map. Out: copies of its files in which every point says what it belongs to, and where on the road.
 """
-
-from ...core.lazy import public
-
-__getattr__, __all__ = public(__name__, {
-    "classify": ("CloudLayers", "CloudSettings", "PointClassifier", "PointClass"),
-    "rewrite": ("classified_copy",),
-})

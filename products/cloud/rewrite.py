@@ -11,6 +11,7 @@ import numpy as np
 from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...core.io.crs import as_in_file, parse_crs
+from ...core.lazy import laspy
 from ...core.survey.las.point_fields import valid_points
 from ...core.survey.las.reader import CloudHeader, open_cloud, read_blocks
 from ...core.survey.road_points_las import new_laz
@@ -54,8 +55,6 @@ def classified_copy(file: CloudHeader, classifier: PointClassifier, path: str, u
 
 def _road_fields():
     """The extra fields that are added, as laspy takes them."""
-    import laspy
-
     nowhere = [np.iinfo(np.int32).min]
     yield laspy.ExtraBytesParams("road", "uint16", "Road", no_data=[np.iinfo(np.uint16).max])
     for name, text in (("station", "Station along the road (m)"), ("offset", "Offset, left positive (m)"),
@@ -65,8 +64,6 @@ def _road_fields():
 
 def _header_of(file, crs):
     """The header of the copy."""
-    import laspy
-
     with open_cloud(file.path, known=file) as reader:
         header = deepcopy(reader.header)
     # those of the file itself, which the reader gives in metres
@@ -114,8 +111,6 @@ def _name_classes(header):
 
 def _described(points, places, header, counts):
     """The record of a block of laspy points for the copy."""
-    import laspy
-
     record = laspy.ScaleAwarePointRecord.zeros(len(points), header=header)
     if points.point_format.id == header.point_format.id:
         for name in points.array.dtype.names:
@@ -152,8 +147,6 @@ def _straightened(header):
 
 def _laid_out(record, places, header):
     """The points on the road of a record, for the copy with straight roads."""
-    import laspy
-
     rows = np.flatnonzero(places.road >= 0)
     laid = laspy.ScaleAwarePointRecord(record.array[rows], header.point_format, header.scales, header.offsets)
     beside = 100.0 * places.road[rows]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections import Counter, defaultdict
-from dataclasses import dataclass, field
+from collections import Counter, defaultdict, deque
+from dataclasses import dataclass, field, replace
 from html import escape
 
 import numpy as np
@@ -16,7 +16,8 @@ from ...core.common.progress import Progress
 from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
 from ...core.io.crs import as_in_file, horizontal_part, parse_crs
-from .shared_borders import cuts_beside, numbered
+from ...core.lazy import pyproj
+from .shared_borders import WIDEST_DOUBLE, cuts_beside, numbered
 from .sources import (
     LEAST_CURB,
     LEAST_LED,
@@ -109,12 +110,13 @@ class LaneletNetwork:
         self.reversed_right: dict[int, bool] = {}
         for lanelet in whole.lanelets.values():
             self._place(lanelet)
-        starts, by_border = defaultdict(list), defaultdict(list)
+        starts, goals, by_border = defaultdict(list), defaultdict(list), defaultdict(list)
         for id in self.left:
             starts[self.ends(id)[0]].append(id)
+            goals[self.ends(id)[1]].append(id)
             for role in ("left", "right"):
                 by_border[whole.lanelets[id].way(role)].append((id, role))
-        self._starts, self._by_border = starts, by_border
+        self._starts, self._goals, self._by_border = starts, goals, by_border
 
     def _place(self, lanelet: Lanelet) -> None:
         ids = lanelet.way("left"), lanelet.way("right")
@@ -153,6 +155,17 @@ class LaneletNetwork:
         """Lanelets that share a border with this one."""
         lanelet = self.whole.lanelets[id]
         return [neighbour for role in ("left", "right") for neighbour, _ in self._by_border[lanelet.way(role)] if neighbour != id]
+
+    def abreast(self, id: int) -> list[tuple[int, bool]]:
+        """(lanelet that shares a border with this one, whether it is driven the same way)."""
+        lanelet, turned = self.whole.lanelets[id], {"left": self.reversed_left, "right": self.reversed_right}
+        return [(neighbour, turned[role][id] == turned[other][neighbour]) for role in turned
+                for neighbour, other in self._by_border[lanelet.way(role)] if neighbour != id]
+
+    def crosses(self, id: int) -> bool:
+        """Whether it is a way through a junction: the map says how it turns, or others begin where it does and others end where it does."""
+        forks, meets = (len(by_ends[self.ends(id)[k]]) > 1 for k, by_ends in ((0, self._starts), (1, self._goals)))
+        return self.driven(id) and ("turn_direction" in self.whole.lanelets[id].tags or forks and meets)
 
     def driven(self, id: int) -> bool:
         """Whether vehicles use it."""
@@ -290,8 +303,6 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
         crs : WKT, "" where coordinates are local
     Raises RoadExtractionError if the CRS is not in metres, or nodes have neither latitude nor local coordinates.
     """
-    from pyproj import Transformer
-
     located = np.isfinite(whole.degrees).all(1)
     heights = np.nan_to_num(whole.heights)
     at_sea = located.any() and np.abs(whole.degrees[located]).max() < NO_LAND
@@ -302,10 +313,10 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
             raise RoadExtractionError(f"Node {whole.node_ids[~located][0]} has neither lat and lon nor local_x and local_y. "
                                       "Export the map with them.")
         if not crs:
-            x, y = Transformer.from_crs("EPSG:4326", LOCAL_CRS, always_xy=True).transform(*whole.degrees.T)
+            x, y = pyproj.Transformer.from_crs("EPSG:4326", LOCAL_CRS, always_xy=True).transform(*whole.degrees.T)
             return np.c_[x, y, heights], ""
     target = metric_wkt(crs, "The chosen CRS") if crs else utm_of(*whole.degrees.mean(0))
-    x, y = Transformer.from_crs("EPSG:4326", parse_crs(target), always_xy=True).transform(*whole.degrees.T)
+    x, y = pyproj.Transformer.from_crs("EPSG:4326", parse_crs(target), always_xy=True).transform(*whole.degrees.T)
     places = np.c_[x, y, heights]
     if not np.isfinite(places).all():
         raise RoadExtractionError("The map does not lie where the chosen CRS holds. Choose the CRS of its country, or leave it empty.")
@@ -319,20 +330,25 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
     are edges. Raises RoadExtractionError as `node_places`.
     """
     places, crs = node_places(whole, crs)
-    network, rows = LaneletNetwork(whole, places), []
+    network, rows = LaneletNetwork(whole, places), {}
     shown = [id for id in network.left if network.driven(id)]
-    for count, id in enumerate(shown):
-        lanelet = whole.lanelets[id]
-        left, right = matched(places[network.left[id]], places[network.right[id]])
-        turned = {"left": network.reversed_left[id], "right": network.reversed_right[id]}
-        kinds, patterns = zip(*(_border(whole.ways[lanelet.way(role) or 0].tags, turned[role]) for role in turned))
-        rows.append(dict(
-            left=left, right=right, road=1, lane=count + 1, lane_id=str(id), direction=1,
-            type=LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "driving"),
-            left_kind=kinds[0], right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
-            successors=[str(following) for following in network.following(id) if network.driven(following)]))
-        progress.report((count + 1) / len(shown))
-    layers = MapLayers(Lanes.of_pieces(rows, crs), list(_lines(whole, places)), outlines=list(_outlines(whole, places, network)),
+    number_of = {id: number for number, id in enumerate(shown, start=1)}
+    for along in _along_roads(network, shown):
+        for id, (left, right) in _borders_abreast(network, along).items():
+            lanelet = whole.lanelets[id]
+            kind = LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "connector" if network.crosses(id) else "driving")
+            turned = {"left": network.reversed_left[id], "right": network.reversed_right[id]}
+            sides = [(line, *_border(whole.ways[lanelet.way(role) or 0].tags, turned[role])) for role, line in (("left", left), ("right", right))]
+            driven = kind in ("driving", "connector")
+            if not driven and along[id] < 0:   # where nobody drives, borders are those along the road
+                sides = [(line[::-1], *about) for line, *about in sides[::-1]]
+            rows[id] = dict(
+                **{side + name: value for side, about in zip(("left", "right"), sides) for name, value in zip(("", "_kind", "_pattern"), about)},
+                road=1, lane=number_of[id], lane_id=str(id), direction=along[id] * driven, type=kind,
+                successors=[str(following) for following in network.following(id) * driven if network.driven(following)])
+            progress.report(len(rows) / len(shown))
+    layers = MapLayers(Lanes.of_pieces([rows[id] for id in shown], crs), list(_lines(whole, places)),
+                       outlines=list(_outlines(whole, places, network)),
                        signals=_signals(whole, places, crs), left_out=_left_out(whole))
     layers.attributes = {str(id): known for id in shown if (known := _known(whole, whole.lanelets[id]))}
     if not crs:
@@ -421,17 +437,57 @@ def _number(text, missing):
         return missing
 
 
-def matched(left: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Two borders with vertices at the same shares of their lengths, so that each has those of both."""
+def _along_roads(network, shown):
+    """For lanelets that lie side by side id -> 1 or -1, the way they are driven along the road; what follows them is driven the same way along."""
+    roads, direction = [], {}
+    waiting = deque()
+    for first in shown:
+        waiting.append((first, 1))
+        while waiting:
+            id, way = waiting.popleft()
+            if id in direction:
+                continue
+            road, beside = {id: way}, deque([id])
+            while beside:
+                here = beside.popleft()
+                for neighbour, same in network.abreast(here):
+                    if neighbour not in road and network.driven(neighbour):
+                        road[neighbour] = road[here] * (1 if same else -1)
+                        beside.append(neighbour)
+            direction |= road
+            roads.append(road)
+            waiting += [(following, road[member]) for member in road for following in network.following(member) if network.driven(following)]
+    return roads
+
+
+def _borders_abreast(network, along):
+    """id -> (left, right) of lanelets side by side, with vertices at the same places along all of them, so that neighbours share them."""
+    lines = {}
+    for id, way in along.items():
+        for role, rows in (("left", network.left[id]), ("right", network.right[id])):
+            lines[network.whole.lanelets[id].way(role)] = network.places[rows[::way]]
+    if len({len(line) for line in lines.values()}) > 1 or not all(
+            _is_abreast(*(network.places[side[id]] for side in (network.left, network.right))) for id in along):
+        lines = dict(zip(lines, matched(*lines.values())))
+    return {id: tuple(lines[network.whole.lanelets[id].way(role)][::way] for role in ("left", "right")) for id, way in along.items()}
+
+
+def _is_abreast(left, right):
+    """Whether the vertices of two borders lie across from each other, one by one."""
+    across, ahead = (right - left)[:, :2], np.gradient((left + right)[:, :2], axis=0)
+    return bool((np.abs((across * ahead).sum(1)) <= np.abs(across[:, 0] * ahead[:, 1] - across[:, 1] * ahead[:, 0]) + LEAST_LED).all())
+
+
+def matched(*borders: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Borders with vertices at the same shares of their lengths, so that each has those of all."""
     shares = []
-    for border in (left, right):
+    for border in borders:
         along = np.append(0.0, np.cumsum(np.hypot(*np.diff(border[:, :2], axis=0).T)))
         shares.append(along / along[-1] if along[-1] > 0 else np.linspace(0, 1, len(border)))
     merged = np.unique(np.concatenate(shares))
     merged = merged[np.append(True, np.diff(merged) > 1e-9)]
     merged[-1] = 1.0
-    return tuple(np.stack([np.interp(merged, share, values) for values in border.T], axis=1)     # type: ignore[return-value]
-                 for border, share in zip((left, right), shares))
+    return tuple(np.stack([np.interp(merged, share, values) for values in border.T], axis=1) for border, share in zip(borders, shares))
 
 
 def _border(tags, turned):
@@ -492,6 +548,8 @@ class _LaneletDraft:
     lanelets: list[_MadeLanelet] = field(default_factory=list)
     rules: list[tuple[str, list[tuple[str, int]], list[int]]] = field(default_factory=list)   # (subtype, (role, way) members, lanelets that obey)
     skipped: dict[str, int] = field(default_factory=dict)   # type of lane -> pieces that are no lanelets
+    unmet: int = 0   # links of lanes whose ends lie too far apart to be one
+    added: int = 0   # links of lanes that meet though the map does not say that they do
 
 
 def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSettings()) -> _LaneletDraft:
@@ -505,13 +563,53 @@ def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSet
     return _Drafting(source, settings).run()
 
 
+def _bridged(lanes: Lanes) -> tuple[Lanes, np.ndarray, int]:
+    """(lanes of a map from elsewhere that reach those that they are linked to, (V,) whether a vertex was an end before, links that are left out as
+    their ends lie too far apart).
+
+    A lane whose corner misses that of the other one begins or ends there with a further vertex; so do all that share its corner.
+    """
+    nodes, first = numbered(np.concatenate([lanes.left, lanes.right]))
+    corners = {(k, end): (row, row + len(lanes.left)) for k in range(len(lanes)) for end, row in ((0, lanes.start[k]), (1, lanes.start[k + 1] - 1))}
+    places, row_of = np.concatenate([lanes.left, lanes.right]), {name: k for k, name in enumerate(lanes.lane_id)}
+    links = [((k, 1), (row_of[name], 0)) for k, names in enumerate(lanes.successors) for name in names if name in row_of]
+    met = {nodes[row] for one, other in links for row, goal in zip(corners[one], corners[other]) if nodes[row] == nodes[goal]}
+    goal_of, broken = {}, set()
+    for one, other in links:
+        # a connector reaches out for its lane; else it is always the same of two roads
+        reaching, fixed = sorted((one, other), key=lambda end: (lanes.type[end[0]] != "connector", lanes.road[end[0]], end[0]))
+        pairs = [(nodes[row], int(first[nodes[goal]])) for row, goal in zip(corners[reaching], corners[fixed]) if nodes[row] != nodes[goal]]
+        far = any(np.hypot(*(places[goal] - places[row])[:2]) > WIDEST_DOUBLE for row, goal in zip(corners[reaching], corners[fixed]))
+        if far or any(node in met or goal_of.get(node, goal) != goal for node, goal in pairs):
+            broken.add((one[0], other[0]))
+        else:
+            goal_of.update(pairs)
+    extra = {end: [goal_of.get(nodes[row], row) for row in rows] for end, rows in corners.items() if any(nodes[row] in goal_of for row in rows)}
+    sides, was_end = ([], []), []
+    for k in range(len(lanes)):
+        inside = np.zeros(int(np.diff(lanes.start)[k]), bool)
+        inside[0], inside[-1] = (k, 0) in extra, (k, 1) in extra
+        was_end.append(np.concatenate([[False] * ((k, 0) in extra), inside, [False] * ((k, 1) in extra)]))
+        for number, border in enumerate(lanes.borders(k)):
+            ends = [places[[extra[k, end][number]]] if (k, end) in extra else border[:0] for end in (0, 1)]
+            sides[number].append(np.concatenate([ends[0], border, ends[1]]))
+    start = np.append(0, np.cumsum([len(border) for border in sides[0]], dtype=int))
+    successors = [tuple(name for name in names if (k, row_of.get(name)) not in broken) for k, names in enumerate(lanes.successors)]
+    bridged = replace(lanes, left=np.concatenate(sides[0]), right=np.concatenate(sides[1]), start=start, successors=successors)
+    return bridged, np.concatenate(was_end).astype(bool), len(broken)
+
+
 class _Drafting:
     def __init__(self, source: RoadMapSource, settings: LaneletSettings) -> None:
+        unmet, self.was_end = 0, np.zeros(len(source.lanes.left), bool)
+        if is_stated(source.lanes):
+            lanes, self.was_end, unmet = _bridged(source.lanes)
+            source = replace(source, lanes=lanes, middles=None)
         self.source, self.settings, self.lanes = source, settings, source.lanes
         lanes = source.lanes
         places = np.concatenate([lanes.left, lanes.right])
         numbers, first = numbered(places, LEAST_CURB if is_stated(lanes) else SAME_RISE)
-        self.draft = _LaneletDraft(places[first])
+        self.draft = _LaneletDraft(places[first], unmet=unmet)
         self.left, self.right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
         self.way_of: dict[tuple[int, ...], int] = {}
         # beside a double line the bounds meet in its middle, and the line to drive on stays between the stripes
@@ -525,15 +623,28 @@ class _Drafting:
         for k in range(len(lanes)):
             if lanes.type[k] not in SUBTYPE_OF_LANE:
                 self.draft.skipped[lanes.type[k]] = self.draft.skipped.get(lanes.type[k], 0) + 1
-        cuts = cuts_beside(lanes, self.left, self.right, np.repeat(np.isin(np.arange(len(lanes)), used), np.diff(lanes.start)))
+        among = np.repeat(np.isin(np.arange(len(lanes)), used), np.diff(lanes.start)) & ~self.was_end
+        cuts = cuts_beside(lanes, self.left, self.right, among)
         for k in used:
-            first = lanes.start[k]
-            bounds = [first, *(row for row in range(first + 1, lanes.start[k + 1] - 1) if self.left[row] in cuts or self.right[row] in cuts),
-                      lanes.start[k + 1] - 1]
-            for a, b in zip(bounds[:-1], bounds[1:]):
+            bounds, last = [lanes.start[k]], lanes.start[k + 1] - 1
+            for row in range(bounds[0] + 1, last):
+                # where one border stands still there is no lanelet to cut off
+                if among[row] and (self.left[row] in cuts or self.right[row] in cuts) and all(
+                        self.left[row] != self.left[end] and self.right[row] != self.right[end] for end in (bounds[-1], last)):
+                    bounds.append(row)
+            for a, b in zip(bounds, [*bounds[1:], last]):
                 self._lanelet(k, slice(a, b + 1))
         self._objects()
+        self.draft.added = self._added_links(used)
         return self.draft
+
+    def _added_links(self, used):
+        """How many lanes end where one begins that they are not linked to: in this format the one leads to the other."""
+        starts = defaultdict(set)
+        for k in used:
+            starts[self.left[self.lanes.start[k]], self.right[self.lanes.start[k]]].add(self.lanes.lane_id[k])
+        ends = ((k, starts[self.left[self.lanes.start[k + 1] - 1], self.right[self.lanes.start[k + 1] - 1]]) for k in used if self.lanes.direction[k])
+        return sum(len(names - {self.lanes.lane_id[k], *self.lanes.successors[k]}) for k, names in ends)
 
     def _lanelet(self, k: int, rows: slice) -> None:
         lanes = self.lanes

@@ -23,7 +23,7 @@ from .surface_grid import (
     CROSS_CELL,
     SLICE_LENGTH,
     HeightErrors,
-    SurfaceGrid,
+    joined_heights,
     noise_of_largest,
     overlaps_of,
     rut_depths,
@@ -157,27 +157,13 @@ def _height_errors(survey: Survey, road: int, stations: list[float], borders: Ro
     return solve_height_errors(result, survey.frame.passes)
 
 
-def _joined(grid: SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[np.ndarray, np.ndarray]:
-    """(I, J) heights without the errors of their groups, and their sigmas."""
-    weight = np.zeros(grid.height.shape[1:])
-    total = np.zeros_like(weight)
-    for g, group in enumerate(grid.groups):
-        track = frame.passes[group[0]].at_station(grid.s)[0]
-        heights = grid.height[g] - errors.of(group, grid.s[:, None], grid.d - track[:, None])
-        precision = np.where(np.isfinite(heights), grid.count[g] / max(grid.sigma[g], 1e-3) ** 2, 0.0)
-        total += np.where(precision > 0, heights, 0.0) * precision
-        weight += precision
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(weight > 0, total / weight, np.nan), np.where(weight > 0, 1.2533 / np.sqrt(weight), np.nan)
-
-
 def _section(survey, road, s, borders, errors, interval, stretch):
     """(_RoadSection, lanes without ruts); None where the road was not seen."""
     measured = _grid(survey, road, s, borders, stretch)
     if measured is None:
         return None, 0
     carriageway, lanes, grid = measured
-    heights, sigma = _joined(grid, errors, survey.frame)
+    heights, sigma = joined_heights(grid, errors, survey.frame)
     whole = _plane(grid, heights, carriageway)
     if whole is None:
         return None, 0

@@ -12,6 +12,7 @@ from scipy.sparse.linalg import spsolve
 from ...core.common.arrays import order_by
 from ...core.road.common.pseudo_scanlines import lowest_layers
 from ...core.survey.frame.passes import Pass
+from ...core.survey.frame.road_frame import RoadFrame
 from ...core.survey.store.records import Points
 from ...core.survey.survey import Survey
 
@@ -267,6 +268,20 @@ def _prior(G, W, S):
     parts = [sparse.kron(sparse.identity(G), sparse.identity(W) / prior**2 + change.T @ change / drift**2)
              for prior, drift in ((STEP_PRIOR, STEP_CHANGE), (TILT_PRIOR, TILT_CHANGE))]
     return sparse.block_diag([*parts, sparse.identity(S) / BORESIGHT_PRIOR**2])
+
+
+def joined_heights(grid: SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[np.ndarray, np.ndarray]:
+    """(I, J) heights without the errors of their groups, m above the line of the grid, and their sigmas, m; NaN where nothing was seen."""
+    weight = np.zeros(grid.height.shape[1:])
+    total = np.zeros_like(weight)
+    for g, group in enumerate(grid.groups):
+        track = frame.passes[group[0]].at_station(grid.s)[0]
+        heights = grid.height[g] - errors.of(group, grid.s[:, None], grid.d - track[:, None])
+        precision = np.where(np.isfinite(heights), grid.count[g] / max(grid.sigma[g], 1e-3) ** 2, 0.0)
+        total += np.where(precision > 0, heights, 0.0) * precision
+        weight += precision
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(weight > 0, total / weight, np.nan), np.where(weight > 0, 1.2533 / np.sqrt(weight), np.nan)
 
 
 # Rut depth under a straight edge.

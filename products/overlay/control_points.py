@@ -21,6 +21,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.io.crs import NO_PLACE, in_metres, place_of_raster
 from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.io.text_table import as_number
+from ...core.lazy import gdal
 
 MAX_DEPARTURE = 0.1  # of the image's size: what a tilted camera over hilly ground differs from an image that is turned and scaled
 CONTROL, CHECK, DISABLED = "control", "check", "disabled"  # roles of a point
@@ -394,8 +395,6 @@ def open_image(path: str | Path) -> SourceImage:
     path : of a file that GDAL reads
     Raises RoadExtractionError if there is no such file, or it is no raster with bands.
     """
-    from osgeo import gdal
-
     if not Path(path).is_file():
         raise RoadExtractionError(f"There is no file {path}. Give the image itself (TIFF, JPEG or PNG).")
     dataset = open_raster(path)

@@ -17,6 +17,7 @@ from ...core.common.setting import check_limits, setting
 from ...core.io.crs import as_in_file
 from ...core.io.geotiff import GEOTIFF_TILE
 from ...core.io.local_files import gdal_exceptions, open_raster, unfinished_path
+from ...core.lazy import gdal, pyproj
 from .control_points import CONTROL, REQUIRED_COLUMNS, ControlPoints, SourceImage
 
 EXTRAPOLATIONS = ("automatic", "draw", "leave-out")  # of the image outside the hull of the control points
@@ -274,14 +275,11 @@ def _map_metres(points):
 
 def _scale_of_map(crs, points):
     """Metres on the map per metre on the ground at the middle of the points; NaN where the CRS is a local one."""
-    from pyproj import Proj
-    from pyproj.exceptions import CRSError, ProjError
-
     try:
-        projection = Proj(crs)
+        projection = pyproj.Proj(crs)
         longitude, latitude = projection(float(points.easting.mean()), float(points.northing.mean()), inverse=True)
         return float(np.sqrt(projection.get_factors(longitude, latitude).areal_scale))
-    except (CRSError, ProjError):
+    except (pyproj.exceptions.CRSError, pyproj.exceptions.ProjError):
         return float("nan")
 
 
@@ -528,8 +526,6 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
     Returns pixels, greatest distance between the places where GDAL and the polynomial put a pixel
     Raises RoadExtractionError if the result would be too large, the image cannot be read, or the file cannot be written.
     """
-    from osgeo import gdal
-
     progress = progress or Progress()
     bounds, width, height = output_grid(found)
     unfinished, tiled = (unfinished_path(path, suffix) for suffix in (".tif", ".source.tif"))

@@ -12,7 +12,7 @@ import numpy as np
 from ...core.common.errors import RoadExtractionError
 from ...core.io.geotiff import IntensityImage
 from ...core.io.local_files import gdal_exceptions, open_raster
-from ...core.lazy import cv2
+from ...core.lazy import cv2, gdal, pyproj
 from .control_points import DISABLED, ControlPoints, SourceImage
 
 _POINTED = 2.0          # m by which a point pointed at by hand may be off
@@ -124,14 +124,12 @@ def to_map(x: np.ndarray, y: np.ndarray, source: str, target: str) -> tuple[np.n
     source, target : WKT or codes; where either is "" nothing is changed
     Returns x, y: (N,), infinite where a place has none in the target CRS
     """
-    from pyproj import Transformer
-
     from ...core.io.crs import horizontal_part, parse_crs, same_crs
 
     a, b = parse_crs(source), parse_crs(target)
     if a is None or b is None or same_crs(a, b):
         return x, y
-    moved: tuple[Any, Any] = Transformer.from_crs(horizontal_part(a), horizontal_part(b), always_xy=True).transform(x, y)
+    moved: tuple[Any, Any] = pyproj.Transformer.from_crs(horizontal_part(a), horizontal_part(b), always_xy=True).transform(x, y)
     return np.asarray(moved[0], float), np.asarray(moved[1], float)
 
 
@@ -248,8 +246,6 @@ def pair_cutouts(image: SourceImage, intensity: IntensityImage, pixel: np.ndarra
     side : pixels of a cut-out
     Returns iterator of two (side, side, 3) uint8, red, green, blue; black where there is nothing
     """
-    from osgeo import gdal
-
     dataset = open_raster(image.path)
     if image.palette:
         dataset = gdal.Translate("", dataset, format="VRT", rgbExpand="rgb")
@@ -268,7 +264,6 @@ def _photo(dataset, bands, image, place, factor, per_cell, side):
     r0, r1 = max(0, row), min(image.height, row + 2 * reach)
     if c0 >= c1 or r0 >= r1:
         return np.zeros((side, side, 3), np.uint8)
-    from osgeo import gdal
 
     window = np.zeros((2 * reach, 2 * reach, 3), np.float32)
     for number, band in enumerate(bands):

@@ -7,7 +7,7 @@ import numpy as np
 from ...core.common.texts import word
 from ...core.io.crs import NO_PLACE, horizontal_part, parse_crs, place_of_raster
 from ...core.io.local_files import gdal_exceptions, open_raster
-from ...core.lazy import cv2
+from ...core.lazy import cv2, gdal
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
 from ..overlay.georeference import Georeferencing, drawn_area, output_grid
 from ..overlay.matching.propose import Proposal
@@ -88,8 +88,6 @@ def _round_down(value):
 @gdal_exceptions()
 def _reduced_copy(path):
     """((H, W, 3) small copy of the drawn image, pixels per metre, map coordinates of its north-west corner)."""
-    from osgeo import gdal
-
     dataset = open_raster(path)
     share = min(1.0, RESIDUAL_PICTURE_SIDE / max(dataset.RasterXSize, dataset.RasterYSize))
     width, height = (max(int(n * share), 1) for n in (dataset.RasterXSize, dataset.RasterYSize))

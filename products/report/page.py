@@ -18,7 +18,7 @@ from ...core.common.texts import language, told, tr, word
 from ...core.io.crs import NO_PLACE, place_of_raster
 from ...core.io.geotiff import GEOTIFF_TILE, filled_tiles
 from ...core.io.local_files import gdal_exceptions, open_raster
-from ...core.lazy import cv2
+from ...core.lazy import cv2, gdal
 
 TEMPLATES = Path(__file__).parent / "templates"
 _END_OF_TITLE = "</h1>"
@@ -239,8 +239,6 @@ MAP_STYLE = (
 @gdal_exceptions()
 def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndarray, tuple[float, float, float, float]]:
     """((H, W) uint8 grey, 0 where there is no data; its (min x, min y, max x, max y)) of a raster file, small, with stretched contrast."""
-    from osgeo import gdal
-
     dataset = open_raster(path)
     width, height = dataset.RasterXSize, dataset.RasterYSize
     scale = min(1.0, longest / max(width, height))
@@ -267,8 +265,6 @@ def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndar
 
 def _averaged(dataset, columns, rows, nodata):
     """(rows, columns) means of the values of a raster, read tile by tile; NaN where there are none."""
-    from osgeo import gdal
-
     band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
     total, count = np.zeros((2, rows, columns))
     for left, top in filled_tiles(dataset):

@@ -14,8 +14,8 @@ MODULES = [path for path in FILES if path.name != "__init__.py"]
 # Each room imports only from those before it
 ORDER = tuple(f"core/{name}" for name in ("lazy", "common", "execution", "countries", "io", "curves", "survey", "road", "intensity", "markings",
                                           "driving", "corrections", "pipeline")) + \
-    tuple(f"products/{name}" for name in ("inspection", "scanline_layer", "published_markings", "inventory", "cloud", "export", "cad",
-                                          "client_fields", "assess", "overlay", "report")) + ("simulator",)
+    tuple(f"products/{name}" for name in ("inspection", "scanline_layer", "published_markings", "inventory", "surface", "cloud", "export",
+                                          "cad", "client_fields", "assess", "overlay", "report")) + ("simulator",)
 # Module-level numbers of each room: every one is a decision that a reader must know
 NUMBERS = {
     "core/common": 12,
@@ -34,6 +34,7 @@ NUMBERS = {
     "products/scanline_layer": 6,
     "products/published_markings": 9,
     "products/inventory": 148,
+    "products/surface": 20,
     "products/cloud": 0,
     "products/export": 158,
     "products/client_fields": 0,

@@ -55,8 +55,9 @@ def test_the_troubleshooting_quotes_what_is_really_said():
 
 
 def test_every_file_a_command_reads_is_written_by_the_command_of_another_page(made):
-    """In one folder, from the sample survey on; a trajectory as text, and the template of a client, are what people bring."""
-    read, written = set(), {"trajectory.csv", "template.csv"}
+    """In one folder, from the sample survey on; a trajectory as text, an extract of OpenStreetMap and the template of a client are what
+    people bring."""
+    read, written = set(), {"trajectory.csv", "template.csv", "streets.osm"}
     for algorithm in ALGORITHMS:
         made_with = LanewrightAlgorithm(algorithm()).create()
         definitions = {d.name(): d for d in made_with.parameterDefinitions()}

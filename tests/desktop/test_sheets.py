@@ -11,7 +11,7 @@ import pytest
 import shapely
 from lanewright.algorithms.export import SheetSettings
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import CROSS_SECTIONS, DRIVING_LINES, ROAD_EDGES
+from lanewright.core.common.features import CROSS_SECTIONS, DRIVING_LINES, MARKING_LINES, ROAD_EDGES
 from lanewright.core.common.progress import Progress
 from lanewright.core.common.texts import language
 from lanewright.desktop.layout.axes import axes_of, road_line
@@ -480,6 +480,13 @@ def test_the_legend_lists_the_classes_that_there_are(project, attribute):
     model = item(layout, QgsLayoutItemLegend).model()
     nodes = model.layerLegendNodes(model.rootGroup().findLayers()[0])
     assert [str(node.data(Qt.ItemDataRole.DisplayRole)).partition(",")[0] for node in nodes] == ["solid", "dashed"]
+
+
+def test_the_legend_says_nothing_of_a_layer_without_features(project):
+    empty = added(project, "MARKING_LINES", MARKING_LINES)
+    layout, _ = sheet_layout(project, {"ROAD_EDGES": street(project), "MARKING_LINES": empty}, PLAN)
+    model = item(layout, QgsLayoutItemLegend).model()
+    assert empty.name() not in [node.layer().name() for node in model.rootGroup().findLayers()]
 
 
 @pytest.mark.parametrize("angle", [0, 45])

@@ -7,6 +7,7 @@ from lanewright.core.common.features import DRIVING_LINES, LANES, MARKING_LINES,
 from lanewright.desktop.review.corrections_layer import add_correction, new_corrections_layer, take_back
 from lanewright.desktop.review.doubt_dock import ARRIVED
 from lanewright.desktop.review.steps import steps_of, values_again
+from lanewright.processing_provider.results.layer_tree import place_layer
 from lanewright.processing_provider.results.road_maps import road_maps
 from qgis import utils
 from qgis.core import QgsGeometry, QgsProject
@@ -142,7 +143,10 @@ def test_a_map_that_was_saved_is_made_again_in_its_place_and_the_window_goes_on_
     for _ in range(3):
         window.go(first)
     assert window.place.station == 90
-    added(project, "ROAD_EDGES", ROAD_EDGES, piece(10), piece(90), run=run_at(10, survey="B14"), package=package)
+    layer, run = first.layers[0], run_at(10, survey="B14")
+    layer.dataProvider().deleteFeatures([feature.id() for feature in layer.getFeatures() if feature["station_m"] == 50])
+    project.layerTreeRoot().insertGroup(0, run.group)   # as QGIS does, which then leaves the layer where it is
+    place_layer(layer, project, "ROAD_EDGES", run)
     QTest.qWait(ARRIVED + 300)
-    assert len(road_maps(project)) == 2, "the layer of the former run shows what the new one does, and is gone"
+    assert [group.name() for group in project.layerTreeRoot().findGroups()] == ["B14, 10:00", "B12, 8:00"]
     assert "Place 2 of 2" in window.where.text() and window.place.station == 90

@@ -10,6 +10,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.library import run
 from map_files import geometry, lanelet_street, opendrive, road, street_section, written
+from osm_files import osm_text
 
 
 def test_an_opendrive_file_becomes_layers_that_the_assessment_takes(tmp_path):
@@ -212,3 +213,33 @@ def test_what_cannot_be_converted_is_refused_in_one_sentence_and_leaves_nothing(
     with pytest.raises(RoadExtractionError, match=said):
         run("converthdmap", INPUT=written(tmp_path, text, "map.any"), OUTPUT=tmp_path / output)
     assert os.listdir(tmp_path) == ["map.any"]
+
+
+def test_lanes_get_names_and_limits_of_a_file_or_layer_and_hand_them_to_the_exports(tmp_path):
+    lanes = lane_layer(tmp_path, made_lanes.street())
+    places = [tuple(place) for place in made_lanes.street().borders(0)[0][[0, -1], :2].tolist()]
+    file = written(tmp_path, osm_text((places, {"name": "Long Street", "maxspeed": "30"})), "streets.osm")
+    results = run("roadattributes", LANES=lanes, OSM_FILE=file, OUTPUT=tmp_path / "known.gpkg")
+    assert results["KNOWN"] == results["SPEEDS"] == results["NAMES"] == results["LANE_COUNT"] == 2
+    run("exportlanelet2", LANES=results["OUTPUT"], OUTPUT=tmp_path / "map.osm", SPEED_LIMIT=50)
+    text = (tmp_path / "map.osm").read_text()
+    assert text.count('k="speed_limit" v="30"') == 2 and 'v="50"' not in text and 'k="road_name" v="Long Street"' in text
+    run("exportopendrive", LANES=results["OUTPUT"], OUTPUT=tmp_path / "map.xodr")
+    text = (tmp_path / "map.xodr").read_text()
+    assert 'name="Long Street"' in text and '<speed max="30" unit="km/h"/>' in text
+    schema = {"geometry": "LineString", "properties": {"name": "str", "maxspeed": "str"}}
+    with fiona.open(tmp_path / "ways.gpkg", "w", driver="GPKG", schema=schema, crs="EPSG:25832") as layer:
+        layer.write({"geometry": {"type": "LineString", "coordinates": places}, "properties": {"name": "Other Street", "maxspeed": None}})
+    results = run("roadattributes", LANES=results["OUTPUT"], WAYS=tmp_path / "ways.gpkg", OUTPUT=tmp_path / "again.gpkg")
+    with fiona.open(results["OUTPUT"]) as layer:
+        assert {(row.properties["name"], row.properties["speed_kmh"]) for row in layer} == {("Other Street", 30.0)}
+
+
+@pytest.mark.parametrize("given, said", [
+    ({}, "Give either"), ({"OSM_FILE": "nowhere.osm"}, "there is no file"), ({"WAYS": "lanes.gpkg"}, "layer of lines")])
+def test_attributes_need_one_source_of_roads(tmp_path, monkeypatch, given, said):
+    monkeypatch.chdir(tmp_path)
+    lane_layer(tmp_path, made_lanes.street())
+    with pytest.raises(RoadExtractionError, match=said):
+        run("roadattributes", LANES="lanes.gpkg", **given, OUTPUT="known.gpkg")
+    assert os.listdir(tmp_path) == ["lanes.gpkg"]

@@ -252,7 +252,7 @@ ROWS = (
         ("give-way blocks", "repeating:give_way_blocks", none_of(), "roundabout"),
         ("zigzag lines", "shape:zigzag_legs", gives(0), "zigzag lines before crossings"),
         ("figures (bicycle and BUS)", "figures:painted_figures", gives([]), "cycle lanes, bus lane",
-         "figures:painted_figures figures:figures_of_group figures:agreement"),
+         "figures:painted_figures figures:figure_of_cells figures:agreement"),
         ("contrast", "classify:too_pale", gives(False), "pale edge line beside bright paint"),
         ("beyond the edge line", "classify:_beyond_the_edge_line", none_of(1), "verge outside an edge line"),
         ("rows of short dashes", "classify:_dashes_in_rows", none_of(), "cycle lanes with dashes of 1 m"),

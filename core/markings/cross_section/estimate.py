@@ -8,6 +8,7 @@ import numpy as np
 
 from ...common.parallel import check_cancelled
 from ...countries.catalogue import NEUTRAL
+from ...execution.phase import NoSource
 from .beside import NATS, SECOND_WIDTH
 from .candidates import Candidates
 from .evidence import Evidence
@@ -100,6 +101,11 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
         sureness[lined], once[lined] = probabilities(seen_once, transition), best_through(seen_once, transition)
     return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, weights, unnamed_total, once,
                         second)
+
+
+def estimate_of_road(source: NoSource, item: tuple[Candidates, Evidence, int], lane_width: float, weights: EstimateWeights) -> RoadEstimate:
+    """The phase that estimates roads: `estimate_road` of the candidates, the evidence and the first direction that an item holds."""
+    return estimate_road(*item, lane_width, weights)
 
 
 def _stretches(count):

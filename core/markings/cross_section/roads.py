@@ -9,11 +9,12 @@ import numpy as np
 import shapely
 
 from ...common.arrays import mask_runs
-from ...common.parallel import check_cancelled, ordered_map
+from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...countries.catalogue import NEUTRAL
 from ...countries.traffic_side import side_of_traffic
 from ...curves.robust import median
+from ...execution.phase import THREADS, NoSource, Phase
 from ...io.crs import horizontal_part, parse_crs, place_on_ground
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
@@ -22,9 +23,10 @@ from ..objects.marking_objects import MarkingObjects
 from ..weights import ROADS
 from .beside import lanes_beside
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
-from .estimate import RoadEstimate, estimate_road, lane_spans
+from .estimate import RoadEstimate, estimate_of_road
 from .evidence import between_ends, borders_of_hatching, driven_offsets, evidence_of, hatched_places, other_carriageway, surface_coverage
 from .sections import STATION_STEP, CrossSections, no_lines
+from .sequence import lane_strips
 from .weights import PAVEMENT, EstimateWeights, TakenReading
 
 
@@ -75,13 +77,14 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                                              usual_width, weights, taken, bare[number])
         progress.report(0.4 * (k + 1) / len(lines))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
-    estimates = _estimates(evidence, sides, usual_width, weights, progress.part(0.4, 0.7))
+    executor = THREADS if road_points is None else road_points.executor
+    estimates = _estimates(evidence, sides, usual_width, weights, executor, progress.part(0.4, 0.7))
     best, behind, opposite = _best_side(estimates, usual_side(frame), weights)
     used = tuple(first for first in sides if first == best or behind < ROADS.sure_side or opposite < weights.doubt)
     width, shown = (usual_width, True) if width_asked else _usual_width(evidence, estimates[best], usual_width)
     # the road's own width tells lanes better than that of a country
     if width != usual_width:
-        estimates = _estimates(evidence, used, width, weights, progress.part(0.7, 1.0), shown)
+        estimates = _estimates(evidence, used, width, weights, executor, progress.part(0.7, 1.0), shown)
     roads = {}
     for number, estimate in estimates[best].items():
         if len(used) > 1:
@@ -204,15 +207,15 @@ def _likely_ends(lines, width):
     return ends + np.array([[width], [-width]])
 
 
-def _estimates(known, sides, width, weights, progress, shown=False):
+def _estimates(known, sides, width, weights, executor, progress, shown=False):
     """{side of traffic: {number of the road: RoadEstimate}}; `shown` : whether lines of the survey show the width."""
     widths = {number: replace(candidates, beside=lanes_beside(candidates, evidence, width, shown, weights))
               for number, (_, candidates, evidence) in known.items()}
 
-    def of_side(first):
-        return {number: estimate_road(widths[number], evidence, first, width, weights) for number, (_, _, evidence) in known.items()}
-
-    return dict(zip(sides, ordered_map(of_side, sides, progress)))
+    phase = Phase(estimate_of_road, NoSource(), (width, weights), lambda item: "the lanes of a road")
+    items = [(widths[number], evidence, first) for first in sides for number, (_, _, evidence) in known.items()]
+    results = executor.run(phase, items, progress)
+    return {first: {number: next(results) for number in known} for first in sides}
 
 
 def _usual_width(known, estimates, usual):
@@ -220,18 +223,16 @@ def _usual_width(known, estimates, usual):
     widths, lengths = [], []
     for number, estimate in estimates.items():
         boundaries, candidates, _ = known[number]
-        lines = boundaries.painted
-        for span in lane_spans(estimate):
+        strips = lane_strips(estimate.sections.chosen(estimate.choice))
+        left, right = candidates.rows[strips.interval, strips.left, 1], candidates.rows[strips.interval, strips.right, 0]
+        for interval, *sides, count in zip(*(values.tolist() for values in (strips.interval, left, right, strips.number))):
             check_cancelled()
-            rows = slice(candidates.first[span.interval], candidates.last[span.interval] + 1)
-            if span.place:
-                continue
-            painted = lines[[span.left, span.right]]
-            edge = [np.mean(boundaries.patterns[row, rows] == PAVEMENT) > 0.5 for row in (span.left, span.right)]
+            rows, painted = slice(candidates.first[interval], candidates.last[interval] + 1), boundaries.painted[sides]
+            edge = [np.mean(boundaries.patterns[row, rows] == PAVEMENT) > 0.5 for row in sides]
             if (painted | edge).all():
-                apart = boundaries.d[span.left, rows] - boundaries.d[span.right, rows]
+                apart = boundaries.d[sides[0], rows] - boundaries.d[sides[1], rows]
                 apart = apart[~np.isnan(apart)]
-                width = median(apart) / span.count if len(apart) else np.nan
+                width = median(apart) / count if len(apart) else np.nan
                 # beside the edge of the pavement a lane may be narrower than the strip
                 widths.append(width if painted.all() else min(width, usual))
                 lengths.append(STATION_STEP * (rows.stop - rows.start))

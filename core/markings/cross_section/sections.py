@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -76,17 +76,26 @@ def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
     return cross_sections(lines.course, lines.line, lines.kind, lines.pattern, lines.status != "bridged", lines.width)
 
 
-def sections_of_edges(edges: RoadEdges) -> dict[int, CrossSections]:
-    """CrossSections of the curbs along the road and about islands in it, by road number; where the pavement ends without one, the surface ends.
+class EdgeSections(NamedTuple):
+    """CrossSections of road edges, by road number.
 
-    Both sides of an island are rows of their own with one `number`.
+    curbs : those along the road and about islands in it, None where no edges are known; where the pavement ends without one, the surface ends. Both
+        sides of an island are rows of their own with one `number`
+    pavement : the edges of the pavement without a curb
     """
-    return _named_by_chain(edges, np.flatnonzero(np.isin(edges.kind, ("main", "island")) & edges.of_curb))
 
+    curbs: dict[int, CrossSections] | None
+    pavement: dict[int, CrossSections]
 
-def sections_of_pavement(edges: RoadEdges) -> dict[int, CrossSections]:
-    """CrossSections of the edges of the pavement without a curb, by road number."""
-    return _named_by_chain(edges, np.flatnonzero((edges.kind == "main") & ~edges.of_curb))
+    @classmethod
+    def of(cls, edges: RoadEdges | EdgeSections | None) -> EdgeSections:
+        """Those of RoadEdges, of which there may be none, or what was made of them before."""
+        if isinstance(edges, EdgeSections):
+            return edges
+        if edges is None:
+            return cls(None, {})
+        return cls(_named_by_chain(edges, np.flatnonzero(np.isin(edges.kind, ("main", "island")) & edges.of_curb)),
+                   _named_by_chain(edges, np.flatnonzero((edges.kind == "main") & ~edges.of_curb)))
 
 
 def _named_by_chain(edges, rows):

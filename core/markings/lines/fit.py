@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -15,7 +15,7 @@ from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...countries.catalogue import NEUTRAL, country
-from ...curves.base import CurveFit
+from ...curves.base import Curve, CurveFit
 from ...curves.bspline import Profile, fit_splines, smooth_profiles
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
@@ -23,19 +23,21 @@ from ...execution.phase import THREADS, NoSource, Phase
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import LINE_VERTEX_SPACING
 from ...survey.frame.road_frame import RoadFrame
+from ...survey.store.columns import Columns
 from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..cross_section.estimate import boundary_uses
 from ..cross_section.roads import estimate_roads
-from ..cross_section.sections import sections_of_edges, sections_of_lines, sections_of_pavement
+from ..cross_section.sections import EdgeSections, sections_of_lines
 from ..cross_section.sequence import separated_kinds
 from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights, TakenReading
 from ..objects.classify import LINE_KINDS
+from ..objects.grouping import PHASE_POINTS
 from ..objects.marking_objects import MarkingObjects
 from ..weights import STRANDS
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
 from .painted_lines import PaintedLines, painted_lines_of
 from .selection import SelectedLine, hatching_bars, same_dash_pattern, select_lines
-from .strands import LinkedLine, edges_beside, line_paint, painted_strands
+from .strands import EdgesBeside, LinkedLine, edges_beside, line_paint, painted_strands
 
 # The course of one marking line in plan and height: places from its paint, a curve through them.
 
@@ -85,17 +87,46 @@ class _LineShape:
         inside = np.interp(s, stations, lengths)
         return inside + np.minimum(s - stations[0], 0.0) + np.maximum(s - stations[-1], 0.0)
 
-    def draw(self, first: float, last: float, track_height: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        """(M, 3) local places from station `first` to `last`, at most half a metre apart; `track_height` : m, of the trajectory at stations."""
+    def draw(self, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
+        """(M,) stations from `first` to `last`, at most half a metre apart, and (M, 3) local places there; z above the trajectory."""
         ends = self.u(np.array([first, last]))
         count = max(2, int(np.ceil((ends[1] - ends[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1)
         u = np.linspace(ends[0], ends[1], count)
         stations, lengths = self.station_to_u
         s = np.interp(u, lengths, stations) + np.minimum(u - lengths[0], 0.0) + np.maximum(u - lengths[-1], 0.0)
-        return np.c_[self.fit.curve.at(u), self.height(s) + track_height(s)]
+        return s, np.c_[self.fit.curve.at(u), self.height(s)]
+
+    def drawn(self, pieces: Sequence[tuple[float, float]]) -> _DrawnLine:
+        """The line between the first and the last station of each piece."""
+        residuals = [self.fit.residuals[slice(np.searchsorted(self.s, first), np.searchsorted(self.s, last, side="right"))] for first, last in pieces]
+        stations, places = zip(*(self.draw(first, last) for first, last in pieces))
+        return _DrawnLine(self.wanted, self.fit.curve, [self.u(np.array(ends)) for ends in pieces], stations, places,
+                          [float(np.sqrt(np.mean(off**2))) if len(off) else np.nan for off in residuals])
 
 
-def _shapes_of_lines(source: NoSource, courses: Sequence[_Course], curve: str, degree: int) -> list[_LineShape]:
+@dataclass
+class _DrawnLine:
+    """A line that was fitted, piece by piece.
+
+    wanted : whether its curve is of the wanted kind; arc : arc lengths on the curve at both ends of each piece
+    stations, places : (M,) and (M, 3) of each piece, as of `_LineShape.draw`
+    rmse : m, of the paint of each piece about the curve, NaN where it has none
+    """
+
+    wanted: bool
+    curve: Curve
+    arc: Sequence[np.ndarray]
+    stations: Sequence[np.ndarray]
+    places: Sequence[np.ndarray]
+    rmse: Sequence[float]
+
+
+def _lines_drawn(source: NoSource, courses: Sequence[_Course], curve: str, degree: int) -> list[_DrawnLine]:
+    """The phase that fits lines and draws their pieces; parameters as of `_shapes_of_lines`."""
+    return [shape.drawn(course.pieces) for shape, course in zip(_shapes_of_lines(courses, curve, degree), courses)]
+
+
+def _shapes_of_lines(courses: Sequence[_Course], curve: str, degree: int) -> list[_LineShape]:
     """The shapes of some lines, with a curve of the wanted kind, where they can take it.
 
     curve, degree : as of MarkingLineSettings
@@ -130,6 +161,7 @@ class _Course:
     along: np.ndarray   # length along the line
     own: np.ndarray
     z: np.ndarray
+    pieces: list[tuple[float, float]]   # first and last stations of what is drawn
 
 
 def _courses(selected, road, trend, edges, track_height):
@@ -140,8 +172,10 @@ def _courses(selected, road, trend, edges, track_height):
     s, d, own = (np.concatenate(parts) for parts in list(zip(*places))[:3])
     bounds = np.cumsum([len(stations) for stations, *_ in places])[:-1]
     track = np.split(track_height(s[own]), np.cumsum([len(z) for *_, z in places])[:-1])
-    return [_Course(of_s, x, y, _along(road, of_s, of_d), of_own, z - below)
-            for (of_s, of_d, of_own, z), x, y, below in zip(places, *(np.split(values, bounds) for values in road.to_map(s, d)), track)]
+    x, y = (np.split(values, bounds) for values in road.to_map(s, d))
+    pieces = [[(piece.first, piece.last) for piece in chosen.pieces] for chosen in selected]
+    return [_Course(of_s, of_x, of_y, _along(road, of_s, of_d), of_own, z - below, of_line)
+            for (of_s, of_d, of_own, z), of_x, of_y, below, of_line in zip(places, x, y, track, pieces)]
 
 
 def _places(line, trend, edges, span):
@@ -217,7 +251,7 @@ CONFIRMED = "accepted"        # status of a line that an analyst looked at
 
 
 def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float, markings: MarkingObjects | None = None,
-                      edges: RoadEdges | None = None, road_points: RoadPoints | None = None, paint: RoadPoints | None = None,
+                      edges: RoadEdges | EdgeSections | None = None, road_points: RoadPoints | None = None, paint: RoadPoints | None = None,
                       progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> PaintedLines:
     """Lines with the `kind` that the estimate of their road gives them; one that bounds no lane is called by how it is drawn.
 
@@ -228,7 +262,7 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
     """
     if not len(lines):
         return lines
-    curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, None)
+    curbs, pavement = EdgeSections.of(edges)
     estimates = estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
                                paint=paint, pavement=pavement, progress=progress, taken=taken)
     kinds, second = _line_kinds(estimates), _second_kinds(estimates)
@@ -299,12 +333,13 @@ LINES_SHARE = 0.65   # derived: of the work, half of it to link lines; the rest 
 
 
 def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, frame: RoadFrame,
-                      settings: MarkingLineSettings = MarkingLineSettings(), progress: Progress = Progress(), edges: RoadEdges | None = None,
-                      road_points: RoadPoints | None = None, taken: Sequence[TakenReading] = ()) -> PaintedLines:
+                      settings: MarkingLineSettings = MarkingLineSettings(), progress: Progress = Progress(),
+                      edges: RoadEdges | EdgeSections | None = None, road_points: RoadPoints | None = None,
+                      taken: Sequence[TakenReading] = ()) -> PaintedLines:
     """Trace, link and fit the painted lines of all roads.
 
     clustered_points : RoadPoints with `cluster`; markings : MarkingObjects of the same clusters
-    edges, road_points : RoadEdges and RoadPoints, or None: what the lines separate is told better with them
+    edges, road_points : RoadEdges, or their EdgeSections, and RoadPoints, or None: what the lines separate is told better with them
     taken : second readings that an analyst took
 
     Returns PaintedLines with `fitted`: a line that is partly bridged, or changes between dashed and solid, comes in touching pieces with one
@@ -319,34 +354,60 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     courses: list[_Course] = []
     dropped = 0
     roads = clustered_points.roads()
-    edge_lines = edges_beside(edges, roads)
-    for k, road in enumerate(roads):
-        part = progress.part(LINES_SHARE / 2 * k / len(roads), LINES_SHARE / 2 * (k + 1) / len(roads))
-        records, rank = line_paint(columns_of_roads(clustered_points.store, [road]), markings, road)
-        part.report(0.2)
-        strands = painted_strands(records, rank)
-        part.report(0.4)
-        lines, trend = _linked(strands, edge_lines[road], settings)
-        part.report(0.8)
-        of_road = select_lines(lines, trend, settings.min_paint, hatching_bars(markings, road), country(settings.country).longest_dash)
-        dropped += len(lines) - len(of_road)
-        courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
-        selected += [(int(road), chosen) for chosen in of_road]
-    phase = Phase(_shapes_of_lines, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
+    edge_sections = EdgeSections.of(edges)
+    edge_lines = edges_beside(edge_sections, roads)
     executor = THREADS if road_points is None else road_points.executor
-    shapes = list(executor.run_together(phase, courses, STRANDS.fitted_together, progress.part(LINES_SHARE / 2, LINES_SHARE)))
-    rows = [dict(row, line=number, road=road) for number, ((road, chosen), shape) in enumerate(zip(selected, shapes), start=1)
-            for row in _drawn_pieces(chosen, shape, frame.origin, partial(frame.track_height, road))]
-    progress.info(f"Marking lines: {len(shapes)}; {dropped} fragments were left out.")
-    replaced = sum(not shape.wanted for shape in shapes)
+    phase = Phase(_lines_of_road, NoSource(), (settings,), lambda item: "the marking lines of a road")
+    for batch in _roads_together(clustered_points):
+        items = [_paint_of_road(clustered_points, markings, road, edge_lines[road]) for road in batch]
+        for road, (of_road, trend, left_out) in zip(batch, executor.run(phase, items)):
+            dropped += left_out
+            courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
+            selected += [(int(road), chosen) for chosen in of_road]
+        progress.report(LINES_SHARE / 2 * (roads.index(batch[-1]) + 1) / len(roads))
+    phase = Phase(_lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
+    fitted = list(executor.run_together(phase, courses, STRANDS.fitted_together, progress.part(LINES_SHARE / 2, LINES_SHARE)))
+    rows = [dict(row, line=number, road=road) for number, ((road, chosen), line) in enumerate(zip(selected, fitted), start=1)
+            for row in _drawn_pieces(chosen, line, frame, road)]
+    progress.info(f"Marking lines: {len(fitted)}; {dropped} fragments were left out.")
+    replaced = sum(not line.wanted for line in fitted)
     if replaced:
-        progress.warn(f"{replaced} of {len(shapes)} lines cannot take the curve “{settings.curve}”; "
+        progress.warn(f"{replaced} of {len(fitted)} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")
     drawn = painted_lines_of(rows, frame, clustered_points.crs)
     if road_points is not None:
         drawn = with_unseen_paint(drawn, markings, clustered_points, road_points)
-    return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edges, road_points, clustered_points,
+    return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edge_sections, road_points, clustered_points,
                              progress.part(LINES_SHARE, 1.0), taken)
+
+
+PAINT_OF_LINES = "s", "d", "z", "cluster", "spacing"   # that strands are traced by
+
+
+def _roads_together(points):
+    """Roads in batches whose paint is in memory together."""
+    size = [sum(points.store.size(road, number) for number in points.sections(road)) for road in points.roads()]
+    batch = (np.cumsum([0, *size])[:-1] // PHASE_POINTS).tolist()
+    return [[road for road, number in zip(points.roads(), batch) if number == wanted] for wanted in sorted(set(batch))]
+
+
+def _paint_of_road(points, markings, road, edges):
+    """An item of `_lines_of_road`."""
+    records, rank = line_paint(columns_of_roads(points.store, [road]), markings, road)
+    return {name: records[name] for name in PAINT_OF_LINES}, rank, edges, hatching_bars(markings, road)
+
+
+def _lines_of_road(source: NoSource, item: tuple[dict[str, np.ndarray], np.ndarray, EdgesBeside, np.ndarray],
+                  settings: MarkingLineSettings) -> tuple[list[SelectedLine], CommonTrend, int]:
+    """The phase that traces and links the paint of one road: its lines, the trend that they have in common, and how many fragments were left out.
+
+    item : columns PAINT_OF_LINES of N points, and (N,) class of each, as `line_paint` gives them; the edges beside; the bars as of `hatching_bars`
+    """
+    columns, rank, edges, bars = item
+    strands = painted_strands(Columns(columns, [(name, column.dtype) for name, column in columns.items()]), rank)
+    lines, trend = _linked(strands, edges, settings)
+    selected = select_lines(lines, trend, settings.min_paint, bars, country(settings.country).longest_dash)
+    return selected, trend, len(lines) - len(selected)
 
 
 def _linked(strands, edges, settings):
@@ -358,18 +419,15 @@ def _linked(strands, edges, settings):
     return [without_strays(line, trend, edges) for line in lines], trend
 
 
-def _drawn_pieces(one: SelectedLine, shape: _LineShape, origin: np.ndarray,
-                  track_height: Callable[[np.ndarray], np.ndarray]) -> Iterator[dict[str, Any]]:
+def _drawn_pieces(one: SelectedLine, line: _DrawnLine, frame: RoadFrame, road: int) -> Iterator[dict[str, Any]]:
     """The pieces of one line that have a length on the map."""
-    for piece in one.pieces:
-        vertices = shape.draw(piece.first, piece.last, track_height)
-        if not np.ptp(vertices[:, :2] + origin[:2], axis=0).any():
+    heights = np.split(frame.track_height(road, np.concatenate(line.stations)), np.cumsum([len(s) for s in line.stations])[:-1])
+    for piece, arc, places, track, rmse in zip(one.pieces, line.arc, line.places, heights, line.rmse):
+        if not np.ptp(places[:, :2] + frame.origin[:2], axis=0).any():
             continue
-        residuals = shape.fit.residuals[slice(np.searchsorted(shape.s, piece.first), np.searchsorted(shape.s, piece.last, side="right"))]
-        measured = piece.status == "measured" and len(residuals)
         _, paint_offsets = one.line.near(piece.first - STRANDS.paint_beside_piece, piece.last + STRANDS.paint_beside_piece)
         yield dict(
             kind="", pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
-            curve=shape.fit.curve, arc=shape.u(np.array([piece.first, piece.last])), places=vertices,
+            curve=line.curve, arc=arc, places=np.c_[places[:, :2], places[:, 2] + track],
             station=piece.first, end=piece.last, offset=np.median(paint_offsets) if len(paint_offsets) else np.nan, width=one.width(piece),
-            rmse=np.sqrt(np.mean(residuals**2)) if measured else np.nan)
+            rmse=rmse if piece.status == "measured" else np.nan)

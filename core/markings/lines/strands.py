@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
-from itertools import chain
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from ...curves.robust import median, percentiles
 from ...road.edges.road_edges import RoadEdges
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE
-from ..cross_section.sections import CrossSections, sections_of_edges, sections_of_pavement
+from ..cross_section.sections import EdgeSections
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..objects.shape import middle_line
@@ -297,14 +296,19 @@ LINE_TO_EDGE = 4.0   # source: m between a line and the edge that it runs along:
 LOOKUP_STRETCH = 50.0   # derived: m of road whose edges are listed together
 
 
+@dataclass
 class EdgesBeside:
-    """The edges along one road, of CrossSections."""
+    """The edges along one road: the stations and offsets of each."""
 
-    def __init__(self, sections: list[CrossSections]) -> None:
-        self._by_stretch: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
-        for s, d in chain.from_iterable(map(_edges, sections)):
+    edges: list[tuple[np.ndarray, np.ndarray]]
+
+    @cached_property
+    def _by_stretch(self):
+        edges: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
+        for s, d in self.edges:
             for stretch in range(int(s[0] // LOOKUP_STRETCH), int(s[-1] // LOOKUP_STRETCH) + 1):
-                self._by_stretch.setdefault(stretch, []).append((s, d))
+                edges.setdefault(stretch, []).append((s, d))
+        return edges
 
     def between(self, before: tuple[float, float], after: tuple[float, float]) -> Callable[[np.ndarray], np.ndarray] | None:
         """The nearest edge that leads along both of two places, (station, offset) in m: a function of stations (N,), its offset; None without one."""
@@ -329,10 +333,10 @@ def _edges(sections):
                 yield sections.s[first + part], d[part]
 
 
-def edges_beside(edges: RoadEdges | None, roads: list[int]) -> dict[int, EdgesBeside]:
+def edges_beside(edges: RoadEdges | EdgeSections | None, roads: list[int]) -> dict[int, EdgesBeside]:
     """EdgesBeside of every road; those of a road without edges, or where none are known, are empty."""
-    kinds = [sections_of_edges(edges), sections_of_pavement(edges)] if edges is not None else []
-    return {road: EdgesBeside([sections[road] for sections in kinds if road in sections]) for road in roads}
+    kinds = EdgeSections.of(edges)
+    return {road: EdgesBeside([edge for sections in kinds if sections and road in sections for edge in _edges(sections[road])]) for road in roads}
 
 
 # Lines that few tracks of the scan met: each track shows such a line at one place of its width.

@@ -13,7 +13,7 @@ import shapely
 from ...common.arrays import members_of, order_by
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...common.setting import check_limits, setting
+from ...common.setting import Limited, setting
 from ...curves.robust import median
 from ...execution.phase import THREADS, Executor, NoSource, Phase
 from ...survey.frame.road import Road
@@ -24,7 +24,7 @@ from ...survey.store.road_points import RoadPoints
 from ..road_grid import CELL_UNITS, occupied, track_reach
 from ..weights import CLASSES, ROWS, SHAPES
 from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, filled, relative_contrast, too_pale
-from .figures import Candidate, figures_of_group, painted_figures
+from .figures import figure_of_cells, painted_figures
 from .grouping import connected_points
 from .marking_objects import MarkingObjects, make_marking_objects
 from .repeating import Comb, Crossing, Stripe, blocks_of_strip, comb_of_window, give_way_blocks, stripes_of_crossing, zebra_stripes
@@ -35,7 +35,7 @@ STRIP_KINDS = LINE_KINDS + ("stop",)  # drawn as even strips, the others cell by
 
 
 @dataclass(frozen=True)
-class ClusterSettings:
+class ClusterSettings(Limited):
     """How points join, and how small a marking may be.
 
     distance : m between points of one marking (twice as much along the road, half as much across it)
@@ -44,9 +44,6 @@ class ClusterSettings:
     distance: float = setting(0.20, 0.02, 2.0, "The clustering distance", "m")
     min_points: int = setting(8, 1, 100000, "The least number of points of a marking")
     classes: ClassSettings = field(default_factory=ClassSettings)
-
-    def __post_init__(self) -> None:
-        check_limits(self)
 
 
 def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: ClusterSettings = ClusterSettings(),
@@ -417,10 +414,10 @@ class ApartWork:
 
         return self._run(outlines_of_markings, columns, np.cumsum([0, *map(len, rows)]), progress, looks=looks, arguments=(road,), read=_polygons)
 
-    def figures(self, groups: list[list[Candidate]], begin: float, end: float, progress: Progress) -> Iterator[list[tuple[int, str]]]:
-        """What `figures_of_group` finds in each group; they are the work from a fraction `begin` of the progress to `end`."""
-        phase = Phase(figures_of_group, NoSource(), (), lambda item: f"markings of road {self.road}")
-        return self.executor.run(phase, groups, progress.part(begin, end))
+    def figures(self, cells: list[tuple[np.ndarray, np.ndarray]], begin: float, end: float, progress: Progress) -> Iterator[str]:
+        """What `figure_of_cells` finds in each of some markings together; they are the work from a fraction `begin` of the progress to `end`."""
+        phase = Phase(figure_of_cells, NoSource(), (), lambda item: f"markings of road {self.road}", together=4)
+        return self.executor.run(phase, cells, progress.part(begin, end))
 
     def _run(self, function: Callable[..., Any], columns: Callable[[int, int], tuple[np.ndarray, ...]], bounds: np.ndarray, progress: Progress,
              looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),

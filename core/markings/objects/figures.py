@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ...common.arrays import linked_groups, members_of, overlapping_pairs
-from ...common.parallel import check_cancelled
 from ...countries.painted_symbols import SYMBOLS, PaintedSymbol
 from ...execution.phase import NoSource
 from ...lazy import cv2
@@ -34,39 +33,29 @@ class _RecognisedFigure(NamedTuple):
     kind: str
 
 
-Candidate = tuple[tuple[int, ...], np.ndarray, np.ndarray]   # markings that may be a figure together; their cells, and m of `track_reach` there
-
-
 def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.ndarray,
                     cells_of: Callable[[tuple[int, ...]], tuple[np.ndarray, np.ndarray]],
-                    look: Callable[[list[list[Candidate]], float, float], Iterable[list[tuple[int, str]]]]) -> list[_RecognisedFigure]:
+                    look: Callable[[list[tuple[np.ndarray, np.ndarray]], float, float], Iterable[str]]) -> list[_RecognisedFigure]:
     """Bicycles and words among the N markings of one road; no marking is in two of them.
 
     kinds : N classes, "" for what was taken for no paint
     possible : (N,) bool, whether a marking lies where paint can be
     cells_of : gives the (K, 2) int cells of some markings together, different ones, and the (K,) m of `track_reach` there
-    look : gives what `figures_of_group` finds in each of some groups, which are all groups from one fraction to another
+    look : gives what `figure_of_cells` finds in each of some markings together, which are all of them from one fraction to another
     """
     parts = np.flatnonzero(possible & np.isin(np.array(kinds, object), FIGURE_PARTS))
     result: list[_RecognisedFigure] = []
     groups = list(_candidates(shapes, kinds, parts))
     for first in range(0, len(groups), GROUPS_AT_ONCE):
-        batch = [[(members, *cells_of(members)) for members in group] for group in groups[first:first + GROUPS_AT_ONCE]]
-        for group, figures in zip(batch, look(batch, first / len(groups), (first + len(batch)) / len(groups))):
-            result += [_RecognisedFigure(group[k][0], kind) for k, kind in figures]
+        batch = groups[first:first + GROUPS_AT_ONCE]
+        found = iter(look([cells_of(members) for group in batch for members in group], first / len(groups), (first + len(batch)) / len(groups)))
+        for group in batch:
+            used: set[int] = set()
+            for members, kind in [(members, next(found)) for members in group]:
+                if kind and used.isdisjoint(members):
+                    result.append(_RecognisedFigure(members, kind))
+                    used.update(members)
     return result
-
-
-def figures_of_group(source: NoSource, group: list[Candidate]) -> list[tuple[int, str]]:
-    """The phase that compares markings that lie together with figures: which candidates are one, and its class; no marking is in two."""
-    figures: list[tuple[int, str]] = []
-    used: set[int] = set()
-    for k, (members, cells, reach) in enumerate(group):
-        check_cancelled()
-        if used.isdisjoint(members) and (kind := _figure(cells, reach)):
-            figures.append((k, kind))
-            used.update(members)
-    return figures
 
 
 def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray) -> Iterator[list[tuple[int, ...]]]:
@@ -93,8 +82,12 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
             yield large
 
 
-def _figure(cells, reach):
-    """The class of the figure that cells show, "" where none clearly."""
+def figure_of_cells(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> str:
+    """The phase that compares markings that lie together with figures: the class of the one that their cells show, "" where none clearly.
+
+    item : as `painted_figures` is given it by `cells_of`
+    """
+    cells, reach = item
     mask, first = filled_between_tracks(cells, reach)
     mask = fill_gaps(mask, FIGURES.scan_gap, 0)
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (FIGURES.thick_cells, FIGURES.thick_cells))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -20,7 +20,7 @@ from .sides import SIDE_SIGNS, OutermostTrack, expected_height, hidden_points, j
 from .tracking import StepChain, curb_chains, drop_short_curbs, is_road, link_steps, select_along_road, with_pieces_in_line
 
 if TYPE_CHECKING:
-    from ..surface.road_look import SideLook
+    from ..surface.road_look import RoadLook, SideLook
 
 AnySteps = TypeVar("AnySteps", bound=CurbSteps)
 
@@ -77,6 +77,67 @@ def merged_passes(found: Sequence[AnySteps]) -> AnySteps:
 
 
 @dataclass(frozen=True)
+class SideSteps:
+    """What one method saw on one side of one road.
+
+    steps : CurbSteps of the side, None where there are none
+    width : m of road per profile
+    limits : CurbLimits of what is taken for a curb
+    bounds : (K,) m, stations at which blocks begin and end
+    occlusion : OcclusionGrid of the side
+    """
+
+    steps: CurbSteps | None
+    width: float
+    limits: CurbLimits
+    bounds: np.ndarray
+    occlusion: OcclusionGrid
+
+
+def grids_beside(found: Mapping[tuple[int, str], SideSteps]) -> dict[int, dict[str, OcclusionGrid]]:
+    """What was seen beside each road: number of the road -> side -> OcclusionGrid."""
+    beside: dict[int, dict[str, OcclusionGrid]] = {}
+    for (road, side), seen in found.items():
+        beside.setdefault(road, {})[side] = seen.occlusion
+    return beside
+
+
+def curbs_along(source: Any, found: Mapping[str, Mapping[tuple[int, str], SideSteps]],
+                look_at: Callable[[int], RoadLook] | None = None) -> dict[str, CurbPoints]:
+    """{method: CurbPoints} of each method alone and, as "both", those of the best path along the road through the chains of two.
+
+    source : PointDecimation of a survey, or scanlines
+    found : method -> (number of the road, side) -> SideSteps; the method with the stricter model of a curb comes first
+    look_at : gives the RoadLook of a road; None where nothing but the steps is known of the ground
+    """
+    parts: dict[str, list[CurbPoints]] = {method: [] for method in [*found, "both"][:len(found) + (len(found) > 1)]}
+    for road in sorted({road for steps in found.values() for road, _ in steps}):
+        look = look_at(road) if look_at else None
+        sides = [(side, {method: steps[road, side] for method, steps in found.items() if (road, side) in steps}) for side in SIDE_SIGNS]
+        phase = Phase(_curbs_of_side, source, (road, look), lambda item, road=road: f"road {road}, {item[0]} side")
+        for points in source.executor.run(phase, sides):
+            for method, of_side in points.items():
+                parts[method].append(of_side)
+    return {method: CurbPoints.join(of_method, getattr(source, "survey", source).crs) for method, of_method in parts.items()}
+
+
+def _curbs_of_side(source: Any, item: tuple[str, Mapping[str, SideSteps]], road: int, look: RoadLook | None) -> dict[str, CurbPoints]:
+    """The phase that follows the curb: {method: CurbPoints} on one side of a road, as of `curbs_along`.
+
+    item : the side, and what each method saw there
+    """
+    side, methods = item
+    survey, beside = getattr(source, "survey", source), look and look.side(SIDE_SIGNS[side])
+    chains = {method: SideChains.of(seen.steps, seen, beside) for method, seen in methods.items() if seen.steps is not None and len(seen.steps)}
+    # scanlines may have been told how high the scanner is
+    points = {method: points_of_side(source if method == "scanlines" else survey, road, side, [of_method], methods[method].occlusion)
+              for method, of_method in chains.items()}
+    if chains and len(methods) > 1:
+        points["both"] = points_of_side(survey, road, side, list(chains.values()), methods["profiles"].occlusion)
+    return points
+
+
+@dataclass(frozen=True)
 class SideChains:
     """The chains of one side of one road.
 
@@ -92,16 +153,15 @@ class SideChains:
     look: SideLook | None = None
 
     @staticmethod
-    def of(steps: CurbSteps, width: float, limits: CurbLimits, bounds: np.ndarray, look: SideLook | None = None) -> SideChains:
-        """The chains of steps, upright and sloped ones apart; `width` : m of road per profile."""
-        label = np.empty(len(steps), np.int64)
-        upright = steps.upright
-        label[upright] = link_steps(steps[upright], width)
-        label[~upright] = link_steps(steps[~upright], width) + label[upright].max(initial=-1) + 1
-        chains = curb_chains(steps, label, width, limits)
+    def of(steps: CurbSteps, seen: SideSteps, look: SideLook | None = None) -> SideChains:
+        """The chains of the steps of a SideSteps, upright and sloped ones apart."""
+        label, upright = np.empty(len(steps), np.int64), steps.upright
+        label[upright] = link_steps(steps[upright], seen.width)
+        label[~upright] = link_steps(steps[~upright], seen.width) + label[upright].max(initial=-1) + 1
+        chains = curb_chains(steps, label, seen.width, seen.limits)
         if look is not None:
             chains = [chain for chain in chains if _has_road_before(steps[chain.steps], chain.end - chain.start, look)]
-        return SideChains(steps, chains, bounds, look)
+        return SideChains(steps, chains, seen.bounds, look)
 
     def points(self, members: np.ndarray, number: int) -> list[dict]:
         """Curb points of the steps with the (K,) indices, by station, of one line: one of each part per block.

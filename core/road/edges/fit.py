@@ -11,7 +11,7 @@ from scipy.ndimage import median_filter
 from ...common.arrays import stretch_of
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...common.setting import check_limits, setting
+from ...common.setting import Limited, setting
 from ...curves.robust import MAD_TO_SIGMA
 from ...execution.phase import NoSource
 from ...survey.frame.road_frame import RoadFrame
@@ -25,7 +25,7 @@ IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by 
 
 
 @dataclass(frozen=True)
-class EdgeSettings:
+class EdgeSettings(Limited):
     """How curb points become lines.
 
     max_gap : m that are bridged where something hides the curb; up to twice as long where both parts lie in one line. Longer gaps interrupt the edge
@@ -34,9 +34,6 @@ class EdgeSettings:
 
     max_gap: float = setting(15.0, 0.0, 100.0, "The longest bridged gap", "m")
     fallback_width: float = setting(0.0, 2.0, 50.0, "The fallback width", "m", "for none")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
 
 
 def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),

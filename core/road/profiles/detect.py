@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,32 +12,30 @@ import numpy as np
 from ...common.features import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION, Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ...lazy import shapely
 from ...survey.open_survey import Survey
 from ..common.corners import CurbSteps
 from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
-from ..common.side_curbs import SideChains, block_bounds, merged_passes, points_of_side, steps_of_road
+from ..common.side_curbs import SideSteps, block_bounds, curbs_along, grids_beside, merged_passes, steps_of_road
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
 from ..curb_returns.detect import with_curb_returns
 from ..surface.ground_grid import MeasuredGround
-from ..surface.road_look import RoadLook, SideLook
+from ..surface.road_look import RoadLook
 from ..weights import CURBS, PROFILE
 from .steps import find_averaged_steps, find_steps
 
 
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
                  include_returns: bool = True, decimation: PointDecimation | None = None,
-                 beside: dict[int, dict[str, OcclusionGrid]] | None = None,
-                 side_chains: dict[tuple[int, str], SideChains] | None = None,
-                 ground: MeasuredGround | None = None) -> CurbPoints:
+                 beside: dict[int, dict[str, OcclusionGrid]] | None = None, ground: MeasuredGround | None = None) -> CurbPoints:
     """Bottom corners of the curb on each side of every road, one per block.
 
     include_returns : are corners, side streets and islands looked for too?
     decimation : PointDecimation of the survey, where it is used again
     beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
-    side_chains : is given all chains that were found: (number of the road, side) -> SideChains
     ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
     Returns CurbPoints. Those of status `measured` are vertices of the road edge; those of
@@ -44,26 +43,35 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
     """
     if decimation is None:
         with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own_decimation:
-            return detect_curbs(survey, settings, progress, include_returns, own_decimation, beside, side_chains, ground)
+            return detect_curbs(survey, settings, progress, include_returns, own_decimation, beside, ground)
     ground = ground or MeasuredGround(survey)
-    parts, beside, side_chains = [], {} if beside is None else beside, {} if side_chains is None else side_chains
-    roads, width = survey.store.roads(), settings.profile_width
+    steps = steps_on_profiles(decimation, settings, progress.part(0.0, PROFILE.main_curb_progress))
+    beside = {} if beside is None else beside
+    beside.update(grids_beside(steps))
+    main = curbs_along(decimation, {"profiles": steps}, partial(RoadLook, ground))["profiles"]
+    tell_points(main, progress)
+    if not include_returns:
+        return main
+    return with_curb_returns(main, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside, ground)
+
+
+def tell_points(points: CurbPoints, progress: Progress) -> None:
+    """Say in the log how many curb points there are."""
+    measured = np.count_nonzero(points.status == "measured")
+    progress.info(f"Curb points: {measured:,} measured, {len(points) - measured:,} hidden by something in front.")
+
+
+def steps_on_profiles(decimation: PointDecimation, settings: CurbSettings, progress: Progress) -> dict[tuple[int, str], SideSteps]:
+    """The steps on profiles of each side of every road: (number of the road, side) -> SideSteps."""
+    survey, width, found = decimation.survey, settings.profile_width, {}
+    roads = survey.store.roads()
     for i, road in enumerate(roads):
-        part = progress.part(PROFILE.main_curb_progress * i / len(roads), PROFILE.main_curb_progress * (i + 1) / len(roads))
-        steps, beside[road] = steps_of_road(steps_of_section, decimation, road, settings, work_sections(survey, road, width), width, part)
+        steps, beside = steps_of_road(steps_of_section, decimation, road, settings, work_sections(survey, road, width), width,
+                                      progress.part(i / len(roads), (i + 1) / len(roads)))
         bounds = block_bounds(survey.frame.road(road), *survey.store.span(road), settings.block_length)
-        road_look = RoadLook(ground, road)
-        for side in steps:
-            if len(steps[side]):
-                look = SideLook(road_look, SIDE_SIGNS[side])
-                side_chains[road, side] = SideChains.of(steps[side], width, settings.limits, bounds, look)
-                parts.append(points_of_side(survey, road, side, [side_chains[road, side]], beside[road][side]))
-    points = CurbPoints.join(parts, survey.crs)
-    measured, main = np.count_nonzero(points.status == "measured"), len(points)
-    if include_returns:
-        points = with_curb_returns(points, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside, ground)
-    progress.info(f"Curb points: {measured:,} measured, {main - measured:,} hidden by something in front.")
-    return points
+        for side, grid in beside.items():
+            found[road, side] = SideSteps(steps.get(side), width, settings.limits, bounds, grid)
+    return found
 
 
 def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int,
@@ -121,8 +129,6 @@ def find_principal_points(survey: Survey, settings: CurbSettings, progress: Prog
     Returns Features PRINCIPAL_POINTS: PointZ at the middle of the cell, in map coordinates; `height_m` is
     the height above the expected road
     """
-    import shapely
-
     features = Features("PointZ", list(PRINCIPAL_POINTS), crs=survey.crs)
     roads = survey.store.roads()
     for i, road in enumerate(roads):

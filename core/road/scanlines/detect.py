@@ -27,12 +27,12 @@ from ...survey.weights import READING
 from ..common.curb_points import CurbPoints
 from ..common.decimation import LevelGround
 from ..common.occlusion import OcclusionGrid
-from ..common.side_curbs import SideChains, block_bounds, merged_passes, points_of_side, steps_of_road
+from ..common.side_curbs import SideSteps, block_bounds, curbs_along, merged_passes, steps_of_road
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections
 from ..edges.fit import EdgeCurve, point_table, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 from ..surface.ground_grid import MeasuredGround
-from ..surface.road_look import RoadLook, SideLook
+from ..surface.road_look import RoadLook
 from ..weights import CURBS, EDGE, PROFILE, SCANLINE
 from .candidates import ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
@@ -41,38 +41,41 @@ from .section_planes import ScanlineSettings, scanline_runs
 
 
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),
-                         block_length: float = 0.0, progress: Progress = Progress(),
-                         beside: dict[int, dict[str, OcclusionGrid]] | None = None,
-                         side_chains: dict[tuple[int, str], SideChains] | None = None,
-                         ground: MeasuredGround | None = None) -> CurbPoints:
+                         block_length: float = 0.0, progress: Progress = Progress(), ground: MeasuredGround | None = None) -> CurbPoints:
     """Bottom and top corners of the curb on each side of every road, one of each per block.
 
     source : SurveyScanlines or LayerScanlines
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
-    beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
-    side_chains : is given all chains that were found: (number of the road, side) -> SideChains
     ground : MeasuredGround of the survey; None where nothing but the scanlines is known of the ground
 
     Returns CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb.
     """
-    parts, beside, side_chains = [], {} if beside is None else beside, {} if side_chains is None else side_chains
-    roads, interval = source.roads(), source.interval
-    for i, road in enumerate(roads):
-        part = progress.part(i / len(roads), (i + 1) / len(roads))
-        start, end = source.span(road)
-        sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
-        corners, beside[road] = steps_of_road(corners_of_section, source, road, settings, sections, interval, part)
-        bounds = block_bounds(source.frame.road(road), start, end, block_length)
-        road_look = None if ground is None else RoadLook(ground, road)
-        for side in corners:
-            if len(corners[side]):
-                look = None if road_look is None else SideLook(road_look, SIDE_SIGNS[side])
-                side_chains[road, side] = SideChains.of(_with_scanner_noise(corners[side]), interval, settings.limits, bounds, look)
-                parts.append(points_of_side(source, road, side, [side_chains[road, side]], beside[road][side]))
-    points = CurbPoints.join(parts, source.crs)
+    steps = {"scanlines": steps_on_scanlines(source, settings, block_length, progress)}
+    points = curbs_along(source, steps, None if ground is None else partial(RoadLook, ground))["scanlines"]
+    tell_corners(points, progress)
+    return points
+
+
+def tell_corners(points: CurbPoints, progress: Progress) -> None:
+    """Say in the log how many corners of curbs there are."""
     measured, hidden = (np.count_nonzero((points.part == "bottom") & (points.status == status)) for status in ("measured", "occluded"))
     progress.info(f"Corners of curbs: {measured:,} measured on scanlines, {hidden:,} hidden by objects.")
-    return points
+
+
+def steps_on_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings, block_length: float,
+                       progress: Progress) -> dict[tuple[int, str], SideSteps]:
+    """The corners on each side of every road: (number of the road, side) -> SideSteps. `block_length` : as of `curbs_from_scanlines`."""
+    roads, interval, found = source.roads(), source.interval, {}
+    for i, road in enumerate(roads):
+        start, end = source.span(road)
+        sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
+        corners, beside = steps_of_road(corners_of_section, source, road, settings, sections, interval,
+                                        progress.part(i / len(roads), (i + 1) / len(roads)))
+        bounds = block_bounds(source.frame.road(road), start, end, block_length)
+        for side, grid in beside.items():
+            of_side = _with_scanner_noise(corners[side]) if side in corners and len(corners[side]) else None
+            found[road, side] = SideSteps(of_side, interval, settings.limits, bounds, grid)
+    return found
 
 
 def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[int, int], road: int,

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.progress import Progress
-from ...common.setting import check_limits, setting
+from ...common.setting import Limited, setting
 from ...execution.phase import Phase
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice, scanner_runs
 from ...survey.open_survey import Survey
@@ -30,7 +30,7 @@ from .mesh import PlaneVertices, Ribs, increasing, plane_order, ribs_of, scanner
 
 
 @dataclass(frozen=True)
-class ScanlineSettings:
+class ScanlineSettings(Limited):
     """Section planes.
 
     interval : m between section planes
@@ -41,10 +41,6 @@ class ScanlineSettings:
     interval: float = setting(0.10, 0.01, 10.0, "The interval", "m")
     corridor: float = setting(15.0, 5.0, 100.0, "The corridor", "m")
     rotation_frequency: float = setting(0.0, 5.0, 400.0, "The rotation frequency", "Hz", "to take it from the data")
-
-    def __post_init__(self):
-        """Check the limits of all settings."""
-        check_limits(self)
 
 
 def scanlines_of(survey: Survey, road: int, start: float, end: float, settings: ScanlineSettings = ScanlineSettings(),

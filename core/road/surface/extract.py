@@ -15,7 +15,7 @@ from scipy.ndimage import median_filter
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...common.setting import check_limits, setting
+from ...common.setting import Limited, setting
 from ...execution.phase import Phase
 from ...survey.density import counted_cubes, cube_density
 from ...survey.frame.road_frame import RoadFrame
@@ -31,7 +31,7 @@ from .road_surface import SurfaceOutlines, outlines
 
 
 @dataclass(frozen=True)
-class SurfaceSettings:
+class SurfaceSettings(Limited):
     """What counts as road surface.
 
     max_width : m from the vehicle's track; a surface without an edge ends there at the latest
@@ -41,10 +41,6 @@ class SurfaceSettings:
 
     max_width: float = setting(17.0, 0.5, 100.0, "The farthest surface from the trajectory", "m")
     height_tolerance: float = setting(0.15, 0.01, 1.0, "The height tolerance", "m")
-
-    def __post_init__(self):
-        """Check the limits of all settings."""
-        check_limits(self)
 
 
 def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, settings: SurfaceSettings = SurfaceSettings(),

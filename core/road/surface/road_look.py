@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -19,7 +20,8 @@ class RoadLook:
     """
 
     def __init__(self, ground: MeasuredGround, road: int):
-        self.cells = ground.cells(road)
+        # the brightness of the ground tells nothing here, and workers are sent the rest
+        self.cells = replace(ground.cells(road), brightness=np.empty((0, 0)), scatter=np.empty((0, 0)))
         self.prior = ground.survey.road_height(road, self.cells.stations)
         driven = known_median(self.cells.rough[:, np.abs(self.cells.offsets) < SURFACE.track_reach], 1)
         driven = np.pad(driven, SURFACE.rows_of_look, constant_values=np.nan)
@@ -38,6 +40,10 @@ class RoadLook:
     def off_road(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """Height of the ground above the road as it goes on from the track; m, of one shape with stations and offsets; NaN where none was seen."""
         return self._at(self.cells.height, s, d)[0] - self._at(self._road, s, d)[0]
+
+    def side(self, sign: int) -> SideLook:
+        """The look to the left, 1, or to the right, -1."""
+        return SideLook(self, sign)
 
     @cached_property
     def _road(self):

@@ -19,7 +19,7 @@ from ...common.features import PASS_SIGMA, Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
-from ...lazy import cv2
+from ...lazy import cv2, laspy
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
@@ -58,8 +58,6 @@ class PassCorrections:
 
     def to_records(self) -> list[Any]:
         """The corrections as LAS variable length records, one per pass."""
-        import laspy
-
         return [laspy.VLR(VLR_USER_ID, number + 1, "Move of a pass",
                           np.array([(first, values.shape[1])], _HEAD).tobytes() + np.ascontiguousarray(values, "<i2").tobytes())
                 for number, (first, values) in sorted(self.by_pass.items())]
@@ -458,8 +456,6 @@ def _apart(pair):
 
 def sigma_to_record(sigma: dict[int, SigmaAlong]) -> list[Any]:
     """{road number: SigmaAlong} as LAS variable length records; none where nothing is known."""
-    import laspy
-
     rows = np.array([(road, *node) for road, along in sorted(sigma.items()) for node in zip(along.stations, along.metres)], _NODE)
     return [laspy.VLR(SIGMA_USER_ID, FIRST_RECORD + k, "Uncertainty that passes leave", rows[first:first + NODES_PER_RECORD].tobytes())
             for k, first in enumerate(range(0, len(rows), NODES_PER_RECORD))]

@@ -12,6 +12,7 @@ from typing import BinaryIO
 
 import numpy as np
 
+from ...lazy import lazrs
 from ..weights import LAS
 
 VLR_HEADER_SIZE, EVLR_HEADER_SIZE = 54, 60  # source: bytes (LAS 1.4 R15, tables 6 and 7)
@@ -556,8 +557,6 @@ def _points_decoded(compression, chunk, size, stated):
 
 def _holds(compression, chunk, points):
     """Whether so many points can be decoded from the bytes of a chunk."""
-    import lazrs
-
     buffer = np.empty(points * compression.point_size, np.uint8)
     try:
         lazrs.decompress_points_with_chunk_table(chunk, compression.data, buffer, [(points, len(chunk))])
@@ -582,8 +581,6 @@ def chunks_of(path: str | os.PathLike[str]) -> tuple[bytes, int, list[tuple[int,
 
 def _chunks(file):
     """(_Compression, first byte, [(points, bytes)] of each chunk) of an open file."""
-    import lazrs
-
     compression, points_at = _compression(file), HeaderFields.read(file).points_at
     file.seek(points_at)
     return compression, points_at + 8, lazrs.read_chunk_table(file, lazrs.LazVlr(compression.data))
@@ -618,8 +615,6 @@ def _chunk_table_damage(file, points_at, size, compression):
 
 def _chunk_damage(file, first, end, compression):
     """What is wrong with the chunks: they must fit before their table."""
-    import lazrs
-
     try:
         table = lazrs.read_chunk_table_only(file, lazrs.LazVlr(compression.data))
     except BaseException as problem:  # a panic of the decoder is not an Exception

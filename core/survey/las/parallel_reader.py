@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ...lazy import laspy, lazrs
 from ..weights import LAS
 from .header import chunks_of
 from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error, wrap_read_error
@@ -143,8 +144,6 @@ class ParallelCloudReader:
 
     def _read_chunks(self, path, header, record, place, first, table):
         """The points of chunks that begin at a byte; `table` has (points, bytes) of each."""
-        import lazrs
-
         buffer = self._buffer(header, sum(count for count, _ in table))
 
         def read():
@@ -192,8 +191,6 @@ class ParallelCloudReader:
 
 
 def _point_record(buffer, header):
-    import laspy
-
     packed = laspy.PackedPointRecord.from_buffer(buffer, header.point_format)
     return laspy.ScaleAwarePointRecord(packed.array, packed.point_format, header.scales, header.offsets)
 

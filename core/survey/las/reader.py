@@ -15,6 +15,7 @@ from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
 from ...io.crs import METRES, FileUnits, horizontal_part, in_metres, moved_by
 from ...io.weights import IO
+from ...lazy import laspy, pyproj
 from ..weights import LAS
 from .header import HeaderFields, find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
 
@@ -107,8 +108,6 @@ def _as_known(path, known):
 
 def _open(path, mended, layers, sparse=False):
     """laspy.LasReader of a file that is read as it was mended."""
-    import laspy
-
     try:
         return laspy.open(opened(path, mended) if mended.patches else str(path), decompression_selection=layer_selection(layers),
                           laz_backend=laspy.LazBackend.Lazrs if sparse else None)
@@ -121,8 +120,6 @@ def _open(path, mended, layers, sparse=False):
 
 def layer_selection(layers: Iterable[str] | None) -> Any:
     """laspy's DecompressionSelection of the layers with these names; of all layers for None."""
-    import laspy
-
     if layers is None:
         return laspy.DecompressionSelection.all()
     selection = laspy.DecompressionSelection.base()
@@ -351,14 +348,12 @@ def _joined(plane, vertical):
 
 def _vertical(crs, factor, unit):
     """A vertical CRS with another unit, or of an unknown datum."""
-    from pyproj import CRS
-
     content = {"type": "VerticalCRS", "name": "height", "datum": {"type": "VerticalReferenceFrame", "name": "unknown"}, "coordinate_system": {
         "subtype": "vertical", "axis": [{"name": "Height", "abbreviation": "H", "direction": "up"}]}} if crs is None else crs.to_json_dict()
     content.pop("id", None)
     content["name"] += f" ({unit})"
     content["coordinate_system"]["axis"][0]["unit"] = {"type": "LinearUnit", "name": unit, "conversion_factor": factor}
-    return CRS.from_json_dict(content)
+    return pyproj.CRS.from_json_dict(content)
 
 
 def _of_heights(crs):
@@ -383,21 +378,15 @@ def _length(code, size):
 
 def _coded(code):
     """The CRS of an EPSG code, None where it is none."""
-    from pyproj import CRS
-    from pyproj.exceptions import CRSError
-
     try:
-        return CRS.from_epsg(code) if code in EPSG_CODES else None
-    except CRSError:
+        return pyproj.CRS.from_epsg(code) if code in EPSG_CODES else None
+    except pyproj.exceptions.CRSError:
         return None
 
 
 def _parsed(text):
     """The CRS of WKT, None where it is empty or not understood: the user is then asked for one."""
-    from pyproj import CRS
-    from pyproj.exceptions import CRSError
-
     try:
-        return CRS.from_wkt(text) if text.strip() else None
-    except CRSError:
+        return pyproj.CRS.from_wkt(text) if text.strip() else None
+    except pyproj.exceptions.CRSError:
         return None

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.text_table import read_number_table
+from ...lazy import pyproj
 from ..weights import TRAJECTORY
 from .columns import ROLES, candidates_by_role, listed
 from .table_columns import TableColumn, first_row, is_record, titled_columns, with_week
@@ -159,9 +160,7 @@ def _degrees(column):
 
 
 def _from_the_centre(x, y, z):
-    from pyproj import Transformer
-
-    lon, lat, height = Transformer.from_crs("EPSG:4978", "EPSG:4979", always_xy=True).transform(x, y, z)
+    lon, lat, height = pyproj.Transformer.from_crs("EPSG:4978", "EPSG:4979", always_xy=True).transform(x, y, z)
     return {role: np.where(np.isfinite(values), values, np.nan) for role, values in (("lon", lon), ("lat", lat), ("z", height))}
 
 

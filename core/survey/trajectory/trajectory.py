@@ -10,6 +10,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import FOOT, check_metric, horizontal_part, in_metres, parse_crs, plane_wkt, same_crs
+from ...lazy import pyproj
 from ..weights import TRAJECTORY
 from .time_systems import unwrap_time
 
@@ -170,9 +171,6 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
     Raises RoadExtractionError if the target is not projected, the source is of a kind that has no map coordinates, units contradict the CRS, or
     positions cannot be brought to the target.
     """
-    from pyproj import Transformer
-    from pyproj.exceptions import ProjError
-
     if not trajectory.crs:
         return taken_to_be_in(trajectory, target_wkt)
     target_wkt = in_metres(target_wkt)[0]
@@ -187,12 +185,12 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
     target_wkt = plane_wkt(target_wkt)
     source, target = (horizontal_part(crs) for crs in (source, parse_crs(target_wkt)))
     try:
-        transformer = Transformer.from_crs(source, target, always_xy=True)
+        transformer = pyproj.Transformer.from_crs(source, target, always_xy=True)
         x, y = transformer.transform(trajectory.x, trajectory.y)
         finite = np.isfinite(trajectory.x) & np.isfinite(trajectory.y)
         if not (np.isfinite(x[finite]) & np.isfinite(y[finite])).all():
-            raise ProjError("some positions lie where the projection is not defined")
-    except ProjError as problem:
+            raise pyproj.exceptions.ProjError("some positions lie where the projection is not defined")
+    except pyproj.exceptions.ProjError as problem:
         raise RoadExtractionError(
             f"The trajectory is in {source.name} and cannot be brought to {target.name} ({problem}). Check the CRS of the trajectory"
             f"{', and that its longitude and latitude are not exchanged' if source.is_geographic else ''}.") from problem

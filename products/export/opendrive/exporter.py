@@ -11,7 +11,7 @@ import numpy as np
 from ....core.common.progress import Progress
 from ....core.common.setting import Limited, setting
 from ..shared_borders import with_driven_middles
-from ..sources import NearestValues, RoadMapSource, sigma_of_lanes
+from ..sources import NearestValues, RoadMapSource, is_stated, sigma_of_lanes
 from .geometry import Cubics
 from .model import OPEN_END, STEP, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
 from .objects import LANE_ID, add_objects
@@ -129,7 +129,7 @@ class _Drafting:
         inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)}
         ordinary, between = _between_junctions(ordinary, inside_ids)
         return (_ordinary_roads(ordinary) + [(strip, False) for strip in strips_of(beside, set())]
-                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors))
+                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors, is_stated(self.lanes)))
 
     def _parted(self) -> tuple[list[Slice], list[Slice], list[Slice]]:
         """(slices of ordinary roads, slices within junctions, slices that nobody drives and that touch a junction).
@@ -290,12 +290,14 @@ def _ordinary_roads(slices):
     return [(_along_traffic(strip), False) for strip in strips_of(slices, breaks)]
 
 
-def _ways_through(parts):
-    """(slices of a road, whether it is a way through a junction) of single lanes, all along their traffic."""
+def _ways_through(parts, stated):
+    """(slices of a road, whether it is a way through a junction) of single lanes, all along their traffic.
+
+    stated : whether the map states all ways, so that one that comes from nowhere or leads nowhere is a way all the same
+    """
     parts = [part for given in parts for part in _along_traffic([given])]
     part_of = {id(cell): part for part in parts for cell in part.driven}
-    # what comes from nowhere or leads nowhere is no way through
-    return [([part_of[id(cell)] for cell in way], bool(way[0].before and way[-1].after))
+    return [([part_of[id(cell)] for cell in way], bool(way[0].before and way[-1].after or stated and (way[0].before or way[-1].after)))
             for way in end_to_end([cell for part in parts for cell in part.driven])]
 
 

@@ -597,11 +597,28 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
     if not len(grid.groups):
         return Uprights.none()
     profile = smoothed(_mean(grid))
-    u = side * (grid.d - edges[:, None])
+    gutters, columns, depth = lowest_along(profile, side * (grid.d - edges[:, None]))
+    # a slice of the surface holds several of those along which lines are followed
+    times = int(round(SLICE_LENGTH / UPRIGHT_SLICE))
+    gutters = np.repeat(gutters, times)
+    number = np.floor(s[gutters] / SLICE_LENGTH).astype(np.int64) * times + np.tile(np.arange(times), len(gutters) // times)
+    zero = np.zeros(len(gutters))
+    columns, depth = np.repeat(columns, times), np.repeat(depth, times)
+    return Uprights(number, grid.d[columns], profile[gutters, columns] + grid.line(s[gutters]), depth, zero,
+                    np.zeros((len(gutters), TOP_BINS)), zero, zero, zero + 1.0, zero, zero > 0, zero)
+
+
+def lowest_along(profile: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where water runs along an edge: the lowest place of a profile beside it, from which the ground rises to both sides.
+
+    profile : (I, J) m, heights of the ground; NaN where it was not seen
+    u : (I, J) m, places of the cells outward of the edge
+    Returns rows and columns of such places, and by how many m the ground rises outward of them, (N,) each
+    """
     searched = (u > -GUTTER_INSIDE) & (u < GUTTER_OUTSIDE) & np.isfinite(profile)
     lowest = np.where(searched, profile, np.inf)
     j = np.argmin(lowest, axis=1)
-    rows = np.arange(slices)
+    rows = np.arange(len(profile))
     low, offset = lowest[rows, j], u[rows, j]
     beyond = u - offset[:, None]
     outer, inner = (np.where((beyond * way > 0) & (beyond * way < reach) & np.isfinite(profile), profile, -np.inf).max(axis=1)
@@ -609,13 +626,7 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
     # water stays where the ground rises outward from the lowest point on: a verge that falls on is none
     falls_on = np.where((beyond > 0) & (beyond < OUTER_REACH) & np.isfinite(profile), profile, np.inf).min(axis=1) < low
     gutters = np.flatnonzero(np.isfinite(low) & (outer - low > OUTER_RISE) & (inner - low > INNER_RISE) & ~falls_on)
-    # a slice of the surface holds several of those along which lines are followed
-    times = int(round(SLICE_LENGTH / UPRIGHT_SLICE))
-    gutters = np.repeat(gutters, times)
-    number = np.floor(s[gutters] / SLICE_LENGTH).astype(np.int64) * times + np.tile(np.arange(times), len(gutters) // times)
-    zero = np.zeros(len(gutters))
-    return Uprights(number, grid.d[j[gutters]], low[gutters] + grid.line(s[gutters]), (outer - low)[gutters], zero,
-                    np.zeros((len(gutters), TOP_BINS)), zero, zero, zero + 1.0, zero, zero > 0, zero)
+    return gutters, j[gutters], (outer - low)[gutters]
 
 
 def _mean(grid: SurfaceGrid) -> np.ndarray:

@@ -12,7 +12,7 @@ from ....core.common.errors import RoadExtractionError
 from ....core.common.progress import Progress
 from ....core.io.geotiff import GEOTIFF_TILE, IntensityImage
 from ....core.io.local_files import gdal_exceptions, open_raster
-from ....core.lazy import cv2
+from ....core.lazy import cv2, gdal
 from ..control_points import SourceImage
 from ..georeference import (
     COLLINEAR_RATIO,
@@ -96,8 +96,6 @@ def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
     cell : m of a cell of the intensity image
     Raises RoadExtractionError if the image cannot be read.
     """
-    from osgeo import gdal
-
     width, height = image.width, image.height
     factor = max(1, int(cell / size + 0.25), int(np.ceil(np.sqrt(width * height / MOST_PIXELS))))
     columns, rows = max(1, width // factor), max(1, height // factor)

@@ -85,5 +85,5 @@ def test_a_lane_beside_one_line_ends_where_it_is_less_probable_than_four_in_five
 def test_a_short_piece_between_two_doubtful_stretches_is_in_doubt_and_has_no_second_reading_of_its_own():
     doubtful = lane(np.zeros(30), MEASURED, False)
     doubtful.aside[:10] = doubtful.aside[12:] = 0.5
-    assert doubtful.in_doubt().all()
+    assert doubtful.in_doubt.all()
     assert doubtful.said(slice(10, 12))["other"] == "" and doubtful.said(slice(0, 10))["other"]

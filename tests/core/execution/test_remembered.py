@@ -27,6 +27,13 @@ def doubled(source, item, *arguments):
 doubled.__module__, doubled.__qualname__ = kept_of_windows.__module__, kept_of_windows.__qualname__   # only a named function has a name
 
 
+def doubled_together(source, items, *arguments):
+    return [2 * item for item in items]
+
+
+doubled_together.__module__, doubled_together.__qualname__ = doubled.__module__, doubled.__qualname__
+
+
 def results(remembered, items, source=None, arguments=(OutlierSettings(),), state=None):
     return list(remembered.run(Phase(doubled, source or NoSource(), arguments, state=state), items))
 
@@ -38,6 +45,14 @@ def test_the_next_runs_compute_what_is_new_in_them():
     assert results(remembered, [4, 5, 3]) == [8, 10, 6]
     assert results(remembered, [5, 1, 2]) == [10, 2, 4]
     assert asked.items == [[3, 1, 2], [4, 5]], "each item once"
+
+
+def test_items_that_come_together_are_remembered_one_by_one_so_that_a_new_one_before_them_changes_nothing():
+    asked, phase = Asked(), Phase(doubled_together, NoSource(), (OutlierSettings(),))
+    remembered = RememberedResults(asked)
+    first = list(remembered.run_together(phase, range(32), 2))
+    assert list(remembered.run_together(phase, [100, *range(32)], 2)) == [200, *first]
+    assert len(asked.items) == 1, "the new one alone is few, which threads of the program compute"
 
 
 def test_other_arguments_are_another_question():

@@ -15,7 +15,7 @@ from lanewright.core.execution import tasks as interpreter
 from lanewright.core.execution.choice import ExecutionSettings, executor_for
 from lanewright.core.execution.phase import NoSource, Phase, Threads, read_plain, write_plain
 from lanewright.core.execution.processes import WorkerProcesses
-from lanewright.core.markings.objects.figures import figures_of_group
+from lanewright.core.markings.objects.figures import figure_of_cells
 from lanewright.core.road.surface.ground_grid import ground_of_windows
 from lanewright.core.survey.blocks import sensor_height_of
 
@@ -68,7 +68,7 @@ def test_items_that_share_something_go_to_one_worker_and_come_in_order(monkeypat
     """As many together as the phase wants, where each of two workers still has eight rounds."""
     monkeypatch.setattr(WorkerProcesses, "task", lambda self: tasks_of_a_thread)
     with closing(WorkerProcesses("python", 2)) as executor:
-        found = list(executor.run(Phase(figures_of_group, NoSource(), together=4), list(range(items))))
+        found = list(executor.run(Phase(figure_of_cells, NoSource(), together=4), list(range(items))))
     assert [item for _, item in found] == list(range(items))
     runs = [found[k:k + together] for k in range(0, items, together)]
     assert all(len({task for task, _ in run}) == 1 for run in runs)

@@ -1,13 +1,10 @@
 """Lines for the design office: elements that a LandXML reader adds up to the line again, and polylines by class."""
 
-import sys
-
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import DRIVING_LINES, Features
-from lanewright.products.cad import NAMESPACE, alignments_of, dxf_lines, elements_without_reversal, landxml_text, write_dxf
+from lanewright.products.cad import NAMESPACE, _DxfLine, alignments_of, dxf_lines, elements_without_reversal, landxml_text, write_dxf
 from lanewright.products.export.opendrive.geometry import PlanElement, PlanView
 from lanewright.products.export.sources import RoadMapSource, checked
 from lanewright.products.export.xml_tree import read_xml
@@ -93,14 +90,12 @@ def test_a_dxf_has_every_line_in_3d_in_the_layer_of_its_class(tmp_path):
     np.testing.assert_allclose(border, lanes.borders(0)[0], atol=1e-6)
 
 
-@pytest.mark.parametrize("without", ["the module", "the driver"])
-def test_without_a_gdal_that_writes_dxf_landxml_is_named(tmp_path, monkeypatch, without):
-    if without == "the module":
-        monkeypatch.setitem(sys.modules, "osgeo", None)
-    else:
-        monkeypatch.setattr(pytest.importorskip("osgeo.gdal"), "GetDriverByName", lambda name: None)
-    with pytest.raises(RoadExtractionError, match="there is no GDAL that does.*FORMAT = landxml"):
-        write_dxf([], str(tmp_path / "map.dxf"))
+def test_a_text_in_a_dxf_keeps_its_letters_its_place_and_its_turn(tmp_path):
+    write_dxf([_DxfLine("SECTION_TEXT", np.array([[3.0, 4.0, 0.0]]), text="Straße 2 %", turned=90.0)], str(tmp_path / "text.dxf"))
+    dataset = gdal.OpenEx(str(tmp_path / "text.dxf"))
+    feature = dataset.GetLayer(0).GetNextFeature()
+    assert feature.GetField("Layer") == "SECTION_TEXT" and feature.GetField("Text") == "Straße 2 %"
+    assert feature.GetGeometryRef().GetPoint(0) == (3.0, 4.0, 0.0) and "a:90" in feature.GetStyleString()
 
 
 def test_lines_that_no_elements_follow_are_irregular(tmp_path):

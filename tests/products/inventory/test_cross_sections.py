@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.countries.catalogue import COUNTRIES
-from lanewright.products.cad import section_drawing, write_dxf
+from lanewright.products.cad import landxml_text, section_alignments, section_drawing, section_table, write_dxf
+from lanewright.products.export.xml_tree import read_xml
 from lanewright.products.inventory.borders import BorderLayers, CrossSectionSettings
 from lanewright.products.inventory.cross_sections import measure_cross_sections, sections_to_features
 from lanewright.products.report.inventory import cross_section_report
+from map_files import written
 from measured_streets import GROUND, HALF, Drive, edges_of, lanes_of, markings_of, measured_road
 
 BOTH_WAYS = (Drive(1, -1.75), Drive(-1, 1.75))
@@ -280,3 +282,21 @@ def test_the_report_is_as_high_for_a_road_to_the_north_and_names_what_exceeds():
     assert pages[0].count("<svg") == pages[1].count("<svg") >= 6
     assert all(int(height) < 300 for page in pages for height in re.findall(r'<svg [^>]*height="(\d+)"', page))
     assert "rut" in pages[0] and "cannot be told from crossfall" in pages[0]
+
+
+def test_landxml_and_the_table_have_the_ground_of_every_section(tmp_path):
+    """Offsets are positive to the right in LandXML and to the left in the table; the road falls by 4 % to the right and climbs by 3 %."""
+    sections = measure_cross_sections(measured_road(crossfall=0.04, crown=False), BorderLayers(edges_of(), markings_of()))
+    root = read_xml(written(tmp_path, landxml_text(section_alignments(sections)), "sections.xml"), "LandXML", "a LandXML file")
+    alignment = root.find("Alignments", "Alignment")
+    assert [child.tag for child in alignment.children] == ["CoordGeom", "CrossSects"]
+    crossed = list(alignment.find("CrossSects").all("CrossSect"))
+    assert [section.number("sta") for section in crossed] == [0.0, 10.0, 20.0, 30.0, 40.0, 50.0]
+    rows = np.array([line.split(",") for line in section_table(sections).splitlines()[1:]], float)
+    for section in crossed:
+        ground = np.array(section.find("CrossSectSurf", "PntList2D").text.split(), float).reshape(-1, 2)
+        station = section.number("sta")
+        level = GROUND + 0.03 * station
+        road = np.abs(ground[:, 0] + 1.75) < HALF - 0.2   # the stations run along the track, 1.75 m right of the middle
+        assert np.polyfit(ground[road, 0], ground[road, 1] - level, 1) == pytest.approx([-0.04, -0.07], abs=0.004)
+        np.testing.assert_allclose(rows[rows[:, 1] == station][:, 2:], ground * [-1, 1], atol=1e-9)

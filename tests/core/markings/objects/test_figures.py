@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 import shapely
 from clustered_marks import FRAME, classes, layer_of, markings_of
+from lanewright.core.execution.phase import Threads, digest
+from lanewright.core.markings.objects.cluster import cluster_markings
+from lanewright.core.markings.objects.figures import figure_of_cells
 from lanewright.simulator.parts.paint import straight_arrow
 from lanewright.simulator.parts.symbols import bicycle, bus_word
 from painted_streets import paint, road_points, strip
@@ -64,3 +67,25 @@ def word(*names, s0=30.0, d0=0.5):
                                   strip(30, 31.2, 0.0, 1.4), lambda s, d: np.abs(np.hypot(s - 30, d - 1.5) - 0.5) < 0.06])
 def test_other_figures_are_neither(mark):
     assert not {"bicycle", "bus"} & set(classes(markings_of([mark], density=4000)))
+
+
+class Noting(Threads):
+    """Notes what is asked about markings that may be figures."""
+
+    def __init__(self):
+        super().__init__()
+        self.asked = []
+
+    def run(self, phase, items, *others):
+        if phase.function is figure_of_cells:
+            self.asked += [digest(item) for item in items]
+        return super().run(phase, items, *others)
+
+
+def test_what_was_asked_about_a_figure_is_the_same_with_a_line_more_before_it_so_that_its_answer_serves_again():
+    figure, asked = drawn(bicycle(30.0, 1.5, 1, 1.8, 1.2)), []
+    for others in ([], [strip(5.0, 8.0, 1.4, 1.6), strip(12.0, 14.0, -1.0, -0.5)]):
+        executor = Noting()
+        cluster_markings(road_points(paint(FRAME, [figure, *others], density=4000), FRAME), FRAME, executor=executor)
+        asked.append(executor.asked)
+    assert asked[0] and set(asked[0]) <= set(asked[1])

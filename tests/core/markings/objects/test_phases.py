@@ -51,8 +51,8 @@ def found_by(executor):
         parts = work.parts(s, d, spacing, list(zip(bounds[:4].tolist(), bounds[1:5].tolist())), Progress())
         records = Columns(dict(s=s, d=d, spacing=spacing), [("s", "i4"), ("d", "i4"), ("spacing", "u2")])
         shapes = work.shapes(records, bounds, Progress())
-        candidates = [((k,), cells, np.zeros(len(cells))) for k, cells in enumerate([*map(figure, SYMBOLS), np.argwhere(np.ones((9, 30)))])]
-        figures = list(work.figures([[one] for one in candidates] + [[candidates[0], candidates[0]]], 0.0, 1.0, Progress()))
+        shown = [*map(figure, SYMBOLS), np.argwhere(np.ones((9, 30)))]
+        figures = list(work.figures([(cells, np.zeros(len(cells))) for cells in shown], 0.0, 1.0, Progress()))
         return ([comb and (comb.middle.tobytes(), *comb._replace(middle=None)) for comb in combs],
                 [(part.tobytes(), count) for part, count in parts], shapes, [type(value) for shape in shapes for value in vars(shape).values()],
                 figures)
@@ -61,7 +61,7 @@ def found_by(executor):
 @pytest.mark.slow
 def test_worker_processes_find_what_threads_find(monkeypatch):
     combs, parts, shapes, _, figures = known = found_by(Threads(1))
-    assert {kind for some in figures for _, kind in some} == {"bicycle", "bus"} and figures[-2] == [] and figures[-1] == figures[0]
+    assert set(figures) == {"bicycle", "bus", ""} and figures[-1] == ""
     assert sum(comb is not None for comb in combs) >= 2 and None in combs
     assert parts[0][1] >= 2 and len(shapes) == len(STRIPES) + len(DASHES) + 1
     assert found_by(Threads(3)) == known

@@ -1,0 +1,195 @@
+"""The surface of a survey's roads: breaklines and triangulation, as layers and as a raster of heights."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+from scipy.spatial import cKDTree
+
+from ...core.common.errors import RoadExtractionError
+from ...core.common.features import BREAKLINES, SURFACE_FACES, Features
+from ...core.common.progress import Progress
+from ...core.common.setting import Limited, setting
+from ...core.countries.catalogue import NEUTRAL
+from ...core.io.crs import as_in_file
+from ...core.io.geotiff import GEOTIFF_TILE, NODATA, new_geotiff
+from ...core.survey.survey import Survey
+from ..inventory.borders import BorderLayers, RoadBorders
+from ..inventory.surface_grid import CROSS_CELL, SLICE_LENGTH
+from .breaklines import KINDS, Breakline, road_breaklines
+from .ground import road_ground
+from .triangulation import Triangulation, thinned
+
+APART = 0.10            # m by which two breaklines that the triangulation follows are apart at least; an edge's foot and top are nearer
+PLAN_TOLERANCE = 0.01   # m in plan by which a breakline may be missed by the edges of the triangulation
+
+
+@dataclass(frozen=True)
+class SurfaceSettings(Limited):
+    """How closely the ground is followed, and how far."""
+
+    tolerance: float = setting(0.005, 0.001, 0.2, "The tolerance", "m")   # m, root mean square of what the triangulation misses of the road
+    reach: float = setting(2.0, 0.5, 20.0, "The ground beside the road", "m")   # m beyond the edges of the carriageway
+    max_gap: float = setting(10.0, 1.0, 100.0, "The gap", "m")   # m along a road over which ground that was not seen is bridged
+    cell_size: float = setting(0.25, 0.05, 10.0, "The cell size", "m")   # m, of the raster of heights
+
+
+@dataclass
+class SurfaceModel:
+    """The surface; coordinates are local: map coordinates less the origin."""
+
+    surface: Triangulation
+    lines: list[Breakline]   # by road and kind
+    followed: list[tuple[str, np.ndarray]]   # (kind, (N, 3) m) of the stretches of lines that are edges of the triangulation
+    origin: np.ndarray   # (3,)
+    crs: str   # WKT, metric, "" where unknown
+    rmse: float   # m, of the cells of the carriageway against the triangulation
+    points: int   # points of the ground
+    cells: np.ndarray   # (C, 3) m, the ground that the triangulation was made for
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def vertices(self) -> int:
+        """Number of vertices that are corners of a triangle."""
+        return len(np.unique(self.surface.faces))
+
+
+def make_surface_model(survey: Survey, layers: BorderLayers, settings: SurfaceSettings = SurfaceSettings(),
+                       progress: Progress = Progress()) -> SurfaceModel:
+    """Make the surface of all roads of a survey.
+
+    layers : BorderLayers, of which the edges must be given
+    Raises RoadExtractionError if the edges lie on no road of the survey, or no ground was seen about them
+    """
+    borders = RoadBorders(layers, survey.frame, NEUTRAL)
+    roads, grounds, lines = survey.store.roads(), [], []
+    for k, road in enumerate(roads):
+        part = progress.part(0.6 * k / len(roads), 0.6 * (k + 1) / len(roads))
+        ground = road_ground(survey, road, borders, settings.reach, part.part(0.0, 0.6))
+        if ground is not None and np.isfinite(ground.z).any():
+            grounds.append(ground)
+            lines += road_breaklines(survey, ground, layers, part.part(0.6, 1.0))
+    if not grounds:
+        raise RoadExtractionError("No ground was seen between the road edges: they lie on none of the driven roads. Choose those of this survey.")
+    area = shapely.union_all([ground.outline(survey.frame, settings.max_gap) for ground in grounds])
+    # what two roads see meets without a seam
+    area = area.buffer(SLICE_LENGTH).buffer(-SLICE_LENGTH).simplify(APART)
+    lines = sorted(lines, key=lambda line: (line.road, KINDS.index(line.kind), line.station))
+    followed = _followed(lines, area, settings.tolerance)
+    cells, judged = _cells(grounds, survey.frame, followed, area)
+    fixed, segments = _fixed(followed, area, cells)
+    surface = thinned(cells, judged, fixed, segments, area, settings.tolerance, progress.part(0.6, 1.0))
+    miss = surface.heights(*cells[judged, :2].T) - cells[judged, 2]
+    rmse = float(np.sqrt(np.nanmean(miss**2))) if np.isfinite(miss).any() else 0.0
+    model = SurfaceModel(surface, lines, followed, survey.frame.origin, survey.crs, rmse, sum(ground.points for ground in grounds), cells)
+    if rmse > settings.tolerance:
+        model.notes.append(f"The surface misses the ground by {1000 * rmse:.1f} mm (root mean square), more than the tolerance of "
+                           f"{1000 * settings.tolerance:g} mm: the ground is rougher than that. A greater tolerance gives fewer triangles.")
+    return model
+
+
+def _followed(lines, area, tolerance):
+    """[(kind, (N, 3) places)] of the lines' stretches that lie within the area and apart from those of more weight, with the vertices they need."""
+    inside = area.buffer(-APART)
+    order = sorted(range(len(lines)), key=lambda k: KINDS.index(lines[k].kind))
+    shapes = np.array([shapely.linestrings(lines[k].places[:, :2]) for k in order], object)
+    rank = np.arange(len(shapes))
+    one, other = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=APART) if len(shapes) else (rank, rank)
+    stretches = []
+    for row, k in enumerate(order):
+        line, shape = lines[k], shapes[row]
+        stronger = other[(one == row) & (other < row)]
+        gaps = [CROSS_CELL / 4 if (line.kind, lines[order[j]].kind) == ("edge_top", "edge_bottom") else APART for j in stronger]
+        free = shape.intersection(inside).difference(shapely.union_all(shapely.buffer(shapes[stronger], gaps)))
+        along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line.places[:, :2], axis=0).T))]
+        for part in shapely.get_parts(free):
+            if part.geom_type == "LineString" and part.length > 2 * APART:
+                xy = shapely.get_coordinates(part)
+                at = shapely.line_locate_point(shape, shapely.points(xy))
+                stretches.append((line.kind, _needed(xy, at, np.interp(at, along, line.places[:, 2]), tolerance)))
+    return stretches
+
+
+def _needed(xy, along, z, tolerance):
+    """(N, 3) the fewest vertices of a line that keep to it in plan and height."""
+    plan = shapely.get_coordinates(shapely.simplify(shapely.linestrings(xy), PLAN_TOLERANCE))
+    height = shapely.get_coordinates(shapely.simplify(shapely.linestrings(along, z), tolerance))[:, 0]
+    kept = np.isin(xy[:, 0] + 1j * xy[:, 1], plan[:, 0] + 1j * plan[:, 1]) | np.isin(along, height)
+    return np.c_[xy, z][kept]
+
+
+def _cells(grounds, frame, followed, area):
+    """((C, 3) cells of the ground that lie on one side of every edge, (C,) whether on the carriageway)."""
+    edges = np.array([shapely.linestrings(places[:, :2]) for kind, places in followed if kind.startswith("edge")], object)
+    tree = shapely.STRtree(edges)
+    kept, judged = [], []
+    for ground in grounds:
+        i, j = np.nonzero(np.isfinite(ground.z))
+        cells, road = ground.cells(frame), frame.road(ground.road)
+        near = cKDTree(_along_lines(edges)).query(cells[:, :2], distance_upper_bound=SLICE_LENGTH)[0] if len(edges) else np.full(len(cells), np.inf)
+        rows = np.flatnonzero(np.isfinite(near))
+        ends = [np.stack(road.to_map(ground.s[i[rows]] + way * SLICE_LENGTH / 2, ground.d[j[rows]]), axis=1) for way in (-1, 1)]
+        mixed = np.zeros(len(cells), bool)
+        mixed[rows[tree.query(shapely.linestrings(np.stack(ends, axis=1)), predicate="dwithin", distance=CROSS_CELL)[0]]] = True
+        mixed |= ~shapely.contains_xy(area, *cells[:, :2].T)
+        kept.append(cells[~mixed])
+        judged.append(((ground.d[j] > ground.right[i]) & (ground.d[j] < ground.left[i]))[~mixed])
+    return np.concatenate(kept), np.concatenate(judged)
+
+
+def _along_lines(lines):
+    """(N, 2) places on lines, half a slice apart at most."""
+    return shapely.get_coordinates(shapely.segmentize(lines, SLICE_LENGTH / 2))
+
+
+def _fixed(followed, area, cells):
+    """(vertices, segments) of the lines that are followed and of the outline, whose heights are those of the nearest cells."""
+    tree = cKDTree(cells[:, :2])
+    rings = [shapely.get_coordinates(ring) for polygon in shapely.get_parts(area) for ring in (polygon.exterior, *polygon.interiors)]
+    chains = [places for _, places in followed] + [np.c_[ring, cells[tree.query(ring)[1], 2]] for ring in rings]
+    start = np.append(0, np.cumsum([len(chain) for chain in chains]))
+    segments = np.concatenate([np.stack([np.arange(a, b - 1), np.arange(a + 1, b)], axis=1) for a, b in zip(start[:-1], start[1:])])
+    places = np.concatenate(chains)
+    _, first, number = np.unique(np.round(places[:, :2], 4), axis=0, return_index=True, return_inverse=True)
+    segments = np.unique(np.sort(number.ravel()[segments], axis=1), axis=0)
+    return places[first], segments[segments[:, 0] != segments[:, 1]]
+
+
+# The surface as layers, and as a raster.
+
+def surface_to_features(model: SurfaceModel) -> tuple[Features, Features]:
+    """The layers BREAKLINES and TIN, in map coordinates."""
+    lines, faces = Features("LineStringZ", list(BREAKLINES), crs=model.crs), Features("PolygonZ", list(SURFACE_FACES), crs=model.crs)
+    for line in model.lines:
+        shape = shapely.linestrings(line.places + model.origin)
+        lines.add(shape, road=line.road, kind=line.kind, station_m=line.station[0], end_m=line.station[1], sigma_z_m=line.sigma,
+                  height_m=None if np.isnan(line.step) else line.step, length_m=shape.length)
+    corners = model.surface.vertices[model.surface.faces]
+    away = cKDTree(model.cells[:, :2]).query(corners.mean(axis=1)[:, :2])[0]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    slope = np.hypot(normal[:, 0], normal[:, 1]) / np.maximum(normal[:, 2], 1e-9)
+    for shape, far, steep, double in zip(shapely.polygons(corners + model.origin), away, slope, normal[:, 2]):
+        faces.add(shape, status="bridged" if far > SLICE_LENGTH else "measured", slope_pct=100 * steep, area_m2=0.5 * double)
+    return lines, faces
+
+
+def write_heights(model: SurfaceModel, path: str | os.PathLike[str], cell_size: float, progress: Progress = Progress()) -> None:
+    """Write the heights of the surface as a GeoTIFF with cells of a size in m; heights have the unit of the survey's own CRS."""
+    used = model.surface.vertices[np.unique(model.surface.faces)]
+    left, bottom = np.floor((used[:, :2].min(axis=0) + model.origin[:2]) / cell_size) * cell_size
+    right, top = np.ceil((used[:, :2].max(axis=0) + model.origin[:2]) / cell_size) * cell_size
+    width, height = (max(int(round(side / cell_size)), 1) for side in (right - left, top - bottom))
+    up = as_in_file(model.crs)[1].up
+    tiles = [(column, row) for row in range(0, height, GEOTIFF_TILE) for column in range(0, width, GEOTIFF_TILE)]
+    with new_geotiff(path, width, height, (left, cell_size, 0.0, top, 0.0, -cell_size), model.crs) as image:
+        for k, (column, row) in enumerate(tiles):
+            wide, high = min(GEOTIFF_TILE, width - column), min(GEOTIFF_TILE, height - row)
+            x = left + (column + np.arange(wide) + 0.5) * cell_size - model.origin[0]
+            y = top - (row + np.arange(high) + 0.5) * cell_size - model.origin[1]
+            z = model.surface.heights(*(values.ravel() for values in np.meshgrid(x, y))) + model.origin[2]
+            if np.isfinite(z).any():
+                image.write(column, row, np.where(np.isfinite(z), z / up, NODATA).reshape(high, wide))
+            progress.report((k + 1) / len(tiles))

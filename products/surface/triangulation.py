@@ -1,0 +1,219 @@
+"""A triangulation of the ground that follows its breaklines, with the fewest vertices that keep to a tolerance."""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+
+import numpy as np
+import shapely
+from scipy.spatial import Delaunay, cKDTree
+
+from ...core.common.arrays import order_by
+from ...core.common.progress import Progress
+
+NEAREST_VERTICES = 0.3  # m: nearer ones would follow the noise of the ground
+MOST_ROUNDS = 60        # cost: of refinement; twenty are usual
+
+
+class Triangulation:
+    """Triangles between vertices of which some are joined by segments: a constrained Delaunay triangulation.
+
+    Where a segment is no edge of the Delaunay triangulation, the edges that it crosses are swapped for the other diagonal of their two triangles
+    until it is one; the new edges are swapped again where that makes better triangles. A segment that crosses another one is left out.
+
+    vertices : (V, 3) m, no two at one place in plan
+    faces : (F, 3) int, vertices of the triangles, counter-clockwise from above
+
+    References
+    ----------
+    Sloan (1993), A fast algorithm for generating constrained Delaunay triangulations, Computers & Structures 47, 441-450. The Delaunay
+    triangulation is Qhull's.
+    """
+
+    def __init__(self, vertices: np.ndarray, segments: np.ndarray):
+        self.vertices = vertices
+        self._middle = vertices[:, :2].mean(axis=0)
+        plan = vertices[:, :2] - self._middle
+        self._whole = Delaunay(plan)
+        corners = self._whole.simplices
+        edges = np.sort(corners[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        size = len(vertices)
+        segments = np.sort(segments, axis=1)
+        missing = segments[~np.isin(segments[:, 0] * size + segments[:, 1], edges[:, 0] * size + edges[:, 1])]
+        self._crossed, added = np.zeros(len(corners), bool), np.empty((0, 3), np.int64)
+        if len(missing):
+            self._crossed, added = _forced(plan, self._whole, segments, missing)
+        self._faces = np.concatenate([corners, added])
+        a, b, c = (plan[self._faces[:, k]] for k in range(3))
+        turned = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0] < 0
+        self._faces[turned] = self._faces[turned][:, ::-1]
+        self._tree = shapely.STRtree(shapely.polygons(plan[added]) if len(added) else [])
+        self.kept = np.r_[~self._crossed, np.ones(len(added), bool)]
+
+    @property
+    def faces(self) -> np.ndarray:
+        return self._faces[self.kept]
+
+    def keep_within(self, area: shapely.Geometry) -> None:
+        """Leave out the triangles whose middle lies outside of a polygon."""
+        shapely.prepare(area)
+        x, y = self.vertices[self._faces, :2].mean(axis=1).T
+        self.kept &= shapely.contains_xy(area, x, y)
+
+    def locate(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """(N,) numbers of the triangles in which (N,) places lie, -1 outside: those of all that there were, before any was left out."""
+        places = np.stack([x, y], axis=1) - self._middle
+        number = self._whole.find_simplex(places)
+        moved = np.flatnonzero(self._crossed[number] & (number >= 0))
+        if len(moved):
+            # a place on an edge may by rounding lie in neither of its triangles
+            number[moved] = self._tree.nearest(shapely.points(places[moved])) + len(self._crossed)
+        return number
+
+    def heights(self, x: np.ndarray, y: np.ndarray, number: np.ndarray | None = None) -> np.ndarray:
+        """(N,) heights of the surface at (N,) places, m; NaN outside."""
+        number = self.locate(x, y) if number is None else number
+        a, b, c = (self.vertices[self._faces[number, k]] for k in range(3))
+        u, v, p = b - a, c - a, np.stack([x, y], axis=1) - a[:, :2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+            z = a[:, 2] + ((p[:, 0] * v[:, 1] - p[:, 1] * v[:, 0]) * u[:, 2] + (u[:, 0] * p[:, 1] - u[:, 1] * p[:, 0]) * v[:, 2]) / area
+        return np.where((number >= 0) & self.kept[number], z, np.nan)
+
+
+def _forced(plan, whole, segments, missing):
+    """((T,) bool, the triangles that missing segments cross, (A, 3) vertices of those that take their place)."""
+    corners, lines = whole.simplices, shapely.linestrings(plan[missing])
+    shapes = shapely.polygons(plan[corners])
+    triangle, line = shapely.STRtree(lines).query(shapes, predicate="intersects")
+    through = shapely.relate_pattern(lines[line], shapes[triangle], "T********")
+    crossed = np.zeros(len(corners), bool)
+    crossed[triangle[through]] = True
+    patch = _Patch(plan, corners[crossed], {tuple(segment) for segment in segments.tolist()})
+    for segment in missing.tolist():
+        patch.force(*segment)
+    return crossed, np.array(patch.triangles())
+
+
+class _Patch:
+    """Some triangles of a triangulation whose inner edges can be swapped: `third[a, b]` is the third corner of the one to the left of a -> b."""
+
+    def __init__(self, plan, corners, kept):
+        self.places = {k: (float(plan[k, 0]), float(plan[k, 1])) for k in np.unique(corners).tolist()}
+        self.third, self.around, self.kept = {}, defaultdict(set), kept
+        for a, b, c in corners.tolist():
+            self._add(*((a, b, c) if self._side(a, b, c) > 0 else (a, c, b)))
+
+    def _side(self, a, b, c):
+        """Twice the area of a triangle, positive where c lies to the left of a -> b."""
+        (ax, ay), (bx, by), (cx, cy) = self.places[a], self.places[b], self.places[c]
+        return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+
+    def _add(self, *corners):
+        for a, b, c in zip(corners, corners[1:] + corners[:1], corners[2:] + corners[:2]):
+            self.third[a, b] = c
+            self.around[a].add(b)
+
+    def triangles(self):
+        return sorted((a, b, c) for (a, b), c in self.third.items() if a < b and a < c)
+
+    def force(self, a, b):
+        """Make a segment an edge; nothing happens where it crosses an edge that is kept, or passes through a vertex."""
+        waiting = self._between(a, b)
+        made, patience = [], 100 * len(waiting) ** 2
+        while waiting and patience:
+            p, q = waiting.popleft()
+            patience -= 1
+            diagonal = self._swapped(p, q)
+            if diagonal is None:
+                waiting.append((p, q))
+            elif a not in diagonal and b not in diagonal and self._side(a, b, diagonal[0]) * self._side(a, b, diagonal[1]) < 0:
+                waiting.append(diagonal)
+            else:
+                made.append(diagonal)
+        better = True
+        while better and patience:
+            better = False
+            for k, (p, q) in enumerate(made):
+                patience -= 1
+                if {p, q} != {a, b} and self._encroached(p, q):
+                    made[k], better = self._swapped(p, q) or (p, q), True
+
+    def _between(self, a, b):
+        """The edges that a segment crosses, from a to b; none where it cannot be an edge."""
+        first = next(((p, self.third[a, p]) for p in self.around[a] if (a, p) in self.third
+                      and self._side(a, b, p) < 0 < self._side(a, b, self.third[a, p])), None)
+        edges = deque() if first is None else deque([first])
+        while edges:
+            p, q = edges[-1]
+            corner = self.third.get((q, p))
+            if corner == b:
+                return edges
+            side = 0.0 if corner is None or (min(p, q), max(p, q)) in self.kept else self._side(a, b, corner)
+            if not side:
+                edges.clear()
+            else:
+                edges.append((p, corner) if side > 0 else (corner, q))
+        return edges
+
+    def _swapped(self, p, q):
+        """The other diagonal of the two triangles at an edge, which takes its place; None where these make no convex quadrangle."""
+        left, right = self.third[p, q], self.third[q, p]
+        if self._side(right, left, p) * self._side(right, left, q) >= 0:
+            return None
+        for edge in ((p, q), (q, left), (left, p), (q, p), (p, right), (right, q)):
+            del self.third[edge]
+        self._add(left, p, right)
+        self._add(right, q, left)
+        return right, left
+
+    def _encroached(self, p, q):
+        """Whether the circle through one triangle at an edge holds the other one's corner, and the edge may be swapped."""
+        left, right = self.third[p, q], self.third[q, p]
+        if (min(p, q), max(p, q)) in self.kept or self._side(right, left, p) * self._side(right, left, q) >= 0:
+            return False
+        rows = np.array([self.places[k] for k in (p, q, left)]) - self.places[right]
+        return np.linalg.det(np.c_[rows, (rows**2).sum(axis=1)]) > 1e-12
+
+
+def thinned(cells: np.ndarray, judged: np.ndarray, fixed: np.ndarray, segments: np.ndarray, area: shapely.Geometry, tolerance: float,
+            progress: Progress = Progress()) -> Triangulation:
+    """The triangulation with the fewest vertices of the ground that misses it by no more than a tolerance.
+
+    Greedy insertion: of every triangle, the cell that it misses most becomes a vertex, in the first rounds only where it is missed by more than
+    half of the most, so that few vertices do.
+
+    cells : (N, 3) m, the ground
+    judged : (N,) bool, the cells whose misses count for the tolerance
+    fixed : (V, 3) m, vertices that are there from the beginning
+    segments : (S, 2) int, pairs of them that are joined
+    area : polygon that is covered
+    tolerance : m, root mean square of the misses of the cells that are judged
+
+    References
+    ----------
+    Garland and Heckbert (1995), Fast polygonal approximation of terrains and height fields, CMU-CS-95-181: algorithm II, in rounds.
+    """
+    vertices, last, limit = fixed, 2 * tolerance, np.inf
+    x, y, z = cells.T
+    lines = shapely.linestrings(fixed[segments][:, :, :2])
+    free = np.ones(len(cells), bool)
+    free[shapely.STRtree(lines).query(shapely.points(cells[:, :2]), predicate="dwithin", distance=NEAREST_VERTICES / 2)[0]] = False
+    for turn in range(MOST_ROUNDS):
+        surface = Triangulation(vertices, segments)
+        surface.keep_within(area)
+        number = surface.locate(x, y)
+        miss = np.abs(np.nan_to_num(surface.heights(x, y, number) - z))
+        free &= cKDTree(vertices[:, :2]).query(cells[:, :2], distance_upper_bound=NEAREST_VERTICES)[0] == np.inf
+        limit = max(min(limit, float(miss[free].max(initial=0.0))) / 2, last)
+        wrong = np.flatnonzero(free & (miss > limit))
+        progress.report((turn + 1) / MOST_ROUNDS)
+        if not len(wrong) and limit <= last:
+            if not judged.any() or np.mean(miss[judged] ** 2) <= tolerance**2 or last <= tolerance:
+                break
+            last = max(0.7 * last, tolerance)
+        if len(wrong):
+            order = wrong[order_by(np.rint(-miss[wrong] * 1e5).astype(np.int64), number[wrong])]
+            vertices = np.concatenate([vertices, cells[order[np.r_[True, np.diff(number[order]) > 0]]]])
+    progress.report(1.0)
+    return surface
