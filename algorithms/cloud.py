@@ -1,5 +1,8 @@
 """The survey's own point clouds, given back with classes and the fields of the road."""
 
+from collections import Counter
+from pathlib import Path
+
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import MARKINGS, ROAD_EDGES, ROAD_SURFACE, ROADSIDE, ROADSIDE_OBJECTS
 from .algorithm import Algorithm, SettingSpec
@@ -25,7 +28,7 @@ CLOUD_LAYERS = {
     "ROAD_EDGES": (tr("Road edges"), [field for field in ROAD_EDGES if field.name in ("road", "station_m", "height_m", "edge")], "LineStringZ",
                    tr("Faces and tops of curbs are those of its lines that have a height.")),
     "MARKINGS": (tr("Markings"), [field for field in MARKINGS if field.name in ("road", "class")], "PolygonZ",
-                 tr("Ground within it is paint.")),
+                 tr("Ground within it that is brighter than the asphalt about it is paint.")),
     "ROADSIDE": (tr("Roadside"), [field for field in ROADSIDE if field.name in ("road", "kind", "height_m")], "LineStringZ",
                  tr("Made by Roadside: what stands on its lines is guard rail, barrier, wall, fence or, of hedges, vegetation.")),
     "ROADSIDE_OBJECTS": (tr("Poles, signs and trunks"),
@@ -38,19 +41,20 @@ class ClassifyCloud(Algorithm):
     ID, TITLE, GROUP = "classifycloud", "Classify point cloud", "Export"
     SUMMARY = "Gives the survey's point clouds back: every point with its class and its station, offset and height above the road."
     HELP = ("Every input file is written to a file of the same name with all of its points in their order, and all that they had: "
-            "coordinates, times, intensity, colours, returns, extra fields and CRS. Classes are those of ASPRS (LAS 1.4): 2 ground, "
-            "3 to 5 low, medium (from 0.5 m) and high (from 2 m) vegetation, 7 noise below the road, 11 road surface. Where users "
-            "may define them, they are: 64 paint, 65 curb, 66 guard rail, 67 concrete barrier, 68 wall, 69 fence, 70 pole, 71 sign. "
-            "The files name these classes themselves.\n\n"
-            "The layers of the map decide, so that a map that was corrected by hand can be given back. Of the rest only the ground "
-            "is known, and no ground is looked for far above or below the road. Vegetation is what hedges and trunks of the layers "
-            "show. Whatever is not known keeps its class, or is 1 where it had none; noise (7, 18) and withheld points stay as they "
-            "are. Worn places within a marking are paint too.\n\n"
-            "Further fields of each point are road, station, offset (left positive) and height_above_road (above the surface below "
-            "the reference line), in metres; beyond the corridor they have no value. Files whose points have room for 31 classes "
-            "alone (formats 0 to 5) become LAS 1.4 with the format 6, 7, 9 or 10 that holds the same. A COPC file is written as "
-            "LAZ, in the order of its points; QGIS makes a COPC of it (Processing, Create COPC). Points are compared with the map "
-            "where their scanner measured them.")
+            "coordinates, times, intensity, colours, returns, extra fields and CRS. Classes are those of ASPRS (LAS 1.4): 2 ground, 3 "
+            "to 5 low, medium (from 0.5 m) and high (from 2 m) vegetation, 7 noise below the road, 11 road surface. Where users may "
+            "define them, they are: 64 paint, 65 curb, 66 guard rail, 67 concrete barrier, 68 wall, 69 fence, 70 pole, 71 sign. The "
+            "files name these classes themselves.\n\n"
+            "The layers of the map decide, so that a map that was corrected by hand can be given back. Of the rest only the ground is "
+            "known, and no ground is looked for far above or below the road. Vegetation is what hedges and trunks of the layers show. "
+            "Whatever is not known keeps its class, or is 1 where it had none; noise (7, 18) and withheld points stay as they are. "
+            "Within a marking those points are paint that are brighter than the asphalt about it; where it is not brighter, all of them "
+            "are.\n\n"
+            "Further fields of each point are road, station, offset (left positive) and height_above_road (above the surface below the "
+            "reference line), in metres; beyond the corridor they have no value. Files whose points have room for 31 classes alone "
+            "(formats 0 to 5) become LAS 1.4 with the format 6, 7, 9 or 10 that holds the same. A COPC file is written as LAZ, in the "
+            "order of its points; QGIS makes a COPC of it (Processing, Create COPC). Points are compared with the map where their "
+            "scanner measured them.")
     TAGS = ("classification", "ASPRS", "LAS", "LAZ", "unroll", "straighten", "station", "offset")
     NUMBERS = (("FILES", tr("Files")), ("POINTS", tr("Points")), ("ROAD_POINTS", tr("Points of the road surface")),
                ("PAINT_POINTS", tr("Points of paint")), ("CURB_POINTS", tr("Points of curbs")))
@@ -67,9 +71,9 @@ class ClassifyCloud(Algorithm):
             "every further road), z the height above the road. Points beyond the corridor are left out."), optional=True, by_default=False)
 
     def work(self, call, progress):
-        from collections import Counter
-
+        from ..core.survey.las.point_fields import intensity_source_of
         from ..core.survey.las.reader import read_headers
+        from ..core.survey.las.samples import sample_files
         from ..products.cloud.classify import CloudLayers, PointClass, PointClassifier
         from ..products.cloud.rewrite import classified_copy
 
@@ -78,7 +82,8 @@ class ClassifyCloud(Algorithm):
         layers = {name: call.features(name, schema, geometry) for name, (_, schema, geometry, _) in CLOUD_LAYERS.items()}
         survey = open_survey_of(call, progress.part(0.0, 0.4))
         check_layers_on_roads(call, layers, survey.frame, progress)
-        classifier = PointClassifier(survey, CloudLayers(*layers.values()), call.settings(CLOUD_SETTINGS), call.value("CORRIDOR"))
+        intensity = intensity_source_of(sample_files(files), call.value("INTENSITY_FROM"))[0]
+        classifier = PointClassifier(survey, CloudLayers(*layers.values()), call.settings(CLOUD_SETTINGS), call.value("CORRIDOR"), intensity)
         total, done, counts = sum(file.count for file in files), 0, Counter()
         for file, copy in zip(files, copies):
             part = progress.part(0.4 + 0.6 * done / total, 0.4 + 0.6 * (done + file.count) / total)
@@ -93,8 +98,6 @@ class ClassifyCloud(Algorithm):
 
 def _copies(call, files, progress):
     """(path, path of the unrolled copy) for each of the files, whose names must differ."""
-    from pathlib import Path
-
     names = [Path(file.path).name for file in files]
     plain = [f"{name[:-len('.copc.laz')]}.laz" if name.lower().endswith(".copc.laz") else name for name in names]
     twice = next((name for k, name in enumerate(plain) if name.lower() in {other.lower() for other in plain[:k]}), None)

@@ -1,6 +1,8 @@
 """To and from the formats of simulators, planners and design offices; the check of HD maps, and the map on paper."""
 
-from dataclasses import dataclass
+from collections import Counter, defaultdict
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_ATTRIBUTES, ROAD_EDGES, SIGNALS
@@ -85,8 +87,6 @@ def add_signals(algorithm):
 
 def road_map_source(call, progress):
     """The layers given, checked, as RoadMapSource."""
-    from dataclasses import replace
-
     from ..core.driving.layers import Lanes
     from ..products.export.sources import RoadMapSource, checked, known_of_roads
 
@@ -249,8 +249,6 @@ class ExportOpenDrive(Algorithm):
 
 def write_opendrive(call, source, name, progress):
     """Write a RoadMapSource with shared borders as OUTPUT, and its report; returns the numbers. `name`: of what it was made of."""
-    from pathlib import Path
-
     from ..products.export.check.roads import check_opendrive
     from ..products.export.opendrive.exporter import draft_opendrive
     from ..products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
@@ -287,8 +285,6 @@ def write_opendrive(call, source, name, progress):
 
 
 def _report(name, whole, found, shown, misses, notes):
-    from collections import defaultdict
-
     from ..core.common.texts import word
     from ..products.report.hd_map import map_export_report
 
@@ -310,7 +306,7 @@ def _report(name, whole, found, shown, misses, notes):
     return map_export_report(tr("OpenDRIVE map"), name, facts, tables + fault_table(found), notes, shown)
 
 
-LANELETS = "products.export.lanelet_map:LaneletSettings"
+LANELETS = "products.export.lanelet_export:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
 LANELET_SETTINGS = (
     SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
@@ -355,10 +351,9 @@ class ExportLanelet2(Algorithm):
 
 def write_lanelet2(call, source, name, progress):
     """Write a RoadMapSource with shared borders as OUTPUT, and its report; returns the numbers. `name`: of what it was made of."""
-    from pathlib import Path
-
     from ..products.export.check.lanelets import check_lanelets
-    from ..products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
+    from ..products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+    from ..products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
     from ..products.report.hd_map import map_export_report
 
     progress.report(0.2)
@@ -447,8 +442,6 @@ class ExportCad(Algorithm):
 
 
 def _dxf(call, source, progress):
-    from collections import Counter
-
     from ..products.cad import dxf_lines, write_dxf
 
     lines = dxf_lines(source)
@@ -460,7 +453,6 @@ def _dxf(call, source, progress):
 
 def _landxml(call, source, progress):
     from datetime import datetime
-    from pathlib import Path
 
     from ..products.cad import alignments_of, landxml_text
 
@@ -654,8 +646,6 @@ class ConvertMap(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from pathlib import Path
-
         from ..products.export.sources import checked
 
         path, output = map_file(call), str(call.output_path("OUTPUT"))

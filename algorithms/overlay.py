@@ -1,5 +1,7 @@
 """UAV images below the road map, placed by ground control points."""
 
+from dataclasses import replace
+
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import PROPOSED_POINTS, RESIDUALS
 from .algorithm import Algorithm, SettingSpec
@@ -113,8 +115,6 @@ class ProposeControlPoints(Algorithm):
 
 def _rough_points(call, image, crs):
     """Given points in the CRS of the intensity image, None where there are none."""
-    from dataclasses import replace
-
     from ..products.overlay.rough_place import to_map
 
     source = call.source("ROUGH_POINTS")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from qgis.core import Qgis, QgsMapLayer, QgsProcessingContext, QgsProject
 from qgis.gui import QgsProcessingMapLayerComboBox
@@ -15,6 +16,8 @@ from .dialog_wrapper import DialogWrapper
 
 CLOUDS = "POINT_CLOUDS"
 MOST_TABLES = 20  # files beside the point clouds that are looked into
+BEGINNING = 2**18  # bytes of each: some thousand positions
+TREES = (".gpx", ".kml")  # that are nothing without their ends
 
 
 class TrajectoryWrapper(DialogWrapper):
@@ -91,10 +94,16 @@ def trajectory_beside(clouds: list[str]) -> str:
 
 
 def _is_a_trajectory(path):
+    """Whether a file begins like one: to read all positions of a long drive would make the window wait."""
     from ..core.survey.trajectory.reader import read_trajectory
 
     try:
-        return len(read_trajectory(str(path))) > 1
+        with open(path, "rb") as file:
+            head = file.read(None if path.suffix.lower() in TREES else BEGINNING)
+        with TemporaryDirectory() as folder:
+            beginning = Path(folder) / path.name
+            beginning.write_bytes(head[:head.rfind(b"\n") + 1] if len(head) == BEGINNING and b"\0" not in head else head)
+            return len(read_trajectory(str(beginning))) > 1
     except (RoadExtractionError, OSError, ValueError):
         return False
 

@@ -234,6 +234,8 @@ def apply_template(template: _Template, layers: Mapping[str, Features],
     result: dict[str, Features] = {}
     for name in dict.fromkeys(rule.layer for rule in template.rules if rule.layer != NOT_WANTED):
         rules = [rule for rule in template.layer_of(name) if rule.source in layers]
+        if not rules:
+            continue
         types = _types(template, name, layers, office)
         made = Features(GEOMETRIES[template.layer_of(name)[0].geometry], [Field(field, kind) for field, kind in types.items()])
         for source in dict.fromkeys(rule.source for rule in rules):
@@ -244,8 +246,7 @@ def apply_template(template: _Template, layers: Mapping[str, Features],
                     taken[source].add(k)
                     row = {**row, NUMBER: len(made) + 1}
                     made.add(_as(rule.geometry, shape), **{field: _filled(template, rule, field, row, types[field]) for field in rule.cells})
-        if rules:
-            result[name] = made
+        result[name] = made
     left: Counter[str] = Counter()
     for source in {rule.source: None for rule in template.rules if rule.source in layers}:
         unwanted = [rule for rule in template.layer_of(NOT_WANTED) if rule.source == source]

@@ -135,11 +135,15 @@ class CoreMessages:
         return first
 
     def _value(self, value):
-        """What stands in a place: a word, a phrase, or several with commas between them."""
+        """What stands in a place: a word, a phrase, or several with commas or semicolons between them."""
         if value.isalpha():
             return self.word(value)
         if " " not in value.strip():
             return value
+        if "; " in value:   # a list whose parts are known, such as places, is none of them
+            parts = [(part, self._value(part)) for part in value.split("; ")]
+            if all(told != part for part, told in parts):
+                return "; ".join(told for _, told in parts)
         translated = self.told(value)
         return translated if translated != value else ", ".join(map(self._part, value.split(", ")))
 

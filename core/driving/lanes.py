@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import solveh_banded
 from scipy.ndimage import binary_dilation
 
 from ..common.parallel import check_cancelled
@@ -14,8 +15,6 @@ from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.sequence import beside_surface_end, lane_places
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
 from .weights import TRACKS
-
-BESIDE_ONE, BETWEEN_WORN, DIVIDED, BETWEEN_LINES = 1, 2, 3, 4   # ranks of lanes by how sure their place is; those between two lines are not moved
 
 
 def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: float, line_distance: float = 0.0) -> list[LaneTrack]:
@@ -34,7 +33,7 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
         closed += [lane for k, lane in enumerate(open_tracks) if k not in follows.values()]
         open_tracks = [[*open_tracks[follows[k]], part] if k in follows else [part] for k, part in enumerate(parts)]
         check_cancelled()
-    return [_to_its_ends(_without_steps(lane), boundaries) for lane in closed + open_tracks]
+    return [_to_its_ends(_without_steps(lane) if len(lane) > 1 else lane[0], boundaries) for lane in closed + open_tracks]
 
 
 def _to_its_ends(track, boundaries):
@@ -68,45 +67,27 @@ def _within_its_borders(track, boundaries):
     return track.part(present[0], present[-1] + 1) if len(present) else track
 
 
-def _rank(track):
-    """(N,) how sure the place of a lane is: beside one line, between worn ones, in a strip of several lanes, or between two lines that are seen."""
-    between = (track.left >= 0) & (track.right >= 0)
-    return np.where(track.status == MEASURED, BETWEEN_LINES, np.where(track.offset, BESIDE_ONE, np.where(between, BETWEEN_WORN, DIVIDED)))
-
-
 def _without_steps(parts):
     """The LaneTracks of one lane, one after the other, as one without steps between them.
 
-    At a step the side whose place is less sure is led to where the other ends; of two that are as sure as each other both are, by half of what they
-    differ. Where nothing is painted between two lanes, what parts them goes on as the line before, for as long as that was seen; else it is led over
-    some metres, and up to a surer place at most.
+    What each place is moved by is small against how sure the place is, and changes along the lane by little but the step where two parts meet. Both
+    errors are normal, so the most probable one is a least squares along the lane. A place between lines that are seen is sure, and where both parts
+    are nothing is moved for their sake. Where nothing is painted between two lanes, what parts them goes on as before over a long way.
     """
-    track, rank = LaneTrack.joined(parts), _rank(LaneTrack.joined(parts))
-    moved = np.zeros((2, len(track)))
-    for k in np.cumsum([len(part) for part in parts[:-1]]).tolist():
-        # between lines that are seen on both sides of the joint nothing is moved
-        if track.status[k - 1] == track.status[k] == MEASURED:
-            continue
-        step = np.array([track.d[k - 1] - track.d[k], track.width[k - 1] - track.width[k]])
-        before, after = rank[:k][::-1], rank[k:]
-        share = (1 + np.sign(after[0] - before[0])) / 2
-        for ranks, other, sign, part_of_step, window in ((before, after, -1, share, slice(None, k)), (after, before, 1, 1 - share, slice(k, None))):
-            if part_of_step:
-                weight = _led(ranks, _run(other, ranks[0]) if ranks[0] == DIVIDED else 0)
-                moved[:, window] += sign * part_of_step * step[:, None] * (weight[::-1] if sign < 0 else weight)
+    track = LaneTrack.joined(parts)
+    seen, strip = track.status == MEASURED, ~track.offset & ((track.left < 0) | (track.right < 0))
+    sigma, reach = np.where(seen, *TRACKS.place_sigma), np.where(strip & ~seen, *TRACKS.place_reach)
+    variance = (sigma * STATION_STEP / reach) ** 2   # of what two neighbours are moved by
+    weight = 2 / (variance[1:] + variance[:-1])
+    joints = np.cumsum([len(part) for part in parts[:-1]])
+    weight[joints[seen[joints - 1] & seen[joints]] - 1] = 0.0
+    change, step = np.diff([track.d, track.width]), np.zeros((2, len(weight)))
+    # a lane goes on there as it does right before and behind
+    step[:, joints - 1] = (change[:, np.maximum(joints - 2, 0)] + change[:, np.minimum(joints, len(weight) - 1)]) / 2 - change[:, joints - 1]
+    flow = np.pad(weight * step, ((0, 0), (1, 1)))
+    diagonal = 1 / sigma**2 + np.append(weight, 0.0) + np.append(0.0, weight)
+    moved = solveh_banded(np.stack([diagonal, np.append(-weight, 0.0)]), (flow[:, :-1] - flow[:, 1:]).T, lower=True).T
     return replace(track, d=track.d + moved[0], width=track.width + moved[1], aside=track.aside + moved[0])
-
-
-def _run(rank, least):
-    """How many places from the first on have a rank above `least`."""
-    return len(rank) if (rank > least).all() else int(np.argmin(rank > least))
-
-
-def _led(rank, held):
-    """(N,) share of a step by which places of some rank are moved: all of it at the first `held`, none some metres on or at a surer place."""
-    surer, distance = np.flatnonzero(rank > rank[0]), np.arange(len(rank))
-    led = np.clip(1 - (distance - held) * STATION_STEP / TRACKS.step_length, 0, 1)
-    return np.minimum(led, np.clip(1 - distance / surer[0], 0, 1)) if len(surer) else led
 
 
 def _parts(boundaries, estimate, lane_width, line_distance):

@@ -400,8 +400,7 @@ class _NoisyWeights:
     scatter_blocks: int = 5   # squares in each direction: their median is the scatter of the one in the middle
     min_block_cells: int = 200   # of a square whose scatter is known
     scatter_quantile: float = 0.30   # of a square's contrasts: dark rails are below it, paint is above the median
-    ground_contrast: float = 2.0   # spreads: darker cells are no ground,
-    paint_contrast: float = 3.0   # and no brighter ones, which may be paint: the default of the threshold on averages
+    ground_contrast: float = 2.0   # spreads: darker cells are no ground, and none beyond the threshold, which may be paint
     slope_sigma: float = 3.0   # cells, of the averaged heights whose slopes are compared
     ground_slope_sigma: float = 12.0   # with those of heights averaged so
     # Bright pieces in these averages.

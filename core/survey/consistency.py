@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
@@ -53,8 +54,6 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
 
     Returns what to tell of it, "" where all lies near
     """
-    from scipy.spatial import cKDTree
-
     shapes = np.asarray(features.geometries, object)
     if not len(shapes):
         return ""

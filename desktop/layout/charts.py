@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 
 from ...core.common.arrays import round_step
 from ...processing_provider.texts import tr
@@ -209,8 +210,6 @@ def _crossings(planes, lines, reach):
 
 def _surfaces(planes, ground, reach):
     """For each plane (K, 2) offset and height of the ground, by medians of the points; NaN where there are none."""
-    from scipy.spatial import cKDTree
-
     tree, kept = cKDTree(planes[:, :2]), [np.empty((0, 3))]
     cos, sin = np.cos(planes[:, 2]), np.sin(planes[:, 2])
     for block in ground:

@@ -475,7 +475,7 @@ class DoubtDock(QDockWidget):
     def pick_at(self, point: QgsPointXY) -> None:
         """Find the curb or painted line at a click and add it as a correction."""
         crs = self.iface.mapCanvas().mapSettings().destinationCrs()
-        if not self._look(lambda ready: pick(self.road_map, point, crs, ready),
+        if not self._look(lambda ready: pick(self.road_map, self.layer, point, crs, ready),
                           lambda line, crs, seen: self._keep("draw", seen.target, None, line, crs, seen)):
             self._say(tr("The point clouds of this road map are not there: draw the line by hand."))
 

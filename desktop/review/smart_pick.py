@@ -7,7 +7,17 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsGeometry, QgsPointXY, QgsProject, QgsTask, QgsUnitTypes
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsGeometry,
+    QgsPointXY,
+    QgsProject,
+    QgsTask,
+    QgsUnitTypes,
+    QgsVectorLayer,
+)
 
 from ...core.corrections.pick import Seen, pick_line, snap_line
 from ...processing_provider.results.origin import output_of
@@ -23,10 +33,11 @@ LINES = {"edge": ("ROAD_EDGES", "BOUNDARIES"), "marking": ("MARKING_LINES",)}
 KNOWN = ("measured", "accepted", "drawn")  # statuses of lines that need no other
 
 
-def pick(road_map: RoadMap, point: QgsPointXY, crs: QgsCoordinateReferenceSystem,
+def pick(road_map: RoadMap, corrections: QgsVectorLayer | None, point: QgsPointXY, crs: QgsCoordinateReferenceSystem,
          ready: Callable[[QgsTask, Seen | None, QgsGeometry, str], None]) -> QgsTask | None:
     """Look for a curb or painted line at a click, in the background; None where the point clouds of the road map are not there.
 
+    corrections : layer whose drawn lines count as known
     ready : called with the task, what was seen and its line in the CRS of the road map's layers without what the map has of it; with None, an empty
         geometry and a sentence where there is nothing to add
     """
@@ -36,7 +47,7 @@ def pick(road_map: RoadMap, point: QgsPointXY, crs: QgsCoordinateReferenceSystem
     work = partial(pick_line, x=place.x(), y=place.y(), azimuth=section.azimuth if section else 0.0)
 
     def looked(task, seen, problem):
-        line = QgsGeometry() if seen is None else _unmapped(seen, layers, QgsGeometry.fromPointXY(place))
+        line = QgsGeometry() if seen is None else _unmapped(seen, layers, corrections, QgsGeometry.fromPointXY(place))
         if seen is None:
             problem = problem or tr("No step and no paint is seen in the points within a metre. Click nearer, or draw it by hand.")
         elif line.isEmpty():
@@ -92,14 +103,15 @@ def _line_of(seen):
     return QgsGeometry.fromPolylineXY([QgsPointXY(x, y) for x, y in seen.places])
 
 
-def _unmapped(seen, layers, click):
-    """The part of a line nearest to the click that the map does not have as measured yet; empty where it has what was clicked."""
+def _unmapped(seen, layers, corrections, click):
+    """The part of a line nearest to the click that the map does not have as measured or drawn yet; empty where it has what was clicked."""
     line, before = _line_of(seen), _line_of(seen)
-    for layer in layers:
-        if output_of(layer) not in LINES[seen.target]:
-            continue
-        for feature in layer.getFeatures(line.boundingBox().buffered(SAME_LINE)):
-            if feature["status"] in KNOWN:
+    known = {layer: lambda row: row["status"] in KNOWN for layer in layers if output_of(layer) in LINES[seen.target]}
+    if corrections is not None and corrections.crs() == layers[0].crs():
+        known[corrections] = lambda row: (row["action"], row["target"]) == ("draw", seen.target)
+    for layer, is_known in known.items():
+        for feature in layer.getFeatures(before.boundingBox().buffered(SAME_LINE)):
+            if is_known(feature):
                 line = line.difference(feature.geometry().buffer(SAME_LINE, 8))
     parts = [QgsGeometry(part.clone()) for part in line.constParts()] if not line.isEmpty() else []
     nearest = min(parts, key=lambda part: part.distance(click), default=QgsGeometry())

@@ -46,6 +46,13 @@ TITLES = {
 }
 
 
+def _in_words(field):
+    """The value of a field in the user's language, also of a layer that was made in another."""
+    words = DIRECTIONS if field == "direction" else WORDS[field]
+    pairs = ", ".join("'{}', '{}'".format(value, label.replace("'", "''")) for value, label in words.items())
+    return f'coalesce(map_get(map({pairs}), to_string("{field}")), to_string("{field}"))'
+
+
 def _part(text, field, *fields):
     """A piece of a title: an expression, and the fields that it needs."""
     return text, (field, *fields)
@@ -53,25 +60,24 @@ def _part(text, field, *fields):
 
 def _parts():
     """The pieces of the titles, in the user's language."""
-    value = lambda field: f'represent_value("{field}")'  # noqa: E731
     return {
         "edge": _part(f"'{tr('Road edge')}'", "road"),
-        "side": _part(value("side"), "side"),
+        "side": _part(_in_words("side"), "side"),
         "length": _part('format_number("length_m", 0) || \' m\'', "length_m"),
         "height": _part(f"'{tr('height')} ' || format_number(\"height_m\", 2) || ' m'", "height_m"),
-        "status": _part(value("status"), "status"),
+        "status": _part(_in_words("status"), "status"),
         "sigma": _part("'± ' || CASE WHEN \"sigma_m\" < 0.1 THEN format_number(\"sigma_m\" * 1000, 0) || ' mm' ELSE "
                        "format_number(\"sigma_m\" * 100, 0) || ' cm' END", "sigma_m"),
         "line": _part(f"CASE WHEN \"kind\" = 'edge' THEN '{tr('Edge line')}' WHEN \"kind\" = 'centre' THEN '{tr('Centre line')}' "
                       f"ELSE '{tr('Lane line')}' END || ' ' || \"line\"", "kind", "line"),
-        "pattern": _part(value("pattern"), "pattern"),
+        "pattern": _part(_in_words("pattern"), "pattern"),
         "lane": _part(f"'{tr('Lane')} ' || \"lane\"", "lane"),
-        "direction": _part(value("direction"), "direction"),
+        "direction": _part(_in_words("direction"), "direction"),
         "class": _part(f"coalesce(\"class\", '{tr('Paint')}')", "class"),
         "surface": _part(f"'{tr('Road surface')}'", "road"),
         "pass": _part(f"'{tr('Pass')} ' || \"pass\"", "pass"),
-        "action": _part(value("action"), "action"),
-        "target": _part(value("target"), "target"),
+        "action": _part(_in_words("action"), "action"),
+        "target": _part(_in_words("target"), "target"),
         "note": _part('"note"', "note"),
         "curb_point": _part(f"'{tr('Curb point')}'", "road"),
     }

@@ -13,12 +13,14 @@ from scipy.ndimage import distance_transform_edt, grey_dilation, grey_erosion, m
 from scipy.spatial import cKDTree
 
 from ...core.common.features import Features
+from ...core.common.parallel import check_cancelled
 from ...core.common.setting import Limited, setting
 from ...core.road.surface.ground_grid import MeasuredGround, windows_of
 from ...core.road.weights import SURFACE
 from ...core.survey.blocks import unwrap_week
 from ...core.survey.frame.projection import RoadProjection
 from ...core.survey.frame.road_frame import RoadFrame
+from ...core.survey.las.point_fields import IntensitySource
 from ...core.survey.store.columns import Columns
 from ...core.survey.store.records import COORDINATE_SCALE
 from ...core.survey.survey import Survey
@@ -56,9 +58,15 @@ class CloudSettings(Limited):
     object_height: float = 0.20   # m: what is narrower than `object_width` and rises so far above its surroundings is no ground, such as a car
     object_width: tuple[float, float] = (6.0, 2.75)   # m along and across the road
     reach: float = 1.0   # m from a measured place of the ground to points whose ground it is
+    paint_share: float = 0.8   # of the points in a marking that are no brighter than its paint: some are of worn paint and of asphalt beside it
+    paint_from: float = 0.4   # of the way from asphalt about a marking to its paint, from where on a point is paint
+    around: float = 0.25   # m about a marking where asphalt is seen
+    contrast: float = 2.0   # sixteenths of a doubling: the least by which paint is brighter than asphalt; where it is not, a marking is all paint
+    stretch: float = 50.0   # m of road whose points are looked at together
     noise: float = 0.25   # m below the road surface: no scanner sees through asphalt
     level: float = 1.5   # m either side of the reference line whose ground is the level of the road
-    curb_share: float = 0.25   # of its height from which on the face of a curb begins
+    curb_share: float = 0.12   # of its height from which on the face of a curb begins, but at least
+    curb_rise: float = 0.01   # m above its bottom: what asphalt scatters by
     slack: float = 0.05   # m above the top of a thing
     panel: tuple[float, float] = (0.5, 1.0)   # m about the shaft of a sign, and above its foot, where its panel may hang
     hedge: float = 2.0   # times `beside`: hedges are not as thin as rails
@@ -92,10 +100,17 @@ class _RoadPlaces(NamedTuple):
 
 
 class PointClassifier:
-    """Classifies points of a survey that is open, block by block."""
+    """Classifies points of a survey that is open, block by block.
 
-    def __init__(self, survey: Survey, layers: CloudLayers, settings: CloudSettings = CloudSettings(), corridor: float = 25.0):
-        self.survey, self.settings, self.corridor = survey, settings, corridor
+    survey : whose files the points are of
+    layers : of its road map, in its CRS
+    corridor : m either side of the reference line within which points lie on the road
+    intensity : how the survey reads the brightness of points
+    """
+
+    def __init__(self, survey: Survey, layers: CloudLayers, settings: CloudSettings = CloudSettings(), corridor: float = 25.0,
+                 intensity: IntensitySource = IntensitySource()):
+        self.survey, self.settings, self.corridor, self.intensity = survey, settings, corridor, intensity
         frame = survey.frame
         self._projection = RoadProjection(frame, corridor) if survey.has_time else None
         self._roads = np.array([p.road for p in frame.passes] + [-1])
@@ -103,6 +118,7 @@ class PointClassifier:
         self._week_ends = survey.has_time and SECONDS_PER_WEEK < last < 2 * SECONDS_PER_WEEK
         self._ground = _Ground(survey, settings)
         self._surface, self._paint = (_Areas(layer, frame) for layer in (layers.road_surface, layers.markings))
+        self._paint_from = self._levels_of_paint(_Areas(layers.markings, frame, settings.around))
         self._edges, self._lines, self._objects = (_Near(layer, frame, settings.spacing) for layer in (
             _curbs_of(layers.road_edges), layers.roadside, layers.roadside_objects))
 
@@ -111,12 +127,12 @@ class PointClassifier:
         origin = self.survey.frame.origin
         x, y, z = (np.asarray(points[name], float) - start for name, start in zip("xyz", origin))
         road, s, d, (x, y, z) = self._placed(points, x, y, z)
-        classes, h = np.zeros(len(x), np.uint8), np.full(len(x), np.nan)
+        classes, h, brightness = np.zeros(len(x), np.uint8), np.full(len(x), np.nan), _steps_of(self.intensity.of(points))
         for number in np.unique(road[road >= 0]).tolist():
             rows = np.flatnonzero(road == number)
             ground, level = self._ground.at(number, s[rows], d[rows])
             h[rows] = z[rows] - level
-            classes[rows] = self._classes(x[rows], y[rows], z[rows], z[rows] - ground)
+            classes[rows] = self._classes(x[rows], y[rows], z[rows], z[rows] - ground, brightness[rows])
         return _RoadPlaces(classes, road, s, d, h)
 
     def _placed(self, points, x, y, z):
@@ -137,53 +153,66 @@ class PointClassifier:
             road = np.where(np.isfinite(s), road, -1)
         return road, s, d, (x, y, z)
 
-    def _classes(self, x, y, z, h):
+    def _levels_of_paint(self, around):
+        """(P,) the brightness from which on points in each marking are paint, as of `_steps_of`: between asphalt about it and its paint."""
+        counts = np.zeros((2, len(self._paint), 16 * 16 + 1), np.int32)
+        for road in self.survey.store.roads() if len(self._paint) else ():
+            first, last = self.survey.store.span(road) if road >= 0 else (0.0, 0.0)
+            for start in np.arange(first, last, self.settings.stretch):
+                check_cancelled()
+                points = self.survey.window(road, start, min(start + self.settings.stretch, last))
+                x, y = points.x, points.y
+                low = np.abs(points.z - self._ground.at(road, points.s, points.d)[0]) < self.settings.ground if len(points) else np.zeros(0, bool)
+                inside = self._paint.owner(x, y, low)
+                for number, owner in enumerate((inside, around.owner(x, y, low & (inside < 0)))):
+                    rows = np.flatnonzero(owner >= 0)
+                    np.add.at(counts[number], (owner[rows], _steps_of(points.intensity[rows])), 1)
+        paint, asphalt = ((of.cumsum(axis=1) < share * of.sum(axis=1, keepdims=True)).sum(axis=1)
+                          for of, share in zip(counts, (self.settings.paint_share, 0.5)))
+        return np.where(paint - asphalt < self.settings.contrast, 0, asphalt + self.settings.paint_from * (paint - asphalt))
+
+    def _classes(self, x, y, z, h, brightness):
         """Classes of points `h` metres above the ground, NaN where it is not known; what is found later overrules."""
         chosen, classes = self.settings, np.zeros(len(x), np.uint8)
         low = np.abs(h) < chosen.ground
         deep = h < -chosen.noise
         classes[low] = PointClass.GROUND
-        within = self._surface.holds(x, y, low | deep)
+        within = self._surface.owner(x, y, low | deep) >= 0
         classes[within & low] = PointClass.ROAD_SURFACE
         classes[within & deep] = PointClass.LOW_NOISE
         self._mark_curbs(classes, x, y, z, ~(np.abs(h) > 1.0))
-        classes[self._paint.holds(x, y, low) & (classes != PointClass.CURB)] = PointClass.PAINT
+        marking = self._paint.owner(x, y, low & (classes != PointClass.CURB))
+        painted = np.flatnonzero(marking >= 0)
+        classes[painted[brightness[painted] >= self._paint_from[marking[painted]]]] = PointClass.PAINT
         # layers overrule what is taken for ground, where that is a rail far away of which alone anything was seen
         beside = ~within & ~np.isin(classes, (PointClass.CURB, PointClass.PAINT))
-        self._mark_lines(classes, x, y, z, beside)
-        self._mark_objects(classes, x, y, z, beside)
+        wide = np.where(self._lines.words("hedge"), chosen.hedge, 1.0)
+        self._mark_things(classes, x, y, z, beside, self._lines, wide * chosen.beside)
+        self._mark_things(classes, x, y, z, beside, self._objects, 0.5 * (np.nan_to_num(self._objects.column("diam_m")) + chosen.beside))
         return classes
 
     def _mark_curbs(self, classes, x, y, z, which):
         rows, near, rise, _ = self._edges.of(x, y, z, which, self.settings.curb)
         height = self._edges.column("height_m")[near]
-        classes[rows[(rise > self.settings.curb_share * height) & (rise < height + self.settings.slack)]] = PointClass.CURB
+        begins = np.maximum(self.settings.curb_share * height, self.settings.curb_rise)
+        classes[rows[(rise > begins) & (rise < height + self.settings.slack)]] = PointClass.CURB
 
-    def _mark_lines(self, classes, x, y, z, which):
+    def _mark_things(self, classes, x, y, z, which, things, reach):
+        """Mark points on lines or about shafts, `reach` metres (R,) from each; what grows is vegetation by its height above the ground."""
         chosen = self.settings
-        rows, near, rise, away = self._lines.of(x, y, z, which, chosen.hedge * chosen.beside)
-        hedge = self._lines.words("hedge")[near]
-        on_it = ((away < chosen.beside) | hedge) & (rise > chosen.ground) & (rise < self._lines.column("height_m")[near] + chosen.slack)
-        rows, near, rise, hedge = (values[on_it] for values in (rows, near, rise, hedge))
-        for kind, number in (("guard_rail", PointClass.GUARD_RAIL), ("barrier", PointClass.BARRIER), ("wall", PointClass.WALL),
-                             ("fence", PointClass.FENCE)):
-            classes[rows[self._lines.words(kind)[near]]] = number
-        classes[rows[hedge]] = self._vegetation(rise[hedge])
+        rows, near, rise, away = things.of(x, y, z, which, max(reach.max(initial=0.0), chosen.panel[0]))
+        panel = things.words("sign")[near] & (rise > chosen.panel[1]) & (away < chosen.panel[0])
+        on_it = ((away < reach[near]) | panel) & (rise > chosen.ground) & (rise < things.column("height_m")[near] + chosen.slack)
+        rows, near, rise = rows[on_it], near[on_it], rise[on_it]
+        for kind in ("guard_rail", "barrier", "wall", "fence", "pole", "sign"):
+            classes[rows[things.words(kind)[near]]] = PointClass[kind.upper()]
+        grows = (things.words("hedge") | things.words("trunk"))[near]
+        classes[rows[grows]] = PointClass.LOW_VEGETATION + np.searchsorted(chosen.vegetation, rise[grows]).astype(np.uint8)
 
-    def _mark_objects(self, classes, x, y, z, which):
-        chosen = self.settings
-        reach = np.nan_to_num(self._objects.column("diam_m")) / 2 + chosen.beside / 2
-        rows, near, rise, away = self._objects.of(x, y, z, which, max(reach.max(initial=0.0), chosen.panel[0]))
-        panel = self._objects.words("sign")[near] & (away < chosen.panel[0]) & (rise > chosen.panel[1])
-        taken = ((away < reach[near]) | panel) & (rise > chosen.ground) & (rise < self._objects.column("height_m")[near] + chosen.slack)
-        rows, near, rise = rows[taken], near[taken], rise[taken]
-        for kind, number in (("pole", PointClass.POLE), ("sign", PointClass.SIGN)):
-            classes[rows[self._objects.words(kind)[near]]] = number
-        trunk = self._objects.words("trunk")[near]
-        classes[rows[trunk]] = self._vegetation(rise[trunk])
 
-    def _vegetation(self, rise):
-        return PointClass.LOW_VEGETATION + np.searchsorted(self.settings.vegetation, rise).astype(np.uint8)
+def _steps_of(intensity):
+    """(N,) intensities of 16 bits in sixteenths of a doubling, 0 to 256: paint is so many times as bright as asphalt, whatever the scanner."""
+    return np.floor(16 * np.log2(np.asarray(intensity, np.float32) + 1)).astype(np.int64)
 
 
 def _curbs_of(edges):
@@ -243,15 +272,19 @@ class _Ground:
 class _Areas:
     """Polygons of a layer, of which many points are asked whether they lie inside."""
 
-    def __init__(self, layer: Features | None, frame: RoadFrame):
+    def __init__(self, layer: Features | None, frame: RoadFrame, wider: float = 0.0):
         shapes = [] if layer is None else [shapely.force_2d(shape) for shape in layer.geometries if shape is not None]
         self._shapes = shapely.transform(np.array(shapes, object), lambda places: places - frame.origin[:2])
+        self._shapes = shapely.buffer(self._shapes, wider) if wider else self._shapes
         shapely.prepare(self._shapes)
         self._tree = shapely.STRtree(self._shapes)
 
-    def holds(self, x: np.ndarray, y: np.ndarray, which: np.ndarray) -> np.ndarray:
-        """(N,) bool: which of the points `which`, (N,) bool, lie in a polygon. Local coordinates in metres."""
-        inside, rows = np.zeros(len(x), bool), np.flatnonzero(which)
+    def __len__(self) -> int:
+        return len(self._shapes)
+
+    def owner(self, x: np.ndarray, y: np.ndarray, which: np.ndarray) -> np.ndarray:
+        """(N,) int: the polygon in which each of the points `which`, (N,) bool, lies, -1 for none. Local coordinates in metres."""
+        inside, rows = np.full(len(x), -1), np.flatnonzero(which)
         if not len(rows) or not len(self._shapes):
             return inside
         low, high = (np.array([end(x[rows]), end(y[rows])]) for end in (np.min, np.max))
@@ -263,7 +296,7 @@ class _Areas:
             shape = self._shapes[number]
             first, last = np.searchsorted(along, [shape.bounds[main], shape.bounds[main + 2]])
             span = slice(first, last + 1)
-            inside[rows[span][shapely.contains_xy(shape, x[span], y[span])]] = True
+            inside[rows[span][shapely.contains_xy(shape, x[span], y[span])]] = number
         return inside
 
 

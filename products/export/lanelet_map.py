@@ -1,11 +1,10 @@
-"""A map of Lanelet2: its nodes, ways and lanelets as objects, read from a file and written, from lanes and as layers like ours."""
+"""A map of Lanelet2: its nodes, ways and lanelets as objects, read from a file, and as layers like ours."""
 
 from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict, deque
-from dataclasses import dataclass, field, replace
-from html import escape
+from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
@@ -13,28 +12,10 @@ import shapely
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import SIGNALS, Features
 from ...core.common.progress import Progress
-from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
-from ...core.io.crs import as_in_file, horizontal_part, parse_crs
+from ...core.io.crs import parse_crs
 from ...core.lazy import pyproj
-from .shared_borders import WIDEST_DOUBLE, cuts_beside, numbered
-from .sources import (
-    LEAST_CURB,
-    LEAST_LED,
-    LOCAL_CRS,
-    MapLayers,
-    MapLine,
-    NearestValues,
-    RoadMapSource,
-    is_stated,
-    metric_wkt,
-    plan_length,
-    sigma_of_lanes,
-    stop_lines,
-    utm_of,
-    walked_crossings,
-    without_repeats,
-)
+from .sources import LEAST_LED, LOCAL_CRS, STOP_LINE_HALF, MapLayers, MapLine, metric_wkt, plan_length, utm_of, without_repeats
 from .xml_tree import XmlElement, read_xml
 
 
@@ -335,17 +316,7 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
     number_of = {id: number for number, id in enumerate(shown, start=1)}
     for along in _along_roads(network, shown):
         for id, (left, right) in _borders_abreast(network, along).items():
-            lanelet = whole.lanelets[id]
-            kind = LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "connector" if network.crosses(id) else "driving")
-            turned = {"left": network.reversed_left[id], "right": network.reversed_right[id]}
-            sides = [(line, *_border(whole.ways[lanelet.way(role) or 0].tags, turned[role])) for role, line in (("left", left), ("right", right))]
-            driven = kind in ("driving", "connector")
-            if not driven and along[id] < 0:   # where nobody drives, borders are those along the road
-                sides = [(line[::-1], *about) for line, *about in sides[::-1]]
-            rows[id] = dict(
-                **{side + name: value for side, about in zip(("left", "right"), sides) for name, value in zip(("", "_kind", "_pattern"), about)},
-                road=1, lane=number_of[id], lane_id=str(id), direction=along[id] * driven, type=kind,
-                successors=[str(following) for following in network.following(id) * driven if network.driven(following)])
+            rows[id] = {**_lane_row(network, id, left, right, along[id]), "lane": number_of[id]}
             progress.report(len(rows) / len(shown))
     layers = MapLayers(Lanes.of_pieces([rows[id] for id in shown], crs), list(_lines(whole, places)),
                        outlines=list(_outlines(whole, places, network)),
@@ -379,7 +350,8 @@ def _outlines(whole, places, network):
     for way in whole.ways.values():
         ends = places[whole.rows(way)[[0, -1]]] if way.tags.get("type") == "stop_line" and len(whole.rows(way)) > 1 else np.zeros((2, 3))
         if (length := plan_length(ends)) > LEAST_LED:
-            aside = np.array([ends[0, 1] - ends[1, 1], ends[1, 0] - ends[0, 0], 0.0]) / length * _number(way.tags.get("width"), STOP_LINE_WIDTH) / 2
+            aside = np.array([ends[0, 1] - ends[1, 1], ends[1, 0] - ends[0, 0], 0.0]) / length
+            aside *= _number(way.tags.get("width"), 2 * STOP_LINE_HALF) / 2
             yield "stop_line", np.concatenate([ends - aside, ends[::-1] + aside])
 
 
@@ -435,6 +407,20 @@ def _number(text, missing):
         return float(str(text).removesuffix("m"))
     except ValueError:
         return missing
+
+
+def _lane_row(network, id, left, right, way):
+    """The values of a lane, its borders in the direction of travel; where nobody drives they are those along the road."""
+    lanelet, turned = network.whole.lanelets[id], (network.reversed_left[id], network.reversed_right[id])
+    kind = LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "connector" if network.crosses(id) else "driving")
+    sides = [(line, *_border(network.whole.ways[lanelet.way(role) or 0].tags, back))
+             for role, line, back in zip(("left", "right"), (left, right), turned)]
+    driven = kind in ("driving", "connector")
+    if not driven and way < 0:
+        sides = [(line[::-1], *about) for line, *about in sides[::-1]]
+    following = [other for other in network.following(id) * driven if network.driven(other)]
+    return {"road": 1, "lane_id": str(id), "direction": way * driven, "type": kind, "successors": list(map(str, following)),
+            **{side + name: value for side, about in zip(("left", "right"), sides) for name, value in zip(("", "_kind", "_pattern"), about)}}
 
 
 def _along_roads(network, shown):
@@ -496,344 +482,3 @@ def _border(tags, turned):
     kind = {"curbstone": "curb", "road_border": "pavement"}.get(named, "edge" if named in EDGE_WAYS else "lane")
     pattern = PATTERN_OF_WAY.get(tags.get("subtype", ""), "") if named in PAINTED_WAYS else ""
     return kind, "-".join(pattern.split("-")[::-1]) if turned and "-" in pattern and not pattern.startswith("double") else pattern
-
-
-# Lanes of a road map as lanelets, nodes and ways that neighbours share, written as Lanelet2.
-
-SAME_RISE = 0.1         # m in height between vertices at one place that are one node
-HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
-THICK_LINE = 0.18       # m of paint from which a line is thick: above the narrow and below the broad lines of most countries
-NEAREST_EDGE = 0.5      # m from a border within which a road edge tells its height
-SUBTYPE_OF_LANE = {"driving": "road", "connector": "road", "bicycle": "bicycle_lane", "shoulder": "emergency_lane"}
-PARTICIPANTS = {"bicycle": "participant:bicycle", "shoulder": "participant:vehicle:emergency"}
-SUBTYPE_OF_PATTERN = {"solid": "solid", "dashed": "dashed", "double-solid": "solid_solid", "double-dashed": "dashed_dashed", "double": "solid_solid",
-                      "solid-dashed": "solid_dashed", "dashed-solid": "dashed_solid"}
-STOP_LINE_WIDTH, SIGNAL_WIDTH = 0.3, 0.4   # m, where a map does not say it
-TURN = 0.5              # rad from which a way through a junction is a turn
-
-
-@dataclass(frozen=True)
-class LaneletSettings(Limited):
-    """speed_limit : km/h, 0 writes none; location : urban or nonurban."""
-
-    speed_limit: int = setting(0, 5, 200, "Speed limit", "km/h", zero="for none")
-    location: str = "urban"
-
-
-@dataclass
-class _MadeWay:
-    """nodes : numbers; tags : what it is."""
-
-    nodes: tuple[int, ...]
-    tags: dict[str, str]
-
-
-@dataclass
-class _MadeLanelet:
-    """left, right, centre : numbers of ways, centre -1 for none; tags; name : lane_id of the lane that it is a part of, "" for crossings."""
-
-    left: int
-    right: int
-    centre: int
-    tags: dict[str, str]
-    name: str = ""
-
-
-@dataclass
-class _LaneletDraft:
-    """A map before it gets ids and degrees."""
-
-    nodes: np.ndarray   # (N, 3) metres in the CRS of the survey
-    ways: list[_MadeWay] = field(default_factory=list)
-    lanelets: list[_MadeLanelet] = field(default_factory=list)
-    rules: list[tuple[str, list[tuple[str, int]], list[int]]] = field(default_factory=list)   # (subtype, (role, way) members, lanelets that obey)
-    skipped: dict[str, int] = field(default_factory=dict)   # type of lane -> pieces that are no lanelets
-    unmet: int = 0   # links of lanes whose ends lie too far apart to be one
-    added: int = 0   # links of lanes that meet though the map does not say that they do
-
-
-def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSettings()) -> _LaneletDraft:
-    """Lanelets of the lanes that are driven, with crossings and stop lines of the markings.
-
-    A border between neighbours is one way. Where a lane begins or ends beside another, that other one is cut too, at the same place, so
-    that every lanelet has one way left and one right.
-
-    source : RoadMapSource, checked
-    """
-    return _Drafting(source, settings).run()
-
-
-def _bridged(lanes: Lanes) -> tuple[Lanes, np.ndarray, int]:
-    """(lanes of a map from elsewhere that reach those that they are linked to, (V,) whether a vertex was an end before, links that are left out as
-    their ends lie too far apart).
-
-    A lane whose corner misses that of the other one begins or ends there with a further vertex; so do all that share its corner.
-    """
-    nodes, first = numbered(np.concatenate([lanes.left, lanes.right]))
-    corners = {(k, end): (row, row + len(lanes.left)) for k in range(len(lanes)) for end, row in ((0, lanes.start[k]), (1, lanes.start[k + 1] - 1))}
-    places, row_of = np.concatenate([lanes.left, lanes.right]), {name: k for k, name in enumerate(lanes.lane_id)}
-    links = [((k, 1), (row_of[name], 0)) for k, names in enumerate(lanes.successors) for name in names if name in row_of]
-    met = {nodes[row] for one, other in links for row, goal in zip(corners[one], corners[other]) if nodes[row] == nodes[goal]}
-    goal_of, broken = {}, set()
-    for one, other in links:
-        # a connector reaches out for its lane; else it is always the same of two roads
-        reaching, fixed = sorted((one, other), key=lambda end: (lanes.type[end[0]] != "connector", lanes.road[end[0]], end[0]))
-        pairs = [(nodes[row], int(first[nodes[goal]])) for row, goal in zip(corners[reaching], corners[fixed]) if nodes[row] != nodes[goal]]
-        far = any(np.hypot(*(places[goal] - places[row])[:2]) > WIDEST_DOUBLE for row, goal in zip(corners[reaching], corners[fixed]))
-        if far or any(node in met or goal_of.get(node, goal) != goal for node, goal in pairs):
-            broken.add((one[0], other[0]))
-        else:
-            goal_of.update(pairs)
-    extra = {end: [goal_of.get(nodes[row], row) for row in rows] for end, rows in corners.items() if any(nodes[row] in goal_of for row in rows)}
-    sides, was_end = ([], []), []
-    for k in range(len(lanes)):
-        inside = np.zeros(int(np.diff(lanes.start)[k]), bool)
-        inside[0], inside[-1] = (k, 0) in extra, (k, 1) in extra
-        was_end.append(np.concatenate([[False] * ((k, 0) in extra), inside, [False] * ((k, 1) in extra)]))
-        for number, border in enumerate(lanes.borders(k)):
-            ends = [places[[extra[k, end][number]]] if (k, end) in extra else border[:0] for end in (0, 1)]
-            sides[number].append(np.concatenate([ends[0], border, ends[1]]))
-    start = np.append(0, np.cumsum([len(border) for border in sides[0]], dtype=int))
-    successors = [tuple(name for name in names if (k, row_of.get(name)) not in broken) for k, names in enumerate(lanes.successors)]
-    bridged = replace(lanes, left=np.concatenate(sides[0]), right=np.concatenate(sides[1]), start=start, successors=successors)
-    return bridged, np.concatenate(was_end).astype(bool), len(broken)
-
-
-class _Drafting:
-    def __init__(self, source: RoadMapSource, settings: LaneletSettings) -> None:
-        unmet, self.was_end = 0, np.zeros(len(source.lanes.left), bool)
-        if is_stated(source.lanes):
-            lanes, self.was_end, unmet = _bridged(source.lanes)
-            source = replace(source, lanes=lanes, middles=None)
-        self.source, self.settings, self.lanes = source, settings, source.lanes
-        lanes = source.lanes
-        places = np.concatenate([lanes.left, lanes.right])
-        numbers, first = numbered(places, LEAST_CURB if is_stated(lanes) else SAME_RISE)
-        self.draft = _LaneletDraft(places[first], unmet=unmet)
-        self.left, self.right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
-        self.way_of: dict[tuple[int, ...], int] = {}
-        # beside a double line the bounds meet in its middle, and the line to drive on stays between the stripes
-        self.middles = source.middles if source.middles is not None else (lanes.left + lanes.right) / 2
-        self.curb_heights = NearestValues(source.road_edges, "height_m")
-        self.sigma = sigma_of_lanes(lanes, source.driving_lines)
-
-    def run(self) -> _LaneletDraft:
-        lanes = self.lanes
-        used = [k for k in range(len(lanes)) if lanes.type[k] in SUBTYPE_OF_LANE]
-        for k in range(len(lanes)):
-            if lanes.type[k] not in SUBTYPE_OF_LANE:
-                self.draft.skipped[lanes.type[k]] = self.draft.skipped.get(lanes.type[k], 0) + 1
-        among = np.repeat(np.isin(np.arange(len(lanes)), used), np.diff(lanes.start)) & ~self.was_end
-        cuts = cuts_beside(lanes, self.left, self.right, among)
-        for k in used:
-            bounds, last = [lanes.start[k]], lanes.start[k + 1] - 1
-            for row in range(bounds[0] + 1, last):
-                # where one border stands still there is no lanelet to cut off
-                if among[row] and (self.left[row] in cuts or self.right[row] in cuts) and all(
-                        self.left[row] != self.left[end] and self.right[row] != self.right[end] for end in (bounds[-1], last)):
-                    bounds.append(row)
-            for a, b in zip(bounds, [*bounds[1:], last]):
-                self._lanelet(k, slice(a, b + 1))
-        self._objects()
-        self.draft.added = self._added_links(used)
-        return self.draft
-
-    def _added_links(self, used):
-        """How many lanes end where one begins that they are not linked to: in this format the one leads to the other."""
-        starts = defaultdict(set)
-        for k in used:
-            starts[self.left[self.lanes.start[k]], self.right[self.lanes.start[k]]].add(self.lanes.lane_id[k])
-        ends = ((k, starts[self.left[self.lanes.start[k + 1] - 1], self.right[self.lanes.start[k + 1] - 1]]) for k in used if self.lanes.direction[k])
-        return sum(len(names - {self.lanes.lane_id[k], *self.lanes.successors[k]}) for k, names in ends)
-
-    def _lanelet(self, k: int, rows: slice) -> None:
-        lanes = self.lanes
-        left, right = (_without_repeats(side[rows]) for side in (self.left, self.right))
-        if len(left) < 2 or len(right) < 2:   # where a lane tapers away, one border may stand still
-            return
-        tags = {"type": "lanelet", "subtype": SUBTYPE_OF_LANE[lanes.type[k]], "location": self.settings.location, "one_way": "yes"}
-        tags[PARTICIPANTS.get(lanes.type[k], "participant:vehicle")] = "yes"
-        known = self.source.attributes.get(lanes.lane_id[k], {})
-        if (speed := known.get("speed_kmh") or self.settings.speed_limit) and lanes.type[k] not in PARTICIPANTS:
-            tags["speed_limit"] = f"{speed:.4g}"
-        tags |= {tag: known[name] for name, tag in (("name", "road_name"), ("surface", "road_surface")) if known.get(name)}
-        if lanes.type[k] == "connector":
-            tags["turn_direction"] = _turn((lanes.left[rows] + lanes.right[rows]) / 2)
-        if np.isfinite(self.sigma[k]):
-            tags["lanewright:sigma_m"] = f"{self.sigma[k]:.3f}"
-        if lanes.status[k] != "measured":
-            tags |= {"lanewright:status": lanes.status[k], "lanewright:confidence": f"{lanes.confidence[k]:.2f}"}
-        centre = self._new_nodes(self.middles[rows])
-        ways = [self._way(nodes, kind, pattern, line) for nodes, kind, pattern, line in (
-            (left, lanes.left_kind[k], lanes.left_pattern[k], lanes.left_line[k]),
-            (right, lanes.right_kind[k], lanes.right_pattern[k], lanes.right_line[k]))]
-        self.draft.ways.append(_MadeWay(centre, {"type": "centerline"}))
-        self.draft.lanelets.append(_MadeLanelet(ways[0], ways[1], len(self.draft.ways) - 1, tags, lanes.lane_id[k]))
-
-    def _way(self, nodes: tuple[int, ...], kind: str, pattern: str, line: str) -> int:
-        """The number of the way along these nodes, which neighbours share; one that says more about it takes precedence."""
-        key = min(nodes, nodes[::-1])
-        number = self.way_of.get(key)
-        if number is None:
-            number = self.way_of[key] = len(self.draft.ways)
-            self.draft.ways.append(_MadeWay(nodes, {"type": "virtual"}))
-        way = self.draft.ways[number]
-        turned = way.nodes != nodes
-        if way.tags["type"] == "virtual":
-            mirrored = turned and "-" in pattern and "double" not in pattern
-            way.tags = self._tags(nodes, kind, "-".join(pattern.split("-")[::-1]) if mirrored else pattern, line)
-        return number
-
-    def _tags(self, nodes, kind, pattern, line):
-        places = self.draft.nodes[list(nodes)]
-        if kind == "curb":
-            heights = self.curb_heights.at(places[:, :2], NEAREST_EDGE)
-            height = float(np.nanmedian(heights)) if np.isfinite(heights).any() else np.nan
-            tags = {"type": "curbstone", "subtype": "low" if height < HIGH_CURB else "high"}
-            return tags | ({} if np.isnan(height) else {"height": f"{height:.2f}"})
-        if pattern in SUBTYPE_OF_PATTERN:
-            width = self.source.paint_width(line)
-            return {"type": "line_thick" if width > THICK_LINE else "line_thin", "subtype": SUBTYPE_OF_PATTERN[pattern]} | (
-                {} if np.isnan(width) else {"width": f"{width:.2f}"})
-        return {"type": "road_border"} if kind in ("edge", "pavement") else {"type": "virtual"}
-
-    def _new_nodes(self, places: np.ndarray) -> tuple[int, ...]:
-        first = len(self.draft.nodes)
-        self.draft.nodes = np.concatenate([self.draft.nodes, places])
-        return tuple(range(first, first + len(places)))
-
-    def _objects(self) -> None:
-        for line in stop_lines(self.source.markings):
-            self.draft.ways.append(_MadeWay(self._new_nodes(line), {"type": "stop_line", "subtype": "solid"}))
-        for left, right in walked_crossings(self.source.markings):
-            for side in (left, right):
-                self.draft.ways.append(_MadeWay(self._new_nodes(side), {"type": "pedestrian_marking", "subtype": "dashed"}))
-            self.draft.lanelets.append(_MadeLanelet(len(self.draft.ways) - 2, len(self.draft.ways) - 1, -1, {
-                "type": "lanelet", "subtype": "crosswalk", "location": self.settings.location, "one_way": "no", "participant:pedestrian": "yes"}))
-        parts = defaultdict(list)
-        for number, lanelet in enumerate(self.draft.lanelets):
-            parts[lanelet.name].append(number)
-        for point, row in self.source.signals or ():
-            self._signal(shapely.get_coordinates(point, include_z=True)[0], row, parts)
-
-    def _signal(self, place, row, parts):
-        """A light, sign or pole as a way, and as a rule of the lanelets that are nearest to it of each lane that it holds for."""
-        kind, height = row["kind"], row.get("height_m")
-        if kind not in KIND_OF_WAY.values():
-            return
-        heading, width = np.radians(row.get("heading") or 0.0), row.get("width_m") or SIGNAL_WIDTH
-        reach = np.array([0.0, 0.0, height or width]) if kind == "pole" else np.array([np.cos(heading), -np.sin(heading), 0.0]) * width
-        nodes = self._new_nodes(np.array([place, place + reach]) - (kind != "pole") * reach / 2)
-        tags = {"type": {"sign": "traffic_sign"}.get(kind, kind)}
-        if kind != "pole":
-            known = {name: f"{row[name]}" for name in ("country", "code", "subcode", "value", "unit", "text") if row.get(name) not in (None, "")}
-            code = known.get("country", "") + known.get("code", "") + ("-" + known["subcode"] if "subcode" in known else "")
-            tags["subtype"] = "red_yellow_green" if kind == "traffic_light" else code or "unknown"
-            tags |= {OURS + name: value for name, value in known.items()} | ({"height": f"{height:.2f}"} if height else {})
-        self.draft.ways.append(_MadeWay(nodes, tags))
-        named = [parts[name.strip()] for name in str(row.get("lanes") or "").split(",") if name.strip() in parts]
-        obeying = [min(numbers, key=lambda number: self._apart(number, place)) for numbers in named]
-        if obeying and kind != "pole":
-            self.draft.rules.append((tags["type"], [("refers", len(self.draft.ways) - 1)], obeying))
-
-    def _apart(self, number, place):
-        """Metres of a lanelet from a place."""
-        nodes = self.draft.ways[self.draft.lanelets[number].centre].nodes
-        return float(np.hypot(*(self.draft.nodes[list(nodes), :2] - place[:2]).T).min())
-
-
-def _without_repeats(nodes: np.ndarray) -> tuple[int, ...]:
-    return tuple(int(node) for k, node in enumerate(nodes) if not k or node != nodes[k - 1])
-
-
-def _turn(middle: np.ndarray) -> str:
-    """left, right or straight, as Autoware calls the ways through a junction."""
-    first, last = middle[1] - middle[0], middle[-1] - middle[-2]
-    turn = (np.arctan2(last[1], last[0]) - np.arctan2(first[1], first[0]) + np.pi) % (2 * np.pi) - np.pi
-    return "left" if turn > TURN else "right" if turn < -TURN else "straight"
-
-
-# Writing in the XML of OpenStreetMap, with latitude and longitude.
-
-NO_VERTICAL = "not stated by the survey; heights are written as they are"
-SQUARE = 100_000.0     # m: local coordinates of Autoware are those within a square of this size
-
-
-@dataclass(frozen=True)
-class Degrees:
-    """How the map's places became latitude and longitude."""
-
-    lonlat: np.ndarray   # (N, 2) degrees of WGS 84
-    way: str   # name of the transformation
-    accuracy: float   # metres as its authors say, -1 where they do not;
-    vertical: str   # what the heights are
-    local: bool = False   # whether the map lies nowhere on the earth
-
-
-def to_degrees(places: np.ndarray, crs: str) -> Degrees:
-    """Latitude and longitude of (N, 2+) places; those without CRS about the origin of their coordinates become a local map about 0, 0.
-
-    Raises RoadExtractionError if the CRS is unknown and the coordinates are not local, or the places lie outside of the CRS.
-    """
-    from pyproj.transformer import Transformer, TransformerGroup
-
-    parsed = parse_crs(crs)
-    if parsed is None and np.abs(places[:, :2]).max(initial=0.0) < SQUARE:
-        lon, lat = Transformer.from_crs(LOCAL_CRS, "EPSG:4326", always_xy=True).transform(places[:, 0], places[:, 1])
-        return Degrees(np.c_[lon, lat], "local coordinates about latitude and longitude 0", -1.0, NO_VERTICAL, True)
-    if parsed is None:
-        raise RoadExtractionError("The layer of lanes has no CRS, so its latitude and longitude are unknown. Set the CRS of the layer and run again.")
-    transformer = TransformerGroup(horizontal_part(parsed), "EPSG:4326", always_xy=True).transformers[0]
-    lon, lat = transformer.transform(places[:, 0], places[:, 1])
-    if not (np.isfinite(lon).all() and np.isfinite(lat).all()):
-        raise RoadExtractionError(f"The lanes do not lie where their CRS {horizontal_part(parsed).name} holds. Check the CRS of the layer.")
-    vertical = parsed.sub_crs_list[-1].name if parsed.is_compound else NO_VERTICAL
-    if as_in_file(crs)[1].up != 1.0:
-        vertical += ", in metres"
-    return Degrees(np.c_[lon, lat], transformer.description, transformer.accuracy if transformer.accuracy is not None else -1.0, vertical)
-
-
-def lanelet2_text(draft: _LaneletDraft, degrees: Degrees, local: bool = False) -> str:
-    """The file as text, of a draft and the degrees of its nodes.
-
-    `local`: also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them.
-    """
-    lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<osm version="0.6" generator="Lanewright" upload="false">']
-    if local := local or degrees.local:
-        lines.append('  <MetaInfo format_version="1" map_version="1"/>')
-    used = sorted(set().union(*(way.nodes for way in draft.ways)))
-    ids = {node: k for k, node in enumerate(used, start=1)}
-    square = np.floor(draft.nodes[used, :2].min(0) / SQUARE) * SQUARE if used and not degrees.local else np.zeros(2)
-    for node in used:
-        lon, lat = degrees.lonlat[node]
-        x, y, z = draft.nodes[node]
-        tags = {"ele": f"{z:.4f}"}
-        if local:
-            tags |= {"local_x": f"{x - square[0]:.4f}", "local_y": f"{y - square[1]:.4f}"}
-        lines.append(f'  <node id="{ids[node]}" visible="true" version="1" lat="{lat:.11f}" lon="{lon:.11f}">{_tags_as_xml(tags)}</node>')
-    first_way = len(used) + 1
-    for number, way in enumerate(draft.ways):
-        places = "".join(map('<nd ref="{}"/>'.format, map(ids.__getitem__, way.nodes)))
-        lines.append(f'  <way id="{first_way + number}" visible="true" version="1">{places}{_tags_as_xml(way.tags)}</way>')
-    first_lanelet = first_way + len(draft.ways)
-    first_rule = first_lanelet + len(draft.lanelets)
-    for number, lanelet in enumerate(draft.lanelets):
-        rules = [first_rule + rule for rule, (_, _, obeying) in enumerate(draft.rules) if number in obeying]
-        lines.append(f'  <relation id="{first_lanelet + number}" visible="true" version="1">{_content(lanelet, first_way, rules)}</relation>')
-    for number, (subtype, members, _) in enumerate(draft.rules):
-        content = "".join(f'<member type="way" ref="{first_way + way}" role="{role}"/>' for role, way in members)
-        content += _tags_as_xml({"type": "regulatory_element", "subtype": subtype})
-        lines.append(f'  <relation id="{first_rule + number}" visible="true" version="1">{content}</relation>')
-    return "\n".join([*lines, "</osm>", ""])
-
-
-def _content(lanelet, first_way, rules):
-    """The members and tags of a lanelet."""
-    tags = lanelet.tags | ({"lanewright:lane_id": lanelet.name} if lanelet.name else {})
-    members = {"left": lanelet.left, "right": lanelet.right, "centerline": lanelet.centre}
-    ways = (f'<member type="way" ref="{first_way + member}" role="{role}"/>' for role, member in members.items() if member >= 0)
-    return "".join((*ways, *(f'<member type="relation" ref="{rule}" role="regulatory_element"/>' for rule in rules))) + _tags_as_xml(tags)
-
-
-def _tags_as_xml(tags):
-    return "".join(f'<tag k="{escape(key)}" v="{escape(str(value))}"/>' for key, value in tags.items())

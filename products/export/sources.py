@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -241,8 +242,6 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
         share : 0 to 1, of the vertices that have points
     Raises RoadExtractionError if no vertex has points.
     """
-    from scipy.spatial import cKDTree
-
     vertices = np.concatenate([lanes.left, lanes.right])
     origin = road_points.origin
     tree = cKDTree(vertices[:, :2] - origin[:2])
@@ -291,6 +290,7 @@ def _along_borders(change, vertices, start):
 
 STRIPE_GAP = 1.5     # m between stripes of one crossing: a gap of one stripe, worn on both sides
 LEAST_CROSSING = 3   # stripes
+STOP_LINE_HALF = 0.15   # m, half of the breadth of a stop line whose outline is not known
 
 
 def stop_lines(markings: Features | None) -> list[np.ndarray]:
@@ -486,8 +486,6 @@ def crs_of_reference(text: str, given: str) -> tuple[str, str]:
 
 def reference_of_crs(wkt: str) -> str:
     """The text of geoReference for a CRS: PROJ where that says the same, else WKT; "" where unknown."""
-    import warnings
-
     crs = horizontal_part(parse_crs(wkt))
     if crs is None:
         return ""

@@ -20,7 +20,7 @@ from ...core.survey.survey import Survey
 from ..inventory.borders import BorderLayers, RoadBorders
 from ..inventory.surface_grid import CROSS_CELL, SLICE_LENGTH
 from .breaklines import KINDS, Breakline, road_breaklines
-from .ground import road_ground
+from .ground import READ_SLICES, road_ground
 from .triangulation import Triangulation, thinned
 
 APART = 0.10            # m by which two breaklines that the triangulation follows are apart at least; an edge's foot and top are nearer
@@ -118,6 +118,7 @@ def _needed(xy, along, z, tolerance):
     plan = shapely.get_coordinates(shapely.simplify(shapely.linestrings(xy), PLAN_TOLERANCE))
     height = shapely.get_coordinates(shapely.simplify(shapely.linestrings(along, z), tolerance))[:, 0]
     kept = np.isin(xy[:, 0] + 1j * xy[:, 1], plan[:, 0] + 1j * plan[:, 1]) | np.isin(along, height)
+    kept[::READ_SLICES] = True   # an edge of half a kilometre would cross many triangles
     return np.c_[xy, z][kept]
 
 

@@ -66,8 +66,13 @@ class Triangulation:
         number = self._whole.find_simplex(places)
         moved = np.flatnonzero(self._crossed[number] & (number >= 0))
         if len(moved):
-            # a place on an edge may by rounding lie in neither of its triangles
-            number[moved] = self._tree.nearest(shapely.points(places[moved])) + len(self._crossed)
+            points = shapely.points(places[moved])
+            face = np.full(len(moved), -1)
+            row, there = self._tree.query(points, predicate="intersects")
+            face[row] = there
+            lost = np.flatnonzero(face < 0)   # by rounding, a place on an edge lies in neither of its triangles
+            face[lost] = self._tree.nearest(points[lost])
+            number[moved] = face + len(self._crossed)
         return number
 
     def heights(self, x: np.ndarray, y: np.ndarray, number: np.ndarray | None = None) -> np.ndarray:
@@ -172,8 +177,10 @@ class _Patch:
         left, right = self.third[p, q], self.third[q, p]
         if (min(p, q), max(p, q)) in self.kept or self._side(right, left, p) * self._side(right, left, q) >= 0:
             return False
-        rows = np.array([self.places[k] for k in (p, q, left)]) - self.places[right]
-        return np.linalg.det(np.c_[rows, (rows**2).sum(axis=1)]) > 1e-12
+        x, y = self.places[right]
+        (ax, ay), (bx, by), (cx, cy) = ((self.places[k][0] - x, self.places[k][1] - y) for k in (p, q, left))
+        a, b, c = ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy
+        return ax * (by * c - b * cy) - ay * (bx * c - b * cx) + a * (bx * cy - by * cx) > 1e-9
 
 
 def thinned(cells: np.ndarray, judged: np.ndarray, fixed: np.ndarray, segments: np.ndarray, area: shapely.Geometry, tolerance: float,
@@ -196,9 +203,8 @@ def thinned(cells: np.ndarray, judged: np.ndarray, fixed: np.ndarray, segments: 
     """
     vertices, last, limit = fixed, 2 * tolerance, np.inf
     x, y, z = cells.T
-    lines = shapely.linestrings(fixed[segments][:, :, :2])
-    free = np.ones(len(cells), bool)
-    free[shapely.STRtree(lines).query(shapely.points(cells[:, :2]), predicate="dwithin", distance=NEAREST_VERTICES / 2)[0]] = False
+    along = shapely.get_coordinates(shapely.segmentize(shapely.linestrings(fixed[segments][:, :, :2]), NEAREST_VERTICES / 2))
+    free = cKDTree(along).query(cells[:, :2], distance_upper_bound=NEAREST_VERTICES / 2)[0] == np.inf
     for turn in range(MOST_ROUNDS):
         surface = Triangulation(vertices, segments)
         surface.keep_within(area)

@@ -347,3 +347,15 @@ def test_a_road_without_paint_gives_empty_layers_stage_by_stage(street, called, 
         run = called("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path)
         assert run.returncode == 0, run.stderr
     assert feature_count(tmp_path / "driving.gpkg") == feature_count(tmp_path / "lines.gpkg") == 0
+
+
+def test_clouds_are_given_back_into_a_folder_and_a_clients_map_by_a_template(survey, tmp_path):
+    given = qgis_process("run", "lanewright:classifycloud", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.gpkg'}",
+                         "--OUTPUT=given_back", folder=tmp_path)
+    assert given.returncode == 0, given.stderr
+    assert laspy.open(tmp_path / "given_back" / "s.laz").header.point_count == laspy.open(survey / "s.laz").header.point_count
+    template = tmp_path / "office.csv"
+    template.write_text("from;where;layer;CODE\nMARKINGS;class=zebras;AREA;1\n", encoding="utf-8")
+    export = ["run", "lanewright:exporttemplate", "--TEMPLATE=office.csv", f"--ROAD_EDGES={survey / 'drive.gpkg'}", "--OUTPUT=client.gpkg"]
+    assert "office.csv, line 2: zebras is no class that Lanewright writes (is zebra meant?)." in one_sentence(qgis_process(*export, folder=tmp_path))
+    assert not (tmp_path / "client.gpkg").exists()

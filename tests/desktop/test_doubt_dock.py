@@ -333,6 +333,14 @@ def test_a_click_on_what_the_map_has_or_where_nothing_is_adds_nothing_and_says_s
         assert words in over_points.hint.text() and corrected_lines() == []
 
 
+def test_a_second_click_on_a_curb_that_was_found_adds_nothing(over_points):
+    over_points.pick_button.click()
+    for x in (35, 45):
+        over_points.pick_at(QgsPointXY(EAST + x, NORTH + 5.2))
+        looked(over_points)
+    assert len(corrected_lines()) == 1 and "has this line" in over_points.hint.text()
+
+
 def test_a_line_drawn_beside_the_curb_is_laid_onto_it_unless_that_is_switched_off(over_points):
     for on, beside in ((True, 0.05), (False, 0.3)):
         over_points.snap.setChecked(on)

@@ -5,7 +5,7 @@ from copc_files import write_vpc
 from lanewright.algorithms.survey_files import cloud_files
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.desktop.cloud_widget import PointCloudsWidget, PointCloudsWrapper, described, dropped_clouds
-from lanewright.desktop.trajectory_widget import TrajectoryWrapper
+from lanewright.desktop.trajectory_widget import TrajectoryWrapper, trajectory_beside
 from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingModelAlgorithm, QgsVectorLayer
 from qgis.gui import QgsProcessingModelerParameterWidget
 from qgis.PyQt.QtCore import QMimeData, QUrl
@@ -226,3 +226,11 @@ def test_the_trajectory_beside_the_point_clouds_is_offered_and_one_that_was_chos
 def test_points_extent_crs_and_time_of_the_clouds_are_said(surveyed):
     said = described([str(surveyed / "s.laz")])
     assert " points, " in said and " m, EPSG:32650" in said and ("scanned 20" in said or "times " in said), said
+
+
+def test_a_long_trajectory_is_known_by_how_it_begins(surveyed, project):
+    """What lies behind some thousand positions is not read before the run, be it damaged or not."""
+    lines = (surveyed / "drive.csv").read_text()
+    rows = lines + "\n" + lines.partition("\n")[2] * (400_000 // len(lines))
+    (surveyed / "drive.csv").write_bytes(rows.encode() + b"\0\xff\xfe" * 400_000)
+    assert trajectory_beside([str(surveyed / "s.laz")]) == str(surveyed / "drive.csv")

@@ -149,6 +149,9 @@ def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german, 
      "Die Höhen der Wolke allein sind anscheinend in Fuß, während x und y in Metern sind: Die Laserstrahlen treffen sich nur dann im Scanner, wenn "
      "die Höhen mit 0.3048 multipliziert werden. Bordsteine werden übersehen, Höhen und Neigungen sind um diesen Faktor falsch. Diese Höhen "
      "umrechnen und neu starten."),
+    ("Corrections that match nothing in this run any more (2): road 0, left side, station 260 to 270 m; road 0, right side, station 90 to 100 m.",
+     "Korrekturen, die in diesem Lauf zu nichts mehr passen (2): Straße 0, Seite links, Station 260 bis 270 m; "
+     "Straße 0, Seite rechts, Station 90 bis 100 m."),
     ("/data/B12/my roads/a 1.laz", "/data/B12/my roads/a 1.laz"),
     ("Something that nobody has translated.", "Something that nobody has translated."),
 ])

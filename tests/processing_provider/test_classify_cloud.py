@@ -61,8 +61,12 @@ def test_points_are_those_of_the_street(mapped, tmp_path):
     inside = shapely.within(places, surface) & low
     road = np.isin(classes, [11, 64])
     assert (road & inside).sum() > 0.97 * max(road.sum(), inside.sum())
-    painted = shapely.within(places, paint) & inside
-    assert (painted & (classes == 64)).sum() > 0.85 * max(painted.sum(), (classes == 64).sum())
+    painted, brightness = shapely.within(places, paint) & inside, np.asarray(after.intensity)
+    asphalt = np.median(brightness[road & ~painted])
+    assert painted[classes == 64].mean() > 0.97
+    assert (classes[painted & (brightness > 2 * asphalt)] == 64).mean() > 0.97
+    worn = painted & (brightness < 1.2 * asphalt)
+    assert worn.sum() > 500 and (classes[worn] == 11).mean() > 0.9
     curb = places[classes == 65]
     assert len(curb) > 500 and (shapely.distance(curb, curbs) < 0.10).mean() > 0.95
     assert found["CURB_POINTS"] == len(curb)

@@ -97,8 +97,9 @@ def test_the_file_of_the_client_is_filled_as_its_layers_are(street, tmp_path):
     layer = dataset = None
     office = layers_of_file(path, UTM)
     assert office == {"AREA": ("polygon", {"CODE": str, "CHECKED": str})}
-    said = template(tmp_path, "from;where;layer;CODE", "MARKINGS;;AREA;12")
-    write_client_layers(apply_template(said, street, office).layers, filled, path)
+    said = template(tmp_path, "from;where;layer;CODE", "MARKINGS;;AREA;12", "ROADSIDE_OBJECTS;;POLES;13")
+    markings = {"MARKINGS": street["MARKINGS"]}   # of what is not given, the file needs no layer
+    write_client_layers(apply_template(said, markings, office).layers, filled, path)
     layer = (dataset := ogr.Open(filled)).GetLayerByName("AREA")
     assert [(feature["CODE"], feature["CHECKED"]) for feature in layer] == [("12", None)] * 2
     assert layer.GetGeomType() == ogr.wkbMultiPolygon and layer.GetExtent() == (0, 7, 0, 2)

@@ -138,9 +138,9 @@ def _without_curbs(original):
 
 NO_ROWS, NO_NUMBERS = np.empty((0, 2), np.int64), np.empty(0, np.int64)
 ROWS = (
-    _set("curbs", "profiles method", "curbs", "road.profiles road:_points_of_both",
+    _set("curbs", "profiles method", "curbs", "road.profiles road:_curbs_of_side",
          boundary_method="scanlines"),
-    _set("curbs", "scanlines method", "curbs", "road.scanlines road:_points_of_both",
+    _set("curbs", "scanlines method", "curbs", "road.scanlines road:_curbs_of_side",
          boundary_method="profiles"),
     Switch("chains along the road (else the nearest step)", "curbs", (
         ("road.common.tracking:curb_chains", nearest_steps), ("road.common.tracking:select_along_road", _whole),
@@ -151,7 +151,7 @@ ROWS = (
          "common.in_line:with_pieces_in_line common.in_line:pieces_between"),
         ("weak chains that continue", "common.tracking:_continuing", gives([]), "residential street, parked cars, stations moved"),
         ("chains that go on unselected", "common.tracking:_continued", Around(gives(nth(0))), "residential street"),
-        ("short curbs dropped", "common.tracking:drop_short_curbs", as_list),
+        ("short curbs dropped", "common.tracking:drop_short_curbs", as_list, "flush cycle path with a false step of 3 m, crossing"),
         ("wander of sloped chains", "common.tracking:_wander", gives(0.0), "curbs in bends"),
         ("averages of noisy profiles", "profiles.detect:_steps_by_noise", _unaveraged, "many-beam scanner (Karlsruhe)",
          "profiles.averaged_steps:find_averaged_steps profiles.detect:_steps_by_noise"),
@@ -228,12 +228,12 @@ ROWS = (
         ("local level of asphalt", "paint.asphalt_level:background", gives(np.float32(0.0))),
         ("bright patches", "paint.asphalt_level:patch_level", gives(np.float32(0.0)), "pale repairs, parking places"),
         ("letters are no patch", "paint.asphalt_level:_letters", gives(False), "bus lane with bold letters"),
-        ("dark cells", "paint.asphalt_level:dark_cells", none_of(), "asphalt beside water, tar, dark repairs"),
+        ("dark cells", "paint.asphalt_level:dark_cells", none_of(), "asphalt beside water, tar, dark repairs (serpentine)"),
         ("pieces too small or too faint", "paint.not_paint:clear_pieces", nth(1)),
         ("rims of patches", "paint.not_paint:_one_sided", gives(np.False_), "pale repairs across wheel tracks"),
         ("gaps between tracks", "paint.not_paint:_unseen_gaps", none_of(), "edge lines far from the vehicle"),
         ("specks between runs", "paint.not_paint:_between", none_of(), "worn lines"),
-        ("raised things", "paint.not_paint:raised_cells", none_of(1), "ends of islands (roundabout)"),
+        ("raised things", "paint.not_paint:raised_cells", none_of(1), "ends of islands (roundabout), tram stop"),
         ("averages of noisy scanners", "paint.extract:ScannerScatter.noisy_windows", gives(set()), "many-beam scanner (Karlsruhe)",
          "paint.noisy:noisy_paint_cells paint.noisy:CellAverages paint.extract:ScannerScatter"),
         ("outliers", "outliers:remove_outliers", nth(0))),

@@ -26,7 +26,7 @@ def main():
 def write(folder, name, one):
     """The files of one road map, and the JSON with what must be found in them."""
     from lanewright.products.cad import dxf_lines, write_dxf
-    from lanewright.products.export.lanelet_map import draft_lanelets, lanelet2_text, to_degrees
+    from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
     from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
     from lanewright.products.export.opendrive.xodr import opendrive_text
     from lanewright.products.export.shared_borders import with_inferred_ways, with_shared_borders

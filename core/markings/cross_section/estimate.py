@@ -72,12 +72,14 @@ class RoadEstimate:
         return float(finite.min()) if len(finite) else 0.0
 
 
-def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: int, lane_width: float,
-                  weights: EstimateWeights = EstimateWeights()) -> RoadEstimate:
-    """The most probable sequence of cross-sections of one road.
+def estimate_of_road(source: NoSource, item: tuple[Candidates, Evidence, int], lane_width: float, weights: EstimateWeights) -> RoadEstimate:
+    """The phase that finds the most probable sequence of cross-sections of one road.
 
-    `first_direction` : 1 or -1, of the lanes that are met first from the left: -1 with traffic on the right; `lane_width` : m, the usual one.
+    item : what may bound its lanes and what is seen beside it, and 1 or -1, the direction of the lanes that are met first from the left: -1 with
+        traffic on the right
+    lane_width : m, the usual one
     """
+    candidates, evidence, first_direction = item
     sections = _best_sections(candidates, evidence, weights, lane_width, first_direction)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
     paint = candidates.painted
@@ -101,11 +103,6 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
         sureness[lined], once[lined] = probabilities(seen_once, transition), best_through(seen_once, transition)
     return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, weights, unnamed_total, once,
                         second)
-
-
-def estimate_of_road(source: NoSource, item: tuple[Candidates, Evidence, int], lane_width: float, weights: EstimateWeights) -> RoadEstimate:
-    """The phase that estimates roads: `estimate_road` of the candidates, the evidence and the first direction that an item holds."""
-    return estimate_road(*item, lane_width, weights)
 
 
 def _stretches(count):

@@ -433,8 +433,12 @@ def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, l
         check_cancelled()
         intervals = known[first:first + INTERVALS_AT_ONCE + 1]
         window = slice(first, first + len(intervals) - 1)
-        costs = _transition_costs(*_occupancy(candidates.take(intervals), sections.take(intervals), lane_width), weights)
-        result[window] = sum(cost * share[window, None, None] for cost, share in zip(costs, left))
+        changed, turned = _transition_costs(*_occupancy(candidates.take(intervals), sections.take(intervals), lane_width), weights)
+        lanes, directions = (share[window, None, None] for share in left)
+        # a lane that leads the other way behind a gap has turned, or it is another one that begins where the first ended
+        with np.errstate(divide="ignore"):
+            other = np.log(1 - directions) - turned * (2 * weights.change / weights.turn)
+            result[window] = changed * lanes - np.logaddexp(np.log(directions) - turned, other)
     return result
 
 

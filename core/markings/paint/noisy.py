@@ -33,8 +33,7 @@ class CellAverages:
     slope: np.ndarray   # (2, rows, columns) m per m along and across the road against the ground around: small on a road, large on the face of a curb
 
     @classmethod
-    def of(cls, cell: np.ndarray, value: np.ndarray, height: np.ndarray, shape: tuple[int, int],
-           paint: float = NOISY.paint_contrast) -> CellAverages:
+    def of(cls, cell: np.ndarray, value: np.ndarray, height: np.ndarray, shape: tuple[int, int], paint: float) -> CellAverages:
         """Averages of N points.
 
         `cell` : flat cell number of each, `value` : brightness, `height` : int, units of 0.1 mm; `paint` : spreads above the average about it at

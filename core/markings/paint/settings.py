@@ -31,10 +31,10 @@ class MarkingSettings:
     """
 
     separation: float = setting(4.0, 0.5, 20.0, "The distance of paint from asphalt", "spreads")
-    lowest: float = 3.0   # lowest, highest: limits of the threshold in spreads above the median of asphalt; the lowest where no bin shows paint
+    # limits of the threshold in spreads above the median of asphalt; the lowest where no bin shows paint, and on averages of noisy points
+    lowest: float = 3.0
     highest: float = 8.0
     evidence: float = 120.0   # spreads, summed over the cells of a piece: noise of asphalt reaches it once or twice on 1,000 m2
-    faint: float = 3.0   # spreads, the threshold on averages of noisy points, where the shape must be that of paint, too
     close: float = 0.20   # m, gaps along the road that are closed
     method: PaintMethod | None = None
 

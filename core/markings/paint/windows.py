@@ -159,9 +159,9 @@ class _Window:
         """Cells of paint where single points are noisy: bright pieces must have the shape of paint, too."""
         points = self._points(self.first, self.last)
         cell = np.concatenate([cell for _, cell in cell_numbers(points.records, cells.grid)])
-        averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape, settings.faint)
+        averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape, settings.lowest)
         samples = ViewSamples(cell, points.value, points.covered > 0, views(points, self.source.frame))
-        return noisy_paint_cells(averages, rim_distance(cells.occupied), samples, settings.faint), None
+        return noisy_paint_cells(averages, rim_distance(cells.occupied), samples, settings.lowest), None
 
     def _paint_in(self, parts: list[PieceOfRoad], cells: RoadCells, mask: np.ndarray, least: np.ndarray | None, masked: bool) -> Paint:
         """Points of the window's own parts in painted cells, brighter than `least` of their cell, and the mask's pixels; arrays as the grid."""

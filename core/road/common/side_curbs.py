@@ -110,11 +110,11 @@ def curbs_along(source: Any, found: Mapping[str, Mapping[tuple[int, str], SideSt
     found : method -> (number of the road, side) -> SideSteps; the method with the stricter model of a curb comes first
     look_at : gives the RoadLook of a road; None where nothing but the steps is known of the ground
     """
-    parts: dict[str, list[CurbPoints]] = {method: [] for method in [*found, "both"][:len(found) + (len(found) > 1)]}
+    parts: dict[str, list[CurbPoints]] = {method: [] for method in (*found, *(["both"] if len(found) > 1 else []))}
     for road in sorted({road for steps in found.values() for road, _ in steps}):
         look = look_at(road) if look_at else None
         sides = [(side, {method: steps[road, side] for method, steps in found.items() if (road, side) in steps}) for side in SIDE_SIGNS]
-        phase = Phase(_curbs_of_side, source, (road, look), lambda item, road=road: f"road {road}, {item[0]} side")
+        phase = Phase(_curbs_of_side, source, (road, look), lambda item: f"the {item[0]} side of a road")
         for points in source.executor.run(phase, sides):
             for method, of_side in points.items():
                 parts[method].append(of_side)
@@ -127,7 +127,7 @@ def _curbs_of_side(source: Any, item: tuple[str, Mapping[str, SideSteps]], road:
     item : the side, and what each method saw there
     """
     side, methods = item
-    survey, beside = getattr(source, "survey", source), look and look.side(SIDE_SIGNS[side])
+    survey, beside = getattr(source, "survey", source), None if look is None else look.side(SIDE_SIGNS[side])
     chains = {method: SideChains.of(seen.steps, seen, beside) for method, seen in methods.items() if seen.steps is not None and len(seen.steps)}
     # scanlines may have been told how high the scanner is
     points = {method: points_of_side(source if method == "scanlines" else survey, road, side, [of_method], methods[method].occlusion)

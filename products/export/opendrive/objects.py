@@ -10,13 +10,12 @@ import numpy as np
 import shapely
 
 from ....core.common.features import SIGNALS, Features
-from ..sources import stop_lines, walked_crossings
+from ..sources import STOP_LINE_HALF, stop_lines, walked_crossings
 from .model import DRIVEN_TYPES, OpenDriveMap, lane_name, travel
 
 SAMPLES = 1.0          # m between places of reference lines that objects are held against
 FARTHEST = 25.0        # m from a reference line
 SIMPLER = 0.02         # m by which an outline may be straightened
-STOP_LINE_HALF = 0.15  # m, half of the breadth of a stop line whose outline is not known
 THINNEST = 0.01        # m of an object's length and width at the least: the format has none of 0
 LANE_ID = "lanewright:lane_id"   # userData of a lane: its piece of the layer
 NAME_OF_CLASS = {"hatch": "hatched area", "arrow": "arrow", "bicycle": "bicycle symbol", "bus": "word BUS"}
@@ -32,14 +31,15 @@ def outlines_of(whole: OpenDriveMap) -> Iterator[tuple[str, np.ndarray]]:
     for road in whole.roads:
         for item in road.objects:
             kind = _class_of(item)
-            corners = _corners(road, item) if kind else ()
+            corners = _corners(road, item) if kind else np.empty((0, 3))
             if len(corners) > 2 and shapely.Polygon(corners).area > THINNEST**2:
                 yield kind, whole.placed(corners)
 
 
 def signals_of(whole: OpenDriveMap, crs: str = "") -> Features:
     """The layer SIGNALS: signals with the lanes that they hold for, on their own road and by reference, and poles."""
-    layer, lanes = Features("PointZ", SIGNALS, crs=crs), defaultdict(list)
+    layer = Features("PointZ", SIGNALS, crs=crs)
+    lanes: dict[str, list[str]] = defaultdict(list)
     for road in whole.roads:
         for item in road.signals:
             lanes[item["id"]] += _lanes_obeying(road, item)
@@ -61,10 +61,18 @@ def left_out_of(whole: OpenDriveMap) -> Counter[str]:
     """How often a map has what no layer of ours holds."""
     count = Counter(item["type"] if item["type"] not in ("", "-1") else "object of no type" for road in whole.roads for item in road.objects
                     if not _class_of(item) and item["type"] not in POLES)
+    count["change of a speed limit within a lane section"] = sum(map(_speed_changes, whole.roads))
     for element in whole.tree.children if whole.tree is not None else ():
         count += Counter(inner.tag for inner in (element, *element.children) if inner.tag in ("controller", "junctionGroup", "station", "railroad"))
-        count += Counter(inner.tag for inner in element.all("objects") for inner in inner.children if inner.tag in ("tunnel", "bridge"))
-    return count
+        count += Counter(inner.tag for objects in element.all("objects") for inner in objects.children if inner.tag in ("tunnel", "bridge"))
+    return +count
+
+
+def _speed_changes(road):
+    """How often the speed limit changes within a section, where a lane of ours has one."""
+    starts = [section.s for section in road.sections]
+    of_road = [s for s, _ in road.speeds if s > 0 and min((abs(s - start) for start in starts), default=0.0) > SAMPLES]
+    return len(of_road) + sum(len(lane.speeds[1:]) for section in road.sections for lane in section.lanes.values())
 
 
 def _class_of(item):
@@ -147,8 +155,7 @@ def add_objects(whole: OpenDriveMap, markings: Features | None, signals: Feature
 def _add_signal(number, place, row, homes, nearest):
     """A signal on the road of its lanes that is nearest, with references to it on the others; a pole on the nearest of all."""
     names = [name.strip() for name in str(row.get("lanes") or "").split(",")]
-    near = [found for home in (homes.get(name, ()) for name in names) if home
-            if (found := min((_nearest([road])(place[:2], np.inf) for road, _ in home), key=lambda one: one[2])) is not None]
+    near = [min((_nearest([road])(place[:2], np.inf) for road, _ in homes[name]), key=lambda one: one[2]) for name in names if name in homes]
     roads = {found[0].id: found for found in sorted(near, key=lambda one: one[2])}
     found = next(iter(roads.values()), None) or nearest(place[:2])
     if found is None:
@@ -158,20 +165,22 @@ def _add_signal(number, place, row, homes, nearest):
         s, t = float(np.clip(s, 0.0, road.length)), float(t)
         level = road.surface.places(np.array([s]), np.array([t]))[0, 2]
         item = {"id": str(number), "s": s, "t": t, "zOffset": round(float(place[2] - level), 4)}
-        size = {name: row.get(name + "_m") for name in ("height", "width")}
         if row.get("kind") == "pole":
-            width = size["width"] or 10 * THINNEST
-            road.objects.append({**_object_of(item, "pole", "pole"), "length": width, "width": width, "height": size["height"] or 0.0})
-            continue
-        obeying = {id for name in names for home, id in homes.get(name, ()) if home is road}
-        ids = [id for id in _section_at(road, s)[1] if id in obeying] or sorted(obeying)
-        ways = {_sign(road, id) for id in ids} or {"-" if abs(_turned(road, s, row, "+")) > np.pi / 2 else "+"}
-        way = min(ways) if len(ways) == 1 else "none"
-        road.signals.append({
-            **item, **size, **{name: row.get(field) or "" for name, field in FIELD_OF.items()}, "value": row.get("value"),
-            "own": road is found[0], "dynamic": "yes" if row.get("kind") == "traffic_light" else "no",
-            "orientation": way, "hOffset": _turned(road, s, row, way),
-            "validity": [(id, id) for id in sorted(ids)]})
+            width = row.get("width_m") or 10 * THINNEST
+            road.objects.append({**_object_of(item, "pole", "pole"), "length": width, "width": width, "height": row.get("height_m") or 0.0})
+        else:
+            obeying = {id for name in names for home, id in homes.get(name, ()) if home is road}
+            road.signals.append({**_signal(road, s, row, obeying), **item, "own": road is found[0]})
+
+
+def _signal(road, s, row, obeying):
+    """What a signal says, and of which lanes of its road; `obeying`: numbers of lanes anywhere on the road."""
+    ids = [id for id in _section_at(road, s)[1] if id in obeying] or sorted(obeying)
+    ways = {_sign(road, id) for id in ids} or {"-" if abs(_turned(road, s, row, "+")) > np.pi / 2 else "+"}
+    way = min(ways) if len(ways) == 1 else "none"
+    return {**{name: row.get(field) or "" for name, field in FIELD_OF.items()}, "value": row.get("value"), "height": row.get("height_m"),
+            "width": row.get("width_m"), "dynamic": "yes" if row.get("kind") == "traffic_light" else "no", "orientation": way,
+            "hOffset": _turned(road, s, row, way), "validity": [(id, id) for id in sorted(ids)]}
 
 
 def _turned(road, s, row, way):

@@ -236,6 +236,23 @@ def test_paint_that_stops_some_metres_before_the_curbs_do_gives_no_lane_of_its_o
     assert max(line.bounds[2] for line, _ in street.lanes(edges=curbs(street, 3.5, -3.5))[0]) - EAST < 103.0
 
 
+def test_pockets_that_face_each_other_over_a_junction_are_two_lanes_and_the_median_before_them_is_none():
+    """Left-turn lanes of 35 m on both sides of a junction of 18 m, each with two arrows, where the painted median of double lines makes room."""
+    street = Street(length=200.0, vehicle=-3.35, again=(3.35,))
+    for side, (first, last) in ((1, (5.0, 91.0)), (-1, (109.0, 195.0))):
+        pocket = (56.0, 91.0) if side > 0 else (109.0, 144.0)
+        median = (5.0, 56.0) if side > 0 else (144.0, 195.0)
+        for offset in (1.65, -1.65):
+            street.paint(2.75 * offset + np.sign(offset) * 0.5, first, last, kind="edge").paint(offset, *pocket, kind="")
+            for double in (offset - 0.12, offset + 0.12):
+                street.paint(double, *median, kind="", pattern="double-solid")
+    arrows = [(straight_arrow(station, 0.0, way), "arrow") for way, stations in ((1, (66.0, 80.0)), (-1, (115.0, 129.0))) for station in stations]
+    middle = [(row["direction"], line.bounds[0] - EAST, line.bounds[2] - EAST) for line, row in street.lanes(markings=outlined(street, *arrows))[0]
+              if abs(np.median(street.offsets(line))) < 1.0]
+    assert sorted(middle) == [(-1, pytest.approx(109.0, abs=2.0), pytest.approx(144.0, abs=2.0)),
+                              (1, pytest.approx(56.0, abs=2.0), pytest.approx(91.0, abs=2.0))]
+
+
 def test_two_double_lines_with_room_between_them_are_a_painted_median_and_no_lane():
     street = Street(vehicle=-3.4).paint(5.15, kind="edge").paint(-5.15, kind="edge")
     for offset in (1.77, 1.53, -1.53, -1.77):

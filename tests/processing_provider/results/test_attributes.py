@@ -7,6 +7,7 @@ from lanewright.processing_provider.results.attributes import TITLES, short_alia
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler
 from qgis.core import (
     QgsApplication,
+    QgsEditorWidgetSetup,
     QgsExpression,
     QgsExpressionContext,
     QgsExpressionContextUtils,
@@ -55,6 +56,12 @@ def test_a_feature_says_what_it_is(qgis_app, output, row, said):
     layer = loaded(output, **row)
     assert evaluated(layer, f"[% {layer.displayExpression()} %]") == said
     assert said in evaluated(layer, layer.mapTipTemplate())
+
+
+def test_a_feature_of_a_layer_from_abroad_says_what_it_is_in_the_words_of_the_user(qgis_app):
+    layer = loaded("ROAD_EDGES", road=0, side="left", length_m=7.7)
+    layer.setEditorWidgetSetup(layer.fields().lookupField("side"), QgsEditorWidgetSetup("ValueMap", {"map": [{"links": "left"}]}))
+    assert evaluated(layer, f"[% {layer.displayExpression()} %]") == "Road edge, left, 8 m"
 
 
 def test_columns_of_a_table_are_as_wide_as_their_headings(qgis_app):

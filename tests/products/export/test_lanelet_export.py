@@ -6,15 +6,8 @@ import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.products.export.check.lanelets import check_lanelets
-from lanewright.products.export.lanelet_map import (
-    LaneletSettings,
-    draft_lanelets,
-    lanelet2_text,
-    layers_of_lanelets,
-    node_places,
-    read_lanelet2,
-    to_degrees,
-)
+from lanewright.products.export.lanelet_export import LaneletSettings, draft_lanelets, lanelet2_text, to_degrees
+from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
 from lanewright.products.export.sources import RoadMapSource, checked
 from made_lanes import CRS, ORIGIN, Axis, LaneScene, crossing, kinds, roundabout, s_curve, split, street, widening
 from map_files import written

@@ -5,7 +5,8 @@ import pytest
 import shapely
 from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.products.cad import dxf_lines
-from lanewright.products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, read_lanelet2, to_degrees
+from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+from lanewright.products.export.lanelet_map import layers_of_lanelets, read_lanelet2
 from lanewright.products.export.opendrive.exporter import draft_opendrive
 from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
 from lanewright.products.export.shared_borders import with_shared_borders

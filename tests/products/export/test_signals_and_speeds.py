@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.products.export.check.lanelets import check_lanelets
-from lanewright.products.export.lanelet_map import draft_lanelets, lanelet2_text, layers_of_lanelets, node_places, read_lanelet2, to_degrees
+from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
 from lanewright.products.export.opendrive.exporter import draft_opendrive
 from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
 from lanewright.products.export.shared_borders import with_shared_borders
@@ -136,6 +137,9 @@ def test_the_name_of_a_road_is_carried_and_its_number_is_none(tmp_path):
 def test_what_no_layer_holds_is_counted(tmp_path):
     layers = read_in(tmp_path, street())
     assert layers.said_left_out() == ["Not carried over: 1 building, 1 controller."]
+    changes = '<type s="0" type="town"><speed max="30" unit="km/h"/></type><type s="25" type="town"><speed max="50" unit="km/h"/></type>'
+    layers = read_in(tmp_path, street(objects="", types=changes))
+    assert layers.said_left_out() == ["Not carried over: 1 change of a speed limit within a lane section, 1 controller."]
     walkway = lanelet_street().replace('<tag k="subtype" v="road"/>', '<tag k="subtype" v="walkway"/>', 1)
     text = walkway.replace("</osm>", '<relation id="900"><tag k="type" v="multipolygon"/><tag k="subtype" v="parking"/></relation></osm>')
     lanelets = layers_of_lanelets(read_lanelet2(written(tmp_path, text, "map.osm")), CRS)

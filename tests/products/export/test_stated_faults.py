@@ -6,7 +6,8 @@ from xml.etree import ElementTree
 import pytest
 from lanewright.products.export.check.lanelets import check_lanelets
 from lanewright.products.export.check.roads import check_opendrive
-from lanewright.products.export.lanelet_map import draft_lanelets, lanelet2_text, node_places, read_lanelet2, to_degrees
+from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+from lanewright.products.export.lanelet_map import node_places, read_lanelet2
 from lanewright.products.export.opendrive.exporter import draft_opendrive
 from lanewright.products.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.products.export.sources import RoadMapSource, checked, reference_of_crs
