@@ -92,21 +92,25 @@ def _without_steps(parts):
 
 def _parts(boundaries, estimate, lane_width, line_distance):
     """(interval, LaneTrack) of the spans of which both borders are known."""
-    known = []
-    for span in lane_spans(estimate):
-        rows, sides = slice(estimate.candidates.first[span.interval], estimate.candidates.last[span.interval] + 1), (span.left, span.right)
-        left, right = (_filled(boundaries.d[row, rows]) for row in sides)
-        if left is not None and right is not None:
-            known.append((span, rows, left, right, [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]))
+    known = [borders for span in lane_spans(estimate) if (borders := _with_borders(boundaries, estimate.candidates, span))]
     if not known:
         return
-    spans, _, left, right, made_of = zip(*known)
+    spans, rows, left, right, made_of = zip(*known)
     of = np.repeat(np.arange(len(spans)), [len(values) for values in left])
     number, beside = np.array([span.count for span in spans]), np.array([span.beside for span in spans])
     places = lane_places(np.concatenate(left), np.concatenate(right), *np.array(made_of).T[:, of], number[of], lane_width, beside[of])
     bounds = np.flatnonzero(np.diff(of)) + 1
-    for (span, rows, _, _, drawn), begin, width in zip(known, *(np.split(values, bounds) for values in places)):
-        yield span.interval, _part(boundaries, span, rows, drawn, begin, width, line_distance)
+    for span, of_span, drawn, begin, width in zip(spans, rows, made_of, *(np.split(values, bounds) for values in places)):
+        yield span.interval, _part(boundaries, span, of_span, drawn, begin, width, line_distance)
+
+
+def _with_borders(boundaries, candidates, span):
+    """A span, its stations, the offsets of its two borders there, and what these are made of; None where one of them is not known."""
+    rows, sides = slice(candidates.first[span.interval], candidates.last[span.interval] + 1), (span.left, span.right)
+    left, right = (_filled(boundaries.d[row, rows]) for row in sides)
+    if left is None or right is None:
+        return None
+    return span, rows, left, right, [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]
 
 
 def _part(boundaries, span, rows, made_of, begin, width, line_distance):

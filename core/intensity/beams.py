@@ -164,14 +164,7 @@ class Beams:
         if not models:
             return None
         found = cls(models, {}, {}, {})
-        counts = np.zeros((len(models), ELEVATION_BINS * INTENSITY_LEVELS), np.int64)
-        length = road_points.store.section_length
-        phase = Phase(_levels_at_elevations, road_points, (models,), lambda item: road_points.survey.stretch(
-            item[0], item[1] * length, item[2] * length), state=road_points.store.state)
-        for of_stretch in road_points.executor.run(phase, road_points.stretches(), progress):
-            for of_scanner, (place, number) in zip(counts, of_stretch):
-                of_scanner[place] += number
-        for scanner, levels in zip(models, counts.reshape(len(models), ELEVATION_BINS, INTENSITY_LEVELS)):
+        for scanner, levels in zip(models, _levels(road_points, models, progress)):
             found._estimate(scanner, levels)
         return found if found.corrections else None
 
@@ -210,6 +203,18 @@ class Beams:
     @property
     def count(self) -> int:
         return sum(len(corrections) for corrections in self.corrections.values())
+
+
+def _levels(road_points, models, progress):
+    """(scanners with beams, ELEVATION_BINS, INTENSITY_LEVELS) how many points have each level at each elevation."""
+    counts = np.zeros((len(models), ELEVATION_BINS * INTENSITY_LEVELS), np.int64)
+    length = road_points.store.section_length
+    phase = Phase(_levels_at_elevations, road_points, (models,), lambda item: road_points.survey.stretch(
+        item[0], item[1] * length, item[2] * length), state=road_points.store.state)
+    for of_stretch in road_points.executor.run(phase, road_points.stretches(), progress):
+        for of_scanner, (place, number) in zip(counts, of_stretch):
+            of_scanner[place] += number
+    return counts.reshape(len(models), ELEVATION_BINS, INTENSITY_LEVELS)
 
 
 def _levels_at_elevations(road_points: RoadPoints, stretch: Stretch, models: dict[int, _ElevationModel]) -> list[tuple[np.ndarray, np.ndarray]]:

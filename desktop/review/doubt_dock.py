@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from textwrap import shorten
 
 from qgis import utils
 from qgis.core import Qgis, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsTask, QgsVectorLayer
@@ -18,6 +19,7 @@ from qgis.PyQt.QtWidgets import (
     QFileDialog,
     QLineEdit,
     QListWidget,
+    QListWidgetItem,
     QMenu,
     QTabWidget,
     QVBoxLayout,
@@ -38,6 +40,7 @@ from .steps import STALE, StepsPanel, steps_of
 
 ARRIVED = 700   # ms after the last layer of a run that came into the project
 LONG_PLACE = 80.0   # m: of a longer place the map shows the selected piece alone, or it would be too small to judge
+MOST_LETTERS = 200   # of what is doubtful in the list; pointing at it shows all of it
 LEAST_VIEW = 30.0   # m of ground shown about a place
 FILE = "corrections.gpkg"
 CHOSEN = "#6eff00c8"  # pieces that the buttons are about
@@ -279,7 +282,10 @@ class DoubtDock(QDockWidget):
                 at=self.at + 1, count=len(self.places), done=sum(map(self._is_done, self.places)), road=place.road, station=place.station))
             for piece in place.pieces:
                 decision = self._decision(piece)
-                self.list.addItem(f"{piece.text}\n  → {decision}" if decision else piece.text)
+                text = shorten(piece.text, MOST_LETTERS, placeholder=" …")   # a warning of ten lines would hide the other pieces
+                item = QListWidgetItem(f"{text}\n  → {decision}" if decision else text)
+                item.setToolTip(piece.text)
+                self.list.addItem(item)
             self.list.setCurrentRow(chosen)
         self._selected()
         self._tell()

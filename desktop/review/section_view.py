@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from qgis.PyQt.QtCore import QPointF, QRectF, Qt
@@ -17,6 +18,7 @@ from .section import HALF_WIDTH, Crossing
 LEFT, RIGHT, TOP, BOTTOM = 46, 10, 16, 18  # pixels about the picture, without its caption
 LEAST_HEIGHT = 0.6       # m that the picture shows at least
 MOST_TITLES = 0.7         # of the height of the picture that titles take
+WHOLE_TITLES = 0.5        # of the height up to which titles are written whole
 HEIGHT_ABOVE, HEIGHT_BELOW = 0.8, 0.5  # m shown above and below the lines on the road
 ZOOM = 1.25              # of a turn of the wheel
 NEAREST = 1.0            # m of width that zooming ends at
@@ -149,8 +151,13 @@ class SectionView(QWidget):
             painter.drawPolyline(QPolygonF([QPointF(*place) for place in zip(x.tolist(), y.tolist())]))
 
     def _shown(self):
-        """The crossings within what is shown across."""
-        return [crossing for crossing in self.crossings if abs(crossing.offset - self.centre) <= self.half]
+        """The crossings within what is shown across; where whole titles leave the road no room, with the beginnings of their titles."""
+        shown = [crossing for crossing in self.crossings if abs(crossing.offset - self.centre) <= self.half]
+        frame = self._frame()
+        boxes = self._label_boxes(shown, frame, QFontMetricsF(self._small(), self))
+        if max((box.bottom() - TOP for box in boxes), default=0.0) <= WHOLE_TITLES * frame.height():
+            return shown
+        return [replace(crossing, title=crossing.title.split(",")[0]) for crossing in shown]
 
     def _draw_crossings(self, painter, frame):
         painter.setFont(self._small())

@@ -80,7 +80,7 @@ def make_surface_model(survey: Survey, layers: BorderLayers, settings: SurfaceSe
     lines = sorted(lines, key=lambda line: (line.road, KINDS.index(line.kind), line.station))
     followed = _followed(lines, area, settings.tolerance)
     cells, judged = _cells(grounds, survey.frame, followed, area)
-    fixed, segments = _fixed(followed, area, cells)
+    fixed, segments = _fixed(followed, area, cells, settings.tolerance)
     surface = thinned(cells, judged, fixed, segments, area, settings.tolerance, progress.part(0.6, 1.0))
     miss = surface.heights(*cells[judged, :2].T) - cells[judged, 2]
     rmse = float(np.sqrt(np.nanmean(miss**2))) if np.isfinite(miss).any() else 0.0
@@ -135,7 +135,7 @@ def _cells(grounds, frame, followed, area):
         ends = [np.stack(road.to_map(ground.s[i[rows]] + way * SLICE_LENGTH / 2, ground.d[j[rows]]), axis=1) for way in (-1, 1)]
         mixed = np.zeros(len(cells), bool)
         mixed[rows[tree.query(shapely.linestrings(np.stack(ends, axis=1)), predicate="dwithin", distance=CROSS_CELL)[0]]] = True
-        mixed |= ~shapely.contains_xy(area, *cells[:, :2].T)
+        mixed |= ~shapely.contains_xy(area.buffer(APART), *cells[:, :2].T)
         kept.append(cells[~mixed])
         judged.append(((ground.d[j] > ground.right[i]) & (ground.d[j] < ground.left[i]))[~mixed])
     return np.concatenate(kept), np.concatenate(judged)
@@ -146,11 +146,17 @@ def _along_lines(lines):
     return shapely.get_coordinates(shapely.segmentize(lines, SLICE_LENGTH / 2))
 
 
-def _fixed(followed, area, cells):
+def _fixed(followed, area, cells, tolerance):
     """(vertices, segments) of the lines that are followed and of the outline, whose heights are those of the nearest cells."""
-    tree = cKDTree(cells[:, :2])
-    rings = [shapely.get_coordinates(ring) for polygon in shapely.get_parts(area) for ring in (polygon.exterior, *polygon.interiors)]
-    chains = [places for _, places in followed] + [np.c_[ring, cells[tree.query(ring)[1], 2]] for ring in rings]
+    tree, chains = cKDTree(cells[:, :2]), [places for _, places in followed]
+    for ring in (ring for polygon in shapely.get_parts(area) for ring in (polygon.exterior, *polygon.interiors)):
+        corners, xy = shapely.get_coordinates(ring), shapely.get_coordinates(shapely.segmentize(ring, APART))
+        away, cell = tree.query(xy)
+        # beside a road that climbs, what lies between two slices has the height of neither
+        seen = (away < APART) | np.isin(xy[:, 0] + 1j * xy[:, 1], corners[:, 0] + 1j * corners[:, 1])
+        xy, cell = xy[seen], cell[seen]
+        along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(xy, axis=0).T))]
+        chains.append(_needed(xy, along, cells[cell, 2], 2 * tolerance))
     start = np.append(0, np.cumsum([len(chain) for chain in chains]))
     segments = np.concatenate([np.stack([np.arange(a, b - 1), np.arange(a + 1, b)], axis=1) for a, b in zip(start[:-1], start[1:])])
     places = np.concatenate(chains)

@@ -1,5 +1,6 @@
 """The window of doubtful places, and the corrections that are made in it."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -60,6 +61,14 @@ def test_it_says_where_it_is_and_what_is_doubtful_there_and_shows_it(at_first):
     assert "Place 1 of 2" in at_first.where.text() and "station 10 m" in at_first.where.text()
     assert at_first.list.count() == 2 and len(at_first.bands) == 1, "one piece is lit: the one that the buttons are about"
     assert at_first.iface.mapCanvas().extent().contains(QgsPointXY(EAST + 15, NORTH))
+
+
+def test_a_long_warning_is_cut_in_the_list_and_told_by_pointing_at_it(at_first):
+    warning = "Warning: " + "The points are too few to find curbs. " * 12
+    place = at_first.places[0]
+    at_first.places[0] = replace(place, pieces=(replace(place.pieces[0], text=warning), *place.pieces[1:]))
+    at_first._fill()
+    assert len(at_first.list.item(0).text()) <= 200 and at_first.list.item(0).toolTip() == warning
 
 
 def test_of_a_long_place_the_map_and_the_section_show_the_piece_that_is_selected(window):

@@ -96,13 +96,15 @@ def test_the_scanline_follows_road_face_and_sidewalk_and_is_cut_behind_a_car():
     assert slice_lines(np.empty(0), np.empty(0), 20.0) == []
 
 
-def test_titles_of_many_lines_stay_above_the_road(qgis_app):
+@pytest.mark.parametrize("height", [200, 250, 400])
+def test_titles_of_many_lines_stay_above_the_road_and_are_short_where_room_is_scarce(qgis_app, height):
     view = SectionView()
-    view.resize(620, 250)
+    view.resize(620, height)
     shown = [Crossing(offset, 100.0, "Fahrstreifen 2, gegen die Straße, 88 m, gemessen, ± 13 mm", "#e31a1c") for offset in np.linspace(2.2, -7.8, 9)]
     view.show_section(np.empty((0, 3)), shown)
-    boxes = view._label_boxes(shown, view._frame(), QFontMetricsF(view._small(), view))
+    boxes = view._label_boxes(view._shown(), view._frame(), QFontMetricsF(view._small(), view))
     assert max(box.bottom() for box in boxes) <= view._at(0.0, 100.0)[1] + 1.0
+    assert {crossing.title for crossing in view._shown()} == {shown[0].title if height == 400 else "Fahrstreifen 2"}
 
 
 def test_titles_of_lines_cover_neither_each_other_nor_the_rim(qgis_app):

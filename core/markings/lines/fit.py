@@ -350,21 +350,9 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     if not clustered_points.has_cluster:
         raise RoadExtractionError(
             "The points have no field “cluster”. Give the file that “Cluster markings” wrote, together with its layer.")
-    selected: list[tuple[int, SelectedLine]] = []
-    courses: list[_Course] = []
-    dropped = 0
-    roads = clustered_points.roads()
     edge_sections = EdgeSections.of(edges)
-    edge_lines = edges_beside(edge_sections, roads)
     executor = THREADS if road_points is None else road_points.executor
-    phase = Phase(_lines_of_road, NoSource(), (settings,), lambda item: "the marking lines of a road")
-    for batch in _roads_together(clustered_points):
-        items = [_paint_of_road(clustered_points, markings, road, edge_lines[road]) for road in batch]
-        for road, (of_road, trend, left_out) in zip(batch, executor.run(phase, items)):
-            dropped += left_out
-            courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
-            selected += [(int(road), chosen) for chosen in of_road]
-        progress.report(LINES_SHARE / 2 * (roads.index(batch[-1]) + 1) / len(roads))
+    selected, courses, dropped = _traced(clustered_points, markings, frame, edge_sections, settings, executor, progress.part(0.0, LINES_SHARE / 2))
     phase = Phase(_lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
     fitted = list(executor.run_together(phase, courses, STRANDS.fitted_together, progress.part(LINES_SHARE / 2, LINES_SHARE)))
     rows = [dict(row, line=number, road=road) for number, ((road, chosen), line) in enumerate(zip(selected, fitted), start=1)
@@ -379,6 +367,23 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         drawn = with_unseen_paint(drawn, markings, clustered_points, road_points)
     return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edge_sections, road_points, clustered_points,
                              progress.part(LINES_SHARE, 1.0), taken)
+
+
+def _traced(points, markings, frame, edges, settings, executor, progress):
+    """[(road, SelectedLine)] of all roads, the _Course of each, and how many fragments were left out."""
+    selected: list[tuple[int, SelectedLine]] = []
+    courses: list[_Course] = []
+    dropped, roads = 0, points.roads()
+    edge_lines = edges_beside(edges, roads)
+    phase = Phase(_lines_of_road, NoSource(), (settings,), lambda item: "the marking lines of a road")
+    for batch in _roads_together(points):
+        items = [_paint_of_road(points, markings, road, edge_lines[road]) for road in batch]
+        for road, (of_road, trend, left_out) in zip(batch, executor.run(phase, items)):
+            dropped += left_out
+            courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
+            selected += [(int(road), chosen) for chosen in of_road]
+        progress.report((roads.index(batch[-1]) + 1) / len(roads))
+    return selected, courses, dropped
 
 
 PAINT_OF_LINES = "s", "d", "z", "cluster", "spacing"   # that strands are traced by

@@ -110,15 +110,13 @@ def curbs_along(source: Any, found: Mapping[str, Mapping[tuple[int, str], SideSt
     found : method -> (number of the road, side) -> SideSteps; the method with the stricter model of a curb comes first
     look_at : gives the RoadLook of a road; None where nothing but the steps is known of the ground
     """
-    parts: dict[str, list[CurbPoints]] = {method: [] for method in (*found, *(["both"] if len(found) > 1 else []))}
-    for road in sorted({road for steps in found.values() for road, _ in steps}):
-        look = look_at(road) if look_at else None
-        sides = [(side, {method: steps[road, side] for method, steps in found.items() if (road, side) in steps}) for side in SIDE_SIGNS]
-        phase = Phase(_curbs_of_side, source, (road, look), lambda item: f"the {item[0]} side of a road")
-        for points in source.executor.run(phase, sides):
-            for method, of_side in points.items():
-                parts[method].append(of_side)
-    return {method: CurbPoints.join(of_method, getattr(source, "survey", source).crs) for method, of_method in parts.items()}
+    parts: list[dict[str, CurbPoints]] = []
+    for road in sorted({road for road, _ in next(iter(found.values()))}):
+        sides = [(side, {method: steps[road, side] for method, steps in found.items()}) for side in SIDE_SIGNS]
+        phase = Phase(_curbs_of_side, source, (road, look_at(road) if look_at else None), lambda item: f"the {item[0]} side of a road")
+        parts += source.executor.run(phase, sides)
+    methods, crs = [*found, "both"] if len(found) > 1 else [*found], getattr(source, "survey", source).crs
+    return {method: CurbPoints.join([part[method] for part in parts if method in part], crs) for method in methods}
 
 
 def _curbs_of_side(source: Any, item: tuple[str, Mapping[str, SideSteps]], road: int, look: RoadLook | None) -> dict[str, CurbPoints]:

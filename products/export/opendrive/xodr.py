@@ -253,16 +253,21 @@ def _road_element(road: MapRoad, minor: int) -> XmlElement:
     for item in road.objects:
         _add_object(objects, item, minor)
     signals = element.add("signals") if road.signals else element
-    for item in road.signals:
+    for item in sorted(road.signals, key=lambda item: not item["own"]):   # references come last
         _add_signal(signals, item)
     return _with_data(element, road.data)
+
+
+def _country(text: str) -> str | None:
+    """A country as the format has it: two letters, or one of its own names."""
+    return (text.upper() if len(text) < 4 else text if text == "OpenDRIVE" else text.title()) or None
 
 
 def _add_signal(signals: XmlElement, item: dict) -> None:
     place = {"s": item["s"], "t": item["t"], "id": item["id"], "orientation": item["orientation"]}
     if item["own"]:
         element = signals.add("signal", **place, dynamic=item["dynamic"], zOffset=item["zOffset"], type=item["type"] or "-1", name=item["name"],
-                              subtype=item["subtype"] or "-1", country=item["country"] or None, value=item["value"],
+                              subtype=item["subtype"] or "-1", country=_country(item["country"]), value=item["value"],
                               unit=item["unit"] or None, height=item["height"], width=item["width"], hOffset=item["hOffset"])
     else:
         element = signals.add("signalReference", **place)

@@ -105,6 +105,17 @@ def test_a_reference_names_lanes_of_another_road_and_a_validity_some_of_a_road(t
     assert by_kind(layers_of_opendrive(as_roads(tmp_path, layers), CRS))["traffic_light"][1]["lanes"] == "2.-1.0"
 
 
+def test_roads_state_signals_before_references_and_countries_in_capitals(tmp_path):
+    sign = '<signal id="{}" s="9" t="-4" zOffset="3" orientation="+" dynamic="no" type="31" subtype="-1" country="{}"/></signals></road>'
+    reference = '<signals><signalReference id="2" s="1" t="-4" orientation="+"/>'
+    roads = [road(geometry(0, x, 0, 0, 40), 40, str(id)).replace("</road>", before + sign.format(id, country))
+             for id, x, before, country in ((1, 0, reference, "se"), (2, 50, "<signals>", "GERMANY"))]
+    whole = as_roads(tmp_path, read_in(tmp_path, opendrive(roads)))
+    order = [[one.tag for one in element.find("signals").children] for element in whole.tree.all("road")]
+    assert order == [["signal", "signalReference"], ["signal"]]
+    assert [item["country"] for item in whole.roads[0].signals + whole.roads[1].signals if item["own"]] == ["SE", "Germany"]
+
+
 def test_every_crossing_and_the_stop_line_lie_where_they_lay(tmp_path):
     layers = read_in(tmp_path, street())
     expected = {(round(x, 1), round(y, 1)) for x, y in ((6, 0), (18, 0), (24, 0), (34, 0), (37, -1.8))}

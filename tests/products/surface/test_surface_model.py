@@ -92,6 +92,14 @@ def test_every_line_that_is_followed_is_made_of_edges_of_triangles():
             assert tuple(sorted((number[a.tobytes()], number[b.tobytes()]))) in edges
 
 
+def test_the_surface_is_right_to_the_end_of_the_road():
+    """Straight from one sidewalk to the other, its last triangles would lie above the road between them."""
+    model = model_of(noise=0.004)
+    x, y = (values.ravel() for values in np.meshgrid([0.53, 0.56, 0.8, 1.2, 58.8, 59.2, 59.44, 59.47], np.arange(-3.2, 3.3, 0.2)))
+    found = model.surface.heights(x + EAST - model.origin[0], y + NORTH - model.origin[1]) + model.origin[2] - GROUND
+    np.testing.assert_allclose(found, surface(y) + GRADE * x, atol=0.03)
+
+
 def test_a_greater_tolerance_takes_fewer_triangles():
     road = dict(rut=0.02, noise=0.004)
     fine, coarse = model_of(0.003, **road), model_of(0.02, **road)
