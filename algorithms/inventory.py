@@ -16,7 +16,7 @@ from ..core.common.features import (
 )
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, SettingSpec
-from .survey_input import READING_SETTINGS, open_survey_of, open_survey_with
+from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
 # parameter -> its label, fields and geometry, in the order of BorderLayers

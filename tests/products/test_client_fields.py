@@ -118,10 +118,10 @@ def test_names_of_fields_that_a_geopackage_has_itself_are_the_clients_too(name, 
     ogr = pytest.importorskip("osgeo.ogr")
     made = apply_template(template(tmp_path, f"from;where;layer;{name}", "MARKINGS;;AREA;{number}"), street)
     write_client_layers(made.layers, str(tmp_path / "client.gpkg"))
-    layer = (dataset := ogr.Open(str(tmp_path / "client.gpkg"))).GetLayerByName("AREA")
+    dataset = ogr.Open(str(tmp_path / "client.gpkg"))
+    layer = dataset.GetLayerByName("AREA")
     assert layer.GetFeatureCount() == 2 and layer.GetExtent() == (0, 7, 0, 2)
     assert [feature[name] for feature in layer] == [1, 2]
-    layer = dataset = None
 
 
 def test_a_text_in_a_field_of_numbers_is_refused(street, tmp_path):
