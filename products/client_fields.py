@@ -30,6 +30,7 @@ GEOMETRIES = {"point": "PointZ", "line": "LineStringZ", "polygon": "PolygonZ"}
 IN_WORDS = "class", "kind", "pattern", "edge", "status", "side", "use", "type", "part"   # fields whose values are words that are known
 REFERENCE = re.compile(r"\{([^{}]*)\}")
 CONDITION = re.compile(r"\s*(\w+)\s*(<=|>=|!=|=|<|>)\s*(.*?)\s*")
+NOT_DRAWN = '<>/\\":;?*|=,`'   # source: what AutoCAD refuses in names of layers
 NOT_WANTED = "-"   # as the client's layer, of what is left out on purpose
 NUMBER = "number"   # what a template calls the number of a feature in its layer, from 1
 
@@ -80,7 +81,11 @@ def read_template(path: str | os.PathLike[str], sources: Mapping[str, tuple[Sequ
         fields, types = _columns(header)
         for number, cells in lines[1:]:
             rule = _rule(number, fields, cells, sources)
-            first = next((other for other in rules if other.layer == rule.layer), rule)
+            first = next((other for other in rules if other.layer.lower() == rule.layer.lower()), rule)
+            if first.layer != rule.layer:
+                raise ValueError(f"layer {rule.layer} is called {first.layer} in line {first.line}. Write capitals alike.")
+            if mixed and (sign := next((sign for sign in rule.layer if sign in NOT_DRAWN), "")):
+                raise ValueError(f"a drawing has no layer {rule.layer}: none of its names holds a {sign} sign.")
             if first.geometry != rule.geometry and not mixed and rule.layer != NOT_WANTED:
                 raise ValueError(f"layer {rule.layer} would hold a {rule.geometry} and, from line {first.line}, a {first.geometry}. Give it another "
                                  "layer, or say in the column geometry what it becomes.")
@@ -111,7 +116,7 @@ def _rows_of(path):
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as problem:
-        raise RoadExtractionError(f"{path} cannot be read as a table in UTF-8 ({problem}).") from problem
+        raise RoadExtractionError(f"{path} cannot be read as a table in UTF-8 ({problem}). Save it as “CSV UTF-8”.") from problem
     said = [(number, line) for number, line in enumerate(lines, 1) if line.strip(" ;,\t") and not line.lstrip(' "').startswith("#")]
     if len(said) < 2:
         raise RoadExtractionError(f"{path} holds no rows. Its first line names the columns, and each further one says what becomes what.")
@@ -316,6 +321,8 @@ def _filled(template, rule, field, row, kind):
         number = float(value)
     except ValueError:
         raise RoadExtractionError(f"{template.path}, line {rule.line}: {field} of {rule.layer} holds numbers, and “{value}” is none.") from None
+    if kind is int and not abs(number) < 2**63:   # of 64 bits
+        raise RoadExtractionError(f"{template.path}, line {rule.line}: {field} of {rule.layer} cannot hold a number as large as {value}.")
     return round(number) if kind is int else number
 
 
@@ -365,7 +372,7 @@ def layers_of_file(path: str | os.PathLike[str], crs: str) -> dict[str, tuple[st
     """
     gdal, ogr = _gdal()
     kinds = {ogr.wkbPoint: "point", ogr.wkbLineString: "line", ogr.wkbPolygon: "polygon", ogr.wkbMultiPoint: "point",
-             ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon"}
+             ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon", ogr.wkbNone: "row without a place"}
     types = {ogr.OFTInteger: int, ogr.OFTInteger64: int, ogr.OFTReal: float}
     ours = parse_crs(as_in_file(crs)[0]) if crs else None
     try:
@@ -404,6 +411,7 @@ def write_client_layers(layers: Mapping[str, Features], path: str, office: str =
             for name, features in layers.items():
                 layer = dataset.GetLayerByName(name) if office else _new_layer(dataset, name, features)
                 _fill(layer, features)
+            dataset.FlushCache()   # what cannot be written when a dataset is let go, nobody is told
             layer = dataset = None
     except (RuntimeError, sqlite3.Error) as problem:
         raise RoadExtractionError(f"The layers of the client could not be written: {problem}.") from problem
@@ -430,6 +438,7 @@ def _fill(layer, features):
 
     units = as_in_file(features.crs)[1]
     kind = layer.GetGeomType()
+    fields = {field.name: layer.GetLayerDefn().GetFieldDefn(layer.GetLayerDefn().GetFieldIndex(field.name)) for field in features.schema}
     layer.StartTransaction()
     for shape, row in features:
         if not units.metric:
@@ -438,7 +447,12 @@ def _fill(layer, features):
         feature = ogr.Feature(layer.GetLayerDefn())
         feature.SetGeometry(made if kind == ogr.wkbUnknown else ogr.ForceTo(made, kind))
         for name, value in row.items():
-            if value is not None:
-                feature.SetField(name, value)
+            if value is None:
+                continue
+            feature.SetField(name, value)
+            stored = feature.GetField(name)
+            if stored is None or isinstance(value, int) and stored != value or isinstance(value, str) and 0 < fields[name].GetWidth() < len(value):
+                raise RoadExtractionError(f"The field {name} of layer {layer.GetName()} does not take “{value}”: it holds "
+                                          f"{fields[name].GetTypeName()} of a smaller size or another kind. Change the template or the field.")
         layer.CreateFeature(feature)
     layer.CommitTransaction()

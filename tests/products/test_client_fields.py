@@ -77,6 +77,7 @@ def test_areas_become_outlines_or_points_and_lines_their_middles(street, tmp_pat
     (["from;where;layer;geometry", "ROADSIDE_OBJECTS;;A;line"], "line 2: a point of ROADSIDE_OBJECTS cannot become a “line”"),
     (["from;where;layer", "MARKINGS;;A", "MARKING_LINES;;A"], "line 3: layer A would hold a line and, from line 2, a polygon"),
     (["from;where;layer"], "holds no rows"),
+    (["from;where;layer", "MARKINGS;class=stop;A", "MARKINGS;;a"], "line 3: layer a is called A in line 2"),
     (["from,where,layer,W", "MARKINGS,class=stop,zebra,AREA,1"], "line 2: “1” stands in a column without a name"),
     (["from;where;layer", "MARKINGS;width_m>0,2;A"], "line 2: “width_m>0,2” compares width_m with 2 numbers"),
     (["from;where;layer;W", "MARKINGS;;A;{width_m"], "line 2: “{width_m” has a brace without its partner"),
@@ -129,6 +130,52 @@ def test_a_text_in_a_field_of_numbers_is_refused(street, tmp_path):
         apply_template(template(tmp_path, "from;where;layer;CODE:int", "MARKINGS;;AREA;K12"), street)
 
 
+@pytest.mark.parametrize(("code", "said"), [("70000", "does not take “70000”"), ("9" * 30, "cannot hold a number as large")])
+def test_a_number_that_a_field_of_the_client_would_cut_is_refused(code, said, street, tmp_path):
+    with pytest.raises(RoadExtractionError, match=said):
+        filled_with(street, tmp_path, "OFTInteger", "OFSTInt16", code)
+
+
+@pytest.mark.parametrize(("kind", "code"), [("OFTDate", "2026-13-45"), ("OFTString", "a text of many letters")])
+def test_a_text_that_a_field_of_the_client_does_not_take_is_refused(kind, code, street, tmp_path):
+    with pytest.raises(RoadExtractionError, match=f"The field CODE of layer AREA does not take “{code}”"):
+        filled_with(street, tmp_path, kind, "OFSTNone", code)
+
+
+def test_a_table_without_places_is_none_for_lines_or_areas(street, tmp_path):
+    with pytest.raises(RoadExtractionError, match="holds a row without a place, and a polygon is to be written"):
+        filled_with(street, tmp_path, "OFTString", "OFSTNone", "1", "wkbNone")
+
+
+def filled_with(street, tmp_path, kind, smaller, code, geometry="wkbPolygon"):
+    """Write a code into the one field of a client's layer, which is 8 letters wide where it holds texts."""
+    gdal, ogr, osr = (pytest.importorskip(f"osgeo.{name}") for name in ("gdal", "ogr", "osr"))
+    path = str(tmp_path / "office.gpkg")
+    dataset = gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)
+    field = ogr.FieldDefn("CODE", getattr(ogr, kind))
+    field.SetSubType(getattr(ogr, smaller))
+    field.SetWidth(8 if kind == "OFTString" else 0)
+    dataset.CreateLayer("AREA", osr.SpatialReference(UTM), getattr(ogr, geometry)).CreateField(field)
+    dataset = None
+    made = apply_template(template(tmp_path, "from;where;layer;CODE", f"MARKINGS;;AREA;{code}"), street, layers_of_file(path, UTM))
+    write_client_layers(made.layers, str(tmp_path / "filled.gpkg"), path)
+
+
+def test_a_disk_that_is_full_at_the_very_end_is_told_of(street, tmp_path):
+    """A GeoPackage writes its last tables when it is closed. Every size at which a disk may be full is tried."""
+    resource = pytest.importorskip("resource")
+    made = apply_template(template(tmp_path, "from;where;layer;CODE", "MARKINGS;;AREA;12"), street)
+    write_client_layers(made.layers, str(tmp_path / "whole.gpkg"))
+    whole, before = (tmp_path / "whole.gpkg").stat().st_size, resource.getrlimit(resource.RLIMIT_FSIZE)
+    for size in range(8192, whole, 8192):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+        try:
+            with pytest.raises(RoadExtractionError, match="could not be written"):
+                write_client_layers(made.layers, str(tmp_path / f"{size}.gpkg"))
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
 def test_the_file_of_the_client_is_filled_as_its_layers_are(street, tmp_path):
     """Of several parts and flat, with fields that the template does not name; what it does not have is refused."""
     gdal, ogr, osr = (pytest.importorskip(f"osgeo.{name}") for name in ("gdal", "ogr", "osr"))
@@ -161,5 +208,7 @@ def test_the_file_of_the_client_is_filled_as_its_layers_are(street, tmp_path):
 
 def test_a_drawing_has_the_layers_of_the_client_and_points_as_texts(street, tmp_path):
     made = apply_template(template(tmp_path, "from;where;layer;CODE", "MARKINGS;;ROAD;1", "ROADSIDE_OBJECTS;;ROAD;P7", mixed=True), street)
+    with pytest.raises(RoadExtractionError, match="line 2: a drawing has no layer ROAD/1"):
+        template(tmp_path, "from;where;layer", "MARKINGS;;ROAD/1", mixed=True)
     drawn = [(line.layer, line.closed, line.text) for line in drawn_layers(made.layers)]
     assert drawn == [("ROAD", True, ""), ("ROAD", True, ""), ("ROAD", False, "P7")]
