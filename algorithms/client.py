@@ -72,9 +72,9 @@ class ExportTemplate(Algorithm):
             raise RoadExtractionError(tr("No layer of the road map was given. Choose at least one of those that the template names."))
         for name in sorted({rule.source for rule in template.rules} - set(layers)):
             progress.info(tr("{label} was not given: the rows about it are not used.").format(label=call.label(name)))
-        crs = next(iter(layers.values())).crs
+        crs = next((features.crs for features in layers.values() if features.crs), "")
         for name, features in layers.items():
-            if features.crs and crs and not same_crs(parse_crs(features.crs), parse_crs(crs)):
+            if features.crs and not same_crs(parse_crs(features.crs), parse_crs(crs)):
                 raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.").format(
                     label=call.label(name)))
         made = apply_template(template, layers, layers_of_file(office, crs) if office else None)

@@ -15,7 +15,7 @@ from ..core.common.features import (
 )
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, SettingSpec
-from .survey_input import READING_SETTINGS, check_layers_on_roads, open_survey_of
+from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
 # parameter -> its label, fields and geometry, in the order of BorderLayers
@@ -39,22 +39,11 @@ def survey_with_borders(call, progress, above_road):
 
     A layer without features, as a step before may have found nothing, counts as not given.
     """
-    from shapely import get_coordinates
-
-    from ..core.io.crs import check_same_crs
     from ..products.inventory.borders import BorderLayers
 
     layers = {name: call.features(name, schema, geometry) if call.algorithm.parameter(name) is not None else None
               for name, (_, schema, geometry) in BORDER_LAYERS.items()}
-    for name, features in layers.items():
-        if features is not None and not len(features):
-            progress.warn(tr("{label} holds no features and is not used.").format(label=call.label(name)))
-            layers[name] = None
-    survey = open_survey_of(call, progress, above_road=above_road)
-    for name, features in layers.items():
-        if features is not None:
-            check_same_crs(features.crs, survey.crs, get_coordinates(features.geometries[0])[0], call.label(name))
-    check_layers_on_roads(call, layers, survey.frame, progress)
+    survey = open_survey_with(call, layers, progress, above_road=above_road)
     return survey, BorderLayers(*layers.values())
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import csv
 import os
 import re
-import shutil
+import sqlite3
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +30,7 @@ GEOMETRIES = {"point": "PointZ", "line": "LineStringZ", "polygon": "PolygonZ"}
 IN_WORDS = "class", "kind", "pattern", "edge", "status", "side", "use", "type", "part"   # fields whose values are words that are known
 REFERENCE = re.compile(r"\{([^{}]*)\}")
 CONDITION = re.compile(r"\s*(\w+)\s*(<=|>=|!=|=|<|>)\s*(.*?)\s*")
+NOT_DRAWN = '<>/\\":;?*|=,`'   # source: what AutoCAD refuses in names of layers
 NOT_WANTED = "-"   # as the client's layer, of what is left out on purpose
 NUMBER = "number"   # what a template calls the number of a feature in its layer, from 1
 
@@ -73,32 +76,39 @@ def read_template(path: str | os.PathLike[str], sources: Mapping[str, tuple[Sequ
     """
     lines = _rows_of(path)
     number, header = lines[0]
-    names = [name.strip().lower() if name.strip().lower() in OWN_COLUMNS else name.strip() for name in header]
-    for needed in ("from", "layer"):
-        if needed not in names:
-            raise RoadExtractionError(f"{path}, line {number}: there is no column “{needed}”. The first line names the columns: from, where, layer, "
-                                      "geometry, and the fields of the client.")
-    types = {}
-    for name in names:
-        field, _, kind = name.partition(":")
-        if kind and kind not in TYPES:
-            raise RoadExtractionError(f"{path}, line {number}: {field} is to be of the type “{kind}”; known are {', '.join(TYPES)}.")
-        types[field] = TYPES.get(kind)
-    fields = [name.partition(":")[0] for name in names]
-    if double := next((name for name, count in Counter(field.lower() for field in fields).items() if count > 1), ""):
-        raise RoadExtractionError(f"{path}, line {number}: two columns are called {double}.")
-    rules = []
-    for line, cells in lines[1:]:
-        try:
-            rules.append(_rule(line, dict(zip(fields, (cell.strip() for cell in cells))), sources))
-        except ValueError as problem:
-            raise RoadExtractionError(f"{path}, line {line}: {problem}") from problem
-    for rule in (rule for rule in rules if not mixed and rule.layer != NOT_WANTED):
-        first = next(other for other in rules if other.layer == rule.layer)
-        if first.geometry != rule.geometry:
-            raise RoadExtractionError(f"{path}, line {rule.line}: layer {rule.layer} would hold a {rule.geometry} and, from line {first.line}, a "
-                                      f"{first.geometry}. Give it another layer, or say in the column geometry what it becomes.")
+    rules: list[_Rule] = []
+    try:
+        fields, types = _columns(header)
+        for number, cells in lines[1:]:
+            rule = _rule(number, fields, cells, sources)
+            first = next((other for other in rules if other.layer.lower() == rule.layer.lower()), rule)
+            if first.layer != rule.layer:
+                raise ValueError(f"layer {rule.layer} is called {first.layer} in line {first.line}. Write capitals alike.")
+            if mixed and (sign := next((sign for sign in rule.layer if sign in NOT_DRAWN), "")):
+                raise ValueError(f"a drawing has no layer {rule.layer}: none of its names holds a {sign} sign.")
+            if first.geometry != rule.geometry and not mixed and rule.layer != NOT_WANTED:
+                raise ValueError(f"layer {rule.layer} would hold a {rule.geometry} and, from line {first.line}, a {first.geometry}. Give it another "
+                                 "layer, or say in the column geometry what it becomes.")
+            rules.append(rule)
+    except ValueError as problem:
+        raise RoadExtractionError(f"{path}, line {number}: {problem}") from problem
     return _Template(str(path), tuple(rules), types)
+
+
+def _columns(header):
+    """Names of all columns, "" for those without one, and {field of the client: its type}; ValueError, in one sentence, for what is not known."""
+    fields, kinds = zip(*((name.strip(), kind.strip().lower()) for name, _, kind in (cell.partition(":") for cell in header)))
+    fields = [field.lower() if field.lower() in OWN_COLUMNS else field for field in fields]
+    for needed in ("from", "layer"):
+        if needed not in fields:
+            raise ValueError(f"there is no column “{needed}”. The first line names the columns: from, where, layer, geometry, and the fields of the "
+                             "client.")
+    for k, (field, kind) in enumerate(zip(fields, kinds)):
+        if kind and kind not in TYPES:
+            raise ValueError(f"{field} is to be of the type “{kind}”; known are {', '.join(TYPES)}.")
+        if field and field.lower() in map(str.lower, fields[:k]):
+            raise ValueError(f"two columns are called {field.lower()}.")
+    return fields, {field: TYPES.get(kind) for field, kind in zip(fields, kinds) if field}
 
 
 def _rows_of(path):
@@ -106,7 +116,7 @@ def _rows_of(path):
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as problem:
-        raise RoadExtractionError(f"{path} cannot be read as a table in UTF-8 ({problem}).") from problem
+        raise RoadExtractionError(f"{path} cannot be read as a table in UTF-8 ({problem}). Save it as “CSV UTF-8”.") from problem
     said = [(number, line) for number, line in enumerate(lines, 1) if line.strip(" ;,\t") and not line.lstrip(' "').startswith("#")]
     if len(said) < 2:
         raise RoadExtractionError(f"{path} holds no rows. Its first line names the columns, and each further one says what becomes what.")
@@ -114,8 +124,13 @@ def _rows_of(path):
     return [(number, next(csv.reader([line], delimiter=delimiter))) for number, line in said]
 
 
-def _rule(line, cells, sources):
+def _rule(line, fields, texts, sources):
     """The rule of a row; ValueError, in one sentence, for what is not known."""
+    named = [(name, text.strip()) for name, text in zip_longest(fields, texts, fillvalue="") if text.strip()]
+    unnamed = next((text for name, text in named if not name), "")
+    if unnamed:
+        raise ValueError(f"“{unnamed}” stands in a column without a name. Put cells that hold the delimiter between quotes.")
+    cells = dict(named)
     source, layer, geometry = cells.get("from", "").upper(), cells.get("layer", ""), cells.get("geometry", "").lower()
     if source not in sources:
         raise ValueError(f"there is no layer {source or 'without a name'}{_like(source, sources)}.")
@@ -128,10 +143,12 @@ def _rule(line, cells, sources):
         raise ValueError(f"a {given} of {source} cannot become a “{geometry}”; it may become {' or '.join(order[:order.index(given) + 1])}.")
     known = {field.name: field for field in schema}
     conditions = tuple(_condition(text, known, source) for text in cells.get("where", "").split("&") if text.strip())
-    values = {name: text for name, text in cells.items() if name not in OWN_COLUMNS and text}
+    values = {name: text for name, text in cells.items() if name not in OWN_COLUMNS}
     for text in values.values():
         for reference in REFERENCE.findall(text):
             _check_reference(reference, known, source)
+        if re.search("[{}]", REFERENCE.sub("", text)):
+            raise ValueError(f"“{text}” has a brace without its partner. Write {{width_m}} for one of our fields.")
     return _Rule(line, source, conditions, layer, geometry or given, values)
 
 
@@ -144,6 +161,8 @@ def _condition(text, known, source):
     if known[name].type is not str:
         for value in values:
             _number(value, name)
+        if len(values) > 1 and how not in ("=", "!="):
+            raise ValueError(f"“{text.strip()}” compares {name} with {len(values)} numbers. Write one, with a decimal point.")
     elif how not in ("=", "!="):
         raise ValueError(f"{name} is a text, which is compared by = or != alone.")
     else:
@@ -169,6 +188,8 @@ def _check_reference(reference, known, source):
         return
     _check_field(name, known, source)
     if "=" in option:
+        if part := next((part for part in option.split(",") if "=" not in part), ""):
+            raise ValueError(f"“{part.strip()}” in the list of {name} is no pair such as left=L.")
         _check_words(name, tuple(_list_of(option)))
     elif option and option not in _units_of(name):
         units = _units_of(name)
@@ -189,7 +210,7 @@ def _number(text, name):
 
 def _list_of(option):
     """{our value: the client's} of a list such as left=L, right=R."""
-    return dict((part.strip() for part in pair.split("=", 1)) for pair in option.split(",") if "=" in pair)
+    return dict((part.strip() for part in pair.split("=", 1)) for pair in option.split(","))
 
 
 def _units_of(name):
@@ -207,7 +228,8 @@ def _compared(value, how, values):
     if how in ("=", "!="):
         same = value in values if isinstance(value, str) else float(value) in map(float, values)
         return same == (how == "=")
-    return any({"<": value < limit, "<=": value <= limit, ">": value > limit, ">=": value >= limit}[how] for limit in map(float, values))
+    limit = float(values[0])
+    return {"<": value < limit, "<=": value <= limit, ">": value > limit, ">=": value >= limit}[how]
 
 
 # The features of a map as the template has them.
@@ -299,6 +321,8 @@ def _filled(template, rule, field, row, kind):
         number = float(value)
     except ValueError:
         raise RoadExtractionError(f"{template.path}, line {rule.line}: {field} of {rule.layer} holds numbers, and “{value}” is none.") from None
+    if kind is int and not abs(number) < 2**63:   # of 64 bits
+        raise RoadExtractionError(f"{template.path}, line {rule.line}: {field} of {rule.layer} cannot hold a number as large as {value}.")
     return round(number) if kind is int else number
 
 
@@ -348,7 +372,7 @@ def layers_of_file(path: str | os.PathLike[str], crs: str) -> dict[str, tuple[st
     """
     gdal, ogr = _gdal()
     kinds = {ogr.wkbPoint: "point", ogr.wkbLineString: "line", ogr.wkbPolygon: "polygon", ogr.wkbMultiPoint: "point",
-             ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon"}
+             ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon", ogr.wkbNone: "row without a place"}
     types = {ogr.OFTInteger: int, ogr.OFTInteger64: int, ogr.OFTReal: float}
     ours = parse_crs(as_in_file(crs)[0]) if crs else None
     try:
@@ -376,17 +400,20 @@ def write_client_layers(layers: Mapping[str, Features], path: str, office: str =
     RoadExtractionError if there is no GDAL that writes it, or the client's file does not take the features.
     """
     gdal, ogr = _gdal()
-    if office:
-        shutil.copyfile(office, path)
     try:
+        if office:
+            # what a program that has it open keeps in a journal beside it is copied too
+            with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(path)) as copy:
+                database.backup(copy)
         with gdal_exceptions():
             dataset = gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_UPDATE) if office \
                 else gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)
             for name, features in layers.items():
                 layer = dataset.GetLayerByName(name) if office else _new_layer(dataset, name, features)
                 _fill(layer, features)
+            dataset.FlushCache()   # what cannot be written when a dataset is let go, nobody is told
             layer = dataset = None
-    except RuntimeError as problem:
+    except (RuntimeError, sqlite3.Error) as problem:
         raise RoadExtractionError(f"The layers of the client could not be written: {problem}.") from problem
 
 
@@ -395,7 +422,10 @@ def _new_layer(dataset, name, features):
 
     crs = osr.SpatialReference(as_in_file(features.crs)[0] if features.crs else UNDEFINED_CARTESIAN)
     kinds = {"PointZ": ogr.wkbPoint25D, "LineStringZ": ogr.wkbLineString25D, "PolygonZ": ogr.wkbPolygon25D}
-    layer = dataset.CreateLayer(name, crs, kinds[features.geometry_type])
+    # columns that a GeoPackage has itself, where the client calls a field so
+    taken = {field.name.lower() for field in features.schema}
+    options = [f"{option}=lanewright_{column}" for option, column in (("FID", "fid"), ("GEOMETRY_NAME", "geom")) if column in taken]
+    layer = dataset.CreateLayer(name, crs, kinds[features.geometry_type], options)
     types = {int: ogr.OFTInteger64, float: ogr.OFTReal, str: ogr.OFTString}
     for field in features.schema:
         layer.CreateField(ogr.FieldDefn(field.name, types[field.type]))
@@ -408,6 +438,7 @@ def _fill(layer, features):
 
     units = as_in_file(features.crs)[1]
     kind = layer.GetGeomType()
+    fields = {field.name: layer.GetLayerDefn().GetFieldDefn(layer.GetLayerDefn().GetFieldIndex(field.name)) for field in features.schema}
     layer.StartTransaction()
     for shape, row in features:
         if not units.metric:
@@ -416,7 +447,12 @@ def _fill(layer, features):
         feature = ogr.Feature(layer.GetLayerDefn())
         feature.SetGeometry(made if kind == ogr.wkbUnknown else ogr.ForceTo(made, kind))
         for name, value in row.items():
-            if value is not None:
-                feature.SetField(name, value)
+            if value is None:
+                continue
+            feature.SetField(name, value)
+            stored = feature.GetField(name)
+            if stored is None or isinstance(value, int) and stored != value or isinstance(value, str) and 0 < fields[name].GetWidth() < len(value):
+                raise RoadExtractionError(f"The field {name} of layer {layer.GetName()} does not take “{value}”: it holds "
+                                          f"{fields[name].GetTypeName()} of a smaller size or another kind. Change the template or the field.")
         layer.CreateFeature(feature)
     layer.CommitTransaction()
