@@ -1,7 +1,6 @@
 """What else the road shows: its cross-sections and surface, and what stands beside it."""
 
 from datetime import datetime
-from pathlib import Path
 
 from ..core.common.features import (
     BREAKLINES,
@@ -207,7 +206,12 @@ class SurfaceOfRoad(Algorithm):
         call.layer("BREAKLINES", lines)
         call.layer("TIN", faces)
         if call.wants("SURFACE_FILE"):
-            _write_surface(call, model)
+            from ..products.cad import landxml_text, surface_lines, write_dxf
+
+            if call.new_file("SURFACE_FILE").lower().endswith(".dxf"):
+                write_dxf(surface_lines(model), call.new_file("SURFACE_FILE"), model.crs, model.places[model.surface.faces])
+            else:
+                call.text("SURFACE_FILE", landxml_text((), model.crs, tr("Surface"), datetime.now(), model))
         if call.wants("DEM"):
             write_heights(model, call.new_file("DEM"), settings.cell_size, progress.part(0.9, 1.0))
         share = 100 * model.vertices / max(model.points, 1)
@@ -215,16 +219,6 @@ class SurfaceOfRoad(Algorithm):
                          "carriageway by {rmse:.1f} mm (root mean square).").format(triangles=len(faces), vertices=model.vertices, share=share,
                                                                                    rmse=1000 * model.rmse))
         return {"VERTICES": float(model.vertices), "TRIANGLES": float(len(faces)), "RMSE": model.rmse, "SHARE": share}
-
-
-def _write_surface(call, model):
-    from ..products.cad import cad_surface, landxml_text, surface_lines, write_dxf
-
-    surface, path = cad_surface(model), call.new_file("SURFACE_FILE")
-    if path.lower().endswith(".dxf"):
-        write_dxf(surface_lines(surface), path, model.crs, surface.vertices[surface.faces])
-    else:
-        Path(path).write_text(landxml_text((), model.crs, tr("Surface"), datetime.now(), surface), encoding="utf-8")
 
 
 ROADSIDE_OF = "products.inventory.borders:RoadsideSettings"

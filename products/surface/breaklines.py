@@ -10,7 +10,8 @@ import shapely
 from ...core.common.arrays import mask_runs
 from ...core.common.progress import Progress
 from ...core.driving.layers import Lanes
-from ...core.survey.frame.placement import line_parts, lines_in_frame
+from ...core.survey.frame.placement import FrameLines, line_parts, lines_in_frame
+from ...core.survey.frame.road_frame import RoadFrame
 from ...core.survey.survey import Survey
 from ..inventory.borders import BorderLayers
 from ..inventory.roadside.uprights import lowest_along
@@ -43,18 +44,27 @@ class Breakline:
     step: float = np.nan   # m that an edge_top lies above its edge_bottom
 
 
-def road_breaklines(survey: Survey, ground: RoadGround, layers: BorderLayers, progress: Progress = Progress()) -> list[Breakline]:
-    """The breaklines of a road: feet and tops of its edges, gutters, crown and borders of lanes; nothing where the ground was not seen."""
+def lines_to_follow(layers: BorderLayers, frame: RoadFrame) -> tuple[FrameLines, FrameLines]:
+    """Edges, and borders of lanes or else marking lines, with vertices about a slice apart."""
+    return _even(_parts_of(layers.edges), frame), _even(_lane_borders(layers), frame)
+
+
+def road_breaklines(survey: Survey, ground: RoadGround, edges: FrameLines, borders: FrameLines,
+                    progress: Progress = Progress()) -> list[Breakline]:
+    """The breaklines of a road: feet and tops of its edges, gutters, crown and borders of lanes; nothing where the ground was not seen.
+
+    edges, borders : of all roads, as `lines_to_follow` gives them
+    """
     frame = survey.frame
-    result = list(_edges(survey, ground, layers.edges, progress))
+    result = list(_edges(survey, ground, edges[edges.road == ground.road], progress))
     for side in (1, -1):
         result += _along("gutter_flow_line", ground, frame, *_gutter(ground, side))
     result += _along("crown", ground, frame, *_crown(ground))
-    lines = _lines_of_road(_lane_borders(layers), ground.road, frame)
+    lines = borders[borders.road == ground.road]
     z, sigma = ground.at(lines.s, lines.d), ground.at(lines.s, lines.d, ground.sigma)
     # a lane that ends at the curb ends at the edge's own line
-    edges = shapely.union_all([shapely.linestrings(line.places[:, :2]) for line in result if line.kind.startswith("edge")])
-    z[shapely.dwithin(shapely.points(lines.x, lines.y), edges, 2 * CROSS_CELL)] = np.nan
+    followed = shapely.union_all([shapely.linestrings(line.places[:, :2]) for line in result if line.kind.startswith("edge")])
+    z[shapely.dwithin(shapely.points(lines.x, lines.y), followed, 2 * CROSS_CELL)] = np.nan
     for k in range(len(lines)):
         part = lines.line(k)
         result += _pieces("lane_border", ground.road, np.stack([lines.x[part], lines.y[part], z[part]], axis=1), lines.s[part], sigma[part])
@@ -72,25 +82,23 @@ def _lane_borders(layers):
 
 
 def _parts_of(layer):
-    """The same of a layer of lines."""
+    """The same of a layer of lines; tops of curbs are measured, not taken from it."""
     if layer is None:
         return [], []
-    parts, rows = line_parts(layer.geometries)
-    return parts, [-1 if layer.rows[row].get("road") is None else int(layer.rows[row]["road"]) for row in rows]
+    members = [(part, layer.rows[row]) for part, row in zip(*line_parts(layer.geometries)) if layer.rows[row].get("part") != "top"]
+    return [part for part, _ in members], [-1 if row.get("road") is None else int(row["road"]) for _, row in members]
 
 
-def _lines_of_road(lines_and_roads, road, frame):
-    """FrameLines of a road with vertices a slice apart."""
+def _even(lines_and_roads, frame):
+    """FrameLines with vertices a slice apart."""
     shapes, roads = lines_and_roads
     even = [shapely.linestrings(shapely.get_coordinates(shapely.line_interpolate_point(
         shape, np.linspace(0.0, 1.0, max(int(round(shape.length / SLICE_LENGTH)), 2) + 1), normalized=True), include_z=True)) for shape in shapes]
-    lines = lines_in_frame(even, roads, frame, None)
-    return lines[lines.road == road]
+    return lines_in_frame(even, roads, frame, None)
 
 
-def _edges(survey, ground, layer, progress):
+def _edges(survey, ground, lines, progress):
     """Foot and top of every edge. Which side is the higher one is measured, so that it does not matter which way a line was drawn."""
-    lines = _lines_of_road(_parts_of(layer), ground.road, survey.frame)
     u, z, normal = edge_profiles(survey, ground, lines, progress)
     higher = np.nan_to_num(_line(u, z, PLATEAU)[0] - _line(-u, z, PLATEAU)[0]) < 0
     z = np.where(higher[:, None], z[:, ::-1], z)

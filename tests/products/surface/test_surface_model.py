@@ -5,7 +5,7 @@ import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import ROAD_EDGES, Features
-from lanewright.products.cad import cad_surface, landxml_text, surface_lines, write_dxf
+from lanewright.products.cad import landxml_text, surface_lines, write_dxf
 from lanewright.products.export.xml_tree import read_xml
 from lanewright.products.inventory.borders import BorderLayers
 from lanewright.products.surface.model import SurfaceSettings, make_surface_model, surface_to_features, write_heights
@@ -138,6 +138,29 @@ def test_edges_far_from_the_road_and_no_edges_are_refused():
             model_of(edges=edges)
 
 
+def test_a_road_with_an_edge_on_one_side_alone_is_refused_by_saying_so():
+    left = Features("LineStringZ", ROAD_EDGES, [shape for shape, _ in edges_of()][:1], [row for _, row in edges_of()][:1])
+    with pytest.raises(RoadExtractionError, match="one on either side"):
+        model_of(edges=left)
+
+
+def test_a_road_of_two_metres_is_too_short_for_a_surface():
+    with pytest.raises(RoadExtractionError, match="No ground was seen"):
+        model_of(length=2.0, edges=edges_of(2.0))
+
+
+def test_tops_of_curbs_and_edges_without_length_change_nothing():
+    """Layers of boundaries have both lines of a curb, 5 cm apart."""
+    edges = edges_of()
+    for shape, row in list(edges):
+        outward = 0.05 if row["side"] == "left" else -0.05
+        edges.add(shapely.transform(shape, lambda places, outward=outward: places + [0.0, outward, 0.12], include_z=True), **{**row, "part": "top"})
+        edges.add(shapely.linestrings(shapely.get_coordinates(shape, include_z=True)[[0, 0]]), **row)
+    one, other = model_of(), model_of(edges=edges)
+    assert [line.kind for line in one.lines] == [line.kind for line in other.lines]
+    assert len(one.surface.faces) == len(other.surface.faces)
+
+
 # A triangulation that is made to follow segments.
 
 @pytest.mark.parametrize("seed", range(5))
@@ -159,11 +182,19 @@ def test_segments_across_other_triangles_become_edges_and_nothing_is_lost(seed):
     np.testing.assert_allclose(found.heights(x, y), 0.1 * y, atol=1e-9)
 
 
+@pytest.mark.parametrize("segments, made", [([(0, 10)], set()), ([(0, 10), (0, 8), (2, 24)], {(0, 8)})])
+def test_a_segment_through_other_vertices_changes_nothing(segments, made):
+    x, y = (values.ravel().astype(float) for values in np.meshgrid(range(5), range(5)))
+    faces = Triangulation(np.stack([x, y, 0.0 * x], axis=1), np.array(segments)).faces
+    edges = {tuple(sorted(edge)) for face in faces.tolist() for edge in zip(face, face[1:] + face[:1])}
+    assert edges & set(segments) == made and len(faces) == 32
+
+
 # Files.
 
 def test_a_landxml_surface_has_the_triangles_and_breaklines_of_the_model(tmp_path):
     model = model_of()
-    root = read_xml(written(tmp_path, landxml_text((), surface=cad_surface(model)), "surface.xml"), "LandXML", "a LandXML file")
+    root = read_xml(written(tmp_path, landxml_text((), surface=model), "surface.xml"), "LandXML", "a LandXML file")
     assert [child.tag for child in root.children] == ["Units", "Project", "Application", "Surfaces"]
     element = root.find("Surfaces", "Surface")
     assert [child.tag for child in element.children] == ["SourceData", "Definition"]
@@ -182,8 +213,7 @@ def test_a_landxml_surface_has_the_triangles_and_breaklines_of_the_model(tmp_pat
 
 def test_a_dxf_surface_has_faces_and_lines_in_their_layers(tmp_path):
     model, path = model_of(), str(tmp_path / "surface.dxf")
-    surface_of_file = cad_surface(model)
-    write_dxf(surface_lines(surface_of_file), path, faces=surface_of_file.vertices[surface_of_file.faces])
+    write_dxf(surface_lines(model), path, faces=model.places[model.surface.faces])
     found = {}
     dataset = gdal.OpenEx(path)
     for feature in dataset.GetLayer(0):
