@@ -32,10 +32,6 @@ REFERENCE = re.compile(r"\{([^{}]*)\}")
 WHOLE = re.compile(r"-?(0|[1-9]\d*)")   # a number, and no code such as 007
 CONDITION = re.compile(r"\s*(\w+)\s*(<=|>=|!=|=|<|>)\s*(.*?)\s*")
 COMPARISONS = {"=": operator.eq, "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
-# source: definitions; how many of a unit make one of that in which a field is, which the end of its name says
-UNITS = {"m": {"m": 1.0, "dm": 10.0, "cm": 100.0, "mm": 1000.0, "km": 0.001, "ft": 1 / FOOT, "ftUS": 1 / US_SURVEY_FOOT},
-         "cm": {"m": 0.01, "cm": 1.0, "mm": 10.0}, "mm": {"m": 0.001, "cm": 0.1, "mm": 1.0},
-         "m2": {"m2": 1.0, "cm2": 1e4, "ft2": 1 / FOOT**2}, "pct": {"%": 1.0, "1": 0.01}, "deg": {"deg": 1.0, "gon": 10 / 9, "rad": np.pi / 180}}
 NOT_DRAWN = '<>/\\":;?*|=,`'   # source: what AutoCAD refuses in names of layers
 NOT_WANTED = "-"   # as the client's layer, of what is left out on purpose
 NUMBER = "number"   # what a template calls the number of a feature in its layer, from 1
@@ -212,10 +208,18 @@ def _reference(text, known, source):
         words = {ours.strip(): theirs.strip() for ours, _, theirs in pairs}
         _check_words(name, words)
         return _Reference(name, str, words=words)
-    units = UNITS.get(name.rpartition("_")[2] if "_" in name else "", {})
+    units = _units_of(name)
     if option not in units:
         raise ValueError(f"{name} cannot be given in “{option}”" + (f"; known are {', '.join(units)}." if units else ", since it has no unit."))
     return _Reference(name, float, units[option])
+
+
+def _units_of(name):
+    """{unit: how many of it make one of the field's own}, which the end of its name tells."""
+    units = {"m": {"m": 1.0, "dm": 10.0, "cm": 100.0, "mm": 1000.0, "km": 0.001, "ft": 1 / FOOT, "ftUS": 1 / US_SURVEY_FOOT},
+             "cm": {"m": 0.01, "cm": 1.0, "mm": 10.0}, "mm": {"m": 0.001, "cm": 0.1, "mm": 1.0},
+             "m2": {"m2": 1.0, "cm2": 1e4, "ft2": 1 / FOOT**2}, "pct": {"%": 1.0, "1": 0.01}, "deg": {"deg": 1.0, "gon": 10 / 9, "rad": np.pi / 180}}
+    return units.get(name.rpartition("_")[2] if "_" in name else "", {})
 
 
 def _check_field(name, known, source):
