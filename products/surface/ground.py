@@ -19,6 +19,7 @@ from ..inventory.borders import RoadBorders
 from ..inventory.surface_grid import (
     CROSS_CELL,
     ROAD_LAYER_JUMP,
+    ROAD_REACH,
     SLICE_LENGTH,
     HeightErrors,
     joined_heights,
@@ -112,7 +113,7 @@ def road_ground(survey: Survey, road: int, borders: RoadBorders, reach: float, p
     z[(beyond > reach) | (z > highest)] = np.nan
     z[np.abs(z - _medians(z)) > SPIKE + STEEPEST_GROUND * CROSS_CELL] = np.nan
     points = sum(int(grid.count.sum()) for grid, _ in read_grids)
-    return _apart(RoadGround(road, s, d, level, z, sigma, highest, right, left, points, errors), survey.frame)
+    return _apart(RoadGround(road, s, d, level, z, sigma, highest, right, left, points, errors), survey)
 
 
 def _lower_envelope(height):
@@ -135,13 +136,15 @@ def _medians(z):
     return np.concatenate(medians)
 
 
-def _apart(ground, frame):
-    """The ground without the cells that lie nearer to another road."""
-    if len(frame.roads) > 1:
+def _apart(ground, survey):
+    """The ground without the cells that lie nearer to another road of about their height."""
+    if len(survey.frame.roads) > 1:
         i, j = np.nonzero(np.isfinite(ground.z))
-        nearest = frame.locate_nearest(*frame.road(ground.road).to_map(ground.s[i], ground.d[j]))[0]
-        away = (nearest != ground.road) & (nearest >= 0)
-        ground.z[i[away], j[away]] = np.nan
+        nearest, s, _ = survey.frame.locate_nearest(*survey.frame.road(ground.road).to_map(ground.s[i], ground.d[j]))
+        for other in set(nearest.tolist()) - {ground.road, -1}:
+            rows = np.flatnonzero(nearest == other)
+            rows = rows[np.abs(survey.road_height(other, s[rows]) - ground.z[i[rows], j[rows]]) < ROAD_REACH]
+            ground.z[i[rows], j[rows]] = np.nan
     return ground
 
 
