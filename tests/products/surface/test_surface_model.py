@@ -79,6 +79,7 @@ def test_water_runs_along_the_curb_on_the_lower_side_alone():
     (_, y, _), = lines_of(model_of(crossfall=0.025, crown=False, noise=0.004), "gutter_flow_line")
     assert (y > 3.0).all() or (y < -3.0).all()
 
+
 def test_borders_of_lanes_lie_on_the_road_and_those_at_a_curb_are_its_line():
     lines = lines_of(model_of(lanes=True, noise=0.004), "lane_border")
     assert {round(float(np.median(y)), 1) for _, y, _ in lines} == {-3.0, 0.0}
