@@ -82,11 +82,15 @@ def _lane_borders(layers):
 
 
 def _parts_of(layer):
-    """The same of a layer of lines; tops of curbs are measured, not taken from it."""
+    """The same of a layer of lines, each once, as neighbouring surveys may both have one; tops of curbs are measured, not taken from it."""
     if layer is None:
         return [], []
     members = [(part, layer.rows[row]) for part, row in zip(*line_parts(layer.geometries)) if layer.rows[row].get("part") != "top"]
-    return [part for part, _ in members], [-1 if row.get("road") is None else int(row["road"]) for _, row in members]
+    parts, length = [part for part, _ in members], [part.length for part, _ in members]
+    covered, by = shapely.STRtree(shapely.buffer(parts, CROSS_CELL)).query(parts, predicate="covered_by") if parts else ((), ())
+    twice = {k for k, other in zip(covered, by) if (length[other], other) > (length[k], k)}
+    kept = [(part, -1 if row.get("road") is None else int(row["road"])) for k, (part, row) in enumerate(members) if k not in twice]
+    return [part for part, _ in kept], [road for _, road in kept]
 
 
 def _even(lines_and_roads, frame):
