@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import csv
+import operator
 import os
 import re
 import sqlite3
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -29,33 +29,48 @@ TYPES: dict[str, type] = {"text": str, "int": int, "real": float}
 GEOMETRIES = {"point": "PointZ", "line": "LineStringZ", "polygon": "PolygonZ"}
 IN_WORDS = "class", "kind", "pattern", "edge", "status", "side", "use", "type", "part"   # fields whose values are words that are known
 REFERENCE = re.compile(r"\{([^{}]*)\}")
+WHOLE = re.compile(r"-?(0|[1-9]\d*)")   # a number, and no code such as 007
 CONDITION = re.compile(r"\s*(\w+)\s*(<=|>=|!=|=|<|>)\s*(.*?)\s*")
+COMPARISONS = {"=": operator.eq, "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 NOT_DRAWN = '<>/\\":;?*|=,`'   # source: what AutoCAD refuses in names of layers
 NOT_WANTED = "-"   # as the client's layer, of what is left out on purpose
 NUMBER = "number"   # what a template calls the number of a feature in its layer, from 1
 
 
-@dataclass(frozen=True)
-class _Rule:
+class _Reference(NamedTuple):
+    """A field of ours within a cell: as it is, in another unit, or by a list of values."""
+
+    name: str
+    kind: type   # of what it gives
+    factor: float | None = None   # of the unit
+    words: Mapping[str, str] | None = None   # our value to the client's
+
+    def value(self, row: Mapping[str, Any]) -> Any:
+        value = row.get(self.name)
+        if value is None or self.factor is None and self.words is None:
+            return value
+        return value * self.factor if self.words is None else self.words.get(str(value))
+
+
+class _Rule(NamedTuple):
     """A row of a template: features of one of our layers on which all conditions hold become features of a layer of the client."""
 
     line: int   # of the table, from 1
     source: str   # name of our layer
-    conditions: tuple[tuple[str, str, tuple[str, ...]], ...]   # field, how it compares, with which values
+    conditions: Sequence[tuple[str, str, Sequence[Any]]]   # field, how it compares, with which values
     layer: str   # the client's
     geometry: str   # of it, a key of GEOMETRIES
-    cells: Mapping[str, str]   # field of the client to text with references to our fields; those that are not empty
+    cells: Mapping[str, Sequence[str | _Reference]]   # field of the client to texts and references, one after the other
 
     def holds(self, row: Mapping[str, Any]) -> bool:
         return all(_compared(row.get(field), how, values) for field, how, values in self.conditions)
 
 
-@dataclass(frozen=True)
-class _Template:
+class _Template(NamedTuple):
     """A template that was checked."""
 
     path: str
-    rules: tuple[_Rule, ...]
+    rules: Sequence[_Rule]
     types: Mapping[str, type | None]   # of the client's fields; None where the table does not say it
 
     def layer_of(self, name: str) -> list[_Rule]:
@@ -92,7 +107,7 @@ def read_template(path: str | os.PathLike[str], sources: Mapping[str, tuple[Sequ
             rules.append(rule)
     except ValueError as problem:
         raise RoadExtractionError(f"{path}, line {number}: {problem}") from problem
-    return _Template(str(path), tuple(rules), types)
+    return _Template(str(path), rules, types)
 
 
 def _columns(header):
@@ -142,32 +157,69 @@ def _rule(line, fields, texts, sources):
     if geometry and (geometry not in order or order.index(geometry) > order.index(given)):
         raise ValueError(f"a {given} of {source} cannot become a “{geometry}”; it may become {' or '.join(order[:order.index(given) + 1])}.")
     known = {field.name: field for field in schema}
-    conditions = tuple(_condition(text, known, source) for text in cells.get("where", "").split("&") if text.strip())
-    values = {name: text for name, text in cells.items() if name not in OWN_COLUMNS}
-    for text in values.values():
-        for reference in REFERENCE.findall(text):
-            _check_reference(reference, known, source)
-        if re.search("[{}]", REFERENCE.sub("", text)):
-            raise ValueError(f"“{text}” has a brace without its partner. Write {{width_m}} for one of our fields.")
-    return _Rule(line, source, conditions, layer, geometry or given, values)
+    return _Rule(line, source, [_condition(text, known, source) for text in cells.get("where", "").split("&") if text.strip()], layer,
+                 geometry or given, {name: _cell(text, known, source) for name, text in cells.items() if name not in OWN_COLUMNS})
 
 
 def _condition(text, known, source):
     parts = CONDITION.fullmatch(text)
     if parts is None:
         raise ValueError(f"“{text.strip()}” is no condition. Write a field, one of = != < <= > >=, and values with commas between them.")
-    name, how, values = parts[1], parts[2], tuple(value.strip() for value in parts[3].split(","))
+    name, how, values = parts[1], parts[2], [value.strip() for value in parts[3].split(",")]
     _check_field(name, known, source)
-    if known[name].type is not str:
-        for value in values:
-            _number(value, name)
-        if len(values) > 1 and how not in ("=", "!="):
-            raise ValueError(f"“{text.strip()}” compares {name} with {len(values)} numbers. Write one, with a decimal point.")
-    elif how not in ("=", "!="):
-        raise ValueError(f"{name} is a text, which is compared by = or != alone.")
-    else:
+    equal = how in ("=", "!=")
+    if known[name].type is str:
+        if not equal:
+            raise ValueError(f"{name} is a text, which is compared by = or != alone.")
         _check_words(name, values)
-    return name, how, values
+        return name, how, values
+    if len(values) > 1 and not equal:
+        raise ValueError(f"“{text.strip()}” compares {name} with {len(values)} numbers. Write one, with a decimal point.")
+    try:
+        return name, how, [float(value) for value in values]
+    except ValueError:
+        raise ValueError(f"{name} is a number, and “{parts[3]}” is none.") from None
+
+
+def _compared(value, how, values):
+    """Whether the value of a row is, or compares with, one of several."""
+    return value not in values if how == "!=" else value is not None and any(COMPARISONS[how](value, other) for other in values)
+
+
+def _cell(text, known, source):
+    """The texts and references of a cell of the client, one after the other."""
+    parts = REFERENCE.split(text)
+    if any(sign in part for part in parts[::2] for sign in "{}"):
+        raise ValueError(f"“{text}” has a brace without its partner. Write {{width_m}} for one of our fields.")
+    return [_reference(part, known, source) if k % 2 else part for k, part in enumerate(parts) if part or k % 2]
+
+
+def _reference(text, known, source):
+    name, _, option = (part.strip() for part in text.partition(":"))
+    if name == NUMBER and not option:
+        return _Reference(NUMBER, int)
+    _check_field(name, known, source)
+    if not option:
+        return _Reference(name, known[name].type)
+    if "=" in option:
+        pairs = [pair.partition("=") for pair in option.split(",")]
+        if single := next((ours.strip() for ours, sign, _ in pairs if not sign), ""):
+            raise ValueError(f"“{single}” in the list of {name} is no pair such as left=L.")
+        words = {ours.strip(): theirs.strip() for ours, _, theirs in pairs}
+        _check_words(name, words)
+        return _Reference(name, str, words=words)
+    units = _units_of(name)
+    if option not in units:
+        raise ValueError(f"{name} cannot be given in “{option}”" + (f"; known are {', '.join(units)}." if units else ", since it has no unit."))
+    return _Reference(name, float, units[option])
+
+
+def _units_of(name):
+    """{unit: how many of it make one of the field's own}, which the end of its name tells."""
+    units = {"m": {"m": 1.0, "dm": 10.0, "cm": 100.0, "mm": 1000.0, "km": 0.001, "ft": 1 / FOOT, "ftUS": 1 / US_SURVEY_FOOT},
+             "cm": {"m": 0.01, "cm": 1.0, "mm": 10.0}, "mm": {"m": 0.001, "cm": 0.1, "mm": 1.0},
+             "m2": {"m2": 1.0, "cm2": 1e4, "ft2": 1 / FOOT**2}, "pct": {"%": 1.0, "1": 0.01}, "deg": {"deg": 1.0, "gon": 10 / 9, "rad": np.pi / 180}}
+    return units.get(name.rpartition("_")[2] if "_" in name else "", {})
 
 
 def _check_field(name, known, source):
@@ -182,61 +234,17 @@ def _check_words(name, values):
             raise ValueError(f"{value} is no {name} that Lanewright writes{_like(value, words)}.")
 
 
-def _check_reference(reference, known, source):
-    name, _, option = (part.strip() for part in reference.partition(":"))
-    if name == NUMBER and not option:
-        return
-    _check_field(name, known, source)
-    if "=" in option:
-        if part := next((part for part in option.split(",") if "=" not in part), ""):
-            raise ValueError(f"“{part.strip()}” in the list of {name} is no pair such as left=L.")
-        _check_words(name, tuple(_list_of(option)))
-    elif option and option not in _units_of(name):
-        units = _units_of(name)
-        raise ValueError(f"{name} cannot be given in “{option}”" + (f"; known are {', '.join(units)}." if units else ", since it has no unit."))
-
-
 def _like(name, known):
-    near = get_close_matches(str(name).lower(), {str(other).lower(): other for other in known}, 1)
-    return f" (is {next(other for other in known if str(other).lower() == near[0])} meant?)" if near else f"; known are {', '.join(sorted(known))}"
-
-
-def _number(text, name):
-    try:
-        return float(text)
-    except ValueError:
-        raise ValueError(f"{name} is a number, and “{text}” is none.") from None
-
-
-def _list_of(option):
-    """{our value: the client's} of a list such as left=L, right=R."""
-    return dict((part.strip() for part in pair.split("=", 1)) for pair in option.split(","))
-
-
-def _units_of(name):
-    """{unit: how many of it make one of the field's own}, which the end of its name tells."""
-    units = {"m": {"m": 1.0, "dm": 10.0, "cm": 100.0, "mm": 1000.0, "km": 0.001, "ft": 1 / FOOT, "ftUS": 1 / US_SURVEY_FOOT},
-             "cm": {"m": 0.01, "cm": 1.0, "mm": 10.0}, "mm": {"m": 0.001, "cm": 0.1, "mm": 1.0},
-             "m2": {"m2": 1.0, "cm2": 1e4, "ft2": 1 / FOOT**2}, "pct": {"%": 1.0, "1": 0.01}, "deg": {"deg": 1.0, "gon": 10 / 9, "rad": np.pi / 180}}
-    return units.get(name.rpartition("_")[2] if "_" in name else "", {})
-
-
-def _compared(value, how, values):
-    """Whether the value of a row is, or compares with, one of several texts."""
-    if value is None:
-        return how == "!="
-    if how in ("=", "!="):
-        same = value in values if isinstance(value, str) else float(value) in map(float, values)
-        return same == (how == "=")
-    limit = float(values[0])
-    return {"<": value < limit, "<=": value <= limit, ">": value > limit, ">=": value >= limit}[how]
+    """The known name that is most like another, or else all of them."""
+    names = {str(other).lower(): other for other in known}
+    near = get_close_matches(name.lower(), names, 1)
+    return f" (is {names[near[0]]} meant?)" if near else f"; known are {', '.join(sorted(known))}"
 
 
 # The features of a map as the template has them.
 
 
-@dataclass(frozen=True)
-class _ClientMap:
+class _ClientMap(NamedTuple):
     """What is handed over."""
 
     layers: Mapping[str, Features]   # the client's, by name, in the order of the template
@@ -258,7 +266,7 @@ def apply_template(template: _Template, layers: Mapping[str, Features],
         rules = [rule for rule in template.layer_of(name) if rule.source in layers]
         if not rules:
             continue
-        types = _types(template, name, layers, office)
+        types = _types(template, name, office)
         made = Features(GEOMETRIES[template.layer_of(name)[0].geometry], [Field(field, kind) for field, kind in types.items()])
         for source in dict.fromkeys(rule.source for rule in rules):
             made.crs = made.crs or layers[source].crs
@@ -278,61 +286,43 @@ def apply_template(template: _Template, layers: Mapping[str, Features],
     return _ClientMap(result, left)
 
 
-def _types(template, name, layers, office):
+def _types(template, name, office):
     """{field: type} of a layer of the client, its file's or else as the template says or its values are."""
     rules = template.layer_of(name)
     used = [field for field in template.types if any(field in rule.cells for rule in rules)]
     if office is None:
-        return {field: template.types.get(field) or _guessed([rule.cells[field] for rule in rules if field in rule.cells], rules, layers)
-                for field in used}
-    there, line = office.get(name), rules[0].line
-    if there is None:
-        raise RoadExtractionError(f"{template.path}, line {line}: the file of the client has no layer {name}{_like(name, office)}.")
-    if there[0] not in ("", rules[0].geometry):
-        raise RoadExtractionError(f"{template.path}, line {line}: layer {name} of the client's file holds a {there[0]}, and a {rules[0].geometry} "
-                                  "is to be written.")
-    missing = next((field for field in used if field not in there[1]), None)
-    if missing:
-        raise RoadExtractionError(f"{template.path}, line {line}: layer {name} of the client's file has no field {missing}"
-                                  f"{_like(missing, there[1])}.")
-    return {field: there[1][field] for field in used}
+        return {field: template.types.get(field) or _type_of([rule.cells[field] for rule in rules if field in rule.cells]) for field in used}
+    kind, fields = office.get(name, ("", {}))
+    lacking = next((field for field in used if field not in fields), "")
+    problem = ""
+    if name not in office:
+        problem = f"the file of the client has no layer {name}{_like(name, office)}"
+    elif kind not in ("", rules[0].geometry):
+        problem = f"layer {name} of the client's file holds a {kind}, and a {rules[0].geometry} is to be written"
+    elif lacking:
+        problem = f"layer {name} of the client's file has no field {lacking}{_like(lacking, fields)}"
+    if problem:
+        raise RoadExtractionError(f"{template.path}, line {rules[0].line}: {problem}.")
+    return {field: fields[field] for field in used}
 
 
-def _guessed(texts, rules, layers):
-    """The type that holds all of these values: whole numbers, numbers or texts."""
-    fields = {field.name: field.type for rule in rules if rule.source in layers for field in layers[rule.source].schema}
-    kinds = set()
-    for text in texts:
-        reference = REFERENCE.fullmatch(text)
-        name, _, option = reference[1].partition(":") if reference else ("", "", "")
-        plain = re.fullmatch(r"-?(0|[1-9]\d*)", text)
-        kinds.add(int if plain or name == NUMBER else str if not reference or "=" in option else float if option else fields.get(name.strip(), str))
+def _type_of(cells):
+    """The type that holds all values of cells: whole numbers, numbers or texts."""
+    kinds = {str if len(cell) > 1 else cell[0].kind if isinstance(cell[0], _Reference) else int if WHOLE.fullmatch(cell[0]) else str
+             for cell in cells}
     return int if kinds == {int} else float if kinds <= {int, float} else str
 
 
 def _filled(template, rule, field, row, kind):
     """The value of a field of the client; None where ours has none."""
-    text = rule.cells[field]
-    whole = REFERENCE.fullmatch(text)
-    value = _referred(whole[1], row) if whole else REFERENCE.sub(lambda found: _written(_referred(found[1], row)), text)
+    values = [part.value(row) if isinstance(part, _Reference) else part for part in rule.cells[field]]
+    value = values[0] if len(values) == 1 else "".join(map(_written, values))
     if value is None or kind is str:
         return None if value is None else _written(value)
     try:
-        number = float(value)
+        return round(float(value)) if kind is int else float(value)
     except ValueError:
         raise RoadExtractionError(f"{template.path}, line {rule.line}: {field} of {rule.layer} holds numbers, and “{value}” is none.") from None
-    if kind is int and not abs(number) < 2**63:   # of 64 bits
-        raise RoadExtractionError(f"{template.path}, line {rule.line}: {field} of {rule.layer} cannot hold a number as large as {value}.")
-    return round(number) if kind is int else number
-
-
-def _referred(reference, row):
-    """What a reference to one of our fields gives."""
-    name, _, option = (part.strip() for part in reference.partition(":"))
-    value = row.get(name)
-    if value is None or not option:
-        return value
-    return _list_of(option).get(str(value)) if "=" in option else value * _units_of(name)[option]
 
 
 def _written(value):
@@ -438,7 +428,6 @@ def _fill(layer, features):
 
     units = as_in_file(features.crs)[1]
     kind = layer.GetGeomType()
-    fields = {field.name: layer.GetLayerDefn().GetFieldDefn(layer.GetLayerDefn().GetFieldIndex(field.name)) for field in features.schema}
     layer.StartTransaction()
     for shape, row in features:
         if not units.metric:
@@ -447,12 +436,18 @@ def _fill(layer, features):
         feature = ogr.Feature(layer.GetLayerDefn())
         feature.SetGeometry(made if kind == ogr.wkbUnknown else ogr.ForceTo(made, kind))
         for name, value in row.items():
-            if value is None:
-                continue
-            feature.SetField(name, value)
-            stored = feature.GetField(name)
-            if stored is None or isinstance(value, int) and stored != value or isinstance(value, str) and 0 < fields[name].GetWidth() < len(value):
-                raise RoadExtractionError(f"The field {name} of layer {layer.GetName()} does not take “{value}”: it holds "
-                                          f"{fields[name].GetTypeName()} of a smaller size or another kind. Change the template or the field.")
+            if value is not None and not _stored(feature, name, value):
+                raise RoadExtractionError(f"The field {name} of layer {layer.GetName()} does not take “{value}”: it is too long or large, or of "
+                                          "another kind than the field. Change the template or the field.")
         layer.CreateFeature(feature)
     layer.CommitTransaction()
+
+
+def _stored(feature, name, value):
+    """Set a field of a feature; whether it has the whole value then."""
+    width = feature.GetFieldDefnRef(name).GetWidth()
+    if isinstance(value, int) and abs(value) >= 2**63 or isinstance(value, str) and 0 < width < len(value):
+        return False
+    feature.SetField(name, value)
+    stored = feature.GetField(name)
+    return stored is not None and (stored == value or not isinstance(value, int))

@@ -90,19 +90,15 @@ def _header_of(file, crs):
 
 
 def _without(records, user):
-    from laspy.vlrs.vlrlist import VLRList
-
-    return VLRList([record for record in records if record.user_id.strip("\0 ") != user])
+    return laspy.vlrs.vlrlist.VLRList([record for record in records if record.user_id.strip("\0 ") != user])
 
 
 def _name_classes(header):
     """Let the record of the file that names classes name those of Lanewright."""
-    from laspy.vlrs.known import ClassificationLookupVlr
-
-    names = next((record for record in header.vlrs if isinstance(record, ClassificationLookupVlr)), None)
-    if names is None:
-        names = ClassificationLookupVlr()
-        header.vlrs.append(names)
+    lookup = laspy.vlrs.known.ClassificationLookupVlr
+    if not header.vlrs.get(lookup.__name__):
+        header.vlrs.append(lookup())
+    names = header.vlrs.get(lookup.__name__)[0]
     for number in PointClass:
         if number > PointClass.HIGH_NOISE:
             names[int(number)] = number.name.lower().replace("_", " ")
@@ -138,10 +134,8 @@ def _described(points, places, header, counts):
 
 def _straightened(header):
     """The header of a copy whose coordinates are stations, offsets and heights: it has no place on earth."""
-    from laspy.vlrs.vlrlist import VLRList
-
     straight = deepcopy(header)
-    straight.vlrs, straight.evlrs = _without(straight.vlrs, CRS_RECORDS), VLRList()
+    straight.vlrs, straight.evlrs = _without(straight.vlrs, CRS_RECORDS), laspy.vlrs.vlrlist.VLRList()
     straight.global_encoding.wkt = True   # as the point format demands; without a record the CRS is unknown
     straight.scales, straight.offsets = np.full(3, 1e-3), np.zeros(3)
     return straight

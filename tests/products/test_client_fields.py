@@ -130,7 +130,7 @@ def test_a_text_in_a_field_of_numbers_is_refused(street, tmp_path):
         apply_template(template(tmp_path, "from;where;layer;CODE:int", "MARKINGS;;AREA;K12"), street)
 
 
-@pytest.mark.parametrize(("code", "said"), [("70000", "does not take “70000”"), ("9" * 30, "cannot hold a number as large")])
+@pytest.mark.parametrize(("code", "said"), [("70000", "does not take “70000”"), ("9" * 30, "does not take")])
 def test_a_number_that_a_field_of_the_client_would_cut_is_refused(code, said, street, tmp_path):
     with pytest.raises(RoadExtractionError, match=said):
         filled_with(street, tmp_path, "OFTInteger", "OFSTInt16", code)
