@@ -348,8 +348,8 @@ def _as(kind, shape):
 
 
 @contextmanager
-def _geopackage(path, done):
-    """A context in which a GeoPackage is "read" or "written"; RoadExtractionError, in one sentence, where it cannot be."""
+def _geopackage(path, problem_of):
+    """A context in which a GeoPackage is read or written; RoadExtractionError, in the sentence `problem_of` (path, problem), where it cannot be."""
     try:
         with gdal_exceptions():
             yield
@@ -357,7 +357,15 @@ def _geopackage(path, done):
         raise RoadExtractionError("The GeoPackage of a client needs GDAL's Python module (osgeo), which is not installed. Install "
                                   "lanewright[gdal] with pip, or write a DXF drawing.") from problem
     except (RuntimeError, sqlite3.Error) as problem:
-        raise RoadExtractionError(f"{path} could not be {done} as a GeoPackage ({' '.join(str(problem).split())}).") from problem
+        raise RoadExtractionError(problem_of(path, " ".join(str(problem).split()))) from problem
+
+
+def _unreadable(path, problem):
+    return f"{path} could not be read as a GeoPackage ({problem})."
+
+
+def _unwritable(path, problem):
+    return f"{path} could not be written as a GeoPackage ({problem})."
 
 
 def layers_of_file(path: str | os.PathLike[str], crs: str) -> dict[str, tuple[str, dict[str, type]]]:
@@ -366,7 +374,7 @@ def layers_of_file(path: str | os.PathLike[str], crs: str) -> dict[str, tuple[st
     crs : WKT, metric, of the map; "" where unknown. RoadExtractionError if the file is none, or a layer is in another CRS.
     """
     ours, result = parse_crs(as_in_file(crs)[0]) if crs else None, {}
-    with _geopackage(path, "read"):
+    with _geopackage(path, _unreadable):
         kinds = {ogr.wkbPoint: "point", ogr.wkbLineString: "line", ogr.wkbPolygon: "polygon", ogr.wkbMultiPoint: "point",
                  ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon", ogr.wkbNone: "row without a place"}
         types = {ogr.OFTInteger: int, ogr.OFTInteger64: int, ogr.OFTReal: float}
@@ -387,7 +395,7 @@ def write_client_layers(layers: Mapping[str, Features], path: str, office: str =
 
     RoadExtractionError if there is no GDAL that writes it, or the client's file does not take the features.
     """
-    with _geopackage(path, "written"):
+    with _geopackage(path, _unwritable):
         if office:
             # what a program that has it open keeps in a journal beside it is copied too
             with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(path)) as copy:
