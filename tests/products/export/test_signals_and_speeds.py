@@ -75,6 +75,13 @@ def test_lights_signs_and_poles_stand_where_they_stood_and_say_what_they_said(tm
         assert headings == pytest.approx([90 - np.degrees(0.1), 270], abs=0.05)
 
 
+def test_a_trunk_among_the_poles_of_the_roadside_is_no_sign_of_the_map(tmp_path):
+    layers = read_in(tmp_path, street())
+    layers.signals.add(shapely.Point(600030, 5799995, 60.6), kind="trunk", height_m=3.0)
+    written_out = layers_of_opendrive(as_roads(tmp_path, layers), CRS).signals
+    assert sorted(row["kind"] for _, row in written_out) == ["pole", "sign", "traffic_light"]
+
+
 def test_lights_and_signs_hold_for_the_lanes_that_see_them(tmp_path):
     layers = read_in(tmp_path, street())
     for others in (layers, *there_and_back(tmp_path, layers)):
