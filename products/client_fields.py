@@ -9,7 +9,7 @@ import re
 import sqlite3
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, contextmanager
 from difflib import get_close_matches
 from itertools import zip_longest
 from pathlib import Path
@@ -23,6 +23,7 @@ from ..core.common.features import Features, Field
 from ..core.common.texts import vocabulary
 from ..core.io.crs import FOOT, UNDEFINED_CARTESIAN, US_SURVEY_FOOT, as_in_file, parse_crs, same_crs
 from ..core.io.local_files import gdal_exceptions
+from ..core.lazy import gdal, ogr, osr
 
 OWN_COLUMNS = "from", "where", "layer", "geometry"   # of the table; all others are the client's fields
 TYPES: dict[str, type] = {"text": str, "int": int, "real": float}
@@ -346,13 +347,17 @@ def _as(kind, shape):
 # Files with layers of their own.
 
 
-def _gdal():
+@contextmanager
+def _geopackage(path, done):
+    """A context in which a GeoPackage is "read" or "written"; RoadExtractionError, in one sentence, where it cannot be."""
     try:
-        from osgeo import gdal, ogr
+        with gdal_exceptions():
+            yield
     except ImportError as problem:
-        raise RoadExtractionError("A GeoPackage of a client is written by GDAL's own Python package, which is not installed. Install it by "
-                                  "conda-forge (gdal) or Debian (python3-gdal), or write a DXF drawing.") from problem
-    return gdal, ogr
+        raise RoadExtractionError("The GeoPackage of a client needs GDAL's Python module (osgeo), which is not installed. Install "
+                                  "lanewright[gdal] with pip, or write a DXF drawing.") from problem
+    except (RuntimeError, sqlite3.Error) as problem:
+        raise RoadExtractionError(f"{path} could not be {done} as a GeoPackage ({' '.join(str(problem).split())}).") from problem
 
 
 def layers_of_file(path: str | os.PathLike[str], crs: str) -> dict[str, tuple[str, dict[str, type]]]:
@@ -360,28 +365,21 @@ def layers_of_file(path: str | os.PathLike[str], crs: str) -> dict[str, tuple[st
 
     crs : WKT, metric, of the map; "" where unknown. RoadExtractionError if the file is none, or a layer is in another CRS.
     """
-    gdal, ogr = _gdal()
-    kinds = {ogr.wkbPoint: "point", ogr.wkbLineString: "line", ogr.wkbPolygon: "polygon", ogr.wkbMultiPoint: "point",
-             ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon", ogr.wkbNone: "row without a place"}
-    types = {ogr.OFTInteger: int, ogr.OFTInteger64: int, ogr.OFTReal: float}
-    ours = parse_crs(as_in_file(crs)[0]) if crs else None
-    try:
-        with gdal_exceptions():
-            dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=["GPKG"])
-            result = {}
-            for k in range(dataset.GetLayerCount()):
-                layer = dataset.GetLayer(k)
-                theirs = layer.GetSpatialRef()
-                if ours is not None and theirs is not None and not same_crs(parse_crs(theirs.ExportToWkt()), ours):
-                    raise RoadExtractionError(f"Layer {layer.GetName()} of {path} is in {theirs.GetName()}, and the map in {ours.name}. Give the "
-                                              "client's file the CRS of the map, or bring the map's layers to that of the file.")
-                defined = layer.GetLayerDefn()
-                fields = (defined.GetFieldDefn(number) for number in range(defined.GetFieldCount()))
-                result[layer.GetName()] = kinds.get(ogr.GT_Flatten(layer.GetGeomType()), ""), {
-                    field.GetName(): types.get(field.GetType(), str) for field in fields}
-            return result
-    except RuntimeError as problem:
-        raise RoadExtractionError(f"{path} cannot be read as a GeoPackage ({problem}).") from problem
+    ours, result = parse_crs(as_in_file(crs)[0]) if crs else None, {}
+    with _geopackage(path, "read"):
+        kinds = {ogr.wkbPoint: "point", ogr.wkbLineString: "line", ogr.wkbPolygon: "polygon", ogr.wkbMultiPoint: "point",
+                 ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon", ogr.wkbNone: "row without a place"}
+        types = {ogr.OFTInteger: int, ogr.OFTInteger64: int, ogr.OFTReal: float}
+        dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=["GPKG"])
+        for k in range(dataset.GetLayerCount()):
+            layer = dataset.GetLayer(k)
+            theirs = layer.GetSpatialRef()
+            if ours is not None and theirs is not None and not same_crs(parse_crs(theirs.ExportToWkt()), ours):
+                raise RoadExtractionError(f"Layer {layer.GetName()} of {path} is in {theirs.GetName()}, and the map in {ours.name}. Give the "
+                                          "client's file the CRS of the map, or bring the map's layers to that of the file.")
+            result[layer.GetName()] = kinds.get(ogr.GT_Flatten(layer.GetGeomType()), ""), {
+                field.GetName(): types.get(field.GetType(), str) for field in layer.schema}
+    return result
 
 
 def write_client_layers(layers: Mapping[str, Features], path: str, office: str = "") -> None:
@@ -389,27 +387,21 @@ def write_client_layers(layers: Mapping[str, Features], path: str, office: str =
 
     RoadExtractionError if there is no GDAL that writes it, or the client's file does not take the features.
     """
-    gdal, ogr = _gdal()
-    try:
+    with _geopackage(path, "written"):
         if office:
             # what a program that has it open keeps in a journal beside it is copied too
             with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(path)) as copy:
                 database.backup(copy)
-        with gdal_exceptions():
-            dataset = gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_UPDATE) if office \
-                else gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)
-            for name, features in layers.items():
-                layer = dataset.GetLayerByName(name) if office else _new_layer(dataset, name, features)
-                _fill(layer, features)
-            dataset.FlushCache()   # what cannot be written when a dataset is let go, nobody is told
-            layer = dataset = None
-    except (RuntimeError, sqlite3.Error) as problem:
-        raise RoadExtractionError(f"The layers of the client could not be written: {problem}.") from problem
+        dataset = gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_UPDATE) if office \
+            else gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)
+        for name, features in layers.items():
+            layer = dataset.GetLayerByName(name) if office else _new_layer(dataset, name, features)
+            _fill(layer, features)
+        dataset.FlushCache()   # what cannot be written when a dataset is let go, nobody is told
+        layer = dataset = None
 
 
 def _new_layer(dataset, name, features):
-    from osgeo import ogr, osr
-
     crs = osr.SpatialReference(as_in_file(features.crs)[0] if features.crs else UNDEFINED_CARTESIAN)
     kinds = {"PointZ": ogr.wkbPoint25D, "LineStringZ": ogr.wkbLineString25D, "PolygonZ": ogr.wkbPolygon25D}
     # columns that a GeoPackage has itself, where the client calls a field so
@@ -424,8 +416,6 @@ def _new_layer(dataset, name, features):
 
 def _fill(layer, features):
     """Add features to a layer of an open file, as its kind of geometry has them: flat, or of one part in a layer of several."""
-    from osgeo import ogr
-
     units = as_in_file(features.crs)[1]
     kind = layer.GetGeomType()
     layer.StartTransaction()

@@ -16,7 +16,7 @@ from ...core.survey.survey import Survey
 from ..inventory.borders import BorderLayers
 from ..inventory.roadside.uprights import lowest_along
 from ..inventory.surface_grid import CROSS_CELL, SLICE_LENGTH, smoothed
-from .ground import RoadGround, edge_profiles
+from .ground import RoadGround, edge_profiles, medians
 
 # In the order of their weight: where two run beside each other, the triangulation follows the first
 KINDS = ("edge_bottom", "edge_top", "gutter_flow_line", "crown", "lane_border")
@@ -82,11 +82,15 @@ def _lane_borders(layers):
 
 
 def _parts_of(layer):
-    """The same of a layer of lines; tops of curbs are measured, not taken from it."""
+    """The same of a layer of lines, each once, as neighbouring surveys may both have one; tops of curbs are measured, not taken from it."""
     if layer is None:
         return [], []
     members = [(part, layer.rows[row]) for part, row in zip(*line_parts(layer.geometries)) if layer.rows[row].get("part") != "top"]
-    return [part for part, _ in members], [-1 if row.get("road") is None else int(row["road"]) for _, row in members]
+    parts, length = [part for part, _ in members], [part.length for part, _ in members]
+    covered, by = shapely.STRtree(shapely.buffer(parts, CROSS_CELL)).query(parts, predicate="covered_by") if parts else ((), ())
+    twice = {k for k, other in zip(covered, by) if (length[other], other) > (length[k], k)}
+    kept = [(part, -1 if row.get("road") is None else int(row["road"])) for k, (part, row) in enumerate(members) if k not in twice]
+    return [part for part, _ in kept], [road for _, road in kept]
 
 
 def _even(lines_and_roads, frame):
@@ -171,14 +175,16 @@ def _hinge(x, heights):
     places = np.arange(x[0] + CROWN_INSIDE / 2, x[-1] - CROWN_INSIDE / 2, 2 * CROSS_CELL)
     if not len(places):
         return None
-    fits = [np.linalg.lstsq(np.stack([np.ones(len(x)), x - place, np.abs(x - place)], axis=1), heights, rcond=None)[:2] for place in places]
-    best = int(np.argmin([squares.sum() for _, squares in fits]))
-    (level, slope, bend), squares = fits[best]
-    place = float(places[best])
+    away = x - places[:, None]
+    lines = np.stack([np.ones_like(away), away, np.abs(away)], axis=1)
+    fits = np.linalg.solve(lines @ lines.transpose(0, 2, 1), (lines @ heights)[..., None])
+    squares = ((lines * fits).sum(axis=1) - heights) ** 2
+    best = int(np.argmin(squares.sum(axis=1)))
+    level, slope, bend = fits[best, :, 0].tolist()
     # left of the ridge the road falls outward by slope + bend < 0, right of it by slope - bend > 0
     if slope - bend < CROWN_FALL or slope + bend > -CROWN_FALL:
         return None
-    return place, level, float(np.sqrt(squares.sum() / max(len(x) - 3, 1)))
+    return float(places[best]), level, float(np.sqrt(squares[best].sum() / max(len(x) - 3, 1)))
 
 
 def _along(kind, ground, frame, d, z, sigma):
@@ -193,9 +199,7 @@ def _along(kind, ground, frame, d, z, sigma):
 
 def _running_median(values):
     """(N,) medians of nine neighbours without NaN; beyond its ends a line goes on as it came."""
-    windows = np.lib.stride_tricks.sliding_window_view(np.pad(values, 4, mode="reflect", reflect_type="odd"), 9)
-    ordered, count = np.sort(windows, axis=1), np.isfinite(windows).sum(axis=1)
-    return ordered[np.arange(len(values)), np.maximum((count - 1) // 2, 0)]
+    return medians(np.lib.stride_tricks.sliding_window_view(np.pad(values, 4, mode="reflect", reflect_type="odd"), 9))
 
 
 def _pieces(kind, road, places, station, sigma, step=None):

@@ -1,6 +1,7 @@
 """A road map under a client's names: what the template says happens, and what is not known is said with its line."""
 
 import sqlite3
+import sys
 from contextlib import closing
 
 import pyproj
@@ -204,6 +205,14 @@ def test_the_file_of_the_client_is_filled_as_its_layers_are(street, tmp_path):
         apply_template(template(tmp_path, "from;where;layer;KODE", "MARKINGS;;AREA;1"), street, office)
     with pytest.raises(RoadExtractionError, match="is in WGS 84 / UTM zone 32N, and the map in"):
         layers_of_file(path, "EPSG:32633")
+
+
+def test_without_gdal_a_geopackage_is_refused_in_one_sentence(street, tmp_path, monkeypatch):
+    for name in ("osgeo", "osgeo.gdal", "osgeo.ogr"):
+        monkeypatch.setitem(sys.modules, name, None)
+    made = apply_template(template(tmp_path, "from;where;layer;CODE", "MARKINGS;;AREA;12"), street)
+    with pytest.raises(RoadExtractionError, match="which is not installed. Install lanewright"):
+        write_client_layers(made.layers, str(tmp_path / "client.gpkg"))
 
 
 def test_a_drawing_has_the_layers_of_the_client_and_points_as_texts(street, tmp_path):

@@ -79,6 +79,7 @@ def test_water_runs_along_the_curb_on_the_lower_side_alone():
     (_, y, _), = lines_of(model_of(crossfall=0.025, crown=False, noise=0.004), "gutter_flow_line")
     assert (y > 3.0).all() or (y < -3.0).all()
 
+
 def test_borders_of_lanes_lie_on_the_road_and_those_at_a_curb_are_its_line():
     lines = lines_of(model_of(lanes=True, noise=0.004), "lane_border")
     assert {round(float(np.median(y)), 1) for _, y, _ in lines} == {-3.0, 0.0}
@@ -192,13 +193,14 @@ def test_where_a_road_crosses_above_another_the_surface_has_the_upper_one(up):
     assert [note for note in model.notes if "0 and 1" in note] == model.notes and len(model.notes) == (up > 0.0)
 
 
-def test_tops_of_curbs_and_edges_without_length_change_nothing():
-    """Layers of boundaries have both lines of a curb, 5 cm apart."""
+def test_tops_of_curbs_and_edges_without_length_or_twice_change_nothing():
+    """Layers of boundaries have both lines of a curb, 5 cm apart, and neighbouring surveys a line each."""
     edges = edges_of()
     for shape, row in list(edges):
         outward = 0.05 if row["side"] == "left" else -0.05
         edges.add(shapely.transform(shape, lambda places, outward=outward: places + [0.0, outward, 0.12], include_z=True), **{**row, "part": "top"})
         edges.add(shapely.linestrings(shapely.get_coordinates(shape, include_z=True)[[0, 0]]), **row)
+        edges.add(shapely.line_merge(shapely.segmentize(shape, 7.0)), **row)
     one, other = model_of(), model_of(edges=edges)
     assert [line.kind for line in one.lines] == [line.kind for line in other.lines]
     assert len(one.surface.faces) == len(other.surface.faces)
