@@ -31,7 +31,7 @@ def survey(run, folder, scene, length):
         return str(folder / name)
 
     drive = dict(POINT_CLOUD=at("survey.laz"), TRAJECTORY=at("trajectory.gpkg"))
-    run("samplesurvey", SCENE=scene, LENGTH=length, **drive)
+    run("samplesurvey", SCENE=scene, LENGTH=length, UAV_IMAGE=None, UAV_GCPS=None, **drive)
     given = dict(POINT_CLOUDS=[drive["POINT_CLOUD"]], TRAJECTORY=drive["TRAJECTORY"])
     layers = {name: at(f"{name.lower()}.gpkg") for name in ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES")}
     run("roadmap", **given, **layers)
