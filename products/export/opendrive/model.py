@@ -120,6 +120,15 @@ class MapRoad:
         """What its "start" or "end" touches."""
         return self.predecessor if end == "start" else self.successor
 
+    def touches(self, end: str, element: str, id: str) -> bool:
+        """Whether its "start" or "end" is linked to the road or junction of an id."""
+        link = self.link(end)
+        return link is not None and (link.element, link.id) == (element, id)
+
+    def way_out(self, id: int) -> str:
+        """The end, "start" or "end", at which the traffic of a lane leaves the road."""
+        return "end" if (id < 0) == (self.rule != "LHT") else "start"
+
 
 @dataclass
 class Connection:
@@ -158,6 +167,11 @@ class OpenDriveMap:
     def road(self, id: str) -> MapRoad | None:
         """The road of an id, None where there is none."""
         return next((road for road in self.roads if road.id == id), None)
+
+    def place(self, road: MapRoad, s: float) -> np.ndarray:
+        """(3,) map coordinates of the reference line of a road at s, or at its end where s lies beyond."""
+        station = np.array([min(max(s, 0.0), road.plan.length)])
+        return self.placed(np.c_[road.plan.at(station)[0], road.elevation.at(station)])[0]
 
     def placed(self, points: np.ndarray) -> np.ndarray:
         """(N, 3) points of the file in the coordinates of its CRS."""
@@ -233,20 +247,14 @@ class LaneNetwork:
 
     def following(self, key: LaneKey) -> list[LaneKey]:
         """The driven lanes that a driven lane leads to, in the direction of travel."""
-        end = "end" if travel(self.roads[key[0]], key[2]) > 0 else "start"
         # what ends where ours ends is no way on
-        return [neighbour for neighbour, neighbour_end in self.touching(key, end)
-                if self.driven(neighbour) and neighbour_end == ("start" if travel(self.roads[neighbour[0]], neighbour[2]) > 0 else "end")]
+        return [neighbour for neighbour, neighbour_end in self.touching(key, self.roads[key[0]].way_out(key[2]))
+                if self.driven(neighbour) and neighbour_end != self.roads[neighbour[0]].way_out(neighbour[2])]
 
     def driven(self, key: LaneKey) -> bool:
         """Whether there is a lane of a key, and vehicles use it."""
         lane = self.lane(key)
         return lane is not None and lane.type in DRIVEN_TYPES
-
-
-def travel(road: MapRoad, id: int) -> int:
-    """1 where the lanes of this side are driven along the reference line, -1 where against it."""
-    return 1 if (id < 0) == (road.rule != "LHT") else -1
 
 
 # Where the lanes of an OpenDRIVE road lie: borders in x, y, z.
@@ -261,9 +269,7 @@ GAP, KINK = 1e-4, 1e-4  # m and rad between elements of the reference line from 
 
 
 class _RoadSurface:
-    """The borders of one road's lanes.
-
-    """
+    """The borders of one road's lanes."""
 
     def __init__(self, road: MapRoad) -> None:
         self.road = road

@@ -11,7 +11,7 @@ import shapely
 
 from ....core.common.features import SIGNALS, Features
 from ..sources import STOP_LINE_HALF, stop_lines, walked_crossings
-from .model import DRIVEN_TYPES, OpenDriveMap, lane_name, travel
+from .model import DRIVEN_TYPES, OpenDriveMap, lane_name
 
 SAMPLES = 1.0          # m between places of reference lines that objects are held against
 FARTHEST = 25.0        # m from a reference line
@@ -119,7 +119,7 @@ def _section_at(road, s):
 
 def _sign(road, id):
     """The orientation of what the traffic of a lane sees."""
-    return "+" if travel(road, id) > 0 else "-"
+    return "+" if road.way_out(id) == "end" else "-"
 
 
 def _lanes_obeying(road, item):
