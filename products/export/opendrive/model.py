@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +18,7 @@ from .geometry import LEAST_STEP, STEP_RUN, Cubics, PlanView
 ROAD_LANE_TYPES = ("none", "driving", "stop", "shoulder", "biking", "sidewalk", "border", "restricted", "parking", "bidirectional", "median",
                    "special1", "special2", "special3", "roadWorks", "tram", "rail", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus",
                    "taxi", "HOV", "mwyEntry", "mwyExit", "curb", "walking", "slipLane", "shared")
+LEAST_LIMIT = 1.0   # m of a section along which a speed limit holds at the least
 OPEN_END = "lanewright:open_end"   # userData of a driven lane at whose start or end, or both, the survey shows no lane to go on in
 DRIVEN_TYPES = ("driving", "bidirectional", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus", "taxi", "HOV", "mwyEntry", "mwyExit",
                 "slipLane", "stop")
@@ -125,9 +126,34 @@ class MapRoad:
         link = self.link(end)
         return link is not None and (link.element, link.id) == (element, id)
 
+    def cut_where_speeds_change(self) -> MapRoad:
+        """The road with sections within which no speed limit changes; itself where none does."""
+        sections = []
+        for number, section in enumerate(self.sections):
+            length, cuts = self.section_end(number) - section.s, [0.0]
+            for s in sorted({s - section.s for s, _ in self.speeds} | {s for lane in section.lanes.values() for s, _ in lane.speeds}):
+                if cuts[-1] + LEAST_LIMIT <= s <= length - LEAST_LIMIT:
+                    cuts.append(s)
+            sections += [LaneSection(section.s + first, {id: _part(lane, first, last, length) for id, lane in section.lanes.items()}, section.order)
+                         for first, last in zip(cuts, [*cuts[1:], length])]
+        return replace(self, sections=sections) if len(sections) > len(self.sections) else self
+
     def way_out(self, id: int) -> str:
         """The end, "start" or "end", at which the traffic of a lane leaves the road."""
         return "end" if (id < 0) == (self.rule != "LHT") else "start"
+
+
+def _part(lane, first, last, length):
+    """A lane from `first` to `last`, metres of its section of some length; within the section it leads to itself."""
+    def held(starts):
+        return slice(max(int(np.searchsorted(starts, first, side="right")) - 1, 0), int(np.searchsorted(starts, last)))
+
+    width, heights = lane.width.rows, lane.heights
+    return replace(
+        lane, width=Cubics(width[held(width[:, 0])]).moved(-first), heights=heights[held(heights[:, 0])] - [first, 0.0, 0.0],
+        marks=[replace(mark, s=mark.s - first) for mark in lane.marks[held([mark.s for mark in lane.marks])]],
+        speeds=[(s - first, speed) for s, speed in lane.speeds[held([s for s, _ in lane.speeds])]],
+        predecessors=[lane.id] if first > 0 else lane.predecessors, successors=[lane.id] if last < length else lane.successors)
 
 
 @dataclass

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -348,10 +347,11 @@ LEAST_WIDTH = 0.05     # m: lanes that are narrower everywhere are none
 def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
     """Lanes, painted borders and edges of a map; `crs` is the WKT of its coordinates, "" where unknown.
 
-    Every section of a lane is a piece, whose lane_id is "road.lane.section"; lanes of roads in junctions are connectors.
+    Every section of a lane is a piece, whose lane_id is "road.lane.section"; a section in which a speed limit changes is cut there. Lanes of roads in
+    junctions are connectors.
     Sidewalks are no lanes of ours: where one begins there is an edge.
     """
-    rows: list[dict[str, Any]] = []
+    whole, rows = replace(whole, roads=[road.cut_where_speeds_change() for road in whole.roads]), []
     layers, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
     numbers, faults = _road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):
