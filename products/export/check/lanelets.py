@@ -31,7 +31,6 @@ LONGEST_FORK = 2.0          # m near an end of a border within which another tha
 JOIN_ANGLE = 0.7          # rad between lanelets that may follow each other
 USUAL_SHARE = 0.9         # of the lanelets, which show the habit of a map of drawing borders
 LEAST_HABIT = 10          # lanelets that are a habit
-FASTEST = 500.0           # km/h from which a speed limit is none
 WAY_TYPES = ("line_thin", "line_thick", "curbstone", "virtual", "road_border", "guard_rail", "wall", "fence", "stop_line", "pedestrian_marking",
              "zebra_marking", "zebra", "bike_marking", "keepout", "arrow", "symbol", "traffic_sign", "traffic_light", "light_bulbs", "gate", "door",
              "trajectory", "rail", "pole", "post", "building", "centerline", "pedestrian_path", "jersey_barrier", "marking", "zig-zag", "structure")
@@ -315,7 +314,7 @@ def _lanelet_tags(tags: Mapping[str, str]) -> Iterator[str]:
         if (key in tags or key == "subtype") and tags.get(key) not in allowed:
             yield f"{key} is {tags.get(key, '')!r}."
     yield from _participant_tags(tags, tags.get("subtype") in NEVER_DRIVEN)
-    if not 0 < (kmh(tags.get("speed_limit", "1")) or 0.0) < FASTEST:
+    if not 0 < (kmh(tags.get("speed_limit", "1")) or 0.0) < 500:
         yield f"speed_limit is {tags['speed_limit']!r}."
 
 

@@ -28,7 +28,6 @@ LONGEST_JUNCTION = 100.0  # m of road between two ends of a junction
 SHORTEST_WAY = 2.0        # m at least of a road that is cut off for a way straight on through a junction
 LONGEST_WAY = 10.0        # m at most
 CURB_WIDTH = 0.15         # m, of a curb stone seen from above
-NEAREST_CURB = 0.5        # m from a border within which a road edge tells its height
 TYPE_OF_LANE = {"driving": "driving", "connector": "driving", "shoulder": "shoulder", "parking": "parking", "bicycle": "biking",
                 "hatched": "restricted", "median": "median"}
 MARK_OF_PATTERN = {"solid": "solid", "dashed": "broken", "double-solid": "solid solid", "double": "solid solid", "double-dashed": "broken broken",
@@ -233,7 +232,7 @@ class _Drafting:
                 continue
             beyond = max(lanes) + 1 if left else min(lanes) - 1
             curb = MapLane(beyond, "curb", type(lanes[id].width).constant(CURB_WIDTH), [RoadMark(0.0, "none")])
-            heights = self.curb_heights.at(border[:, :2] + self.origin[:2], NEAREST_CURB)
+            heights = self.curb_heights.at(border[:, :2] + self.origin[:2])
             if np.isfinite(heights).any():
                 rise = np.array([0.0, 0.0, round(float(np.nanmedian(heights)), 3)])
                 curb.heights = rise + np.array([[station, inner, inner] for station, inner, _ in lanes[id].heights] or [[0.0, 0.0, 0.0]])

@@ -18,7 +18,6 @@ from .geometry import LEAST_STEP, STEP_RUN, Cubics, PlanView
 ROAD_LANE_TYPES = ("none", "driving", "stop", "shoulder", "biking", "sidewalk", "border", "restricted", "parking", "bidirectional", "median",
                    "special1", "special2", "special3", "roadWorks", "tram", "rail", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus",
                    "taxi", "HOV", "mwyEntry", "mwyExit", "curb", "walking", "slipLane", "shared")
-LEAST_LIMIT = 1.0   # m of a section along which a speed limit holds at the least
 OPEN_END = "lanewright:open_end"   # userData of a driven lane at whose start or end, or both, the survey shows no lane to go on in
 DRIVEN_TYPES = ("driving", "bidirectional", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus", "taxi", "HOV", "mwyEntry", "mwyExit",
                 "slipLane", "stop")
@@ -132,7 +131,7 @@ class MapRoad:
         for number, section in enumerate(self.sections):
             length, cuts = self.section_end(number) - section.s, [0.0]
             for s in sorted({s - section.s for s, _ in self.speeds} | {s for lane in section.lanes.values() for s, _ in lane.speeds}):
-                if cuts[-1] + LEAST_LIMIT <= s <= length - LEAST_LIMIT:
+                if cuts[-1] + BORDER_STEP <= s <= length - BORDER_STEP:
                     cuts.append(s)
             sections += [LaneSection(section.s + first, {id: _part(lane, first, last, length) for id, lane in section.lanes.items()}, section.order)
                          for first, last in zip(cuts, [*cuts[1:], length])]

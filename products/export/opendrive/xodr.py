@@ -21,7 +21,6 @@ GEOMETRIES = {"line": (), "arc": ("curvature",), "spiral": ("curvStart", "curvEn
               "paramPoly3": ("aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV")}
 SHAPE = ("s", "t", "a", "b", "c", "d")
 XODR_KIND = "an OpenDRIVE file"
-MARK_WIDTH = 0.12    # m, where a road mark has none
 LONGEST_ROAD, LONGEST_MAP = 200_000.0, 1_000_000.0   # m of one road, and of all: more is no map but a file that shall fill the memory
 
 
@@ -146,7 +145,7 @@ def _lane_of(element):
 
 def _mark(element):
     mark = RoadMark(element.number("sOffset", 0.0), element.get("type", "none"), element.get("color", "standard"),
-                    element.number("width", MARK_WIDTH), element.get("weight", "standard"))
+                    element.number("width", RoadMark.width), element.get("weight", "standard"))
     lines = list(element.all("type", "line"))
     dashed = next((line for line in lines if line.number("space", 0.0)), None)
     if dashed is not None:
