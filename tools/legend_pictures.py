@@ -273,7 +273,8 @@ def attributes_picture(run, folder, files, path):
     lanes = opened(files["LANES"])
     write_ways(folder / "streets.osm", lanes.crs())
     made = run("roadattributes", LANES=files["LANES"], OSM_FILE=str(folder / "streets.osm"), OUTPUT=str(folder / "known.gpkg"))
-    looks = {"50": ("50 km/h", fill("#e08a3c", "solid")), "30": ("30 km/h", fill("#5b9bd5", "solid")), "": ("no limit known", fill("#c9c9c9", "solid"))}
+    colours = {"50": ("50 km/h", "#e08a3c"), "30": ("30 km/h", "#5b9bd5"), "": ("no limit known", "#c9c9c9")}
+    looks = {limit: (label, fill(colour, "solid")) for limit, (label, colour) in colours.items()}
     known = opened(made["OUTPUT"], looks, "coalesce(to_string(to_int(speed_kmh)), '')")
     ways = symbol_layer("LineString", lanes.crs(), [("way", polyline(places)) for _, _, places in STREETS],
                         {"way": ("Way of OpenStreetMap", line("#101010", 0.7, "dash"))})
@@ -359,7 +360,8 @@ def conversion_picture(run, folder, files, path):
 
 MIDDLE = (610401.0, 2710194.0)   # of the crossing
 # where a made light stands on the crossing, metres, and the compass heading of the traffic it is for
-LIGHTS = ((610381.5, 2710189.0, 22.3, 81.0), (610379.0, 2710202.0, 22.4, 81.0), (610411.2, 2710180.8, 22.5, 351.0), (610418.9, 2710211.0, 22.9, 261.0))
+LIGHTS = ((610381.5, 2710189.0, 22.3, 81.0), (610379.0, 2710202.0, 22.4, 81.0), (610411.2, 2710180.8, 22.5, 351.0),
+          (610418.9, 2710211.0, 22.9, 261.0))
 
 
 def write_lights(path, crs):
