@@ -202,6 +202,10 @@ class Call:
                 continue
             if spec.kind == "folder":
                 check_folder(path, spec.label)
+                other = label_by_target.setdefault(os.path.realpath(path), spec.label)
+                if other != spec.label:
+                    raise RoadExtractionError(tr("{first} and {second} would both be written to {path}, and one would be lost. Give each a folder of "
+                                                 "its own.").format(first=other, second=spec.label, path=path))
                 continue
             check_suffix(path, spec, self.VECTOR_SUFFIXES)
             read = self.read_as(value, path) or self._cloud_at(path)

@@ -36,7 +36,8 @@ class ExportTemplate(Algorithm):
             "what it becomes (point, line or polygon; empty as it is), and all further columns are the client's fields. WIDTH:int in "
             "the first line makes whole numbers; real and text are the other types.\n\n"
             "A cell holds a code as it stands, or one of our fields in braces: {width_m}, {width_m:mm} in another unit, "
-            "{side:left=L,right=R} by a list of values, {number} the number of the feature; texts may stand around them. Of the rows "
+            "{side:left=L,right=R} by a list of values (what it lacks stays empty), {number} the number of the feature; texts may stand around "
+            "them. Of the rows "
             "about one layer of the client, the first that fits counts. Lines that begin with # are left out. The folder "
             "resources/templates of the plugin holds two, for public catalogues of Germany and the Netherlands.\n\n"
             "The template is checked before anything is read: what is not known is named with its line. With the client's own "
@@ -72,9 +73,9 @@ class ExportTemplate(Algorithm):
             raise RoadExtractionError(tr("No layer of the road map was given. Choose at least one of those that the template names."))
         for name in sorted({rule.source for rule in template.rules} - set(layers)):
             progress.info(tr("{label} was not given: the rows about it are not used.").format(label=call.label(name)))
-        crs = next(iter(layers.values())).crs
+        crs = next((features.crs for features in layers.values() if features.crs), "")
         for name, features in layers.items():
-            if features.crs and crs and not same_crs(parse_crs(features.crs), parse_crs(crs)):
+            if features.crs and not same_crs(parse_crs(features.crs), parse_crs(crs)):
                 raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.").format(
                     label=call.label(name)))
         made = apply_template(template, layers, layers_of_file(office, crs) if office else None)

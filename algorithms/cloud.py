@@ -1,12 +1,13 @@
 """The survey's own point clouds, given back with classes and the fields of the road."""
 
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import MARKINGS, ROAD_EDGES, ROAD_SURFACE, ROADSIDE, ROADSIDE_OBJECTS
 from .algorithm import Algorithm, SettingSpec
-from .survey_input import READING_SETTINGS, check_layers_on_roads, open_survey_of
+from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
 CLOUD = "products.cloud.classify:CloudSettings"
@@ -21,18 +22,17 @@ CLOUD_SETTINGS = (
                 tr("So far either side of a line of the layer Roadside its points lie. Larger for deep guard rails and thick walls, but it takes in "
                    "what stands close behind; hedges have twice as much, shafts of poles half of it.")),
 )
-# parameter -> label, fields that are read, geometry, help; in the order of CloudLayers
+# parameter -> label, fields of the layer, those that are read, geometry, help; in the order of CloudLayers
 CLOUD_LAYERS = {
-    "ROAD_SURFACE": (tr("Road surface"), [field for field in ROAD_SURFACE if field.name in ("road", "station_m")], "PolygonZ",
+    "ROAD_SURFACE": (tr("Road surface"), ROAD_SURFACE, "road station_m", "PolygonZ",
                      tr("Ground within it is road surface (class 11); without it all ground is class 2.")),
-    "ROAD_EDGES": (tr("Road edges"), [field for field in ROAD_EDGES if field.name in ("road", "station_m", "height_m", "edge")], "LineStringZ",
+    "ROAD_EDGES": (tr("Road edges"), ROAD_EDGES, "road station_m height_m edge", "LineStringZ",
                    tr("Faces and tops of curbs are those of its lines that have a height.")),
-    "MARKINGS": (tr("Markings"), [field for field in MARKINGS if field.name in ("road", "class")], "PolygonZ",
+    "MARKINGS": (tr("Markings"), MARKINGS, "road station_m", "PolygonZ",
                  tr("Ground within it that is brighter than the asphalt about it is paint.")),
-    "ROADSIDE": (tr("Roadside"), [field for field in ROADSIDE if field.name in ("road", "kind", "height_m")], "LineStringZ",
+    "ROADSIDE": (tr("Roadside"), ROADSIDE, "road station_m kind height_m", "LineStringZ",
                  tr("Made by Roadside: what stands on its lines is guard rail, barrier, wall, fence or, of hedges, vegetation.")),
-    "ROADSIDE_OBJECTS": (tr("Poles, signs and trunks"),
-                         [field for field in ROADSIDE_OBJECTS if field.name in ("road", "kind", "height_m", "diam_m")], "PointZ",
+    "ROADSIDE_OBJECTS": (tr("Poles, signs and trunks"), ROADSIDE_OBJECTS, "road station_m kind height_m diam_m", "PointZ",
                          tr("Made by Roadside: points about them are poles and signs; trunks are vegetation.")),
 }
 
@@ -47,12 +47,14 @@ class ClassifyCloud(Algorithm):
             "files name these classes themselves.\n\n"
             "The layers of the map decide, so that a map that was corrected by hand can be given back. Of the rest only the ground is "
             "known, and no ground is looked for far above or below the road. Vegetation is what hedges and trunks of the layers show. "
-            "Whatever is not known keeps its class, or is 1 where it had none; noise (7, 18) and withheld points stay as they are. "
+            "Whatever is not known keeps its class, or is 1 where it had none. Noise (7, 18) and withheld points are in the files too, with the "
+            "class that they had; ground and paint are measured without them. "
             "Within a marking those points are paint that are brighter than the asphalt about it; where it is not brighter, all of them "
             "are.\n\n"
             "Further fields of each point are road, station, offset (left positive) and height_above_road (above the surface below the "
             "reference line), in metres; beyond the corridor they have no value. Files whose points have room for 31 classes alone "
-            "(formats 0 to 5) become LAS 1.4 with the format 6, 7, 9 or 10 that holds the same. A COPC file is written as LAZ, in the "
+            "(formats 0 to 5) become LAS 1.4 with the format 6, 7, 9 or 10 that holds the same; what were their classes 8 and 12 are flags "
+            "there, key point and overlap. A COPC file is written as LAZ, in the "
             "order of its points; QGIS makes a COPC of it (Processing, Create COPC). Points are compared with the map where their "
             "scanner measured them.")
     TAGS = ("classification", "ASPRS", "LAS", "LAZ", "unroll", "straighten", "station", "offset")
@@ -61,7 +63,7 @@ class ClassifyCloud(Algorithm):
 
     def declare(self):
         self.add_survey()
-        for name, (label, _, geometry, text) in CLOUD_LAYERS.items():
+        for name, (label, _, _, geometry, text) in CLOUD_LAYERS.items():
             self.add_input("layer", name, label, text, geometry, optional=True)
         self.add_settings(CLOUD_SETTINGS, advanced=True)
         self.add_settings(READING_SETTINGS)
@@ -79,9 +81,11 @@ class ClassifyCloud(Algorithm):
 
         files = read_headers(call.point_clouds(), given=call.crs())
         copies = _copies(call, files, progress)
-        layers = {name: call.features(name, schema, geometry) for name, (_, schema, geometry, _) in CLOUD_LAYERS.items()}
-        survey = open_survey_of(call, progress.part(0.0, 0.4))
-        check_layers_on_roads(call, layers, survey.frame, progress)
+        # what was drawn by hand has no station
+        layers = {name: call.features(name, [replace(field, needed=field.needed and field.name != "station_m") for field in schema
+                                             if field.name in read.split()], geometry)
+                  for name, (_, schema, read, geometry, _) in CLOUD_LAYERS.items()}
+        survey = open_survey_with(call, layers, progress.part(0.0, 0.4))
         intensity = intensity_source_of(sample_files(files), call.value("INTENSITY_FROM"))[0]
         classifier = PointClassifier(survey, CloudLayers(*layers.values()), call.settings(CLOUD_SETTINGS), call.value("CORRIDOR"), intensity)
         total, done, counts = sum(file.count for file in files), 0, Counter()

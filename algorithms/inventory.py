@@ -1,7 +1,6 @@
 """What else the road shows: its cross-sections and surface, and what stands beside it."""
 
 from datetime import datetime
-from pathlib import Path
 
 from ..core.common.features import (
     BREAKLINES,
@@ -16,7 +15,7 @@ from ..core.common.features import (
 )
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, SettingSpec
-from .survey_input import READING_SETTINGS, check_layers_on_roads, open_survey_of
+from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
 # parameter -> its label, fields and geometry, in the order of BorderLayers
@@ -40,22 +39,11 @@ def survey_with_borders(call, progress, above_road):
 
     A layer without features, as a step before may have found nothing, counts as not given.
     """
-    from shapely import get_coordinates
-
-    from ..core.io.crs import check_same_crs
     from ..products.inventory.borders import BorderLayers
 
     layers = {name: call.features(name, schema, geometry) if call.algorithm.parameter(name) is not None else None
               for name, (_, schema, geometry) in BORDER_LAYERS.items()}
-    for name, features in layers.items():
-        if features is not None and not len(features):
-            progress.warn(tr("{label} holds no features and is not used.").format(label=call.label(name)))
-            layers[name] = None
-    survey = open_survey_of(call, progress, above_road=above_road)
-    for name, features in layers.items():
-        if features is not None:
-            check_same_crs(features.crs, survey.crs, get_coordinates(features.geometries[0])[0], call.label(name))
-    check_layers_on_roads(call, layers, survey.frame, progress)
+    survey = open_survey_with(call, layers, progress, above_road=above_road)
     return survey, BorderLayers(*layers.values())
 
 
@@ -218,7 +206,12 @@ class SurfaceOfRoad(Algorithm):
         call.layer("BREAKLINES", lines)
         call.layer("TIN", faces)
         if call.wants("SURFACE_FILE"):
-            _write_surface(call, model)
+            from ..products.cad import landxml_text, surface_lines, write_dxf
+
+            if call.new_file("SURFACE_FILE").lower().endswith(".dxf"):
+                write_dxf(surface_lines(model), call.new_file("SURFACE_FILE"), model.crs, model.places[model.surface.faces])
+            else:
+                call.text("SURFACE_FILE", landxml_text((), model.crs, tr("Surface"), datetime.now(), model))
         if call.wants("DEM"):
             write_heights(model, call.new_file("DEM"), settings.cell_size, progress.part(0.9, 1.0))
         share = 100 * model.vertices / max(model.points, 1)
@@ -226,16 +219,6 @@ class SurfaceOfRoad(Algorithm):
                          "carriageway by {rmse:.1f} mm (root mean square).").format(triangles=len(faces), vertices=model.vertices, share=share,
                                                                                    rmse=1000 * model.rmse))
         return {"VERTICES": float(model.vertices), "TRIANGLES": float(len(faces)), "RMSE": model.rmse, "SHARE": share}
-
-
-def _write_surface(call, model):
-    from ..products.cad import cad_surface, landxml_text, surface_lines, write_dxf
-
-    surface, path = cad_surface(model), call.new_file("SURFACE_FILE")
-    if path.lower().endswith(".dxf"):
-        write_dxf(surface_lines(surface), path, model.crs, surface.vertices[surface.faces])
-    else:
-        Path(path).write_text(landxml_text((), model.crs, tr("Surface"), datetime.now(), surface), encoding="utf-8")
 
 
 ROADSIDE_OF = "products.inventory.borders:RoadsideSettings"

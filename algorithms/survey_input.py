@@ -107,6 +107,22 @@ def open_survey_of(call, progress, **reading):
     return survey
 
 
+def open_survey_with(call, layers, progress, **reading):
+    """The survey as of `open_survey_of`, on whose roads and in whose CRS the layers lie; of `layers`, those without features become None."""
+    from ..core.io.crs import check_same_crs
+
+    for name, features in layers.items():
+        if features is not None and not len(features):
+            progress.warn(tr("{label} holds no features and is not used.").format(label=call.label(name)))
+            layers[name] = None
+    survey = open_survey_of(call, progress, **reading)
+    for name, features in layers.items():
+        if features is not None:
+            check_same_crs(features.crs, survey.crs, shapely.get_coordinates(features.geometries[0])[0], call.label(name))
+    check_layers_on_roads(call, layers, survey.frame, progress)
+    return survey
+
+
 def check_layers_on_roads(call, layers, frame, progress):
     """Raise RoadExtractionError where a layer of `layers`, parameter name to Features, was made with another trajectory than the frame's.
 

@@ -217,7 +217,7 @@ NAMESPACE = "http://www.landxml.org/schema/LandXML-1.2"
 
 
 def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Road map", moment: datetime = datetime(2000, 1, 1),
-                 surface: _CadSurface | None = None) -> str:
+                 surface: SurfaceModel | None = None) -> str:
     """The file as text.
 
     `crs`: WKT, metric, "" where unknown; where it is that of a survey in feet, so is the file, heights too. `name`: of the project.
@@ -232,7 +232,6 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
         root.add("Units").add("Imperial", areaUnit="squareFoot", linearUnit=unit, volumeUnit="cubicFeet", temperatureUnit="fahrenheit",
                               pressureUnit="inHG", angularUnit="decimal degrees", directionUnit="decimal degrees")
         alignments = [alignment.in_file(units) for alignment in alignments]
-        surface = None if surface is None else surface.in_file(units)
     else:
         root.add("Units").add("Metric", areaUnit="squareMeter", linearUnit="meter", volumeUnit="cubicMeter", temperatureUnit="celsius",
                               pressureUnit="milliBars", angularUnit="decimal degrees", directionUnit="decimal degrees")
@@ -240,7 +239,7 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
     root.add("Project", name=name)
     root.add("Application", name="Lanewright")
     if surface is not None:
-        _surface(root.add("Surfaces").add("Surface", name=name), surface)
+        _surface(root.add("Surfaces").add("Surface", name=name), surface, units.across if unit else 1.0)
     group = XmlElement("Alignments", {"name": name})
     for alignment in alignments:
         element = group.add("Alignment", name=alignment.name, length=alignment.length, staStart=0.0, desc=alignment.description)
@@ -264,17 +263,19 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
     return xml_text(root)
 
 
-def _surface(element, surface):
-    """A surface of triangles with the breaklines that they follow. Vertices are numbered from 1."""
+def _surface(element, model, unit):
+    """A surface of triangles with the breaklines that they follow, in units of so many m. Vertices are numbered from 1."""
     lines = element.add("SourceData").add("Breaklines")
-    for kind, places in surface.breaklines:
-        lines.add("Breakline", brkType="standard", name=kind).add("PntList3D", " ".join(_place3d(place) for place in places))
-    heights = surface.vertices[:, 2]
+    for kind, places in model.followed:
+        lines.add("Breakline", brkType="standard", name=kind).add("PntList3D", " ".join(map(_place3d, (places + model.origin) / unit)))
+    used, faces_of = np.unique(model.surface.faces, return_inverse=True)
+    vertices = model.places[used] / unit
+    heights = vertices[:, 2]
     definition = element.add("Definition", surfType="TIN", elevMin=float(heights.min()), elevMax=float(heights.max()))
     points, faces = definition.add("Pnts"), definition.add("Faces")
-    for number, place in enumerate(surface.vertices, start=1):
+    for number, place in enumerate(vertices, start=1):
         points.add("P", _place3d(place), id=number)
-    for corners in (surface.faces + 1).tolist():
+    for corners in (faces_of.reshape(-1, 3) + 1).tolist():
         faces.add("F", "{} {} {}".format(*corners))
 
 
@@ -342,29 +343,9 @@ def _intersection(start, first, end, last):
     return start + np.array([np.cos(first), np.sin(first)]) * (chord[0] * np.sin(last) - chord[1] * np.cos(last)) / turn
 
 
-@dataclass(frozen=True)
-class _CadSurface:
-    """vertices : (V, 3) map coordinates; faces : (F, 3) int; breaklines : (kind, (N, 3) places)"""
-
-    vertices: np.ndarray
-    faces: np.ndarray
-    breaklines: list[tuple[str, np.ndarray]]
-
-    def in_file(self, units: FileUnits) -> _CadSurface:
-        """The same in the units of a file; its heights have those of x and y."""
-        return _CadSurface(self.vertices / units.across, self.faces, [(kind, places / units.across) for kind, places in self.breaklines])
-
-
-def cad_surface(model: SurfaceModel) -> _CadSurface:
-    """The surface of a survey in map coordinates, without vertices that no triangle has."""
-    used, faces = np.unique(model.surface.faces, return_inverse=True)
-    breaklines = [(kind, places + model.origin) for kind, places in model.followed]
-    return _CadSurface(model.surface.vertices[used] + model.origin, faces.reshape(-1, 3), breaklines)
-
-
-def surface_lines(surface: _CadSurface) -> list[_DxfLine]:
+def surface_lines(model: SurfaceModel) -> list[_DxfLine]:
     """The breaklines of a surface, by kind."""
-    return [_DxfLine(f"BREAKLINE_{kind.upper()}", places) for kind, places in surface.breaklines]
+    return [_DxfLine(f"BREAKLINE_{kind.upper()}", places + model.origin) for kind, places in model.followed]
 
 
 # Axes of roads and driving lines as elements: lines, arcs and spirals, and a profile of tangents.

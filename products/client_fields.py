@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import csv
+import operator
 import os
 import re
-import shutil
+import sqlite3
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import closing, contextmanager
 from difflib import get_close_matches
+from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -21,38 +23,55 @@ from ..core.common.features import Features, Field
 from ..core.common.texts import vocabulary
 from ..core.io.crs import FOOT, UNDEFINED_CARTESIAN, US_SURVEY_FOOT, as_in_file, parse_crs, same_crs
 from ..core.io.local_files import gdal_exceptions
+from ..core.lazy import gdal, ogr, osr
 
 OWN_COLUMNS = "from", "where", "layer", "geometry"   # of the table; all others are the client's fields
 TYPES: dict[str, type] = {"text": str, "int": int, "real": float}
 GEOMETRIES = {"point": "PointZ", "line": "LineStringZ", "polygon": "PolygonZ"}
 IN_WORDS = "class", "kind", "pattern", "edge", "status", "side", "use", "type", "part"   # fields whose values are words that are known
 REFERENCE = re.compile(r"\{([^{}]*)\}")
+WHOLE = re.compile(r"-?(0|[1-9]\d*)")   # a number, and no code such as 007
 CONDITION = re.compile(r"\s*(\w+)\s*(<=|>=|!=|=|<|>)\s*(.*?)\s*")
+COMPARISONS = {"=": operator.eq, "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
+NOT_DRAWN = '<>/\\":;?*|=,`'   # source: what AutoCAD refuses in names of layers
 NOT_WANTED = "-"   # as the client's layer, of what is left out on purpose
 NUMBER = "number"   # what a template calls the number of a feature in its layer, from 1
 
 
-@dataclass(frozen=True)
-class _Rule:
+class _Reference(NamedTuple):
+    """A field of ours within a cell: as it is, in another unit, or by a list of values."""
+
+    name: str
+    kind: type   # of what it gives
+    factor: float | None = None   # of the unit
+    words: Mapping[str, str] | None = None   # our value to the client's
+
+    def value(self, row: Mapping[str, Any]) -> Any:
+        value = row.get(self.name)
+        if value is None or self.factor is None and self.words is None:
+            return value
+        return value * self.factor if self.words is None else self.words.get(str(value))
+
+
+class _Rule(NamedTuple):
     """A row of a template: features of one of our layers on which all conditions hold become features of a layer of the client."""
 
     line: int   # of the table, from 1
     source: str   # name of our layer
-    conditions: tuple[tuple[str, str, tuple[str, ...]], ...]   # field, how it compares, with which values
+    conditions: Sequence[tuple[str, str, Sequence[Any]]]   # field, how it compares, with which values
     layer: str   # the client's
     geometry: str   # of it, a key of GEOMETRIES
-    cells: Mapping[str, str]   # field of the client to text with references to our fields; those that are not empty
+    cells: Mapping[str, Sequence[str | _Reference]]   # field of the client to texts and references, one after the other
 
     def holds(self, row: Mapping[str, Any]) -> bool:
         return all(_compared(row.get(field), how, values) for field, how, values in self.conditions)
 
 
-@dataclass(frozen=True)
-class _Template:
+class _Template(NamedTuple):
     """A template that was checked."""
 
     path: str
-    rules: tuple[_Rule, ...]
+    rules: Sequence[_Rule]
     types: Mapping[str, type | None]   # of the client's fields; None where the table does not say it
 
     def layer_of(self, name: str) -> list[_Rule]:
@@ -73,32 +92,39 @@ def read_template(path: str | os.PathLike[str], sources: Mapping[str, tuple[Sequ
     """
     lines = _rows_of(path)
     number, header = lines[0]
-    names = [name.strip().lower() if name.strip().lower() in OWN_COLUMNS else name.strip() for name in header]
+    rules: list[_Rule] = []
+    try:
+        fields, types = _columns(header)
+        for number, cells in lines[1:]:
+            rule = _rule(number, fields, cells, sources)
+            first = next((other for other in rules if other.layer.lower() == rule.layer.lower()), rule)
+            if first.layer != rule.layer:
+                raise ValueError(f"layer {rule.layer} is called {first.layer} in line {first.line}. Write capitals alike.")
+            if mixed and (sign := next((sign for sign in rule.layer if sign in NOT_DRAWN), "")):
+                raise ValueError(f"a drawing has no layer {rule.layer}: none of its names holds a {sign} sign.")
+            if first.geometry != rule.geometry and not mixed and rule.layer != NOT_WANTED:
+                raise ValueError(f"layer {rule.layer} would hold a {rule.geometry} and, from line {first.line}, a {first.geometry}. Give it another "
+                                 "layer, or say in the column geometry what it becomes.")
+            rules.append(rule)
+    except ValueError as problem:
+        raise RoadExtractionError(f"{path}, line {number}: {problem}") from problem
+    return _Template(str(path), rules, types)
+
+
+def _columns(header):
+    """Names of all columns, "" for those without one, and {field of the client: its type}; ValueError, in one sentence, for what is not known."""
+    fields, kinds = zip(*((name.strip(), kind.strip().lower()) for name, _, kind in (cell.partition(":") for cell in header)))
+    fields = [field.lower() if field.lower() in OWN_COLUMNS else field for field in fields]
     for needed in ("from", "layer"):
-        if needed not in names:
-            raise RoadExtractionError(f"{path}, line {number}: there is no column “{needed}”. The first line names the columns: from, where, layer, "
-                                      "geometry, and the fields of the client.")
-    types = {}
-    for name in names:
-        field, _, kind = name.partition(":")
+        if needed not in fields:
+            raise ValueError(f"there is no column “{needed}”. The first line names the columns: from, where, layer, geometry, and the fields of the "
+                             "client.")
+    for k, (field, kind) in enumerate(zip(fields, kinds)):
         if kind and kind not in TYPES:
-            raise RoadExtractionError(f"{path}, line {number}: {field} is to be of the type “{kind}”; known are {', '.join(TYPES)}.")
-        types[field] = TYPES.get(kind)
-    fields = [name.partition(":")[0] for name in names]
-    if double := next((name for name, count in Counter(field.lower() for field in fields).items() if count > 1), ""):
-        raise RoadExtractionError(f"{path}, line {number}: two columns are called {double}.")
-    rules = []
-    for line, cells in lines[1:]:
-        try:
-            rules.append(_rule(line, dict(zip(fields, (cell.strip() for cell in cells))), sources))
-        except ValueError as problem:
-            raise RoadExtractionError(f"{path}, line {line}: {problem}") from problem
-    for rule in (rule for rule in rules if not mixed and rule.layer != NOT_WANTED):
-        first = next(other for other in rules if other.layer == rule.layer)
-        if first.geometry != rule.geometry:
-            raise RoadExtractionError(f"{path}, line {rule.line}: layer {rule.layer} would hold a {rule.geometry} and, from line {first.line}, a "
-                                      f"{first.geometry}. Give it another layer, or say in the column geometry what it becomes.")
-    return _Template(str(path), tuple(rules), types)
+            raise ValueError(f"{field} is to be of the type “{kind}”; known are {', '.join(TYPES)}.")
+        if field and field.lower() in map(str.lower, fields[:k]):
+            raise ValueError(f"two columns are called {field.lower()}.")
+    return fields, {field: TYPES.get(kind) for field, kind in zip(fields, kinds) if field}
 
 
 def _rows_of(path):
@@ -106,7 +132,7 @@ def _rows_of(path):
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as problem:
-        raise RoadExtractionError(f"{path} cannot be read as a table in UTF-8 ({problem}).") from problem
+        raise RoadExtractionError(f"{path} cannot be read as a table in UTF-8 ({problem}). Save it as “CSV UTF-8”.") from problem
     said = [(number, line) for number, line in enumerate(lines, 1) if line.strip(" ;,\t") and not line.lstrip(' "').startswith("#")]
     if len(said) < 2:
         raise RoadExtractionError(f"{path} holds no rows. Its first line names the columns, and each further one says what becomes what.")
@@ -114,8 +140,13 @@ def _rows_of(path):
     return [(number, next(csv.reader([line], delimiter=delimiter))) for number, line in said]
 
 
-def _rule(line, cells, sources):
+def _rule(line, fields, texts, sources):
     """The rule of a row; ValueError, in one sentence, for what is not known."""
+    named = [(name, text.strip()) for name, text in zip_longest(fields, texts, fillvalue="") if text.strip()]
+    unnamed = next((text for name, text in named if not name), "")
+    if unnamed:
+        raise ValueError(f"“{unnamed}” stands in a column without a name. Put cells that hold the delimiter between quotes.")
+    cells = dict(named)
     source, layer, geometry = cells.get("from", "").upper(), cells.get("layer", ""), cells.get("geometry", "").lower()
     if source not in sources:
         raise ValueError(f"there is no layer {source or 'without a name'}{_like(source, sources)}.")
@@ -127,28 +158,69 @@ def _rule(line, cells, sources):
     if geometry and (geometry not in order or order.index(geometry) > order.index(given)):
         raise ValueError(f"a {given} of {source} cannot become a “{geometry}”; it may become {' or '.join(order[:order.index(given) + 1])}.")
     known = {field.name: field for field in schema}
-    conditions = tuple(_condition(text, known, source) for text in cells.get("where", "").split("&") if text.strip())
-    values = {name: text for name, text in cells.items() if name not in OWN_COLUMNS and text}
-    for text in values.values():
-        for reference in REFERENCE.findall(text):
-            _check_reference(reference, known, source)
-    return _Rule(line, source, conditions, layer, geometry or given, values)
+    return _Rule(line, source, [_condition(text, known, source) for text in cells.get("where", "").split("&") if text.strip()], layer,
+                 geometry or given, {name: _cell(text, known, source) for name, text in cells.items() if name not in OWN_COLUMNS})
 
 
 def _condition(text, known, source):
     parts = CONDITION.fullmatch(text)
     if parts is None:
         raise ValueError(f"“{text.strip()}” is no condition. Write a field, one of = != < <= > >=, and values with commas between them.")
-    name, how, values = parts[1], parts[2], tuple(value.strip() for value in parts[3].split(","))
+    name, how, values = parts[1], parts[2], [value.strip() for value in parts[3].split(",")]
     _check_field(name, known, source)
-    if known[name].type is not str:
-        for value in values:
-            _number(value, name)
-    elif how not in ("=", "!="):
-        raise ValueError(f"{name} is a text, which is compared by = or != alone.")
-    else:
+    equal = how in ("=", "!=")
+    if known[name].type is str:
+        if not equal:
+            raise ValueError(f"{name} is a text, which is compared by = or != alone.")
         _check_words(name, values)
-    return name, how, values
+        return name, how, values
+    if len(values) > 1 and not equal:
+        raise ValueError(f"“{text.strip()}” compares {name} with {len(values)} numbers. Write one, with a decimal point.")
+    try:
+        return name, how, [float(value) for value in values]
+    except ValueError:
+        raise ValueError(f"{name} is a number, and “{parts[3]}” is none.") from None
+
+
+def _compared(value, how, values):
+    """Whether the value of a row is, or compares with, one of several."""
+    return value not in values if how == "!=" else value is not None and any(COMPARISONS[how](value, other) for other in values)
+
+
+def _cell(text, known, source):
+    """The texts and references of a cell of the client, one after the other."""
+    parts = REFERENCE.split(text)
+    if any(sign in part for part in parts[::2] for sign in "{}"):
+        raise ValueError(f"“{text}” has a brace without its partner. Write {{width_m}} for one of our fields.")
+    return [_reference(part, known, source) if k % 2 else part for k, part in enumerate(parts) if part or k % 2]
+
+
+def _reference(text, known, source):
+    name, _, option = (part.strip() for part in text.partition(":"))
+    if name == NUMBER and not option:
+        return _Reference(NUMBER, int)
+    _check_field(name, known, source)
+    if not option:
+        return _Reference(name, known[name].type)
+    if "=" in option:
+        pairs = [pair.partition("=") for pair in option.split(",")]
+        if single := next((ours.strip() for ours, sign, _ in pairs if not sign), ""):
+            raise ValueError(f"“{single}” in the list of {name} is no pair such as left=L.")
+        words = {ours.strip(): theirs.strip() for ours, _, theirs in pairs}
+        _check_words(name, words)
+        return _Reference(name, str, words=words)
+    units = _units_of(name)
+    if option not in units:
+        raise ValueError(f"{name} cannot be given in “{option}”" + (f"; known are {', '.join(units)}." if units else ", since it has no unit."))
+    return _Reference(name, float, units[option])
+
+
+def _units_of(name):
+    """{unit: how many of it make one of the field's own}, which the end of its name tells."""
+    units = {"m": {"m": 1.0, "dm": 10.0, "cm": 100.0, "mm": 1000.0, "km": 0.001, "ft": 1 / FOOT, "ftUS": 1 / US_SURVEY_FOOT},
+             "cm": {"m": 0.01, "cm": 1.0, "mm": 10.0}, "mm": {"m": 0.001, "cm": 0.1, "mm": 1.0},
+             "m2": {"m2": 1.0, "cm2": 1e4, "ft2": 1 / FOOT**2}, "pct": {"%": 1.0, "1": 0.01}, "deg": {"deg": 1.0, "gon": 10 / 9, "rad": np.pi / 180}}
+    return units.get(name.rpartition("_")[2] if "_" in name else "", {})
 
 
 def _check_field(name, known, source):
@@ -163,58 +235,17 @@ def _check_words(name, values):
             raise ValueError(f"{value} is no {name} that Lanewright writes{_like(value, words)}.")
 
 
-def _check_reference(reference, known, source):
-    name, _, option = (part.strip() for part in reference.partition(":"))
-    if name == NUMBER and not option:
-        return
-    _check_field(name, known, source)
-    if "=" in option:
-        _check_words(name, tuple(_list_of(option)))
-    elif option and option not in _units_of(name):
-        units = _units_of(name)
-        raise ValueError(f"{name} cannot be given in “{option}”" + (f"; known are {', '.join(units)}." if units else ", since it has no unit."))
-
-
 def _like(name, known):
-    near = get_close_matches(str(name).lower(), {str(other).lower(): other for other in known}, 1)
-    return f" (is {next(other for other in known if str(other).lower() == near[0])} meant?)" if near else f"; known are {', '.join(sorted(known))}"
-
-
-def _number(text, name):
-    try:
-        return float(text)
-    except ValueError:
-        raise ValueError(f"{name} is a number, and “{text}” is none.") from None
-
-
-def _list_of(option):
-    """{our value: the client's} of a list such as left=L, right=R."""
-    return dict((part.strip() for part in pair.split("=", 1)) for pair in option.split(",") if "=" in pair)
-
-
-def _units_of(name):
-    """{unit: how many of it make one of the field's own}, which the end of its name tells."""
-    units = {"m": {"m": 1.0, "dm": 10.0, "cm": 100.0, "mm": 1000.0, "km": 0.001, "ft": 1 / FOOT, "ftUS": 1 / US_SURVEY_FOOT},
-             "cm": {"m": 0.01, "cm": 1.0, "mm": 10.0}, "mm": {"m": 0.001, "cm": 0.1, "mm": 1.0},
-             "m2": {"m2": 1.0, "cm2": 1e4, "ft2": 1 / FOOT**2}, "pct": {"%": 1.0, "1": 0.01}, "deg": {"deg": 1.0, "gon": 10 / 9, "rad": np.pi / 180}}
-    return units.get(name.rpartition("_")[2] if "_" in name else "", {})
-
-
-def _compared(value, how, values):
-    """Whether the value of a row is, or compares with, one of several texts."""
-    if value is None:
-        return how == "!="
-    if how in ("=", "!="):
-        same = value in values if isinstance(value, str) else float(value) in map(float, values)
-        return same == (how == "=")
-    return any({"<": value < limit, "<=": value <= limit, ">": value > limit, ">=": value >= limit}[how] for limit in map(float, values))
+    """The known name that is most like another, or else all of them."""
+    names = {str(other).lower(): other for other in known}
+    near = get_close_matches(name.lower(), names, 1)
+    return f" (is {names[near[0]]} meant?)" if near else f"; known are {', '.join(sorted(known))}"
 
 
 # The features of a map as the template has them.
 
 
-@dataclass(frozen=True)
-class _ClientMap:
+class _ClientMap(NamedTuple):
     """What is handed over."""
 
     layers: Mapping[str, Features]   # the client's, by name, in the order of the template
@@ -236,7 +267,7 @@ def apply_template(template: _Template, layers: Mapping[str, Features],
         rules = [rule for rule in template.layer_of(name) if rule.source in layers]
         if not rules:
             continue
-        types = _types(template, name, layers, office)
+        types = _types(template, name, office)
         made = Features(GEOMETRIES[template.layer_of(name)[0].geometry], [Field(field, kind) for field, kind in types.items()])
         for source in dict.fromkeys(rule.source for rule in rules):
             made.crs = made.crs or layers[source].crs
@@ -256,59 +287,43 @@ def apply_template(template: _Template, layers: Mapping[str, Features],
     return _ClientMap(result, left)
 
 
-def _types(template, name, layers, office):
+def _types(template, name, office):
     """{field: type} of a layer of the client, its file's or else as the template says or its values are."""
     rules = template.layer_of(name)
     used = [field for field in template.types if any(field in rule.cells for rule in rules)]
     if office is None:
-        return {field: template.types.get(field) or _guessed([rule.cells[field] for rule in rules if field in rule.cells], rules, layers)
-                for field in used}
-    there, line = office.get(name), rules[0].line
-    if there is None:
-        raise RoadExtractionError(f"{template.path}, line {line}: the file of the client has no layer {name}{_like(name, office)}.")
-    if there[0] not in ("", rules[0].geometry):
-        raise RoadExtractionError(f"{template.path}, line {line}: layer {name} of the client's file holds a {there[0]}, and a {rules[0].geometry} "
-                                  "is to be written.")
-    missing = next((field for field in used if field not in there[1]), None)
-    if missing:
-        raise RoadExtractionError(f"{template.path}, line {line}: layer {name} of the client's file has no field {missing}"
-                                  f"{_like(missing, there[1])}.")
-    return {field: there[1][field] for field in used}
+        return {field: template.types.get(field) or _type_of([rule.cells[field] for rule in rules if field in rule.cells]) for field in used}
+    kind, fields = office.get(name, ("", {}))
+    lacking = next((field for field in used if field not in fields), "")
+    problem = ""
+    if name not in office:
+        problem = f"the file of the client has no layer {name}{_like(name, office)}"
+    elif kind not in ("", rules[0].geometry):
+        problem = f"layer {name} of the client's file holds a {kind}, and a {rules[0].geometry} is to be written"
+    elif lacking:
+        problem = f"layer {name} of the client's file has no field {lacking}{_like(lacking, fields)}"
+    if problem:
+        raise RoadExtractionError(f"{template.path}, line {rules[0].line}: {problem}.")
+    return {field: fields[field] for field in used}
 
 
-def _guessed(texts, rules, layers):
-    """The type that holds all of these values: whole numbers, numbers or texts."""
-    fields = {field.name: field.type for rule in rules if rule.source in layers for field in layers[rule.source].schema}
-    kinds = set()
-    for text in texts:
-        reference = REFERENCE.fullmatch(text)
-        name, _, option = reference[1].partition(":") if reference else ("", "", "")
-        plain = re.fullmatch(r"-?(0|[1-9]\d*)", text)
-        kinds.add(int if plain or name == NUMBER else str if not reference or "=" in option else float if option else fields.get(name.strip(), str))
+def _type_of(cells):
+    """The type that holds all values of cells: whole numbers, numbers or texts."""
+    kinds = {str if len(cell) > 1 else cell[0].kind if isinstance(cell[0], _Reference) else int if WHOLE.fullmatch(cell[0]) else str
+             for cell in cells}
     return int if kinds == {int} else float if kinds <= {int, float} else str
 
 
 def _filled(template, rule, field, row, kind):
     """The value of a field of the client; None where ours has none."""
-    text = rule.cells[field]
-    whole = REFERENCE.fullmatch(text)
-    value = _referred(whole[1], row) if whole else REFERENCE.sub(lambda found: _written(_referred(found[1], row)), text)
+    values = [part.value(row) if isinstance(part, _Reference) else part for part in rule.cells[field]]
+    value = values[0] if len(values) == 1 else "".join(map(_written, values))
     if value is None or kind is str:
         return None if value is None else _written(value)
     try:
-        number = float(value)
+        return round(float(value)) if kind is int else float(value)
     except ValueError:
         raise RoadExtractionError(f"{template.path}, line {rule.line}: {field} of {rule.layer} holds numbers, and “{value}” is none.") from None
-    return round(number) if kind is int else number
-
-
-def _referred(reference, row):
-    """What a reference to one of our fields gives."""
-    name, _, option = (part.strip() for part in reference.partition(":"))
-    value = row.get(name)
-    if value is None or not option:
-        return value
-    return _list_of(option).get(str(value)) if "=" in option else value * _units_of(name)[option]
 
 
 def _written(value):
@@ -332,13 +347,17 @@ def _as(kind, shape):
 # Files with layers of their own.
 
 
-def _gdal():
+@contextmanager
+def _geopackage(path, done):
+    """A context in which a GeoPackage is "read" or "written"; RoadExtractionError, in one sentence, where it cannot be."""
     try:
-        from osgeo import gdal, ogr
+        with gdal_exceptions():
+            yield
     except ImportError as problem:
-        raise RoadExtractionError("A GeoPackage of a client is written by GDAL's own Python package, which is not installed. Install it by "
-                                  "conda-forge (gdal) or Debian (python3-gdal), or write a DXF drawing.") from problem
-    return gdal, ogr
+        raise RoadExtractionError("The GeoPackage of a client needs GDAL's Python module (osgeo), which is not installed. Install "
+                                  "lanewright[gdal] with pip, or write a DXF drawing.") from problem
+    except (RuntimeError, sqlite3.Error) as problem:
+        raise RoadExtractionError(f"{path} could not be {done} as a GeoPackage ({' '.join(str(problem).split())}).") from problem
 
 
 def layers_of_file(path: str | os.PathLike[str], crs: str) -> dict[str, tuple[str, dict[str, type]]]:
@@ -346,28 +365,21 @@ def layers_of_file(path: str | os.PathLike[str], crs: str) -> dict[str, tuple[st
 
     crs : WKT, metric, of the map; "" where unknown. RoadExtractionError if the file is none, or a layer is in another CRS.
     """
-    gdal, ogr = _gdal()
-    kinds = {ogr.wkbPoint: "point", ogr.wkbLineString: "line", ogr.wkbPolygon: "polygon", ogr.wkbMultiPoint: "point",
-             ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon"}
-    types = {ogr.OFTInteger: int, ogr.OFTInteger64: int, ogr.OFTReal: float}
-    ours = parse_crs(as_in_file(crs)[0]) if crs else None
-    try:
-        with gdal_exceptions():
-            dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=["GPKG"])
-            result = {}
-            for k in range(dataset.GetLayerCount()):
-                layer = dataset.GetLayer(k)
-                theirs = layer.GetSpatialRef()
-                if ours is not None and theirs is not None and not same_crs(parse_crs(theirs.ExportToWkt()), ours):
-                    raise RoadExtractionError(f"Layer {layer.GetName()} of {path} is in {theirs.GetName()}, and the map in {ours.name}. Give the "
-                                              "client's file the CRS of the map, or bring the map's layers to that of the file.")
-                defined = layer.GetLayerDefn()
-                fields = (defined.GetFieldDefn(number) for number in range(defined.GetFieldCount()))
-                result[layer.GetName()] = kinds.get(ogr.GT_Flatten(layer.GetGeomType()), ""), {
-                    field.GetName(): types.get(field.GetType(), str) for field in fields}
-            return result
-    except RuntimeError as problem:
-        raise RoadExtractionError(f"{path} cannot be read as a GeoPackage ({problem}).") from problem
+    ours, result = parse_crs(as_in_file(crs)[0]) if crs else None, {}
+    with _geopackage(path, "read"):
+        kinds = {ogr.wkbPoint: "point", ogr.wkbLineString: "line", ogr.wkbPolygon: "polygon", ogr.wkbMultiPoint: "point",
+                 ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon", ogr.wkbNone: "row without a place"}
+        types = {ogr.OFTInteger: int, ogr.OFTInteger64: int, ogr.OFTReal: float}
+        dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=["GPKG"])
+        for k in range(dataset.GetLayerCount()):
+            layer = dataset.GetLayer(k)
+            theirs = layer.GetSpatialRef()
+            if ours is not None and theirs is not None and not same_crs(parse_crs(theirs.ExportToWkt()), ours):
+                raise RoadExtractionError(f"Layer {layer.GetName()} of {path} is in {theirs.GetName()}, and the map in {ours.name}. Give the "
+                                          "client's file the CRS of the map, or bring the map's layers to that of the file.")
+            result[layer.GetName()] = kinds.get(ogr.GT_Flatten(layer.GetGeomType()), ""), {
+                field.GetName(): types.get(field.GetType(), str) for field in layer.schema}
+    return result
 
 
 def write_client_layers(layers: Mapping[str, Features], path: str, office: str = "") -> None:
@@ -375,27 +387,27 @@ def write_client_layers(layers: Mapping[str, Features], path: str, office: str =
 
     RoadExtractionError if there is no GDAL that writes it, or the client's file does not take the features.
     """
-    gdal, ogr = _gdal()
-    if office:
-        shutil.copyfile(office, path)
-    try:
-        with gdal_exceptions():
-            dataset = gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_UPDATE) if office \
-                else gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)
-            for name, features in layers.items():
-                layer = dataset.GetLayerByName(name) if office else _new_layer(dataset, name, features)
-                _fill(layer, features)
-            layer = dataset = None
-    except RuntimeError as problem:
-        raise RoadExtractionError(f"The layers of the client could not be written: {problem}.") from problem
+    with _geopackage(path, "written"):
+        if office:
+            # what a program that has it open keeps in a journal beside it is copied too
+            with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(path)) as copy:
+                database.backup(copy)
+        dataset = gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_UPDATE) if office \
+            else gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)
+        for name, features in layers.items():
+            layer = dataset.GetLayerByName(name) if office else _new_layer(dataset, name, features)
+            _fill(layer, features)
+        dataset.FlushCache()   # what cannot be written when a dataset is let go, nobody is told
+        layer = dataset = None
 
 
 def _new_layer(dataset, name, features):
-    from osgeo import ogr, osr
-
     crs = osr.SpatialReference(as_in_file(features.crs)[0] if features.crs else UNDEFINED_CARTESIAN)
     kinds = {"PointZ": ogr.wkbPoint25D, "LineStringZ": ogr.wkbLineString25D, "PolygonZ": ogr.wkbPolygon25D}
-    layer = dataset.CreateLayer(name, crs, kinds[features.geometry_type])
+    # columns that a GeoPackage has itself, where the client calls a field so
+    taken = {field.name.lower() for field in features.schema}
+    options = [f"{option}=lanewright_{column}" for option, column in (("FID", "fid"), ("GEOMETRY_NAME", "geom")) if column in taken]
+    layer = dataset.CreateLayer(name, crs, kinds[features.geometry_type], options)
     types = {int: ogr.OFTInteger64, float: ogr.OFTReal, str: ogr.OFTString}
     for field in features.schema:
         layer.CreateField(ogr.FieldDefn(field.name, types[field.type]))
@@ -404,8 +416,6 @@ def _new_layer(dataset, name, features):
 
 def _fill(layer, features):
     """Add features to a layer of an open file, as its kind of geometry has them: flat, or of one part in a layer of several."""
-    from osgeo import ogr
-
     units = as_in_file(features.crs)[1]
     kind = layer.GetGeomType()
     layer.StartTransaction()
@@ -416,7 +426,18 @@ def _fill(layer, features):
         feature = ogr.Feature(layer.GetLayerDefn())
         feature.SetGeometry(made if kind == ogr.wkbUnknown else ogr.ForceTo(made, kind))
         for name, value in row.items():
-            if value is not None:
-                feature.SetField(name, value)
+            if value is not None and not _stored(feature, name, value):
+                raise RoadExtractionError(f"The field {name} of layer {layer.GetName()} does not take “{value}”: it is too long or large, or of "
+                                          "another kind than the field. Change the template or the field.")
         layer.CreateFeature(feature)
     layer.CommitTransaction()
+
+
+def _stored(feature, name, value):
+    """Set a field of a feature; whether it has the whole value then."""
+    width = feature.GetFieldDefnRef(name).GetWidth()
+    if isinstance(value, int) and abs(value) >= 2**63 or isinstance(value, str) and 0 < width < len(value):
+        return False
+    feature.SetField(name, value)
+    stored = feature.GetField(name)
+    return stored is not None and (stored == value or not isinstance(value, int))

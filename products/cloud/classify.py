@@ -1,9 +1,9 @@
-"""What every point of a survey belongs to, by the ground below it and the layers of the road map."""
+"""The class of every point of a survey, by the ground below it and the layers of the road map."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any, NamedTuple
 
@@ -50,7 +50,7 @@ class PointClass(IntEnum):
 
 @dataclass(frozen=True)
 class CloudSettings(Limited):
-    """How near a point must lie to what it belongs to. The numbers without limits are not asked for."""
+    """How near to ground, curbs and things a point of theirs lies. Users are asked for the numbers with limits alone."""
 
     ground: float = setting(0.05, 0.01, 0.3, "The thickness of the ground", "m")   # m above and below the ground of points that are ground
     curb: float = setting(0.10, 0.02, 0.5, "The width of a curb", "m")   # m either side of a road edge within which its face and top lie
@@ -76,7 +76,7 @@ class CloudSettings(Limited):
 
 @dataclass(frozen=True)
 class CloudLayers:
-    """Layers of a road map in map coordinates; None for those that are not given."""
+    """Layers of a road map in map coordinates; None where there is none."""
 
     road_surface: Features | None = None   # PolygonZ
     road_edges: Features | None = None   # LineStringZ along bottoms of curbs, with the fields height_m and edge
@@ -84,13 +84,9 @@ class CloudLayers:
     roadside: Features | None = None   # LineStringZ along the ground, with the fields kind, foot_m and height_m
     roadside_objects: Features | None = None   # PointZ on the ground, with the fields kind, height_m and diam_m
 
-    def given(self) -> dict[str, Features]:
-        """Those that are given, by name."""
-        return {layer.name: getattr(self, layer.name) for layer in fields(self) if getattr(self, layer.name) is not None}
-
 
 class _RoadPlaces(NamedTuple):
-    """Where N points lie on the road, and what they belong to."""
+    """Where N points lie on the road, and their classes."""
 
     classes: np.ndarray   # (N,) uint8 PointClass; 0 where nothing is known of a point
     road: np.ndarray   # (N,) int, number of the road; -1 beyond the corridor, where the three below are NaN
@@ -123,7 +119,7 @@ class PointClassifier:
             _curbs_of(layers.road_edges), layers.roadside, layers.roadside_objects))
 
     def places(self, points: Any) -> _RoadPlaces:
-        """Those of a block of N laspy points, whose coordinates are in metres."""
+        """Places and classes of a block of N laspy points, whose coordinates are in metres."""
         origin = self.survey.frame.origin
         x, y, z = (np.asarray(points[name], float) - start for name, start in zip("xyz", origin))
         road, s, d, (x, y, z) = self._placed(points, x, y, z)
@@ -172,7 +168,7 @@ class PointClassifier:
         return np.where(paint - asphalt < self.settings.contrast, 0, asphalt + self.settings.paint_from * (paint - asphalt))
 
     def _classes(self, x, y, z, h, brightness):
-        """Classes of points `h` metres above the ground, NaN where it is not known; what is found later overrules."""
+        """Classes of points `h` metres above the ground, NaN where it is not known; a later class overrules an earlier one."""
         chosen, classes = self.settings, np.zeros(len(x), np.uint8)
         low = np.abs(h) < chosen.ground
         deep = h < -chosen.noise
@@ -184,7 +180,7 @@ class PointClassifier:
         marking = self._paint.owner(x, y, low & (classes != PointClass.CURB))
         painted = np.flatnonzero(marking >= 0)
         classes[painted[brightness[painted] >= self._paint_from[marking[painted]]]] = PointClass.PAINT
-        # layers overrule what is taken for ground, where that is a rail far away of which alone anything was seen
+        # layers overrule ground: of a rail far away, whose ground is hidden, the lowest points pass for it
         beside = ~within & ~np.isin(classes, (PointClass.CURB, PointClass.PAINT))
         wide = np.where(self._lines.words("hedge"), chosen.hedge, 1.0)
         self._mark_things(classes, x, y, z, beside, self._lines, wide * chosen.beside)
@@ -216,7 +212,7 @@ def _steps_of(intensity):
 
 
 def _curbs_of(edges):
-    """Those road edges that are curbs: edges of a pavement have no height."""
+    """The road edges that are curbs: edges of a pavement have no height."""
     if edges is None:
         return None
     kept = [k for k, row in enumerate(edges.rows) if row.get("edge") != "pavement" and (row.get("height_m") or 0.0) > 0.0]

@@ -68,13 +68,12 @@ def _header_of(file, crs):
         header = deepcopy(reader.header)
     # those of the file itself, which the reader gives in metres
     header.scales, header.offsets = np.fromfile(file.path, "<f8", 6, offset=131).reshape(2, 3)
-    header.vlrs = _without(header.vlrs, COPC)
-    header.evlrs = _without(header.evlrs or [], COPC)
     if header.point_format.id < 6:
         newer = laspy.PointFormat({0: 6, 1: 6, 2: 7, 3: 7, 4: 9, 5: 10}[header.point_format.id])
         newer.dimensions.extend(header.point_format.extra_dimensions)
         header.set_version_and_point_format(laspy.header.Version(1, 4), newer)
-        header.evlrs = laspy.vlrs.vlrlist.VLRList()
+        header.global_encoding.wkt = True
+    header.vlrs, header.evlrs = (_without(records or [], COPC) for records in (header.vlrs, header.evlrs))
     present = {dimension.name: dimension for dimension in header.point_format.extra_dimensions}
     added = []
     for field in _road_fields():
@@ -91,19 +90,15 @@ def _header_of(file, crs):
 
 
 def _without(records, user):
-    from laspy.vlrs.vlrlist import VLRList
-
-    return VLRList([record for record in records if record.user_id.strip("\0 ") != user])
+    return laspy.vlrs.vlrlist.VLRList([record for record in records if record.user_id.strip("\0 ") != user])
 
 
 def _name_classes(header):
     """Let the record of the file that names classes name those of Lanewright."""
-    from laspy.vlrs.known import ClassificationLookupVlr
-
-    names = next((record for record in header.vlrs if isinstance(record, ClassificationLookupVlr)), None)
-    if names is None:
-        names = ClassificationLookupVlr()
-        header.vlrs.append(names)
+    lookup = laspy.vlrs.known.ClassificationLookupVlr
+    if not header.vlrs.get(lookup.__name__):
+        header.vlrs.append(lookup())
+    names = header.vlrs.get(lookup.__name__)[0]
     for number in PointClass:
         if number > PointClass.HIGH_NOISE:
             names[int(number)] = number.name.lower().replace("_", " ")
@@ -112,6 +107,7 @@ def _name_classes(header):
 def _described(points, places, header, counts):
     """The record of a block of laspy points for the copy."""
     record = laspy.ScaleAwarePointRecord.zeros(len(points), header=header)
+    before = np.asarray(points["classification"])
     if points.point_format.id == header.point_format.id:
         for name in points.array.dtype.names:
             record.array[name] = points.array[name]
@@ -119,7 +115,9 @@ def _described(points, places, header, counts):
         record.copy_fields_from(points)
         # of 0.006 degrees each (LAS 1.4 R15, table 17); before, whole degrees
         record.array["scan_angle"] = np.rint(points["scan_angle_rank"].astype(float) / 0.006)
-    before = np.asarray(points["classification"])
+        for flag, number in (("key_point", 8), ("overlap", 12)):   # what were classes are flags since
+            record[flag] = np.asarray(record[flag]) | (before == number)
+        before = np.where(np.isin(before, [8, 12]), np.uint8(PointClass.UNCLASSIFIED), before)
     kept = np.where(np.isin(before, [0, *map(int, PointClass)]), np.uint8(PointClass.UNCLASSIFIED), before)
     classes = np.where(places.classes > 0, places.classes, kept)
     valid = valid_points(points)
@@ -136,10 +134,8 @@ def _described(points, places, header, counts):
 
 def _straightened(header):
     """The header of a copy whose coordinates are stations, offsets and heights: it has no place on earth."""
-    from laspy.vlrs.vlrlist import VLRList
-
     straight = deepcopy(header)
-    straight.vlrs, straight.evlrs = _without(straight.vlrs, CRS_RECORDS), VLRList()
+    straight.vlrs, straight.evlrs = _without(straight.vlrs, CRS_RECORDS), laspy.vlrs.vlrlist.VLRList()
     straight.global_encoding.wkt = True   # as the point format demands; without a record the CRS is unknown
     straight.scales, straight.offsets = np.full(3, 1e-3), np.zeros(3)
     return straight

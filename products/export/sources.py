@@ -339,8 +339,7 @@ def _corners(shape: Any) -> np.ndarray:
     rectangle = shapely.force_2d(shape).minimum_rotated_rectangle
     if rectangle.geom_type != "Polygon":
         return np.empty((0, 3))
-    corners = shapely.get_coordinates(shapely.orient_polygons(rectangle).exterior)[:4] if hasattr(shapely, "orient_polygons") else \
-        shapely.get_coordinates(shapely.geometry.polygon.orient(rectangle).exterior)[:4]
+    corners = shapely.get_coordinates(shapely.geometry.polygon.orient(rectangle).exterior)[:4]
     if np.hypot(*(corners[1] - corners[0])) < np.hypot(*(corners[2] - corners[1])):
         corners = corners[[1, 2, 3, 0]]
     vertices = shapely.get_coordinates(shape, include_z=True)
@@ -435,19 +434,20 @@ class MapLayers:
 
     def marking_lines(self) -> Features:
         """Painted borders, as MARKING_LINES."""
-        layer = Features("LineStringZ", MARKING_LINES, crs=self.lanes.crs)
-        for number, line in enumerate((line for line in self.lines if line.what == "marking"), start=1):
-            layer.add(shapely.linestrings(line.points), road=line.road, line=number, kind=line.kind, pattern=line.pattern, status=STATUS_OF_MAPS,
-                      station_m=0.0, end_m=plan_length(line.points), length_m=plan_length(line.points), width_m=line.width)
-        return layer
+        return self._layer_of_lines("marking", MARKING_LINES, lambda number, line: {
+            "line": number, "kind": line.kind, "pattern": line.pattern, "width_m": line.width})
 
     def road_edges(self) -> Features:
         """Curbs and the outer borders of what is driven on, as ROAD_EDGES."""
-        layer = Features("LineStringZ", ROAD_EDGES, crs=self.lanes.crs)
-        for number, line in enumerate((line for line in self.lines if line.what == "edge"), start=1):
-            layer.add(shapely.linestrings(line.points), road=line.road, side=line.side or None, status=STATUS_OF_MAPS, station_m=0.0,
-                      end_m=plan_length(line.points), part="bottom", length_m=plan_length(line.points), kind="main", edge=line.edge, chain=number,
-                      height_m=line.height)
+        return self._layer_of_lines("edge", ROAD_EDGES, lambda number, line: {
+            "side": line.side or None, "part": "bottom", "kind": "main", "edge": line.edge, "chain": number, "height_m": line.height})
+
+    def _layer_of_lines(self, what, schema, values):
+        layer = Features("LineStringZ", schema, crs=self.lanes.crs)
+        for number, line in enumerate((line for line in self.lines if line.what == what), start=1):
+            length = plan_length(line.points)
+            layer.add(shapely.linestrings(line.points), road=line.road, status=STATUS_OF_MAPS, station_m=0.0, end_m=length, length_m=length,
+                      **values(number, line))
         return layer
 
 
@@ -557,7 +557,7 @@ def _segments(lines, curved=False):
     lines, _ = _once(lines)
     places, line = _joined(lines), np.repeat(np.arange(len(lines)), [len(border) for border in lines])
     way, same = np.diff(places[:, :2], axis=0), line[1:] == line[:-1]
-    turn = np.abs((np.diff(np.arctan2(way[:, 1], way[:, 0])) + np.pi) % (2 * np.pi) - np.pi)
+    turn = np.abs(wrapped(np.diff(np.arctan2(way[:, 1], way[:, 0]))))
     turn = np.concatenate([[np.nan], np.where(same[1:] & same[:-1], turn, np.nan), [np.nan]])
     bow = np.nan_to_num(np.fmin(turn[:len(way)], turn[1:len(way) + 1])) * np.hypot(*way.T) / 8 * curved
     return np.c_[places[:-1], places[1:], bow][same]
@@ -571,15 +571,14 @@ def _gone_on(line):
     return np.stack([line[0], line[0] - way * BEYOND_END / max(float(np.hypot(*way[:2])), 1e-9)])
 
 
-def driving_line_misses(driving_lines: Features | None, exported: Lanes, measured_only: bool = True,
-                        apart_from: np.ndarray | None = None) -> _Misses:
+def driving_line_misses(driving_lines: Features | None, exported: Lanes, apart_from: np.ndarray | None = None) -> _Misses:
     """Across, of driving lines against the middles of the lanes that are read back.
 
     apart_from : (N, 2) places; what lies within LEFT_OUT_NEAR of one is left out
     """
     middles = [sum(exported.borders(k)) / 2 for k in np.flatnonzero(np.isin(exported.type, ("driving", "connector")))]
     rows = [shapely.get_coordinates(geometry, include_z=True) for geometry, row in driving_lines or ()
-            if geometry is not None and (not measured_only or row.get("status") in (None, "measured"))]
+            if geometry is not None and row.get("status") in (None, "measured")]
     places = np.concatenate([np.empty((0, 3)), *rows])
     if apart_from is not None and len(apart_from) and len(places):
         places = places[cKDTree(apart_from).query(places[:, :2])[0] > LEFT_OUT_NEAR]

@@ -10,12 +10,13 @@ import shapely
 from ...core.common.arrays import mask_runs
 from ...core.common.progress import Progress
 from ...core.driving.layers import Lanes
-from ...core.survey.frame.placement import line_parts, lines_in_frame
+from ...core.survey.frame.placement import FrameLines, line_parts, lines_in_frame
+from ...core.survey.frame.road_frame import RoadFrame
 from ...core.survey.survey import Survey
 from ..inventory.borders import BorderLayers
 from ..inventory.roadside.uprights import lowest_along
 from ..inventory.surface_grid import CROSS_CELL, SLICE_LENGTH, smoothed
-from .ground import RoadGround, edge_profiles
+from .ground import RoadGround, edge_profiles, medians
 
 # In the order of their weight: where two run beside each other, the triangulation follows the first
 KINDS = ("edge_bottom", "edge_top", "gutter_flow_line", "crown", "lane_border")
@@ -43,18 +44,27 @@ class Breakline:
     step: float = np.nan   # m that an edge_top lies above its edge_bottom
 
 
-def road_breaklines(survey: Survey, ground: RoadGround, layers: BorderLayers, progress: Progress = Progress()) -> list[Breakline]:
-    """The breaklines of a road: feet and tops of its edges, gutters, crown and borders of lanes; nothing where the ground was not seen."""
+def lines_to_follow(layers: BorderLayers, frame: RoadFrame) -> tuple[FrameLines, FrameLines]:
+    """Edges, and borders of lanes or else marking lines, with vertices about a slice apart."""
+    return _even(_parts_of(layers.edges), frame), _even(_lane_borders(layers), frame)
+
+
+def road_breaklines(survey: Survey, ground: RoadGround, edges: FrameLines, borders: FrameLines,
+                    progress: Progress = Progress()) -> list[Breakline]:
+    """The breaklines of a road: feet and tops of its edges, gutters, crown and borders of lanes; nothing where the ground was not seen.
+
+    edges, borders : of all roads, as `lines_to_follow` gives them
+    """
     frame = survey.frame
-    result = list(_edges(survey, ground, layers.edges, progress))
+    result = list(_edges(survey, ground, edges[edges.road == ground.road], progress))
     for side in (1, -1):
         result += _along("gutter_flow_line", ground, frame, *_gutter(ground, side))
     result += _along("crown", ground, frame, *_crown(ground))
-    lines = _lines_of_road(_lane_borders(layers), ground.road, frame)
+    lines = borders[borders.road == ground.road]
     z, sigma = ground.at(lines.s, lines.d), ground.at(lines.s, lines.d, ground.sigma)
     # a lane that ends at the curb ends at the edge's own line
-    edges = shapely.union_all([shapely.linestrings(line.places[:, :2]) for line in result if line.kind.startswith("edge")])
-    z[shapely.dwithin(shapely.points(lines.x, lines.y), edges, 2 * CROSS_CELL)] = np.nan
+    followed = shapely.union_all([shapely.linestrings(line.places[:, :2]) for line in result if line.kind.startswith("edge")])
+    z[shapely.dwithin(shapely.points(lines.x, lines.y), followed, 2 * CROSS_CELL)] = np.nan
     for k in range(len(lines)):
         part = lines.line(k)
         result += _pieces("lane_border", ground.road, np.stack([lines.x[part], lines.y[part], z[part]], axis=1), lines.s[part], sigma[part])
@@ -72,25 +82,27 @@ def _lane_borders(layers):
 
 
 def _parts_of(layer):
-    """The same of a layer of lines."""
+    """The same of a layer of lines, each once, as neighbouring surveys may both have one; tops of curbs are measured, not taken from it."""
     if layer is None:
         return [], []
-    parts, rows = line_parts(layer.geometries)
-    return parts, [-1 if layer.rows[row].get("road") is None else int(layer.rows[row]["road"]) for row in rows]
+    members = [(part, layer.rows[row]) for part, row in zip(*line_parts(layer.geometries)) if layer.rows[row].get("part") != "top"]
+    parts, length = [part for part, _ in members], [part.length for part, _ in members]
+    covered, by = shapely.STRtree(shapely.buffer(parts, CROSS_CELL)).query(parts, predicate="covered_by") if parts else ((), ())
+    twice = {k for k, other in zip(covered, by) if (length[other], other) > (length[k], k)}
+    kept = [(part, -1 if row.get("road") is None else int(row["road"])) for k, (part, row) in enumerate(members) if k not in twice]
+    return [part for part, _ in kept], [road for _, road in kept]
 
 
-def _lines_of_road(lines_and_roads, road, frame):
-    """FrameLines of a road with vertices a slice apart."""
+def _even(lines_and_roads, frame):
+    """FrameLines with vertices a slice apart."""
     shapes, roads = lines_and_roads
     even = [shapely.linestrings(shapely.get_coordinates(shapely.line_interpolate_point(
         shape, np.linspace(0.0, 1.0, max(int(round(shape.length / SLICE_LENGTH)), 2) + 1), normalized=True), include_z=True)) for shape in shapes]
-    lines = lines_in_frame(even, roads, frame, None)
-    return lines[lines.road == road]
+    return lines_in_frame(even, roads, frame, None)
 
 
-def _edges(survey, ground, layer, progress):
+def _edges(survey, ground, lines, progress):
     """Foot and top of every edge. Which side is the higher one is measured, so that it does not matter which way a line was drawn."""
-    lines = _lines_of_road(_parts_of(layer), ground.road, survey.frame)
     u, z, normal = edge_profiles(survey, ground, lines, progress)
     higher = np.nan_to_num(_line(u, z, PLATEAU)[0] - _line(-u, z, PLATEAU)[0]) < 0
     z = np.where(higher[:, None], z[:, ::-1], z)
@@ -163,14 +175,16 @@ def _hinge(x, heights):
     places = np.arange(x[0] + CROWN_INSIDE / 2, x[-1] - CROWN_INSIDE / 2, 2 * CROSS_CELL)
     if not len(places):
         return None
-    fits = [np.linalg.lstsq(np.stack([np.ones(len(x)), x - place, np.abs(x - place)], axis=1), heights, rcond=None)[:2] for place in places]
-    best = int(np.argmin([squares.sum() for _, squares in fits]))
-    (level, slope, bend), squares = fits[best]
-    place = float(places[best])
+    away = x - places[:, None]
+    lines = np.stack([np.ones_like(away), away, np.abs(away)], axis=1)
+    fits = np.linalg.solve(lines @ lines.transpose(0, 2, 1), (lines @ heights)[..., None])
+    squares = ((lines * fits).sum(axis=1) - heights) ** 2
+    best = int(np.argmin(squares.sum(axis=1)))
+    level, slope, bend = fits[best, :, 0].tolist()
     # left of the ridge the road falls outward by slope + bend < 0, right of it by slope - bend > 0
     if slope - bend < CROWN_FALL or slope + bend > -CROWN_FALL:
         return None
-    return place, level, float(np.sqrt(squares.sum() / max(len(x) - 3, 1)))
+    return float(places[best]), level, float(np.sqrt(squares[best].sum() / max(len(x) - 3, 1)))
 
 
 def _along(kind, ground, frame, d, z, sigma):
@@ -185,9 +199,7 @@ def _along(kind, ground, frame, d, z, sigma):
 
 def _running_median(values):
     """(N,) medians of nine neighbours without NaN; beyond its ends a line goes on as it came."""
-    windows = np.lib.stride_tricks.sliding_window_view(np.pad(values, 4, mode="reflect", reflect_type="odd"), 9)
-    ordered, count = np.sort(windows, axis=1), np.isfinite(windows).sum(axis=1)
-    return ordered[np.arange(len(values)), np.maximum((count - 1) // 2, 0)]
+    return medians(np.lib.stride_tricks.sliding_window_view(np.pad(values, 4, mode="reflect", reflect_type="odd"), 9))
 
 
 def _pieces(kind, road, places, station, sigma, step=None):

@@ -19,6 +19,7 @@ from ..inventory.borders import RoadBorders
 from ..inventory.surface_grid import (
     CROSS_CELL,
     ROAD_LAYER_JUMP,
+    ROAD_REACH,
     SLICE_LENGTH,
     HeightErrors,
     joined_heights,
@@ -110,9 +111,9 @@ def road_ground(survey: Survey, road: int, borders: RoadBorders, reach: float, p
     beyond, level = np.maximum(right[:, None] - d, d - left[:, None]), survey.road_height(road, s)
     highest = level[:, None] + _lower_envelope(z - level[:, None]) + STANDING_HEIGHT + STEEPEST_GROUND * np.maximum(beyond, 0.0)
     z[(beyond > reach) | (z > highest)] = np.nan
-    z[np.abs(z - _medians(z)) > SPIKE + STEEPEST_GROUND * CROSS_CELL] = np.nan
+    z[np.abs(z - _medians_about(z)) > SPIKE + STEEPEST_GROUND * CROSS_CELL] = np.nan
     points = sum(int(grid.count.sum()) for grid, _ in read_grids)
-    return _apart(RoadGround(road, s, d, level, z, sigma, highest, right, left, points, errors), survey.frame)
+    return _apart(RoadGround(road, s, d, level, z, sigma, highest, right, left, points, errors), survey)
 
 
 def _lower_envelope(height):
@@ -122,26 +123,31 @@ def _lower_envelope(height):
     return maximum_filter(np.where(np.isfinite(lowest), lowest, -np.inf), size, mode="nearest")
 
 
-def _medians(z):
+def _medians_about(z):
     """(I, J) medians of the cells about every cell, without NaN."""
     rows, columns = ABOUT_SPIKE
     padded = np.pad(z, ((rows, rows), (columns, columns)), constant_values=np.nan)
-    medians = []
-    for first in range(0, len(z), READ_SLICES):
-        block = np.lib.stride_tricks.sliding_window_view(padded[first:first + READ_SLICES + 2 * rows], (2 * rows + 1, 2 * columns + 1))
-        values = np.sort(block.reshape(*block.shape[:2], -1), axis=2)   # NaN last
-        count = np.isfinite(values).sum(axis=2)
-        medians.append(np.take_along_axis(values, np.maximum((count - 1) // 2, 0)[..., None], axis=2)[..., 0])
-    return np.concatenate(medians)
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (2 * rows + 1, 2 * columns + 1))
+    # a part at a time: all windows together take many times the memory of the ground
+    return np.concatenate([medians(part.reshape(*part.shape[:2], -1))
+                           for part in np.array_split(windows, range(READ_SLICES, len(z), READ_SLICES))])
 
 
-def _apart(ground, frame):
-    """The ground without the cells that lie nearer to another road."""
-    if len(frame.roads) > 1:
+def medians(values: np.ndarray) -> np.ndarray:
+    """(...) lower medians along the last axis of (..., N) values, without NaN; NaN where all are."""
+    middle = np.maximum((np.isfinite(values).sum(axis=-1) - 1) // 2, 0)
+    return np.take_along_axis(np.sort(values, axis=-1), middle[..., None], axis=-1)[..., 0]   # NaN last
+
+
+def _apart(ground, survey):
+    """The ground without the cells that lie nearer to another road of about their height."""
+    if len(survey.frame.roads) > 1:
         i, j = np.nonzero(np.isfinite(ground.z))
-        nearest = frame.locate_nearest(*frame.road(ground.road).to_map(ground.s[i], ground.d[j]))[0]
-        away = (nearest != ground.road) & (nearest >= 0)
-        ground.z[i[away], j[away]] = np.nan
+        nearest, s, _ = survey.frame.locate_nearest(*survey.frame.road(ground.road).to_map(ground.s[i], ground.d[j]))
+        for other in set(nearest.tolist()) - {ground.road, -1}:
+            rows = np.flatnonzero(nearest == other)
+            rows = rows[np.abs(survey.road_height(other, s[rows]) - ground.z[i[rows], j[rows]]) < ROAD_REACH]
+            ground.z[i[rows], j[rows]] = np.nan
     return ground
 
 

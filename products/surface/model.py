@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
+from itertools import combinations
 
 import numpy as np
 import shapely
@@ -18,8 +19,8 @@ from ...core.io.crs import as_in_file
 from ...core.io.geotiff import GEOTIFF_TILE, NODATA, new_geotiff
 from ...core.survey.survey import Survey
 from ..inventory.borders import BorderLayers, RoadBorders
-from ..inventory.surface_grid import CROSS_CELL, SLICE_LENGTH
-from .breaklines import KINDS, Breakline, road_breaklines
+from ..inventory.surface_grid import CROSS_CELL, ROAD_REACH, SLICE_LENGTH
+from .breaklines import KINDS, Breakline, lines_to_follow, road_breaklines
 from .ground import READ_SLICES, road_ground
 from .triangulation import Triangulation, thinned
 
@@ -52,6 +53,11 @@ class SurfaceModel:
     notes: list[str] = field(default_factory=list)
 
     @property
+    def places(self) -> np.ndarray:
+        """(V, 3) m, vertices in map coordinates."""
+        return self.surface.vertices + self.origin
+
+    @property
     def vertices(self) -> int:
         """Number of vertices that are corners of a triangle."""
         return len(np.unique(self.surface.faces))
@@ -65,35 +71,66 @@ def make_surface_model(survey: Survey, layers: BorderLayers, settings: SurfaceSe
     Raises RoadExtractionError if the edges lie on no road of the survey, or no ground was seen about them
     """
     borders = RoadBorders(layers, survey.frame, NEUTRAL)
-    roads, grounds, lines = survey.store.roads(), [], []
+    roads, grounds, lines, without = survey.store.roads(), [], [], []
+    edges, lane_borders = lines_to_follow(layers, survey.frame)
     for k, road in enumerate(roads):
-        part = progress.part(0.6 * k / len(roads), 0.6 * (k + 1) / len(roads))
-        ground = road_ground(survey, road, borders, settings.reach, part.part(0.0, 0.6))
+        ground = road_ground(survey, road, borders, settings.reach, progress.part(0.4 * k / len(roads), 0.4 * (k + 1) / len(roads)))
         if ground is not None and np.isfinite(ground.z).any():
             grounds.append(ground)
-            lines += road_breaklines(survey, ground, layers, part.part(0.6, 1.0))
-    if not grounds:
-        raise RoadExtractionError("No ground was seen between the road edges: they lie on none of the driven roads. Choose those of this survey.")
-    area = shapely.union_all([ground.outline(survey.frame, settings.max_gap) for ground in grounds])
+        else:
+            without.append(str(road))
+    outlines = {ground.road: ground.outline(survey.frame, settings.max_gap) for ground in grounds}
+    covered, crossed = _covered(grounds, outlines, survey)
+    for k, ground in enumerate(grounds):
+        part = progress.part(0.4 + 0.2 * k / len(grounds), 0.4 + 0.2 * (k + 1) / len(grounds))
+        lines += road_breaklines(survey, ground, edges, lane_borders, part)
+    area = shapely.union_all([outlines[road].difference(covered[road]) for road in outlines])
     # what two roads see meets without a seam
     area = area.buffer(SLICE_LENGTH).buffer(-SLICE_LENGTH).simplify(APART)
+    if area.is_empty:
+        raise RoadExtractionError("No ground was seen between two road edges: the surface needs one on either side of a driven road. Choose the "
+                                  "edges of this survey, and lanes or marking lines where an edge was not found.")
     lines = sorted(lines, key=lambda line: (line.road, KINDS.index(line.kind), line.station))
-    followed = _followed(lines, area, settings.tolerance)
+    followed = _followed(lines, covered, area.buffer(-APART), settings.tolerance)
     cells, judged = _cells(grounds, survey.frame, followed, area)
     fixed, segments = _fixed(followed, area, cells, settings.tolerance)
     surface = thinned(cells, judged, fixed, segments, area, settings.tolerance, progress.part(0.6, 1.0))
     miss = surface.heights(*cells[judged, :2].T) - cells[judged, 2]
     rmse = float(np.sqrt(np.nanmean(miss**2))) if np.isfinite(miss).any() else 0.0
     model = SurfaceModel(surface, lines, followed, survey.frame.origin, survey.crs, rmse, sum(ground.points for ground in grounds), cells)
+    if without:
+        model.notes.append(f"Roads without a surface: {', '.join(without)}. "
+                           "No ground was seen there between two road edges, one on either side.")
+    if crossed:
+        model.notes.append(f"Roads that cross one above the other: {', '.join(crossed)}. The surface has the upper one alone there.")
     if rmse > settings.tolerance:
         model.notes.append(f"The surface misses the ground by {1000 * rmse:.1f} mm (root mean square), more than the tolerance of "
                            f"{1000 * settings.tolerance:g} mm: the ground is rougher than that. A greater tolerance gives fewer triangles.")
     return model
 
 
-def _followed(lines, area, tolerance):
-    """[(kind, (N, 3) places)] of the lines' stretches that lie within the area and apart from those of more weight, with the vertices they need."""
-    inside = area.buffer(-APART)
+def _covered(grounds, outlines, survey):
+    """({road: where another one lies above it}, which ones do, as text); the ground there is taken away."""
+    covered, crossed = {road: shapely.Polygon() for road in outlines}, []
+    for one, other in combinations(grounds, 2):
+        for overlap in shapely.get_parts(outlines[one.road].intersection(outlines[other.road])):
+            place = shapely.get_coordinates(overlap.centroid).T
+            low, high = sorted((float(survey.road_height(ground.road, survey.frame.road(ground.road).locate(*place)[0])[0]), ground.road)
+                               for ground in (one, other))
+            if high[0] - low[0] > ROAD_REACH:
+                lower = one if one.road == low[1] else other
+                # farther than what is joined without a seam
+                covered[lower.road] = covered[lower.road].union(overlap.buffer(3 * SLICE_LENGTH))
+                i, j = np.nonzero(np.isfinite(lower.z))
+                inside = shapely.contains_xy(covered[lower.road], *lower.cells(survey.frame)[:, :2].T)
+                lower.z[i[inside], j[inside]] = np.nan
+                crossed.append(f"{one.road} and {other.road}")
+    return covered, sorted(set(crossed))
+
+
+def _followed(lines, covered, inside, tolerance):
+    """[(kind, (N, 3) places)] of the stretches of lines that lie inside of an area, under no other road and apart from those of more weight,
+    with the vertices they need."""
     order = sorted(range(len(lines)), key=lambda k: KINDS.index(lines[k].kind))
     shapes = np.array([shapely.linestrings(lines[k].places[:, :2]) for k in order], object)
     rank = np.arange(len(shapes))
@@ -103,7 +140,7 @@ def _followed(lines, area, tolerance):
         line, shape = lines[k], shapes[row]
         stronger = other[(one == row) & (other < row)]
         gaps = [CROSS_CELL / 4 if (line.kind, lines[order[j]].kind) == ("edge_top", "edge_bottom") else APART for j in stronger]
-        free = shape.intersection(inside).difference(shapely.union_all(shapely.buffer(shapes[stronger], gaps)))
+        free = shape.intersection(inside).difference(covered[line.road]).difference(shapely.union_all(shapely.buffer(shapes[stronger], gaps)))
         along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line.places[:, :2], axis=0).T))]
         for part in shapely.get_parts(free):
             if part.geom_type == "LineString" and part.length > 2 * APART:
@@ -178,7 +215,7 @@ def surface_to_features(model: SurfaceModel) -> tuple[Features, Features]:
     away = cKDTree(model.cells[:, :2]).query(corners.mean(axis=1)[:, :2])[0]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     slope = np.hypot(normal[:, 0], normal[:, 1]) / np.maximum(normal[:, 2], 1e-9)
-    for shape, far, steep, double in zip(shapely.polygons(corners + model.origin), away, slope, normal[:, 2]):
+    for shape, far, steep, double in zip(shapely.polygons(model.places[model.surface.faces]), away, slope, normal[:, 2]):
         faces.add(shape, status="bridged" if far > SLICE_LENGTH else "measured", slope_pct=100 * steep, area_m2=0.5 * double)
     return lines, faces
 
@@ -189,14 +226,14 @@ def write_heights(model: SurfaceModel, path: str | os.PathLike[str], cell_size: 
     left, bottom = np.floor((used[:, :2].min(axis=0) + model.origin[:2]) / cell_size) * cell_size
     right, top = np.ceil((used[:, :2].max(axis=0) + model.origin[:2]) / cell_size) * cell_size
     width, height = (max(int(round(side / cell_size)), 1) for side in (right - left, top - bottom))
-    up = as_in_file(model.crs)[1].up
+    up, faces = as_in_file(model.crs)[1].up, shapely.STRtree(shapely.polygons(model.surface.vertices[model.surface.faces][:, :, :2]))
     tiles = [(column, row) for row in range(0, height, GEOTIFF_TILE) for column in range(0, width, GEOTIFF_TILE)]
     with new_geotiff(path, width, height, (left, cell_size, 0.0, top, 0.0, -cell_size), model.crs) as image:
         for k, (column, row) in enumerate(tiles):
             wide, high = min(GEOTIFF_TILE, width - column), min(GEOTIFF_TILE, height - row)
             x = left + (column + np.arange(wide) + 0.5) * cell_size - model.origin[0]
             y = top - (row + np.arange(high) + 0.5) * cell_size - model.origin[1]
-            z = model.surface.heights(*(values.ravel() for values in np.meshgrid(x, y))) + model.origin[2]
-            if np.isfinite(z).any():
+            if len(faces.query(shapely.box(x[0], y[-1], x[-1], y[0]))):
+                z = model.surface.heights(*(values.ravel() for values in np.meshgrid(x, y))) + model.origin[2]
                 image.write(column, row, np.where(np.isfinite(z), z / up, NODATA).reshape(high, wide))
             progress.report((k + 1) / len(tiles))

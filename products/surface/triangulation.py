@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections import defaultdict, deque
+from collections import defaultdict
+from itertools import groupby
 
 import numpy as np
 import shapely
@@ -18,16 +19,16 @@ MOST_ROUNDS = 60        # cost: of refinement; twenty are usual
 class Triangulation:
     """Triangles between vertices of which some are joined by segments: a constrained Delaunay triangulation.
 
-    Where a segment is no edge of the Delaunay triangulation, the edges that it crosses are swapped for the other diagonal of their two triangles
-    until it is one; the new edges are swapped again where that makes better triangles. A segment that crosses another one is left out.
+    Where a segment is no edge of the Delaunay triangulation, the triangles that it crosses make room for it. What they leave open on either
+    side is filled with triangles whose circles hold no corner of it. A segment that crosses another one or passes through a vertex is left out.
 
     vertices : (V, 3) m, no two at one place in plan
     faces : (F, 3) int, vertices of the triangles, counter-clockwise from above
 
     References
     ----------
-    Sloan (1993), A fast algorithm for generating constrained Delaunay triangulations, Computers & Structures 47, 441-450. The Delaunay
-    triangulation is Qhull's.
+    Anglada (1997), An improved incremental algorithm for constructing restricted Delaunay triangulations, Computers & Graphics 21, 215-223. The
+    Delaunay triangulation is Qhull's.
     """
 
     def __init__(self, vertices: np.ndarray, segments: np.ndarray):
@@ -94,17 +95,17 @@ def _forced(plan, whole, segments, missing):
     through = shapely.relate_pattern(lines[line], shapes[triangle], "T********")
     crossed = np.zeros(len(corners), bool)
     crossed[triangle[through]] = True
-    patch = _Patch(plan, corners[crossed], {tuple(segment) for segment in segments.tolist()})
+    patch = _Patch(plan, corners[crossed], missing, {tuple(segment) for segment in segments.tolist()})
     for segment in missing.tolist():
         patch.force(*segment)
-    return crossed, np.array(patch.triangles())
+    return crossed, np.array(patch.triangles(), np.int64).reshape(-1, 3)
 
 
 class _Patch:
-    """Some triangles of a triangulation whose inner edges can be swapped: `third[a, b]` is the third corner of the one to the left of a -> b."""
+    """Some triangles of a triangulation that can be replaced: `third[a, b]` is the third corner of the one to the left of a -> b."""
 
-    def __init__(self, plan, corners, kept):
-        self.places = {k: (float(plan[k, 0]), float(plan[k, 1])) for k in np.unique(corners).tolist()}
+    def __init__(self, plan, corners, missing, kept):
+        self.places = {k: (float(plan[k, 0]), float(plan[k, 1])) for k in np.unique(np.r_[corners.ravel(), missing.ravel()]).tolist()}
         self.third, self.around, self.kept = {}, defaultdict(set), kept
         for a, b, c in corners.tolist():
             self._add(*((a, b, c) if self._side(a, b, c) > 0 else (a, c, b)))
@@ -124,31 +125,35 @@ class _Patch:
 
     def force(self, a, b):
         """Make a segment an edge; nothing happens where it crosses an edge that is kept, or passes through a vertex."""
-        waiting = self._between(a, b)
-        made, patience = [], 100 * len(waiting) ** 2
-        while waiting and patience:
-            p, q = waiting.popleft()
-            patience -= 1
-            diagonal = self._swapped(p, q)
-            if diagonal is None:
-                waiting.append((p, q))
-            elif a not in diagonal and b not in diagonal and self._side(a, b, diagonal[0]) * self._side(a, b, diagonal[1]) < 0:
-                waiting.append(diagonal)
-            else:
-                made.append(diagonal)
-        better = True
-        while better and patience:
-            better = False
-            for k, (p, q) in enumerate(made):
-                patience -= 1
-                if {p, q} != {a, b} and self._encroached(p, q):
-                    made[k], better = self._swapped(p, q) or (p, q), True
+        crossed = self._between(a, b)
+        # a corner that the segment passes twice stands twice
+        right, left = ([corner for corner, _ in groupby(corners)] for corners in zip(*crossed)) if crossed else ([], [])
+        for p, q in crossed:
+            self._drop(p, q)
+            self._drop(q, p)
+        waiting = [(a, b, left), (b, a, right[::-1])]
+        while waiting:
+            p, q, corners = waiting.pop()
+            if corners:
+                best = 0
+                for k in range(1, len(corners)):
+                    if self._encircled(p, q, corners[best], corners[k]):
+                        best = k
+                self._add(p, q, corners[best])
+                waiting += [(p, corners[best], corners[:best]), (corners[best], q, corners[best + 1:])]
+
+    def _drop(self, p, q):
+        """Take away the triangle to the left of p -> q, if it is still there."""
+        corner = self.third.get((p, q))
+        if corner is not None:
+            for edge in ((p, q), (q, corner), (corner, p)):
+                del self.third[edge]
 
     def _between(self, a, b):
         """The edges that a segment crosses, from a to b; none where it cannot be an edge."""
         first = next(((p, self.third[a, p]) for p in self.around[a] if (a, p) in self.third
                       and self._side(a, b, p) < 0 < self._side(a, b, self.third[a, p])), None)
-        edges = deque() if first is None else deque([first])
+        edges = [] if first is None else [first]
         while edges:
             p, q = edges[-1]
             corner = self.third.get((q, p))
@@ -156,31 +161,16 @@ class _Patch:
                 return edges
             side = 0.0 if corner is None or (min(p, q), max(p, q)) in self.kept else self._side(a, b, corner)
             if not side:
-                edges.clear()
-            else:
-                edges.append((p, corner) if side > 0 else (corner, q))
+                return []
+            edges.append((p, corner) if side > 0 else (corner, q))
         return edges
 
-    def _swapped(self, p, q):
-        """The other diagonal of the two triangles at an edge, which takes its place; None where these make no convex quadrangle."""
-        left, right = self.third[p, q], self.third[q, p]
-        if self._side(right, left, p) * self._side(right, left, q) >= 0:
-            return None
-        for edge in ((p, q), (q, left), (left, p), (q, p), (p, right), (right, q)):
-            del self.third[edge]
-        self._add(left, p, right)
-        self._add(right, q, left)
-        return right, left
-
-    def _encroached(self, p, q):
-        """Whether the circle through one triangle at an edge holds the other one's corner, and the edge may be swapped."""
-        left, right = self.third[p, q], self.third[q, p]
-        if (min(p, q), max(p, q)) in self.kept or self._side(right, left, p) * self._side(right, left, q) >= 0:
-            return False
-        x, y = self.places[right]
-        (ax, ay), (bx, by), (cx, cy) = ((self.places[k][0] - x, self.places[k][1] - y) for k in (p, q, left))
+    def _encircled(self, p, q, corner, other):
+        """Whether the circle through a triangle, whose corners turn counter-clockwise, holds another vertex."""
+        x, y = self.places[other]
+        (ax, ay), (bx, by), (cx, cy) = ((self.places[k][0] - x, self.places[k][1] - y) for k in (p, q, corner))
         a, b, c = ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy
-        return ax * (by * c - b * cy) - ay * (bx * c - b * cx) + a * (bx * cy - by * cx) > 1e-9
+        return ax * (by * c - b * cy) - ay * (bx * c - b * cx) + a * (bx * cy - by * cx) > 0.0
 
 
 def thinned(cells: np.ndarray, judged: np.ndarray, fixed: np.ndarray, segments: np.ndarray, area: shapely.Geometry, tolerance: float,

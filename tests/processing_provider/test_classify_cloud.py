@@ -100,6 +100,34 @@ def test_an_old_file_with_colours_and_an_extra_field_becomes_a_new_one_with_all_
     assert (names[64], names[65]) == ("paint", "curb")
 
 
+def test_classes_that_became_flags_and_long_records_of_an_old_file_are_in_the_new_one(mapped, tmp_path):
+    old = laspy.convert(laspy.read(mapped[0]["POINT_CLOUDS"][0]), point_format_id=1, file_version="1.4")
+    old.classification[::5], old.classification[1::5] = 12, 8
+    old.evlrs = laspy.vlrs.vlrlist.VLRList([laspy.VLR("Surveyor", 9, "Job", b"B" * 70_000)])
+    old.write(str(tmp_path / "old.las"))
+    classified(mapped, tmp_path / "out", POINT_CLOUDS=[str(tmp_path / "old.las")])
+    after = laspy.read(tmp_path / "out" / "old.las")
+    assert not np.isin(after.classification, [8, 12]).any()
+    for flag, first in (("overlap", 0), ("key_point", 1)):
+        np.testing.assert_array_equal(np.asarray(after[flag]) != 0, np.arange(len(after)) % 5 == first)
+    assert [record.record_data_bytes() for record in after.header.evlrs] == [b"B" * 70_000]
+
+
+def test_a_layer_of_another_survey_or_crs_is_refused_and_an_empty_one_is_told_of(mapped, tmp_path):
+    import processing
+    from qgis.core import QgsProcessingException
+
+    def changed(name, algorithm, **how):
+        return processing.run(algorithm, {"INPUT": mapped[0][name], "OUTPUT": str(tmp_path / f"{algorithm[7:]}.gpkg"), **how})["OUTPUT"]
+
+    for layer, problem in ((changed("MARKINGS", "native:translategeometry", DELTA_X=300), "do not belong together"),
+                           (changed("MARKINGS", "native:assignprojection", CRS="EPSG:31467"), "Reproject the layer to their CRS")):
+        with pytest.raises(QgsProcessingException, match=problem):
+            classified(mapped, tmp_path / "out", MARKINGS=layer)
+    found = classified(mapped, tmp_path / "out", MARKINGS=changed("MARKINGS", "native:extractbyexpression", EXPRESSION="FALSE"))
+    assert found["PAINT_POINTS"] == 0 and found["WARNINGS"] == 1
+
+
 def test_noise_withheld_points_and_what_another_program_classified_stay(mapped, tmp_path):
     def change(cloud):
         cloud.classification[::10], cloud.withheld[1::10], cloud.classification[2::10] = 18, 1, 65
@@ -156,6 +184,8 @@ def test_inputs_are_not_written_over_and_a_failed_run_leaves_nothing(mapped, tmp
     assert (tmp_path / "s.laz").read_bytes() == stays and [path.name for path in tmp_path.iterdir()] == ["s.laz"]
     with pytest.raises(QgsProcessingException, match="which is a file"):
         classified(mapped, tmp_path / "s.laz", POINT_CLOUDS=[cloud])
+    with pytest.raises(QgsProcessingException, match="Give each a folder of its own"):
+        classified(mapped, tmp_path / "out", POINT_CLOUDS=[cloud], UNROLLED=str(tmp_path / "out"))
     with pytest.raises(QgsProcessingException, match=r"written to s\.laz"):
         classified(mapped, tmp_path / "out", POINT_CLOUDS=[cloud, mapped[0]["POINT_CLOUDS"][0]])
     other = written(cloud, tmp_path / "t.laz", 6, lambda made: made.add_extra_dim(laspy.ExtraBytesParams("station", "float64")))

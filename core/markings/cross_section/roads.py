@@ -169,8 +169,8 @@ def _best_side(estimates, usual, weights):
     prior = {"left": -weights.foreign_side, "right": weights.foreign_side}.get(usual, weights.left_hand)
     # nats by which traffic on the left is behind
     total, unnamed, once = (prior + sum((getattr(left, name) - getattr(estimates[-1][number], name)) * min(
-        1.0, repeats / max(float(left.candidates.length.sum()), 1.0)) for number, left in estimates[1].items()) for name, repeats in (
-            ("total", weights.repeats), ("unnamed_total", weights.repeats), ("once_total", np.inf)))
+        1.0, weights.repeats / max(float(left.candidates.length.sum()), 1.0)) for number, left in estimates[1].items())
+        for name in ("total", "unnamed_total", "once_total"))
     best = 1 if total < 0 else -1
     if total * unnamed < 0:
         return best, np.inf, np.inf

@@ -120,9 +120,9 @@ def _nearest_road(frame: RoadFrame, x: np.ndarray, y: np.ndarray) -> int:
 
 
 def line_parts(geometries: Sequence[Any]) -> tuple[list[Any], list[int]]:
-    """The LineStrings of lines and multi-lines that are not empty, and the row that each comes from."""
-    parts = [(part, row) for row, geometry in enumerate(geometries) if geometry is not None and not geometry.is_empty
-             for part in getattr(geometry, "geoms", [geometry])]
+    """The LineStrings of lines and multi-lines that have a length, and the row that each comes from."""
+    parts = [(part, row) for row, geometry in enumerate(geometries) if geometry is not None
+             for part in getattr(geometry, "geoms", [geometry]) if part.length > 0]
     return [part for part, _ in parts], [row for _, row in parts]
 
 

@@ -5,13 +5,18 @@ import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import ROAD_EDGES, Features
-from lanewright.products.cad import cad_surface, landxml_text, surface_lines, write_dxf
+from lanewright.core.survey.frame.road_frame import build_frame
+from lanewright.core.survey.open_survey import Survey
+from lanewright.core.survey.store.records import SURVEY_POINT, to_units
+from lanewright.core.survey.store.section_store import SectionStore
+from lanewright.core.survey.trajectory.trajectory import Trajectory
+from lanewright.products.cad import landxml_text, surface_lines, write_dxf
 from lanewright.products.export.xml_tree import read_xml
 from lanewright.products.inventory.borders import BorderLayers
 from lanewright.products.surface.model import SurfaceSettings, make_surface_model, surface_to_features, write_heights
 from lanewright.products.surface.triangulation import Triangulation
 from map_files import written
-from measured_streets import EAST, GROUND, HALF, NORTH, Drive, edges_of, lanes_of, measured_road, surface
+from measured_streets import EAST, GROUND, HALF, NORTH, SENSOR, Drive, edges_of, lanes_of, measured_road, surface
 
 gdal = pytest.importorskip("osgeo.gdal")
 GRADE = 0.03
@@ -73,6 +78,7 @@ def test_a_road_that_falls_to_both_sides_has_a_crown_and_one_that_falls_to_one_s
 def test_water_runs_along_the_curb_on_the_lower_side_alone():
     (_, y, _), = lines_of(model_of(crossfall=0.025, crown=False, noise=0.004), "gutter_flow_line")
     assert (y > 3.0).all() or (y < -3.0).all()
+
 
 def test_borders_of_lanes_lie_on_the_road_and_those_at_a_curb_are_its_line():
     lines = lines_of(model_of(lanes=True, noise=0.004), "lane_border")
@@ -138,6 +144,68 @@ def test_edges_far_from_the_road_and_no_edges_are_refused():
             model_of(edges=edges)
 
 
+def test_a_road_with_an_edge_on_one_side_alone_is_refused_by_saying_so():
+    left = Features("LineStringZ", ROAD_EDGES, [shape for shape, _ in edges_of()][:1], [row for _, row in edges_of()][:1])
+    with pytest.raises(RoadExtractionError, match="one on either side"):
+        model_of(edges=left)
+
+
+def test_a_road_of_two_metres_is_too_short_for_a_surface():
+    with pytest.raises(RoadExtractionError, match="No ground was seen"):
+        model_of(length=2.0, edges=edges_of(2.0))
+
+
+def crossing_roads(up):
+    """(Survey, edges) of two level roads of 60 m that cross, the one to the north `up` m above the one to the east."""
+    rng = np.random.default_rng(3)
+    x, rows, parts, edges = np.arange(-30.0, 30.1, 0.25), [], [], Features("LineStringZ", ROAD_EDGES)
+    for number, (level, placed) in enumerate(((GROUND, lambda x, y: (EAST + x, NORTH + y)), (GROUND + up, lambda x, y: (EAST - y, NORTH + x)))):
+        time = 1000.0 * number + np.arange(len(x)) * 0.025
+        rows.append(np.stack([time, *placed(x, 0 * x), level + SENSOR + 0 * x]))
+        px, py = np.sort(rng.uniform(-30, 30, 40_000)), rng.uniform(-6, 6, 40_000)
+        parts.append((np.interp(px, x, time), *placed(px, py), level + surface(py) + rng.normal(0, 0.004, len(px))))
+        for d in (HALF, -HALF):
+            edges.add(shapely.linestrings(np.stack([*placed(x, d + 0 * x), level + 0 * x], axis=1)), kind="main", part="bottom", road=number)
+    frame = build_frame(Trajectory(*np.concatenate(rows, axis=1)))
+    store = SectionStore(SURVEY_POINT, 20.0)
+    for number, (time, *places) in enumerate(parts):
+        local = frame.to_local(*places)
+        s, d = frame.road(number).locate(*local[:2])
+        seen = np.isfinite(s)
+        records = np.zeros(seen.sum(), SURVEY_POINT)
+        for name, values in zip("xyzsd", (*local, s, d)):
+            records[name] = to_units(values[seen])
+        records["time"], records["pass_number"] = time[seen], number
+        store.append(number, records)
+    return Survey([], frame, store, "", dict.fromkeys((0, 1), SENSOR), None, [0], True, True, above_road=12.0), edges
+
+
+@pytest.mark.parametrize("up", [0.0, 6.0])
+def test_where_a_road_crosses_above_another_the_surface_has_the_upper_one(up):
+    survey, edges = crossing_roads(up)
+    model = make_surface_model(survey, BorderLayers(edges))
+    places = model.surface.vertices[model.surface.faces]
+    assert np.ptp(places[:, :, 2], axis=1).max() < 0.3 and model.rmse < 0.005   # no wall from one road to the other
+    y, x = (values.ravel() for values in np.meshgrid(np.arange(-25.0, 25.1, 0.5), np.arange(-3.2, 3.3, 0.2)))
+    heights = model.surface.heights(EAST + x - model.origin[0], NORTH + y - model.origin[1]) + model.origin[2] - GROUND - up
+    on_deck = np.abs(y) > 8.0 if up == 0.0 else np.full(len(y), True)   # level roads have each other's shape in between
+    np.testing.assert_allclose(heights[on_deck], surface(x[on_deck]), atol=0.03)
+    assert [note for note in model.notes if "0 and 1" in note] == model.notes and len(model.notes) == (up > 0.0)
+
+
+def test_tops_of_curbs_and_edges_without_length_or_twice_change_nothing():
+    """Layers of boundaries have both lines of a curb, 5 cm apart, and neighbouring surveys a line each."""
+    edges = edges_of()
+    for shape, row in list(edges):
+        outward = 0.05 if row["side"] == "left" else -0.05
+        edges.add(shapely.transform(shape, lambda places, outward=outward: places + [0.0, outward, 0.12], include_z=True), **{**row, "part": "top"})
+        edges.add(shapely.linestrings(shapely.get_coordinates(shape, include_z=True)[[0, 0]]), **row)
+        edges.add(shapely.line_merge(shapely.segmentize(shape, 7.0)), **row)
+    one, other = model_of(), model_of(edges=edges)
+    assert [line.kind for line in one.lines] == [line.kind for line in other.lines]
+    assert len(one.surface.faces) == len(other.surface.faces)
+
+
 # A triangulation that is made to follow segments.
 
 @pytest.mark.parametrize("seed", range(5))
@@ -159,11 +227,19 @@ def test_segments_across_other_triangles_become_edges_and_nothing_is_lost(seed):
     np.testing.assert_allclose(found.heights(x, y), 0.1 * y, atol=1e-9)
 
 
+@pytest.mark.parametrize("segments, made", [([(0, 10)], set()), ([(0, 10), (0, 8), (2, 24)], {(0, 8)})])
+def test_a_segment_through_other_vertices_changes_nothing(segments, made):
+    x, y = (values.ravel().astype(float) for values in np.meshgrid(range(5), range(5)))
+    faces = Triangulation(np.stack([x, y, 0.0 * x], axis=1), np.array(segments)).faces
+    edges = {tuple(sorted(edge)) for face in faces.tolist() for edge in zip(face, face[1:] + face[:1])}
+    assert edges & set(segments) == made and len(faces) == 32
+
+
 # Files.
 
 def test_a_landxml_surface_has_the_triangles_and_breaklines_of_the_model(tmp_path):
     model = model_of()
-    root = read_xml(written(tmp_path, landxml_text((), surface=cad_surface(model)), "surface.xml"), "LandXML", "a LandXML file")
+    root = read_xml(written(tmp_path, landxml_text((), surface=model), "surface.xml"), "LandXML", "a LandXML file")
     assert [child.tag for child in root.children] == ["Units", "Project", "Application", "Surfaces"]
     element = root.find("Surfaces", "Surface")
     assert [child.tag for child in element.children] == ["SourceData", "Definition"]
@@ -182,8 +258,7 @@ def test_a_landxml_surface_has_the_triangles_and_breaklines_of_the_model(tmp_pat
 
 def test_a_dxf_surface_has_faces_and_lines_in_their_layers(tmp_path):
     model, path = model_of(), str(tmp_path / "surface.dxf")
-    surface_of_file = cad_surface(model)
-    write_dxf(surface_lines(surface_of_file), path, faces=surface_of_file.vertices[surface_of_file.faces])
+    write_dxf(surface_lines(model), path, faces=model.places[model.surface.faces])
     found = {}
     dataset = gdal.OpenEx(path)
     for feature in dataset.GetLayer(0):
