@@ -64,6 +64,7 @@ class EstimateWeights:
     # m, scatter of where vehicles keep within a lane about its middle, averaged over a block: 0.09 on half of the streets at hand, 0.13 on the others
     track_sigma: float = 0.1
     alike_beside: float = 4.0   # by how many times more lanes of the same road that were driven tell what is left over than what is usual
+    alike_within: float = 500.0   # m of road either way within which they do: a street of a town is laid out alike over a few blocks
     between_widths: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75)   # shares of the way between two readings, at which a lane's width is tried,
     nearer: float = 0.5   # and what it counts that a lane is right to 5 cm, against to 15 cm
     unpainted_divider: float = 2.2   # of a border between the two directions where nothing is painted

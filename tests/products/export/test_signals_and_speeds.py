@@ -5,6 +5,7 @@ from collections import defaultdict
 import numpy as np
 import pytest
 import shapely
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.products.export.check.lanelets import check_lanelets
 from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
@@ -164,6 +165,12 @@ def test_signals_without_an_id_hold_for_the_lanes_of_their_own_road_alone(tmp_pa
     roads = [road(geometry(0, x, 0, 0, 40), 40, id).replace("</road>", sign) for id, x in (("1", 0), ("2", 50))]
     layers = read_in(tmp_path, opendrive(roads))
     assert sorted(row["lanes"] for _, row in layers.signals) == ["1.-1.0", "2.-1.0"]
+
+
+def test_two_roads_of_one_id_are_not_converted(tmp_path):
+    layers = read_in(tmp_path, opendrive([road(geometry(0, x, 0, 0, 40), 40, "1") for x in (0, 50)]))
+    with pytest.raises(RoadExtractionError, match=r"is there 2 times: two roads of the map have one id"):
+        checked(layers.source())
 
 
 def test_the_name_of_a_road_is_carried_and_its_number_is_none(tmp_path):
