@@ -139,15 +139,15 @@ def medians(values: np.ndarray) -> np.ndarray:
     return np.take_along_axis(np.sort(values, axis=-1), middle[..., None], axis=-1)[..., 0]   # NaN last
 
 
-def part_roads(grounds: list[RoadGround], survey: Survey, longest_gap: float) -> None:
-    """Take from each ground the cells that lie nearer to another road of about their height, within the outline of that road's ground."""
-    outlines, nearer = [ground.outline(survey.frame, longest_gap) for ground in grounds], []
+def part_roads(grounds: list[RoadGround], survey: Survey) -> None:
+    """Take from each ground the cells that lie nearer to another road of about their height, where that road's ground was seen."""
+    seen, nearer = [np.isfinite(ground.z).astype(float) for ground in grounds], []
     for ground in grounds:
         i, j = np.nonzero(np.isfinite(ground.z))
-        places = survey.frame.road(ground.road).to_map(ground.s[i], ground.d[j])
-        nearest, s, _ = survey.frame.locate_nearest(*places)
-        for other, outline in zip(grounds, outlines):
-            rows = np.flatnonzero((nearest == other.road) & (other.road != ground.road) & shapely.contains_xy(outline, *places))
+        nearest, s, d = survey.frame.locate_nearest(*survey.frame.road(ground.road).to_map(ground.s[i], ground.d[j]))
+        for other, known in zip(grounds, seen):
+            rows = np.flatnonzero((nearest == other.road) & (other.road != ground.road))
+            rows = rows[other.at(s[rows], d[rows], known) > 0.0]
             rows = rows[np.abs(survey.road_height(other.road, s[rows]) - ground.z[i[rows], j[rows]]) < ROAD_REACH]
             nearer.append((ground, i[rows], j[rows]))
     for ground, i, j in nearer:

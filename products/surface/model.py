@@ -79,7 +79,7 @@ def make_surface_model(survey: Survey, layers: BorderLayers, settings: SurfaceSe
             grounds.append(ground)
         else:
             without.append(str(road))
-    part_roads(grounds, survey, settings.max_gap)
+    part_roads(grounds, survey)
     outlines = {ground.road: ground.outline(survey.frame, settings.max_gap) for ground in grounds}
     covered, crossed = _covered(grounds, outlines, survey)
     for k, ground in enumerate(grounds):
