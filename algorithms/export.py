@@ -13,8 +13,6 @@ from .call import existing_file
 from .survey_input import road_points_of
 from .texts import languages, told, tr
 
-OPENDRIVE_FILTER = "OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)"
-LANELET_FILTER = "Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)"
 MAP_LAYERS = (
     ("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it, and what the map says of its road."),
      LANES + ROAD_ATTRIBUTES, "PolygonZ", "lane_areas"),
@@ -29,22 +27,49 @@ MAP_LAYERS = (
 MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of the driven lanes (m)")))
 
 
-def add_map_file(algorithm, label, text, file_filter):
-    algorithm.add_input("file", "INPUT", label, text, file_filter=file_filter)
-
-
-def add_map_crs(algorithm, text):
-    algorithm.add_input("crs", "CRS", tr("CRS of the layers"), text, optional=True)
-
-
-def add_map_layers(algorithm):
-    """The layers that a map is read into."""
+def add_map_layers(algorithm, crs_text):
+    """The layers that a map is read into, and their CRS."""
+    algorithm.add_input("crs", "CRS", tr("CRS of the layers"), crs_text, optional=True)
     for name, label, text, fields, geometry, _ in MAP_LAYERS:
         algorithm.add_sink(name, label, text, fields=fields, geometry=geometry, optional=True)
 
 
+def add_any_map(algorithm, crs_label):
+    """A file of either format, and the CRS that it is read in."""
+    algorithm.add_input("file", "INPUT", tr("Map file"), tr("An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides."),
+                        file_filter="HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)")
+    algorithm.add_input("crs", "CRS", crs_label, tr(
+        "OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map."),
+        optional=True)
+
+
 def map_file(call):
     return existing_file(call.file("INPUT"), call.label("INPUT"))
+
+
+def read_map(call, progress, lanelets):
+    """(the map of the file that was given, CRS of its layers, notes), of Lanelet2 if `lanelets`, else of OpenDRIVE."""
+    if lanelets:
+        from ..products.export.lanelet_map import read_lanelet2
+
+        return read_lanelet2(map_file(call), progress), call.crs(), []
+    from ..products.export.opendrive.xodr import read_opendrive
+    from ..products.export.sources import crs_of_reference
+
+    whole = read_opendrive(map_file(call), progress)
+    crs, note = crs_of_reference(whole.reference, call.crs())
+    return whole, crs, [note] if note else []
+
+
+def map_layers(call, progress, lanelets):
+    """The MapLayers of the file that was given."""
+    from ..products.export.lanelet_map import layers_of_lanelets
+    from ..products.export.opendrive.xodr import layers_of_opendrive
+
+    whole, crs, notes = read_map(call, progress.part(0.0, 0.5), lanelets)
+    layers = (layers_of_lanelets if lanelets else layers_of_opendrive)(whole, crs, progress.part(0.5, 0.95))
+    layers.notes += notes
+    return layers
 
 
 def write_map_layers(call, layers, progress):
@@ -575,24 +600,13 @@ class ImportOpenDrive(Algorithm):
     NUMBERS = MAP_NUMBERS
 
     def declare(self):
-        add_map_file(self, tr("OpenDRIVE file"), tr("A map with the ending .xodr."), OPENDRIVE_FILTER)
-        add_map_crs(self, tr("Only where the file does not say it in geoReference, or says it wrongly: the coordinates are taken to be in this CRS."))
-        add_map_layers(self)
+        self.add_input("file", "INPUT", tr("OpenDRIVE file"), tr("A map with the ending .xodr."),
+                       file_filter="OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)")
+        add_map_layers(self, tr("Only where the file does not say it in geoReference, or says it wrongly: the coordinates are taken to be in this "
+                                "CRS."))
 
     def work(self, call, progress):
-        return write_map_layers(call, _road_layers(call, progress), progress)
-
-
-def _road_layers(call, progress):
-    """The MapLayers of the OpenDRIVE file that was given."""
-    from ..products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
-    from ..products.export.sources import crs_of_reference
-
-    road_map = read_opendrive(map_file(call), progress.part(0.0, 0.5))
-    crs, note = crs_of_reference(road_map.reference, call.crs())
-    layers = layers_of_opendrive(road_map, crs, progress.part(0.5, 0.95))
-    layers.notes += [note] if note else []
-    return layers
+        return write_map_layers(call, map_layers(call, progress, False), progress)
 
 
 class ImportLanelet2(Algorithm):
@@ -607,19 +621,12 @@ class ImportLanelet2(Algorithm):
     NUMBERS = MAP_NUMBERS
 
     def declare(self):
-        add_map_file(self, tr("Lanelet2 file"), tr("A map with the ending .osm."), LANELET_FILTER)
-        add_map_crs(self, tr("Projected, such as that of the survey. Empty takes the UTM zone of the map."))
-        add_map_layers(self)
+        self.add_input("file", "INPUT", tr("Lanelet2 file"), tr("A map with the ending .osm."),
+                       file_filter="Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)")
+        add_map_layers(self, tr("Projected, such as that of the survey. Empty takes the UTM zone of the map."))
 
     def work(self, call, progress):
-        return write_map_layers(call, _lanelet_layers(call, progress), progress)
-
-
-def _lanelet_layers(call, progress):
-    """The MapLayers of the Lanelet2 file that was given."""
-    from ..products.export.lanelet_map import layers_of_lanelets, read_lanelet2
-
-    return layers_of_lanelets(read_lanelet2(map_file(call), progress.part(0.0, 0.5)), call.crs(), progress.part(0.5, 0.95))
+        return write_map_layers(call, map_layers(call, progress, True), progress)
 
 
 class ConvertMap(Algorithm):
@@ -635,10 +642,7 @@ class ConvertMap(Algorithm):
                ("SIGNAL_COUNT", tr("Signals and poles")), ("LEFT_OUT", tr("What is not carried over")))
 
     def declare(self):
-        add_map_file(self, tr("Map file"), tr("An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides."), MAP_FILTER)
-        self.add_input("crs", "CRS", tr("CRS of the map in metres"), tr(
-            "OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map."),
-            optional=True)
+        add_any_map(self, tr("CRS of the map in metres"))
         add_road_choices(self)
         add_lanelet_choices(self)
         self.add_output("file", "OUTPUT", tr("Converted map"), tr("With the ending of the other format, .osm or .xodr."), suffixes=(".osm", ".xodr"),
@@ -653,14 +657,13 @@ class ConvertMap(Algorithm):
         if from_lanelets == output.lower().endswith(".osm"):
             raise RoadExtractionError(tr("{path} is {kind} already, and {output} would be too. Give the result the ending {ending}.").format(
                 path=path, output=output, kind="Lanelet2" if from_lanelets else "OpenDRIVE", ending=".xodr" if from_lanelets else ".osm"))
-        layers = (_lanelet_layers if from_lanelets else _road_layers)(call, progress.part(0.0, 0.2))
+        layers = map_layers(call, progress.part(0.0, 0.2), from_lanelets)
         source = lanes_with_borders(checked(layers.source()))
         numbers = (write_opendrive if from_lanelets else write_lanelet2)(call, source, Path(path).name, progress.part(0.2, 1.0))
         return {"SUCCESSORS": numbers["SUCCESSORS"], "FINDINGS": numbers["FINDINGS"], "SIGNAL_COUNT": float(len(layers.signals)),
                 "LEFT_OUT": float(sum(layers.left_out.values()))}
 
 
-MAP_FILTER = "HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)"
 ROWS_IN_LOG, PLACES_IN_LOG = 50, 3   # of findings that the log tells, and of the places of each
 
 
@@ -681,25 +684,28 @@ class CheckMap(Algorithm):
                ("SUCCESSORS", tr("Links from one lane to the next")), ("NEIGHBOURS", tr("Pairs of lanes side by side")))
 
     def declare(self):
-        add_map_file(self, tr("Map file"), tr("An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides."), MAP_FILTER)
-        self.add_input("crs", "CRS", tr("CRS of the findings"), tr(
-            "OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map."),
-            optional=True)
+        add_any_map(self, tr("CRS of the findings"))
         self.add_sink("OUTPUT", tr("Findings"), tr(
             "A point for each finding, with the row of the report in which the same findings are one. Heights are the map's."),
             fields=MAP_FINDINGS, geometry="PointZ")
         self.add_report()
 
     def work(self, call, progress):
+        from ..products.export.check.lanelets import check_lanelets
+        from ..products.export.check.roads import check_opendrive
+        from ..products.export.lanelet_map import node_places
         from ..products.report.hd_map import map_check_report, places_of_findings
 
         path = map_file(call)
-        check, note = (_lanelets if _is_lanelet2(path) else _roads)(path, call.crs(), progress)
-        if note:
+        lanelets = _is_lanelet2(path)
+        whole, crs, notes = read_map(call, progress.part(0.0, 0.4), lanelets)
+        rest = progress.part(0.4, 0.95)
+        check = check_lanelets(whole, *node_places(whole, crs), rest) if lanelets else check_opendrive(whole, crs, rest)
+        for note in notes:
             progress.warn(note)
         call.layer("OUTPUT", check.to_features())
         if call.wants("REPORT"):
-            call.text("REPORT", map_check_report(check, path, [note] if note else []))
+            call.text("REPORT", map_check_report(check, path, notes))
         counts = check.counts()
         groups, _ = check.groups()
         for group in groups[:ROWS_IN_LOG]:
@@ -722,21 +728,3 @@ def _is_lanelet2(path):
         raise RoadExtractionError(
             tr("{path} begins neither as OpenDRIVE nor as Lanelet2 does. Choose a file with the ending .xodr or .osm.").format(path=path))
     return b"<osm" in head
-
-
-def _roads(path, crs, progress):
-    from ..products.export.check.roads import check_opendrive
-    from ..products.export.opendrive.xodr import read_opendrive
-    from ..products.export.sources import crs_of_reference
-
-    whole = read_opendrive(path, progress.part(0.0, 0.4))
-    crs, note = crs_of_reference(whole.reference, crs)
-    return check_opendrive(whole, crs, progress.part(0.4, 0.95)), note
-
-
-def _lanelets(path, crs, progress):
-    from ..products.export.check.lanelets import check_lanelets
-    from ..products.export.lanelet_map import node_places, read_lanelet2
-
-    whole = read_lanelet2(path, progress.part(0.0, 0.4))
-    return check_lanelets(whole, *node_places(whole, crs), progress.part(0.4, 0.95)), ""

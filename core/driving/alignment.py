@@ -149,7 +149,8 @@ class _CommonAxis:
 
     def __init__(self, track):
         self.first = self.low = track.first
-        self.high, self.offset = track.last, float(np.median(track.d))
+        # rounded, as are those of others, so that a lane that is corrected somewhere moves the axis of a long road nowhere else
+        self.high, self.offset = track.last, round(float(np.median(track.d)), 1)
         self.total, self.weight = np.zeros((2, len(track)))
         self.add(track, self.offset)
 
@@ -175,7 +176,7 @@ class _CommonAxis:
         if shared.sum() * STATION_STEP < min(ALIGNMENT.min_shared_lane_length, 0.5 * len(track) * STATION_STEP):
             return None
         apart = track.d[of_track][shared] - self.total[of_axis][shared] / self.weight[of_axis][shared]
-        offset = float(np.median(apart))
+        offset = round(float(np.median(apart)), 2)
         return None if np.percentile(np.abs(apart - offset), 95) > ALIGNMENT.max_parallel_deviation else offset
 
 

@@ -20,7 +20,6 @@ from .sources import LEAST_CURB, LOCAL_CRS, NearestValues, RoadMapSource, is_sta
 SAME_RISE = 0.1         # m in height between vertices at one place that are one node
 HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
 THICK_LINE = 0.18       # m of paint from which a line is thick: above the narrow and below the broad lines of most countries
-NEAREST_EDGE = 0.5      # m from a border within which a road edge tells its height
 SUBTYPE_OF_LANE = {"driving": "road", "connector": "road", "bicycle": "bicycle_lane", "shoulder": "emergency_lane"}
 PARTICIPANTS = {"bicycle": "participant:bicycle", "shoulder": "participant:vehicle:emergency"}
 SUBTYPE_OF_PATTERN = {"solid": "solid", "dashed": "dashed", "double-solid": "solid_solid", "double-dashed": "dashed_dashed", "double": "solid_solid",
@@ -213,8 +212,7 @@ class _Drafting:
     def _tags(self, nodes, kind, pattern, line):
         places = self.draft.nodes[list(nodes)]
         if kind == "curb":
-            heights = self.curb_heights.at(places[:, :2], NEAREST_EDGE)
-            height = float(np.nanmedian(heights)) if np.isfinite(heights).any() else np.nan
+            height = self.curb_heights.median(places[:, :2])
             tags = {"type": "curbstone", "subtype": "low" if height < HIGH_CURB else "high"}
             return tags | ({} if np.isnan(height) else {"height": f"{height:.2f}"})
         if pattern in SUBTYPE_OF_PATTERN:

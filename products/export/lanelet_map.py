@@ -134,8 +134,7 @@ class LaneletNetwork:
 
     def beside(self, id: int) -> list[int]:
         """Lanelets that share a border with this one."""
-        lanelet = self.whole.lanelets[id]
-        return [neighbour for role in ("left", "right") for neighbour, _ in self._by_border[lanelet.way(role)] if neighbour != id]
+        return [neighbour for neighbour, _ in self.abreast(id)]
 
     def abreast(self, id: int) -> list[tuple[int, bool]]:
         """(lanelet that shares a border with this one, whether it is driven the same way)."""
@@ -351,7 +350,7 @@ def _outlines(whole, places, network):
         ends = places[whole.rows(way)[[0, -1]]] if way.tags.get("type") == "stop_line" and len(whole.rows(way)) > 1 else np.zeros((2, 3))
         if (length := plan_length(ends)) > LEAST_LED:
             aside = np.array([ends[0, 1] - ends[1, 1], ends[1, 0] - ends[0, 0], 0.0]) / length
-            aside *= _number(way.tags.get("width"), 2 * STOP_LINE_HALF) / 2
+            aside *= np.nan_to_num(length_of_tag(way.tags.get("width")), nan=2 * STOP_LINE_HALF) / 2
             yield "stop_line", np.concatenate([ends - aside, ends[::-1] + aside])
 
 
@@ -367,13 +366,13 @@ def _signals(whole, places, crs):
         if kind and len(points):
             (x, y), width = (points[-1] - points[0])[:2], plan_length(points[[0, -1]])
             heading = (90 - np.degrees(np.arctan2(x, -y))) % 360 if width > LEAST_LED else np.nan   # a light is drawn from left to right
-            height = np.ptp(points[:, 2]) if kind == "pole" else _number(way.tags.get("height"), np.nan)
+            height = np.ptp(points[:, 2]) if kind == "pole" else length_of_tag(way.tags.get("height"))
             named = re.fullmatch(r"([A-Za-z]{2})(\w+?)(?:-(.+))?", way.tags.get("subtype", "")) if kind == "sign" else None
             code = dict(zip(("country", "code", "subcode"), named.groups())) if named else {}
             told = {name[len(OURS):]: value for name, value in way.tags.items() if name.startswith(OURS)}
             layer.add(shapely.Point(*points[:, :2].mean(0), points[:, 2].min()), kind=kind, lanes=",".join(obeying[way.id]), heading=heading,
                       height_m=height or np.nan, width_m=width if width > LEAST_LED else np.nan,
-                      **{**code, **told, "value": _number(told.get("value"), np.nan)})
+                      **{**code, **told, "value": length_of_tag(told.get("value"))})
     return layer
 
 
@@ -397,16 +396,16 @@ def _left_out(whole):
 
 def kmh(text: str) -> float | None:
     """A speed of a tag in km/h, with or without a unit; None where it is no number."""
-    found = re.fullmatch(r"(\d+(?:\.\d+)?) ?(km/h|kmh|kph|mph|m/s|mps)?", text.strip())
+    found = re.fullmatch(r"(\d+(?:\.\d+)?) ?(km/h|kmh|kph|mph|m/s|mps)?", text.strip().lower())
     return float(found[1]) * {"mph": 1.609344, "m/s": 3.6, "mps": 3.6}.get(found[2], 1.0) if found else None
 
 
-def _number(text, missing):
-    """A length of a tag, in metres."""
+def length_of_tag(text: str | None) -> float:
+    """A length of a tag in metres, NaN where it is no number."""
     try:
         return float(str(text).removesuffix("m"))
     except ValueError:
-        return missing
+        return np.nan
 
 
 def _lane_row(network, id, left, right, way):

@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from ...core.common.arrays import linked_groups, members_of
 from ...core.driving.layers import Lanes
 from .sources import LEAST_CURB, SAME_LEVEL, RoadMapSource, is_stated, wrapped
 
@@ -171,8 +172,7 @@ def _levels(lanes, nodes, rows):
     led = np.array(ends, int).reshape(-1, 2)
     led = np.concatenate([led, led + count])
     first, second = level[led[nodes[led[:, 0]] == nodes[led[:, 1]]]].T
-    size = int(level.max()) + 1
-    return connected_components(coo_matrix((np.ones(len(first)), (first, second)), shape=(size, size)), directed=False)[1][level]
+    return linked_groups(first, second, int(level.max()) + 1)[level]
 
 
 def _inward(lanes, nodes, count):
@@ -340,17 +340,13 @@ def with_inferred_ways(source: RoadMapSource) -> RoadMapSource:
 def _junctions(lanes):
     """Lists of _Way whose areas touch."""
     ways = _ways(lanes)
-    areas = [_area(*lanes.borders(way.row)) for way in ways]
-    group = list(range(len(ways)))
-    for a in range(len(ways)):
-        for b in range(a):
-            if group[a] != group[b] and _touch(areas[a], areas[b]):
-                group = [group[b] if member == group[a] else member for member in group]
-    return [[ways[k] for k in np.flatnonzero(np.array(group) == number)] for number in sorted(set(group)) if group.count(number) > 1]
-
-
-def _touch(one, other):
-    return abs(one[1] - other[1]) < SAME_LEVEL and one[0].intersects(other[0])
+    borders = [lanes.borders(way.row) for way in ways]
+    areas = np.array([shapely.make_valid(shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders], object)
+    height = np.array([left[:, 2].mean() for left, _ in borders])
+    first, second = shapely.STRtree(areas).query(areas, predicate="intersects")
+    level = np.abs(height[first] - height[second]) < SAME_LEVEL
+    group = linked_groups(first[level], second[level], len(ways))
+    return [[ways[k] for k in rows] for _, rows in members_of(group) if len(rows) > 1]
 
 
 def _ways(lanes):
@@ -360,11 +356,6 @@ def _ways(lanes):
     ways = [_Way(k, before[lanes.lane_id[k]], row_of[lanes.successors[k][0]]) for k in range(len(lanes))
             if lanes.type[k] == "connector" and lanes.lane_id[k] in before and len(lanes.successors[k]) == 1]
     return [way for way in ways if lanes.type[way.exit] == "driving"]
-
-
-def _area(left, right):
-    """(polygon between two borders, metres of height)."""
-    return shapely.make_valid(shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2])), float(left[:, 2].mean())
 
 
 def _missing_way(lanes, group, entry, exit):
@@ -478,14 +469,11 @@ def _with_connector(lanes, entry, exit, left, right):
     road = int(lanes.road[entry])
     number = int(lanes.lane[lanes.road == road].max()) + 1
     name = f"{road}.{number}.1"
-    values = {"road": road, "lane": number, "lane_id": name, "type": "connector", "direction": int(lanes.direction[entry]), "left_line": "none",
-              "right_line": "none", "left_kind": "none", "right_kind": "none", "left_pattern": "", "right_pattern": "", "status": "inferred",
-              "confidence": UNDRIVEN_CONFIDENCE * float(min(lanes.confidence[entry], lanes.confidence[exit])), "station": float(lanes.end[entry]),
-              "end": float(lanes.end[entry]), "other": ""}
-    columns = {}
-    for field, value in values.items():
-        column = getattr(lanes, field)
-        columns[field] = np.append(column, np.array([value], column.dtype))
+    values = Lanes.gathered([{
+        "road": road, "lane": number, "lane_id": name, "type": "connector", "direction": lanes.direction[entry], "status": "inferred",
+        "confidence": UNDRIVEN_CONFIDENCE * min(lanes.confidence[entry], lanes.confidence[exit]), "station": lanes.end[entry],
+        "end": lanes.end[entry]}])
+    columns = {field: np.append(getattr(lanes, field), value) for field, value in values.items()}
     successors = [(*names, name) if k == entry else names for k, names in enumerate(lanes.successors)]
     return Lanes(**columns, successors=[*successors, (lanes.lane_id[exit],)], left=np.concatenate([lanes.left, left]),
                  right=np.concatenate([lanes.right, right]), start=np.append(lanes.start, lanes.start[-1] + len(left)), crs=lanes.crs)

@@ -76,7 +76,7 @@ def checked(source: RoadMapSource) -> RoadMapSource:
     """The same source without successors that are not there, proven fit for a map.
 
     Raises RoadExtractionError if there are no lanes, the CRS is not in metres, a lane has no width or borders that cross, heights are missing, two
-    roads lie at one place, or a layer is of another survey.
+    lanes have one id, two roads lie at one place, or a layer is of another survey.
     """
     lanes = source.lanes
     if not len(lanes):
@@ -90,6 +90,10 @@ def checked(source: RoadMapSource) -> RoadMapSource:
     if np.abs(places).max() > FARTHEST_PLACE:
         raise RoadExtractionError(f"The lanes reach to {np.abs(places).max():.3g} m from the origin of their CRS, which is not on this world. Choose "
                                   "the layer of lanes that Lanewright wrote, or set its CRS right.")
+    if len(set(lanes.lane_id)) < len(lanes):
+        name, count = Counter(lanes.lane_id.tolist()).most_common(1)[0]
+        raise RoadExtractionError(f"Lane {name} is there {count} times: two roads of the map have one id, so that links to them are not clear. Give "
+                                  "each road its own id where the map was made.")
     _check_shapes(lanes)
     if not is_stated(lanes):   # where a map from elsewhere has two roads at one place, it means both
         _check_places(lanes)
@@ -192,13 +196,10 @@ class NearestValues:
             values += [value] * len(pieces)
         self._tree, self._values = shapely.STRtree(parts), np.array(values)
 
-    def at(self, points: np.ndarray, farthest: float = 0.5) -> np.ndarray:
-        """(N,) numbers nearest to (N, 2) points, NaN where none lies within `farthest` metres."""
-        values = np.full(len(points), np.nan)
-        if len(self._values) and len(points):
-            indices, part = self._tree.query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
-            values[indices] = self._values[part]
-        return values
+    def median(self, points: np.ndarray) -> float:
+        """Of the numbers nearest to (N, 2) points within half a metre; NaN where there are none."""
+        _, parts = self._tree.query_nearest(shapely.points(points), max_distance=0.5, all_matches=False)
+        return float(np.median(self._values[parts])) if len(parts) else np.nan
 
 
 # The uncertainty that driving lines carry, lane by lane.
@@ -339,8 +340,7 @@ def _corners(shape: Any) -> np.ndarray:
     rectangle = shapely.force_2d(shape).minimum_rotated_rectangle
     if rectangle.geom_type != "Polygon":
         return np.empty((0, 3))
-    corners = shapely.get_coordinates(shapely.orient_polygons(rectangle).exterior)[:4] if hasattr(shapely, "orient_polygons") else \
-        shapely.get_coordinates(shapely.geometry.polygon.orient(rectangle).exterior)[:4]
+    corners = shapely.get_coordinates(shapely.geometry.polygon.orient(rectangle).exterior)[:4]
     if np.hypot(*(corners[1] - corners[0])) < np.hypot(*(corners[2] - corners[1])):
         corners = corners[[1, 2, 3, 0]]
     vertices = shapely.get_coordinates(shape, include_z=True)
@@ -435,19 +435,20 @@ class MapLayers:
 
     def marking_lines(self) -> Features:
         """Painted borders, as MARKING_LINES."""
-        layer = Features("LineStringZ", MARKING_LINES, crs=self.lanes.crs)
-        for number, line in enumerate((line for line in self.lines if line.what == "marking"), start=1):
-            layer.add(shapely.linestrings(line.points), road=line.road, line=number, kind=line.kind, pattern=line.pattern, status=STATUS_OF_MAPS,
-                      station_m=0.0, end_m=plan_length(line.points), length_m=plan_length(line.points), width_m=line.width)
-        return layer
+        return self._layer_of_lines("marking", MARKING_LINES, lambda number, line: {
+            "line": number, "kind": line.kind, "pattern": line.pattern, "width_m": line.width})
 
     def road_edges(self) -> Features:
         """Curbs and the outer borders of what is driven on, as ROAD_EDGES."""
-        layer = Features("LineStringZ", ROAD_EDGES, crs=self.lanes.crs)
-        for number, line in enumerate((line for line in self.lines if line.what == "edge"), start=1):
-            layer.add(shapely.linestrings(line.points), road=line.road, side=line.side or None, status=STATUS_OF_MAPS, station_m=0.0,
-                      end_m=plan_length(line.points), part="bottom", length_m=plan_length(line.points), kind="main", edge=line.edge, chain=number,
-                      height_m=line.height)
+        return self._layer_of_lines("edge", ROAD_EDGES, lambda number, line: {
+            "side": line.side or None, "part": "bottom", "kind": "main", "edge": line.edge, "chain": number, "height_m": line.height})
+
+    def _layer_of_lines(self, what, schema, values):
+        layer = Features("LineStringZ", schema, crs=self.lanes.crs)
+        for number, line in enumerate((line for line in self.lines if line.what == what), start=1):
+            length = plan_length(line.points)
+            layer.add(shapely.linestrings(line.points), road=line.road, status=STATUS_OF_MAPS, station_m=0.0, end_m=length, length_m=length,
+                      **values(number, line))
         return layer
 
 
@@ -557,7 +558,7 @@ def _segments(lines, curved=False):
     lines, _ = _once(lines)
     places, line = _joined(lines), np.repeat(np.arange(len(lines)), [len(border) for border in lines])
     way, same = np.diff(places[:, :2], axis=0), line[1:] == line[:-1]
-    turn = np.abs((np.diff(np.arctan2(way[:, 1], way[:, 0])) + np.pi) % (2 * np.pi) - np.pi)
+    turn = np.abs(wrapped(np.diff(np.arctan2(way[:, 1], way[:, 0]))))
     turn = np.concatenate([[np.nan], np.where(same[1:] & same[:-1], turn, np.nan), [np.nan]])
     bow = np.nan_to_num(np.fmin(turn[:len(way)], turn[1:len(way) + 1])) * np.hypot(*way.T) / 8 * curved
     return np.c_[places[:-1], places[1:], bow][same]
@@ -571,15 +572,14 @@ def _gone_on(line):
     return np.stack([line[0], line[0] - way * BEYOND_END / max(float(np.hypot(*way[:2])), 1e-9)])
 
 
-def driving_line_misses(driving_lines: Features | None, exported: Lanes, measured_only: bool = True,
-                        apart_from: np.ndarray | None = None) -> _Misses:
+def driving_line_misses(driving_lines: Features | None, exported: Lanes, apart_from: np.ndarray | None = None) -> _Misses:
     """Across, of driving lines against the middles of the lanes that are read back.
 
     apart_from : (N, 2) places; what lies within LEFT_OUT_NEAR of one is left out
     """
     middles = [sum(exported.borders(k)) / 2 for k in np.flatnonzero(np.isin(exported.type, ("driving", "connector")))]
     rows = [shapely.get_coordinates(geometry, include_z=True) for geometry, row in driving_lines or ()
-            if geometry is not None and (not measured_only or row.get("status") in (None, "measured"))]
+            if geometry is not None and row.get("status") in (None, "measured")]
     places = np.concatenate([np.empty((0, 3)), *rows])
     if apart_from is not None and len(apart_from) and len(places):
         places = places[cKDTree(apart_from).query(places[:, :2])[0] > LEFT_OUT_NEAR]

@@ -36,7 +36,7 @@ NUMBERS = {
     "products/inventory": 148,
     "products/surface": 20,
     "products/cloud": 0,
-    "products/export": 158,
+    "products/export": 154,
     "products/client_fields": 0,
     "products/assess": 18,
     "products/overlay": 78,

@@ -76,7 +76,7 @@ def borders(path):
 def driven_lanes(path):
     """Every driven lane of a section as our own reader has it: its road and number, stations along the road, way it is driven (1 along), middle
     [[x, y, z], ...] in the file's coordinates, and the (road, number) of the lanes that follow it."""
-    from lanewright.products.export.opendrive.model import DRIVEN_TYPES, LaneNetwork, travel
+    from lanewright.products.export.opendrive.model import DRIVEN_TYPES, LaneNetwork
     from lanewright.products.export.opendrive.xodr import read_opendrive
 
     whole = read_opendrive(str(path))
@@ -90,7 +90,8 @@ def driven_lanes(path):
             for id, lane in section.lanes.items():
                 if id and lane.type in DRIVEN_TYPES:
                     middle = sum(surface.borders(number, id, s, offsets)) / 2
-                    found.append({"road": int(road.id), "lane": id, "way": travel(road, id), "s": s.tolist(), "middle": middle.tolist(),
+                    way = 1 if road.way_out(id) == "end" else -1
+                    found.append({"road": int(road.id), "lane": id, "way": way, "s": s.tolist(), "middle": middle.tolist(),
                                   "following": sorted({(int(key[0]), key[2]) for key in network.following((road.id, number, id))})})
     return found
 

@@ -38,7 +38,8 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
     made = c.made_of[i, beyond]
     line, far = np.where(side == 0, c.left[i, m], c.right[i, m]), np.where(side == 0, c.right[i, beyond], c.left[i, beyond])
     row = 2 * c.rows[i, m, side] + side
-    places = _Along(row, (np.cumsum(c.length) - c.length / 2)[i], c.length[i])
+    station = (np.cumsum(c.length) - c.length / 2)[i]
+    places = _Along(row, station, c.length[i])
     across = np.abs(far - line)
     room = np.where(np.isin(made, (CURB, PAVEMENT)), across, np.nan)
     # where a line lies on the other side farther on, it shows how wide the lane is
@@ -50,16 +51,18 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
     near, passes = _driven_beside(offset, room, w)
     driven = places.means(np.where(passes > 0, near, np.nan), w.laid_out)
     sigma = w.track_sigma / np.sqrt(np.maximum(places.means(passes.astype(float), w.laid_out), 1e-9))
-    share = np.array([part for _, _, part in w.left_over_beside])
+    share = np.array([[part] for _, _, part in w.left_over_beside])
     nats, width, spread = _readings(room, driven, sigma, usual_there, like, share, w)
     known = np.isfinite(room) & np.isfinite(driven) & np.isfinite(nats).any(axis=0)
     if known.any():
-        # lanes nobody drove in are like those beside curbs that were driven on the same road
-        length, behind = c.length[i[known]], nats[:, known] - nats[:, known].min(axis=0)
-        fits = np.average(np.exp(-behind) / np.exp(-behind).sum(axis=0), axis=1, weights=length)
-        share = (share + w.alike_beside * fits[:-2].reshape(2, -1).sum(axis=0)) / (1 + w.alike_beside)
-        driven_width = np.average(width[nats.argmin(axis=0), np.arange(len(i))][known], weights=length)
-        usual_there = np.where(np.isfinite(between), between, driven_width)
+        # lanes nobody drove in are like those beside curbs that were driven on the same road near by
+        around = _Along(np.zeros(len(i)), station, c.length[i])
+        fits, driven_width = np.full((len(share), len(i)), np.nan), np.where(known, width[nats.argmin(axis=0), np.arange(len(i))], np.nan)
+        probable = np.exp(nats[:, known].min(axis=0) - nats[:, known])
+        fits[:, known] = (probable / probable.sum(axis=0))[:-2].reshape(2, len(share), -1).sum(axis=0)
+        *fits, driven_width = (around.means(values, w.alike_within) for values in (*fits, driven_width))
+        share = np.where(np.isfinite(driven_width), (share + w.alike_beside * np.array(fits)) / (1 + w.alike_beside), share)
+        usual_there = np.where(np.isfinite(between), between, np.where(np.isfinite(driven_width), driven_width, usual))
         alike = _readings(room, driven, sigma, usual_there, np.full(len(i), w.like_lines), share, w)
         nats, width, spread = (np.where(np.isnan(driven), *values) for values in zip(alike, (nats, width, spread)))
     chosen = _chosen(places, room, lined, across, nats, width, spread, w)
@@ -76,11 +79,15 @@ class _Along:
         self.row, self.station = row[self.order], station[self.order]
 
     def means(self, values, reach):
-        """(N,) means of what is not NaN of values, over `reach` m either way along the same row; NaN where there is none."""
+        """(N,) means of what is not NaN of values, over `reach` m either way along the same row; NaN where there is none.
+
+        They are summed in millionths, as whole numbers: those are exact, so that a mean does not depend on what lies farther along the road.
+        """
         place = self.row * (self.far + 2 * reach) + self.station
         low, high = np.searchsorted(place, place - reach), np.searchsorted(place, place + reach, side="right")
         weight = np.where(np.isfinite(values), self.length, 0.0)[self.order]
-        sums = [np.r_[0.0, np.cumsum(part)] for part in (weight * np.where(np.isfinite(values), values, 0.0)[self.order], weight)]
+        parts = weight * np.where(np.isfinite(values), values, 0.0)[self.order], weight
+        sums = [np.r_[0, np.cumsum(np.rint(1e6 * part).astype(np.int64))] for part in parts]
         result = np.full(len(values), np.nan)
         with np.errstate(invalid="ignore", divide="ignore"):
             result[self.order] = (sums[0][high] - sums[0][low]) / (sums[1][high] - sums[1][low])
@@ -106,19 +113,20 @@ def _driven_apart(offset, room, width, w):
 def _readings(room, driven, track_sigma, usual, like, share, w):
     """(R, N) nats, widths and their sigma, m, of the readings of strips: of what is left over, of lanes as wide as between lines and of others.
 
-    `like` : (N,) share of those as wide as between lines; `share` : of what is left over; the rest of it may be anything, the last two readings
+    `like` : (N,) share of those as wide as between lines; `share` : (3, N) or (3, 1), of what is left over; the rest of it may be anything, the last
+    two readings
     """
     left_over, scatter = (np.array(values)[:, None] for values in list(zip(*w.left_over_beside))[:2])
     nats, width, spread = [], [], []
     with np.errstate(divide="ignore"):
         for sigma, of_sigma in ((w.width_sigma_lined, like), (w.width_sigma_beside, 1 - like)):
             misfit, variance = room - left_over - usual, sigma**2 + scatter**2
-            fits = 0.5 * (misfit**2 / variance + np.log(2 * np.pi * variance)) - np.log(share)[:, None] - np.log(of_sigma)
+            fits = 0.5 * (misfit**2 / variance + np.log(2 * np.pi * variance)) - np.log(share) - np.log(of_sigma)
             nats.append(np.where(np.isfinite(room), fits, np.inf))
             width.append(np.where(np.isfinite(room), usual + misfit * sigma**2 / variance, usual))
             spread.append(np.broadcast_to(sigma**2 * scatter**2 / variance, misfit.shape))
         for sigma, of_sigma in ((w.width_sigma_lined, like), (w.width_sigma_beside, 1 - like)):
-            of_rest = np.where(np.isfinite(room), (1 - share.sum()) / w.widest_beside, 1.0)
+            of_rest = np.where(np.isfinite(room), (1 - share.sum(axis=0)) / w.widest_beside, 1.0)
             nats.append(-np.log(of_rest * of_sigma)[None])
             width.append(usual[None])
             spread.append(np.full((1, len(room)), sigma**2))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...common.parallel import check_cancelled
+from ...common.progress import Progress
 from ...countries.catalogue import NEUTRAL
-from ...execution.phase import NoSource
+from ...execution.phase import Executor, NoSource, Phase
 from .beside import NATS, SECOND_WIDTH
 from .candidates import Candidates
 from .evidence import Evidence
@@ -33,7 +35,7 @@ from .sequence import (
 from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading
 
 FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
-INTERVALS_OF_STRETCH = 256   # derived: intervals that are looked at together, 1 to 2 km of road: what they are chosen from takes 0.2 MB for each
+LENGTH_OF_STRETCH = 1000   # derived: stations that are looked at together, 500 m of road: what is chosen from takes 0.2 MB for each interval
 
 
 @dataclass
@@ -72,22 +74,46 @@ class RoadEstimate:
         return float(finite.min()) if len(finite) else 0.0
 
 
-def estimate_of_road(source: NoSource, item: tuple[Candidates, Evidence, int], lane_width: float, weights: EstimateWeights) -> RoadEstimate:
-    """The phase that finds the most probable sequence of cross-sections of one road.
+def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int]], lane_width: float, weights: EstimateWeights, executor: Executor,
+                       progress: Progress = Progress()) -> Iterator[RoadEstimate]:
+    """The estimates of roads: cross-sections are chosen stretch by stretch, the sequence of them for a road as a whole.
 
-    item : what may bound its lanes and what is seen beside it, and 1 or -1, the direction of the lanes that are met first from the left: -1 with
-        traffic on the right
+    roads : what may bound the lanes of each and what is seen beside it, and 1 or -1, the direction of the lanes that are met first from the left: -1
+        with traffic on the right
     lane_width : m, the usual one
     """
+    stretches, pieces = [_stretches(candidates) for candidates, _, _ in roads], []
+    for (candidates, evidence, first_direction), of_road in zip(roads, stretches):
+        for part in of_road:
+            piece = candidates.take(part)
+            # which rows of a table they are does not matter
+            pieces.append((replace(piece, rows=np.zeros_like(piece.rows)), evidence.part(part.start, part.stop), first_direction))
+    place, shared = lambda item: "the lanes of a road", (lane_width, weights)
+    chosen = executor.run(Phase(sections_of_stretch, NoSource(), shared, place), pieces, progress.part(0.0, 0.6))
+    items = [(*road, Sections.joined([next(chosen) for _ in of_road])) for road, of_road in zip(roads, stretches)]
+    return executor.run(Phase(estimate_of_road, NoSource(), shared, place), items, progress.part(0.6, 1.0))
+
+
+def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int], lane_width: float, weights: EstimateWeights) -> Sections:
+    """The phase that chooses the cheapest cross-sections of the intervals of a stretch; what it is given is as of `estimates_of_roads`."""
     candidates, evidence, first_direction = item
-    sections = _best_sections(candidates, evidence, weights, lane_width, first_direction)
+    sections = best_sections(candidates, strip_costs(candidates, evidence, weights, lane_width, first_direction), evidence.stops, weights)
+    sections.cost += _roads_of_many_lanes(candidates, sections, evidence.divided, weights)
+    return sections
+
+
+def estimate_of_road(source: NoSource, item: tuple[Candidates, Evidence, int, Sections], lane_width: float, weights: EstimateWeights) -> RoadEstimate:
+    """The phase that finds the most probable sequence of cross-sections of one road; what it is given is as of `estimates_of_roads`."""
+    candidates, evidence, first_direction, sections = item
+    sections = replace(sections, cost=sections.cost.copy())
+    _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
     paint = candidates.painted
     shown = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1)
     choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))
     lined, total, unnamed_total = np.flatnonzero(paint.any(1) | evidence.bare), 0.0, 0.0
     # what named the lines is the same evidence
-    cost = sections.cost - _by_stretch(lambda part: misnamed_costs(candidates.take(part), sections.take(part), weights), len(sections.cost))
+    cost = sections.cost - _by_stretch(lambda part: misnamed_costs(candidates.take(part), sections.take(part), weights), candidates)
     once, second = np.full((2, *cost.shape), np.inf)
     if len(lined):
         hidden = np.r_[0.0, np.cumsum(candidates.length)]
@@ -105,27 +131,14 @@ def estimate_of_road(source: NoSource, item: tuple[Candidates, Evidence, int], l
                         second)
 
 
-def _stretches(count):
-    """Intervals by stretches of road, of which so many are looked at together."""
-    return [slice(first, min(first + INTERVALS_OF_STRETCH, count)) for first in range(0, count, INTERVALS_OF_STRETCH)]
+def _stretches(candidates):
+    """Intervals by the stretch of road that they begin in; those of a stretch are looked at together."""
+    bounds = [0, *(np.flatnonzero(np.diff(candidates.first // LENGTH_OF_STRETCH)) + 1).tolist(), len(candidates.first)]
+    return [slice(first, end) for first, end in zip(bounds, bounds[1:])]
 
 
-def _by_stretch(function, count):
-    return np.concatenate([function(part) for part in _stretches(count)])
-
-
-def _best_sections(candidates, evidence, weights, lane_width, first_direction):
-    """Sections of all intervals; their costs are worked out stretch by stretch, for they are many times as large."""
-    parts = []
-    for part in _stretches(len(candidates.first)):
-        check_cancelled()
-        piece, piece_evidence = candidates.take(part), evidence.part(part.start, part.stop)
-        sections = best_sections(piece, strip_costs(piece, piece_evidence, weights, lane_width, first_direction), piece_evidence.stops, weights)
-        sections.cost += _roads_of_many_lanes(piece, sections, piece_evidence.divided, weights)
-        parts.append(sections)
-    joined = Sections.joined(parts)
-    _hold_to_taken(candidates, evidence, joined, lane_width, first_direction, weights)
-    return joined
+def _by_stretch(function, candidates):
+    return np.concatenate([function(part) for part in _stretches(candidates)])
 
 
 def _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights):
@@ -146,7 +159,7 @@ def _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, 
 def _seen_once(c, sections, cost, weights):
     """(I, K) nats that tell how sure a cross-section is, from the costs without names: what is laid out alike along the road was seen once."""
     cost = cost / (np.clip(c.length.sum(), weights.correlation, weights.laid_out) / weights.correlation)
-    return np.where(_by_stretch(lambda part: _told_before(sections.take(part), cost[part]), len(cost)), np.inf, cost)
+    return np.where(_by_stretch(lambda part: _told_before(sections.take(part), cost[part]), c), np.inf, cost)
 
 
 def _told_before(sections, cost):
@@ -214,7 +227,7 @@ class LaneSpan:
 
 def lane_spans(estimate: RoadEstimate) -> list[LaneSpan]:
     """The lanes of the best sequence, interval by interval, from left to right."""
-    return [span for part in _stretches(len(estimate.choice)) for span in _lane_spans(estimate, part)]
+    return [span for part in _stretches(estimate.candidates) for span in _lane_spans(estimate, part)]
 
 
 def _lane_spans(estimate, part):

@@ -14,7 +14,7 @@ from ...common.progress import Progress
 from ...countries.catalogue import NEUTRAL
 from ...countries.traffic_side import side_of_traffic
 from ...curves.robust import median
-from ...execution.phase import THREADS, NoSource, Phase
+from ...execution.phase import THREADS
 from ...io.crs import horizontal_part, parse_crs, place_on_ground
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
@@ -23,7 +23,7 @@ from ..objects.marking_objects import MarkingObjects
 from ..weights import ROADS
 from .beside import lanes_beside
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
-from .estimate import RoadEstimate, estimate_of_road
+from .estimate import RoadEstimate, estimates_of_roads
 from .evidence import between_ends, borders_of_hatching, driven_offsets, evidence_of, hatched_places, other_carriageway, surface_coverage
 from .sections import STATION_STEP, CrossSections, no_lines
 from .sequence import lane_strips
@@ -169,8 +169,8 @@ def _best_side(estimates, usual, weights):
     prior = {"left": -weights.foreign_side, "right": weights.foreign_side}.get(usual, weights.left_hand)
     # nats by which traffic on the left is behind
     total, unnamed, once = (prior + sum((getattr(left, name) - getattr(estimates[-1][number], name)) * min(
-        1.0, repeats / max(float(left.candidates.length.sum()), 1.0)) for number, left in estimates[1].items()) for name, repeats in (
-            ("total", weights.repeats), ("unnamed_total", weights.repeats), ("once_total", np.inf)))
+        1.0, weights.repeats / max(float(left.candidates.length.sum()), 1.0)) for number, left in estimates[1].items())
+        for name in ("total", "unnamed_total", "once_total"))
     best = 1 if total < 0 else -1
     if total * unnamed < 0:
         return best, np.inf, np.inf
@@ -211,15 +211,16 @@ def _estimates(known, sides, width, weights, executor, progress, shown=False):
     """{side of traffic: {number of the road: RoadEstimate}}; `shown` : whether lines of the survey show the width."""
     widths = {number: replace(candidates, beside=lanes_beside(candidates, evidence, width, shown, weights))
               for number, (_, candidates, evidence) in known.items()}
-
-    phase = Phase(estimate_of_road, NoSource(), (width, weights), lambda item: "the lanes of a road")
-    items = [(widths[number], evidence, first) for first in sides for number, (_, _, evidence) in known.items()]
-    results = executor.run(phase, items, progress)
+    results = estimates_of_roads([(widths[number], evidence, first) for first in sides for number, (_, _, evidence) in known.items()], width, weights,
+                                 executor, progress)
     return {first: {number: next(results) for number in known} for first in sides}
 
 
 def _usual_width(known, estimates, usual):
-    """Median width, metres, of lanes between painted lines, or between one and the edge of the pavement, and whether these show it."""
+    """Median width of lanes between painted lines, or between one and the edge of the pavement, and whether these show it.
+
+    In whole millimetres: a line that moves a little somewhere on a long road moves no lane elsewhere.
+    """
     widths, lengths = [], []
     for number, estimate in estimates.items():
         boundaries, candidates, _ = known[number]
@@ -242,7 +243,8 @@ def _usual_width(known, estimates, usual):
     order = np.argsort(widths)
     total = np.cumsum(lengths[order])
     middle = float(widths[order[int(np.searchsorted(total, total[-1] / 2))]])
-    return (middle * sum(lengths[:-1]) + usual * ROADS.length_of_usual) / sum(lengths), sum(lengths[:-1]) > ROADS.length_of_usual
+    mean = (middle * sum(lengths[:-1]) + usual * ROADS.length_of_usual) / sum(lengths)
+    return round(mean, 3), sum(lengths[:-1]) > ROADS.length_of_usual
 
 
 # Arrows on the road: in which lane they lie and which way they point.

@@ -64,6 +64,7 @@ class EstimateWeights:
     # m, scatter of where vehicles keep within a lane about its middle, averaged over a block: 0.09 on half of the streets at hand, 0.13 on the others
     track_sigma: float = 0.1
     alike_beside: float = 4.0   # by how many times more lanes of the same road that were driven tell what is left over than what is usual
+    alike_within: float = 500.0   # m of road either way within which they do: a street of a town is laid out alike over a few blocks
     between_widths: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75)   # shares of the way between two readings, at which a lane's width is tried,
     nearer: float = 0.5   # and what it counts that a lane is right to 5 cm, against to 15 cm
     unpainted_divider: float = 2.2   # of a border between the two directions where nothing is painted
@@ -100,9 +101,10 @@ class EstimateWeights:
     calibration: tuple[float, float] = (0.38, 1.85)
     # slope of that curve for the direction; fitted to 7 km of lanes of 20 simulated streets, on some of which lines leave open which way a lane leads
     calibration_of_direction: float = 1.7
-    # m of road beyond which what two readings of it differ by is seen again, not once more: what a vehicle that keeps half a metre beside the middle
-    # of a lane of 7 m shows on 120 m must say no more on a kilometre; the longest blocks between crossings of the simulated streets have 200 m
-    repeats: float = 200.0
+    # m of road beyond which what two readings of it differ by is seen again, not once more, since the road was laid out and driven once. Chosen so
+    # that a drive on the near side of dashes surely shows that they part the directions, and one on the far side leaves it open whether the road is
+    # one-way or has traffic on the other side
+    repeats: float = 130.0
     doubt: float = 3.0   # nats by which a second reading of a lane or line may be less probable to be said beside the first
     most_in_doubt: float = 0.6   # confidence of the first then: two readings of which either may be right, and all others
     not_taken: float = 1000.0   # of a cross-section without the lanes of a reading that an analyst took, against any evidence

@@ -8,15 +8,15 @@ Lanelet2, documents LaneletAndAreaTagging, LinestringTagging and RegulatoryEleme
 from __future__ import annotations
 
 import re
-from collections import defaultdict
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 import shapely
 
 from ....core.common.progress import Progress
-from ..lanelet_map import Lanelet, LaneletMap, LaneletNetwork, Way, same_way
-from ..sources import LEAST_CURB
+from ..lanelet_map import NEVER_DRIVEN, Lanelet, LaneletMap, LaneletNetwork, Way, kmh, length_of_tag, same_way
+from ..sources import LEAST_CURB, wrapped
 from .findings import Findings, metres
 
 LEAST_LANE_WIDTH, MOST_LANE_WIDTH = 0.5, 30.0   # m: beyond them a border belongs to another lane; areas of junctions are wide
@@ -39,7 +39,6 @@ SUBTYPES = {"line_thin": LINE_SUBTYPES, "line_thick": LINE_SUBTYPES, "curbstone"
 LANELET_SUBTYPES = ("road", "highway", "play_street", "emergency_lane", "bus_lane", "bicycle_lane", "exit", "walkway", "shared_walkway", "crosswalk",
                     "stairs", "road_shoulder", "parking", "pedestrian_lane")
 LOCATIONS = ("urban", "nonurban", "private")
-WALKED = ("crosswalk", "walkway", "stairs")
 
 
 def check_lanelets(whole: LaneletMap, places: np.ndarray, crs: str = "", progress: Progress = Progress()) -> Findings:
@@ -132,7 +131,7 @@ class _LaneletCheck:
         step = np.diff(line, axis=0)
         run = np.maximum(np.hypot(*step[:, :2].T), NEAR_NODES)
         heading = np.arctan2(step[:, 1], step[:, 0])
-        turn = (np.diff(heading) + np.pi) % (2 * np.pi) - np.pi
+        turn = wrapped(np.diff(heading))
         back = np.abs(turn) > SPIKE_TURN
         if len(turn) > 2:   # out at one node, back at the next but one
             around = np.abs(np.convolve(turn, np.ones(3), mode="valid"))
@@ -231,7 +230,7 @@ class _LaneletCheck:
         pairs = tree.query(shapely.buffer(shapely.points(stops.mean(1)), JOIN_DISTANCE), predicate="intersects").T
         for k, j in pairs:
             apart = np.hypot(*(stops[k] - starts[j]).T)
-            turn = abs((last[k] - first[j] + np.pi) % (2 * np.pi) - np.pi)
+            turn = abs(wrapped(last[k] - first[j]))
             if k != j and (apart < JOIN_DISTANCE).all() and turn < JOIN_ANGLE and ids[j] not in self.network.following(ids[k]):
                 self.findings.add("not joined", f"lanelets {ids[k]} and {ids[j]}", f"{metres(float(apart.max()))} apart, with nodes of their own.",
                                   self.places[self.network.ends(ids[k])[1][0]])
@@ -276,20 +275,7 @@ class _LaneletCheck:
         driven = [id for id in self.network.left if self.network.driven(id)]
         self.findings.lanes = len(driven)
         self.findings.successors = sum(len(self.network.following(id)) for id in driven)
-        pairs: dict[tuple[int, int], int] = defaultdict(int)
-        for id in driven:
-            for neighbour in self.network.beside(id):
-                pairs[min(id, neighbour), max(id, neighbour)] += 1
-        self.findings.neighbours = len(pairs)
-
-
-def _is_speed(text: str) -> bool:
-    """Whether a speed limit is a number with or without its unit."""
-    number = text.lower().removesuffix("km/h").removesuffix("mph").removesuffix("kmh").removesuffix("m/s").strip()
-    try:
-        return 0 < float(number) < 500
-    except ValueError:
-        return False
+        self.findings.neighbours = len({(min(id, neighbour), max(id, neighbour)) for id in driven for neighbour in self.network.beside(id)})
 
 
 # Tags, rules of traffic and areas, held against what the format knows.
@@ -318,7 +304,7 @@ def _way_tags(way: Way) -> Iterator[str]:
         if key == "lane_change" or key.startswith("lane_change:"):
             if value not in YES_OR_NO:
                 yield f"{key} is {value!r}."
-        elif key in ("width", "height") and not _is_length(value):
+        elif key in ("width", "height") and not 0 <= length_of_tag(value) < 1000:
             yield f"{key} is {value!r}."
 
 
@@ -327,8 +313,8 @@ def _lanelet_tags(tags: Mapping[str, str]) -> Iterator[str]:
     for key, allowed in (("subtype", LANELET_SUBTYPES), ("location", LOCATIONS), ("one_way", YES_OR_NO)):
         if (key in tags or key == "subtype") and tags.get(key) not in allowed:
             yield f"{key} is {tags.get(key, '')!r}."
-    yield from _participant_tags(tags, tags.get("subtype") in WALKED)
-    if not _is_speed(tags.get("speed_limit", "1")):
+    yield from _participant_tags(tags, tags.get("subtype") in NEVER_DRIVEN)
+    if not 0 < (kmh(tags.get("speed_limit", "1")) or 0.0) < 500:
         yield f"speed_limit is {tags['speed_limit']!r}."
 
 
@@ -380,17 +366,6 @@ def _rule(relation, used):
 
 def _closed(whole, relation):
     """Whether the outer ways of an area, in any order and direction, make rings."""
-    ends: dict[int, int] = {}
-    for kind, id in relation.members.get("outer", ()):
-        way = whole.ways.get(id) if kind == "way" else None
-        if way is not None and way.nodes:
-            for node in (way.nodes[0], way.nodes[-1]):
-                ends[node] = ends.get(node, 0) + 1
+    ways = [whole.ways[id] for kind, id in relation.members.get("outer", ()) if kind == "way" and id in whole.ways]
+    ends = Counter(way.nodes[row] for way in ways if way.nodes for row in (0, -1))
     return bool(ends) and all(count % 2 == 0 for count in ends.values())
-
-
-def _is_length(text):
-    try:
-        return 0 <= float(text.removesuffix("m").strip()) < 1000
-    except ValueError:
-        return False

@@ -15,9 +15,9 @@ import shapely
 
 from ....core.common.errors import RoadExtractionError
 from ....core.common.progress import Progress
-from ..opendrive.model import DRIVEN_TYPES, MARK_TYPES, OPEN_END, ROAD_LANE_TYPES, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, RoadLink, travel
+from ..opendrive.model import DRIVEN_TYPES, MARK_TYPES, OPEN_END, ROAD_LANE_TYPES, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, RoadLink
 from ..opendrive.xodr import GEOMETRIES
-from ..sources import metric_wkt, wrapped
+from ..sources import SAME_LEVEL, metric_wkt, wrapped
 from ..xml_tree import XmlElement
 from .findings import Findings, metres
 
@@ -57,14 +57,10 @@ class _RoadCheck:
 
     def __init__(self, whole: OpenDriveMap, findings: Findings) -> None:
         self.whole, self.findings = whole, findings
-        self.areas: dict[str, shapely.Geometry] = {}
+        self.areas: list[tuple[MapRoad, shapely.Geometry]] = []
 
     def add(self, fault, element, text, road, s):
-        place = np.zeros(3)
-        if road is not None:
-            station = np.array([min(max(s, 0.0), road.plan.length)])
-            place = self.whole.placed(np.c_[road.plan.at(station)[0], road.elevation.at(station)])[0]
-        self.findings.add(fault, element, text, place)
+        self.findings.add(fault, element, text, self.whole.place(road, s) if road is not None else np.zeros(3))
 
     def statements(self) -> None:
         """What the file says that the format does not have, and whether its header fits the roads."""
@@ -87,20 +83,18 @@ class _RoadCheck:
             self.add("bounds", "header", f"A road begins or ends at x {x:.1f}, y {y:.1f}, outside of them.", None, 0.0)
 
     def plan(self, road: MapRoad) -> None:
-        name, along, last = f"road {road.id}", 0.0, None
+        name, along = f"road {road.id}", 0.0
         for element in road.plan.elements:
             if element.length <= 0:
                 self.add("station", name, f"A geometry at s = {element.s:g} has the length {element.length:g} m.", road, element.s)
             if abs(element.s - along) > MAX_LENGTH_ERROR:
                 self.add("station", name, f"A geometry says s = {element.s:.3f}; before it there are {along:.3f} m.", road, along)
-            if last is not None:
-                gap = float(np.hypot(element.x - last[0], element.y - last[1]))
-                if gap > MAX_GAP_IN_ROAD:
-                    self.add("gap", name, f"{metres(gap)} between two geometries at s = {element.s:.2f}.", road, element.s)
-                turn = abs(float(wrapped(element.heading - last[2])))
-                if turn > MAX_KINK:
-                    self.add("kink", name, f"The direction jumps by {turn:.3f} rad at s = {element.s:.2f}.", road, element.s)
-            last, along = element.end(), along + element.length
+            along += element.length
+        for s, gap, turn in road.plan.jumps(MAX_GAP_IN_ROAD, MAX_KINK):
+            if gap > MAX_GAP_IN_ROAD:
+                self.add("gap", name, f"{metres(gap)} between two geometries at s = {s:.2f}.", road, s)
+            if turn > MAX_KINK:
+                self.add("kink", name, f"The direction jumps by {turn:.3f} rad at s = {s:.2f}.", road, s)
         if abs(road.length - along) > MAX_LENGTH_ERROR:
             self.add("road length", name, f"The road says {road.length:.3f} m; its geometries are {along:.3f} m.", road, along)
 
@@ -127,7 +121,7 @@ class _RoadCheck:
             outlines.append(self._borders(road, number))
         self._offset_steps(road, starts)
         if road.junction == "-1":
-            self.areas[road.id] = shapely.union_all(outlines)
+            self.areas.append((road, shapely.union_all(outlines)))
 
     def _offset_steps(self, road, starts):
         for s, step in zip(*road.lane_offset.steps()):
@@ -188,23 +182,17 @@ class _RoadCheck:
                          road, item["s"])
 
     def overlaps(self) -> None:
-        ids, shapes = list(self.areas), np.array(list(self.areas.values()), object)
-        if not len(ids):
-            return
-        tree = shapely.STRtree(shapes)
-        for first, second in tree.query(shapes, predicate="intersects").T:
+        roads, shapes = [road for road, _ in self.areas], np.array([shape for _, shape in self.areas], object)
+        heights = [float(road.elevation.at(road.length / 2)) for road in roads]
+        for first, second in shapely.STRtree(shapes).query(shapes, predicate="intersects").T:
             if first >= second:
                 continue
             least = min(shapes[first].area, shapes[second].area)
             common = shapes[first].intersection(shapes[second])
-            if least > 0 and common.area > LEAST_OVERLAP * least and abs(self._height(ids[first]) - self._height(ids[second])) < 2.0:
+            if least > 0 and common.area > LEAST_OVERLAP * least and abs(heights[first] - heights[second]) < SAME_LEVEL:
                 x, y = common.representative_point().coords[0]
-                self.findings.add("two at one place", f"roads {ids[first]} and {ids[second]}", f"They share {common.area:.0f} m².",
+                self.findings.add("two at one place", f"roads {roads[first].id} and {roads[second].id}", f"They share {common.area:.0f} m².",
                                   self.whole.placed(np.array([[x, y, 0.0]]))[0])
-
-    def _height(self, id):
-        road = self.whole.road(id)
-        return float(road.elevation.at(road.length / 2)) if road is not None else 0.0
 
 
 # Links of an OpenDRIVE map: they lead somewhere, both ways, and what they join touches.
@@ -237,11 +225,10 @@ class _Links:
         self.whole, self.findings, self.network = whole, findings, LaneNetwork(whole)
         self.known = {junction.id for junction in whole.junctions}
         self.touched = self.network.touched()
-        self.ends: dict[tuple[LaneKey, str], tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
+        self.ends: dict[tuple[LaneKey, str], tuple[np.ndarray, np.ndarray, float]] = {}
 
     def place(self, road: MapRoad, end: str) -> np.ndarray:
-        station = np.array([0.0 if end == "start" else road.plan.length])
-        return self.whole.placed(np.c_[road.plan.at(station)[0], road.elevation.at(station)])[0]
+        return self.whole.place(road, 0.0 if end == "start" else road.plan.length)
 
     def road(self, road: MapRoad) -> None:
         for end in ("start", "end"):
@@ -272,11 +259,8 @@ class _Links:
 
     def _is_left_by(self, junction: str, road: str) -> bool:
         """Whether a connecting road of a junction leads to a road."""
-        for connecting in self.whole.roads:
-            if connecting.junction == junction and any(link is not None and link.element == "road" and link.id == road
-                                                       for link in (connecting.predecessor, connecting.successor)):
-                return True
-        return False
+        return any(connecting.junction == junction and connecting.touches(end, "road", road)
+                   for connecting in self.whole.roads for end in ("start", "end"))
 
     def junctions(self) -> None:
         reached = {(junction.id, connection.connecting) for junction in self.whole.junctions for connection in junction.connections}
@@ -315,7 +299,6 @@ class _Links:
         if lane is None:
             return
         name, driven = f"road {key[0]}, section {key[1]}, lane {key[2]}", lane.type in DRIVEN_TYPES
-        way = travel(road, key[2])
         for end in ("start", "end"):
             corners = self._end(key, end)
             touching = self.network.touching(key, end)
@@ -327,8 +310,8 @@ class _Links:
                 self._joined(name, key, end, corners, neighbour, neighbour_end, target, driven)
             declared = end in lane.data.get(OPEN_END, "").split()
             if self.network.is_open(key, end, self.touched) and not declared and self._width(corners) > LEAST_LANE:
-                leaves = (end == "end") == (way > 0)
-                self.findings.add("dead end" if leaves else "no way in", name, f"At its {end} it is linked to no driven lane.", corners[0])
+                fault = "dead end" if end == road.way_out(key[2]) else "no way in"
+                self.findings.add(fault, name, f"At its {end} it is linked to no driven lane.", corners[0])
 
     def _joined(self, name, key, end, own, other, there, target, driven):
         neighbour = self._end(other, there)
@@ -337,7 +320,7 @@ class _Links:
         pairs = ((own[0], neighbour[1] if turned else neighbour[0]), (own[1], neighbour[0] if turned else neighbour[1]))
         apart = [pair[0] - pair[1] for pair in pairs]
         gap, rise = max(float(np.hypot(*d[:2])) for d in apart), max(abs(float(d[2])) for d in apart)
-        kink = abs(float(np.arctan2(*(_cross_dot(own[2], neighbour[2] if end != there else -neighbour[2])))))
+        kink = abs(float(wrapped(own[2] - neighbour[2] + np.pi * turned)))
         for fault, size, most, text in (("gap at a link", gap, MAX_GAP_AT_LINK, metres(gap)),
                                         ("height step at a link", rise, MAX_HEIGHT_AT_LINK, metres(rise)),
                                         ("kink at a link", kink * driven, MAX_KINK_AT_LINK, f"{kink:.3f} rad")):
@@ -349,15 +332,14 @@ class _Links:
         """Linked lanes are driven the same way, and linked back but for lanes of a junction."""
         road, to = self.network.roads[key[0]], self.network.roads[other[0]]
         if driven and target.type in DRIVEN_TYPES:
-            leaves, enters = (end == "end") == (travel(road, key[2]) > 0), (there == "start") == (travel(to, other[2]) > 0)
-            if leaves != enters:
+            if (end == road.way_out(key[2])) == (there == to.way_out(other[2])):
                 self.findings.add("direction at a link", name, f"Lane {other[2]} of road {other[0]} is driven against it.", place)
         if key[0] == other[0] or road.junction == "-1" and to.junction == "-1":
             if not any(back == key for back, _ in self.network.touching(other, there)):
                 self.findings.add("one-sided link", name, f"Lane {other[2]} of road {other[0]} is not linked back.", place)
 
     def _end(self, key, end):
-        """(left, right) end of a lane's borders along the road, (3,) each, and (2,) the direction there."""
+        """(left, right) end of a lane's borders along the road, (3,) each, and the heading there."""
         corners = self.ends.get((key, end))
         if corners is None:
             road = self.network.roads[key[0]]
@@ -369,8 +351,8 @@ class _Links:
             inner, outer = (self.whole.placed(line) for line in surface.borders(key[1], key[2], s, surface.offsets(key[1], s)))
             left, right = (inner, outer) if key[2] < 0 else (outer, inner)
             row = 0 if end == "start" else 1
-            way = (left[1] - left[0] + right[1] - right[0])[:2]
-            corners = self.ends[key, end] = left[row], right[row], way
+            x, y, _ = left[1] - left[0] + right[1] - right[0]
+            corners = self.ends[key, end] = left[row], right[row], float(np.arctan2(y, x))
         return corners
 
     def _width(self, end):
@@ -384,7 +366,7 @@ def _connection_faults(junction, connection, incoming, connecting):
     if connection.contact not in ("start", "end"):
         yield f"It touches the {connection.contact or 'unnamed'} end of road {connecting.id}."
         return
-    incoming_lanes = [incoming.lanes_at(end) for end in ("start", "end") if _leads_into(incoming, end, junction)]
+    incoming_lanes = [incoming.lanes_at(end) for end in ("start", "end") if incoming.touches(end, "junction", junction)]
     if not incoming_lanes:
         yield f"Road {incoming.id} does not lead into this junction."
         return
@@ -394,15 +376,6 @@ def _connection_faults(junction, connection, incoming, connecting):
     for start, to in connection.lanes:
         if to not in connecting_lanes or start not in set().union(*incoming_lanes):
             yield f"There is no lane {start} or no lane {to} where it links them."
-
-
-def _leads_into(road, end, junction):
-    link = road.link(end)
-    return link is not None and (link.element, link.id) == ("junction", junction)
-
-
-def _cross_dot(a, b):
-    return float(a[0] * b[1] - a[1] * b[0]), float(a @ b)
 
 
 # What the file states, held against what the format allows: words, ranges of numbers, order of records, what excludes what.
@@ -459,18 +432,9 @@ ROAD_RECORDS = ((("type",), False), (("planView", "geometry"), True), (("elevati
 LANE_RECORDS = (("width", True), ("border", True), ("roadMark", False), ("height", False), ("speed", False))
 
 
-class _Statement(NamedTuple):
-    """A fault of FAULTS, what it is about, what was seen, and where: the id of a road, "" for none, and metres along it."""
-
-    fault: str
-    element: str
-    text: str
-    road: str
-    s: float
-
-
-def statements(root: XmlElement) -> Iterator[_Statement]:
-    """Every statement of the element <OpenDRIVE> that the format does not allow."""
+def statements(root: XmlElement) -> Iterator[tuple[str, str, str, str, float]]:
+    """Every statement of the element <OpenDRIVE> that the format does not allow: a fault of FAULTS, what it is about, what was seen, and where: the
+    id of a road, "" for none, and metres along it."""
     header = root.find("header")
     if header is not None:
         yield from _header(header)
@@ -486,13 +450,13 @@ def _header(header):
     try:
         major, minor = header.number("revMajor"), header.number("revMinor")
     except RoadExtractionError as problem:
-        yield _Statement("value", "header", str(problem), "", 0.0)
+        yield "value", "header", str(problem), "", 0.0
     else:
         if major != 1 or minor not in MINORS:
-            yield _Statement("value", "header", f"The version is {major:g}.{minor:g}; there are 1.0 to 1.{MINORS[-1]}.", "", 0.0)
+            yield "value", "header", f"The version is {major:g}.{minor:g}; there are 1.0 to 1.{MINORS[-1]}.", "", 0.0
     south, north, west, east = (_number(header, name, 0.0) for name in ("south", "north", "west", "east"))
     if south > north or west > east:
-        yield _Statement("bounds", "header", f"South {south:g} to north {north:g}, west {west:g} to east {east:g}.", "", 0.0)
+        yield "bounds", "header", f"South {south:g} to north {north:g}, west {west:g} to east {east:g}.", "", 0.0
 
 
 def _road(road, seen, minor):
@@ -501,7 +465,7 @@ def _road(road, seen, minor):
     for records in (_records(road, length), _plan(road), _of_lanes(lanes), _of_objects(road, length, lanes, seen),
                     (("value", "", text, 0.0) for element in _within(road) for text in _values(element, minor))):
         for fault, part, text, s in records:
-            yield _Statement(fault, f"road {id}, {part}" if part else f"road {id}", text, id, s)
+            yield fault, f"road {id}, {part}" if part else f"road {id}", text, id, s
 
 
 # The statements of a road, each (fault, what, text, s).
@@ -592,11 +556,11 @@ def _junction(junction):
     for connection in junction.all("connection"):
         label = f"{name}, connection {connection.get('id')}"
         if connection.get("id") in seen:
-            yield _Statement("id twice", label, "There is another connection of this id.", connection.get("connectingRoad"), 0.0)
+            yield "id twice", label, "There is another connection of this id.", connection.get("connectingRoad"), 0.0
         seen.add(connection.get("id"))
         links = [(link.get("from"), link.get("to")) for link in connection.all("laneLink")]
         if len(set(links)) < len(links):
-            yield _Statement("connection", label, "It links the same lanes twice.", connection.get("connectingRoad"), 0.0)
+            yield "connection", label, "It links the same lanes twice.", connection.get("connectingRoad"), 0.0
 
 
 def _order(parent, path, key, length, zero):

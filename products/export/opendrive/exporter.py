@@ -8,27 +8,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ....core.common.arrays import linked_groups
 from ....core.common.progress import Progress
 from ....core.common.setting import Limited, setting
 from ..shared_borders import with_driven_middles
 from ..sources import NearestValues, RoadMapSource, is_stated, sigma_of_lanes
 from .geometry import Cubics
-from .model import OPEN_END, STEP, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
+from .model import OPEN_END, STEP, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark
 from .objects import LANE_ID, add_objects
 from .reference_line import side_by_side
 from .road_shape import RoadShape, add_heights, add_lanes, centre_of, fit_borders, heights_above_road, shape_steps
-from .strips import (
-    Cell,
-    Slice,
-    connector_slices,
-    cut_into_cells,
-    directions_where_met,
-    end_to_end,
-    is_connector,
-    mark_junctions,
-    slices_of,
-    strips_of,
-)
+from .strips import Cell, Slice, connector_slices, cut_into_cells, directions_where_met, end_to_end, mark_junctions, slices_of, strips_of
 
 LINK_AT = {"start": "predecessor", "end": "successor"}   # an end of a road -> its link there
 ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
@@ -38,7 +28,6 @@ LONGEST_JUNCTION = 100.0  # m of road between two ends of a junction
 SHORTEST_WAY = 2.0        # m at least of a road that is cut off for a way straight on through a junction
 LONGEST_WAY = 10.0        # m at most
 CURB_WIDTH = 0.15         # m, of a curb stone seen from above
-NEAREST_CURB = 0.5        # m from a border within which a road edge tells its height
 TYPE_OF_LANE = {"driving": "driving", "connector": "driving", "shoulder": "shoulder", "parking": "parking", "bicycle": "biking",
                 "hatched": "restricted", "median": "median"}
 MARK_OF_PATTERN = {"solid": "solid", "dashed": "broken", "double-solid": "solid solid", "double": "solid solid", "double-dashed": "broken broken",
@@ -58,10 +47,7 @@ class OpenDriveSettings(Limited):
 
 @dataclass
 class _OpenDriveDraft:
-    """The map, the place of every cell in it, and notes for the user.
-
-    place : id of a cell -> (road, section, lane); cells : list of Cell
-    """
+    """The map, its roads with the cells that they come from, and notes for the user."""
 
     map: OpenDriveMap
     roads: list[_DraftRoad] = field(default_factory=list)
@@ -106,7 +92,7 @@ class _Drafting:
         self.curb_heights = NearestValues(source.road_edges, "height_m")
         self.notes: list[str] = []
         self.cells = cut_into_cells(self.lanes)
-        self.connectors, self.slices = connector_slices(self.cells, slices_of(self.cells, self.lanes), self.lanes)
+        self.connectors, self.slices = connector_slices(self.cells, slices_of(self.cells))
         self.left_hand = self._left_hand()
 
     def _left_hand(self) -> bool:
@@ -124,9 +110,9 @@ class _Drafting:
 
     def strips(self) -> list[tuple[list[Slice], bool]]:
         """(slices of a road, whether it is a way through a junction), ordinary roads first."""
-        mark_junctions(self.slices, self.lanes)
+        mark_junctions(self.slices)
         ordinary, inside, beside = self._parted()
-        inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)}
+        inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if cell.is_connector}
         ordinary, between = _between_junctions(ordinary, inside_ids)
         return (_ordinary_roads(ordinary) + [(strip, False) for strip in strips_of(beside, set())]
                 + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors, is_stated(self.lanes)))
@@ -243,9 +229,8 @@ class _Drafting:
                 continue
             beyond = max(lanes) + 1 if left else min(lanes) - 1
             curb = MapLane(beyond, "curb", type(lanes[id].width).constant(CURB_WIDTH), [RoadMark(0.0, "none")])
-            heights = self.curb_heights.at(border[:, :2] + self.origin[:2], NEAREST_CURB)
-            if np.isfinite(heights).any():
-                rise = np.array([0.0, 0.0, round(float(np.nanmedian(heights)), 3)])
+            if not np.isnan(height := self.curb_heights.median(border[:, :2] + self.origin[:2])):
+                rise = np.array([0.0, 0.0, round(height, 3)])
                 curb.heights = rise + np.array([[station, inner, inner] for station, inner, _ in lanes[id].heights] or [[0.0, 0.0, 0.0]])
             lanes[beyond] = curb
 
@@ -350,15 +335,12 @@ def _cut_row(one: Slice, at_end: bool) -> int:
 
 @dataclass
 class _DraftRoad:
-    """A road with the cells that its lanes come from.
-
-    road; strip : slices; numbers : lane of every cell of every slice; single : whether it is a way through a junction
-    """
+    """A road with the cells that its lanes come from."""
 
     road: MapRoad
     strip: list[Slice]
-    numbers: list[list[int]]
-    single: bool
+    numbers: list[list[int]]   # lane of every cell of every slice
+    single: bool   # whether it is a way through a junction
 
 
 class _Place(NamedTuple):
@@ -418,19 +400,13 @@ def _link(drafts, touches, here, end, there, other_end):
 
 def _clusters(drafts, touches):
     """Number of the junction of every way through one: those at one road's end, or end to end, are of one junction."""
-    parent = {k: k for k, draft in enumerate(drafts) if draft.single}
-
-    def root(k):
-        while parent[k] != k:
-            k = parent[k]
-        return k
-
+    pairs = []
     for (k, _), touched in touches.items():
-        cluster = [touch.other for touch in touched if touch.other in parent] + ([k] if k in parent else [])
-        for way in cluster[1:]:
-            parent[root(way)] = root(cluster[0])
-    roots = sorted({root(k) for k in parent})
-    return {k: roots.index(root(k)) for k in parent}
+        cluster = [way for way in (*(touch.other for touch in touched), k) if drafts[way].single]
+        pairs += [(cluster[0], way) for way in cluster[1:]]
+    group = linked_groups(*np.array(pairs, int).reshape(-1, 2).T, len(drafts))
+    numbers: dict[int, int] = {}
+    return {k: numbers.setdefault(int(group[k]), len(numbers)) for k, draft in enumerate(drafts) if draft.single}
 
 
 def _end_link(drafts, k, end, touches, junction):
@@ -487,7 +463,7 @@ def _incoming(road, end, touched, junction):
     """{(way through a junction, its end): (lane, lane) pairs} of what drives out of a road at its end, which is incoming traffic of the junction."""
     lanes = defaultdict(list)
     for touch in touched:
-        if touch.other in junction and (travel(road, touch.lane) > 0) == (end == "end"):
+        if touch.other in junction and road.way_out(touch.lane) == end:
             lanes[touch.other, touch.other_end].append((touch.lane, touch.other_lane))
     return lanes
 

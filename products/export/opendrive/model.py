@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -120,6 +120,40 @@ class MapRoad:
         """What its "start" or "end" touches."""
         return self.predecessor if end == "start" else self.successor
 
+    def touches(self, end: str, element: str, id: str) -> bool:
+        """Whether its "start" or "end" is linked to the road or junction of an id."""
+        link = self.link(end)
+        return link is not None and (link.element, link.id) == (element, id)
+
+    def cut_where_speeds_change(self) -> MapRoad:
+        """The road with sections within which no speed limit changes; itself where none does."""
+        sections = []
+        for number, section in enumerate(self.sections):
+            length, cuts = self.section_end(number) - section.s, [0.0]
+            for s in sorted({s - section.s for s, _ in self.speeds} | {s for lane in section.lanes.values() for s, _ in lane.speeds}):
+                if cuts[-1] + BORDER_STEP <= s <= length - BORDER_STEP:
+                    cuts.append(s)
+            sections += [LaneSection(section.s + first, {id: _part(lane, first, last, length) for id, lane in section.lanes.items()}, section.order)
+                         for first, last in zip(cuts, [*cuts[1:], length])]
+        return replace(self, sections=sections) if len(sections) > len(self.sections) else self
+
+    def way_out(self, id: int) -> str:
+        """The end, "start" or "end", at which the traffic of a lane leaves the road."""
+        return "end" if (id < 0) == (self.rule != "LHT") else "start"
+
+
+def _part(lane, first, last, length):
+    """A lane from `first` to `last`, metres of its section of some length; within the section it leads to itself."""
+    def held(starts):
+        return slice(max(int(np.searchsorted(starts, first, side="right")) - 1, 0), int(np.searchsorted(starts, last)))
+
+    width, heights = lane.width.rows, lane.heights
+    return replace(
+        lane, width=Cubics(width[held(width[:, 0])]).moved(-first), heights=heights[held(heights[:, 0])] - [first, 0.0, 0.0],
+        marks=[replace(mark, s=mark.s - first) for mark in lane.marks[held([mark.s for mark in lane.marks])]],
+        speeds=[(s - first, speed) for s, speed in lane.speeds[held([s for s, _ in lane.speeds])]],
+        predecessors=[lane.id] if first > 0 else lane.predecessors, successors=[lane.id] if last < length else lane.successors)
+
 
 @dataclass
 class Connection:
@@ -158,6 +192,11 @@ class OpenDriveMap:
     def road(self, id: str) -> MapRoad | None:
         """The road of an id, None where there is none."""
         return next((road for road in self.roads if road.id == id), None)
+
+    def place(self, road: MapRoad, s: float) -> np.ndarray:
+        """(3,) map coordinates of the reference line of a road at s, or at its end where s lies beyond."""
+        station = np.array([min(max(s, 0.0), road.plan.length)])
+        return self.placed(np.c_[road.plan.at(station)[0], road.elevation.at(station)])[0]
 
     def placed(self, points: np.ndarray) -> np.ndarray:
         """(N, 3) points of the file in the coordinates of its CRS."""
@@ -233,20 +272,14 @@ class LaneNetwork:
 
     def following(self, key: LaneKey) -> list[LaneKey]:
         """The driven lanes that a driven lane leads to, in the direction of travel."""
-        end = "end" if travel(self.roads[key[0]], key[2]) > 0 else "start"
         # what ends where ours ends is no way on
-        return [neighbour for neighbour, neighbour_end in self.touching(key, end)
-                if self.driven(neighbour) and neighbour_end == ("start" if travel(self.roads[neighbour[0]], neighbour[2]) > 0 else "end")]
+        return [neighbour for neighbour, neighbour_end in self.touching(key, self.roads[key[0]].way_out(key[2]))
+                if self.driven(neighbour) and neighbour_end != self.roads[neighbour[0]].way_out(neighbour[2])]
 
     def driven(self, key: LaneKey) -> bool:
         """Whether there is a lane of a key, and vehicles use it."""
         lane = self.lane(key)
         return lane is not None and lane.type in DRIVEN_TYPES
-
-
-def travel(road: MapRoad, id: int) -> int:
-    """1 where the lanes of this side are driven along the reference line, -1 where against it."""
-    return 1 if (id < 0) == (road.rule != "LHT") else -1
 
 
 # Where the lanes of an OpenDRIVE road lie: borders in x, y, z.
@@ -261,9 +294,7 @@ GAP, KINK = 1e-4, 1e-4  # m and rad between elements of the reference line from 
 
 
 class _RoadSurface:
-    """The borders of one road's lanes.
-
-    """
+    """The borders of one road's lanes."""
 
     def __init__(self, road: MapRoad) -> None:
         self.road = road

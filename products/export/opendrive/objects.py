@@ -11,7 +11,7 @@ import shapely
 
 from ....core.common.features import SIGNALS, Features
 from ..sources import STOP_LINE_HALF, stop_lines, walked_crossings
-from .model import DRIVEN_TYPES, OpenDriveMap, lane_name, travel
+from .model import DRIVEN_TYPES, OpenDriveMap, lane_name
 
 SAMPLES = 1.0          # m between places of reference lines that objects are held against
 FARTHEST = 25.0        # m from a reference line
@@ -39,10 +39,10 @@ def outlines_of(whole: OpenDriveMap) -> Iterator[tuple[str, np.ndarray]]:
 def signals_of(whole: OpenDriveMap, crs: str = "") -> Features:
     """The layer SIGNALS: signals with the lanes that they hold for, on their own road and by reference, and poles."""
     layer = Features("PointZ", SIGNALS, crs=crs)
-    lanes: dict[str, list[str]] = defaultdict(list)
+    lanes: dict[str | int, list[str]] = defaultdict(list)
     for road in whole.roads:
-        for item in road.signals:
-            lanes[item["id"]] += _lanes_obeying(road, item)
+        for item in road.signals:   # those without an id are not one signal
+            lanes[item["id"] or id(item)] += _lanes_obeying(road, item)
     for road in whole.roads:
         for item in road.signals:
             if item["own"]:
@@ -50,7 +50,7 @@ def signals_of(whole: OpenDriveMap, crs: str = "") -> Features:
                 kind = "traffic_light" if item["type"] in LIGHTS or item["dynamic"] == "yes" else "sign"
                 turned = np.pi * (item["orientation"] == "-") + item["hOffset"] + whole.offset[3]
                 layer.add(_point(whole, road, item), kind=kind, value=item["value"] if item["value"] >= 0 else np.nan, **values,
-                          lanes=",".join(dict.fromkeys(lanes[item["id"]])), heading=_heading(road, item, turned), **_size(item))
+                          lanes=",".join(dict.fromkeys(lanes[item["id"] or id(item)])), heading=_heading(road, item, turned), **_size(item))
         for item in road.objects:
             if item["type"] in POLES:
                 layer.add(_point(whole, road, item), kind="pole", **_size(item))
@@ -61,18 +61,10 @@ def left_out_of(whole: OpenDriveMap) -> Counter[str]:
     """How often a map has what no layer of ours holds."""
     count = Counter(item["type"] if item["type"] not in ("", "-1") else "object of no type" for road in whole.roads for item in road.objects
                     if not _class_of(item) and item["type"] not in POLES)
-    count["change of a speed limit within a lane section"] = sum(map(_speed_changes, whole.roads))
     for element in whole.tree.children if whole.tree is not None else ():
         count += Counter(inner.tag for inner in (element, *element.children) if inner.tag in ("controller", "junctionGroup", "station", "railroad"))
         count += Counter(inner.tag for objects in element.all("objects") for inner in objects.children if inner.tag in ("tunnel", "bridge"))
-    return +count
-
-
-def _speed_changes(road):
-    """How often the speed limit changes within a section, where a lane of ours has one."""
-    starts = [section.s for section in road.sections]
-    of_road = [s for s, _ in road.speeds if s > 0 and min((abs(s - start) for start in starts), default=0.0) > SAMPLES]
-    return len(of_road) + sum(len(lane.speeds[1:]) for section in road.sections for lane in section.lanes.values())
+    return count
 
 
 def _class_of(item):
@@ -119,7 +111,7 @@ def _section_at(road, s):
 
 def _sign(road, id):
     """The orientation of what the traffic of a lane sees."""
-    return "+" if travel(road, id) > 0 else "-"
+    return "+" if road.way_out(id) == "end" else "-"
 
 
 def _lanes_obeying(road, item):
@@ -153,7 +145,9 @@ def add_objects(whole: OpenDriveMap, markings: Features | None, signals: Feature
 
 
 def _add_signal(number, place, row, homes, nearest):
-    """A signal on the road of its lanes that is nearest, with references to it on the others; a pole on the nearest of all."""
+    """A signal on the road of its lanes that is nearest, with references to it on the others; a pole on the nearest of all; nothing else."""
+    if row.get("kind") not in ("traffic_light", "sign", "pole"):
+        return
     names = [name.strip() for name in str(row.get("lanes") or "").split(",")]
     near = [min((_nearest([road])(place[:2], np.inf) for road, _ in homes[name]), key=lambda one: one[2]) for name in names if name in homes]
     roads = {found[0].id: found for found in sorted(near, key=lambda one: one[2])}

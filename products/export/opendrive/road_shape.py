@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..sources import LEAST_CURB
+from ..sources import LEAST_CHORD, LEAST_CURB
 from .geometry import LEAST_STEP, STEP_RUN, Cubics, LineBundle, PlanView, difference, fit_cubics, risen, simplified
 from .model import LaneSection, MapLane, MapRoad, shape_height
 from .reference_line import Steps, polynomial_reference, reference_steps
@@ -28,7 +28,6 @@ LEAST_STRETCH = 0.1      # of a border against the reference line: less is besid
 END_ROUNDS = 4
 SAME_LINE = 0.02         # m by which lane 0 may jump from section to section and still go on
 MOST_LEAD = 0.5          # m aside to which lane 0 is led back along a section that lies beside it
-LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 
 
 @dataclass

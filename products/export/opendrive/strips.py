@@ -28,6 +28,7 @@ class Cell:
     left_nodes: tuple[int, ...]   # left_nodes, right_nodes: their numbers
     right_nodes: tuple[int, ...]
     direction: int
+    is_connector: bool = False   # whether it is a way through a junction
     before: list[Cell] = field(default_factory=list, repr=False)
     after: list[Cell] = field(default_factory=list, repr=False)
 
@@ -87,7 +88,8 @@ class Slice:
         """The slice cut at a vertex, linked as it was."""
         parts: tuple[list[Cell], list[Cell]] = ([], [])
         for cell in self.cells:
-            first, last = (Cell(cell.piece, cell.left[rows], cell.right[rows], cell.left_nodes[rows], cell.right_nodes[rows], cell.direction)
+            first, last = (Cell(cell.piece, cell.left[rows], cell.right[rows], cell.left_nodes[rows], cell.right_nodes[rows], cell.direction,
+                                cell.is_connector)
                            for rows in (slice(0, row + 1), slice(row, None)))
             first.before, first.after, last.before, last.after = cell.before, [last], [first], cell.after
             for neighbours, new in ((cell.before, first), (cell.after, last)):
@@ -133,7 +135,7 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
             direction = int(lanes.direction[k]) if ordinary[a] else 1
             if direction < 0:
                 sides = [(line[::-1], nodes[::-1]) for line, nodes in sides[::-1]]
-            lane_cells.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], direction))
+            lane_cells.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], direction, not ordinary[a]))
         for cell, following in zip(lane_cells[:-1], lane_cells[1:]):
             _link(cell, following)
         first_of[lanes.lane_id[k]], last_of[lanes.lane_id[k]] = lane_cells[0], lane_cells[-1]
@@ -154,11 +156,6 @@ def _rows_to_cut(a, b, left, right, cuts):
     return rows
 
 
-def is_connector(cell: Cell, lanes: Lanes) -> bool:
-    """Whether a cell is a way through a junction."""
-    return bool(lanes.type[cell.piece] == "connector")
-
-
 def _link(one: Cell, following: Cell) -> None:
     """Join two cells in the direction of travel; what is before and after is told along the road."""
     for cell, neighbour, ahead in ((one, following, True), (following, one, False)):
@@ -177,9 +174,9 @@ def _link_undriven(cells):
             following.before.append(cell)
 
 
-def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
+def slices_of(cells: list[Cell]) -> list[Slice]:
     """Cells that share a border side by side; connectors stand alone and are not among them."""
-    ordinary = [cell for cell in cells if not is_connector(cell, lanes)]
+    ordinary = [cell for cell in cells if not cell.is_connector]
     by_left = {cell.left_nodes: cell for cell in ordinary if len(set(cell.left_nodes)) > 1}
     right_of = {id(cell): by_left.get(cell.right_nodes) for cell in ordinary}
     has_left = {id(right) for right in right_of.values() if right is not None}
@@ -194,7 +191,7 @@ def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
     return slices
 
 
-def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tuple[list[Slice], list[Slice]]:
+def connector_slices(cells: list[Cell], slices: list[Slice]) -> tuple[list[Slice], list[Slice]]:
     """(a slice for every connector with what nobody drives beside it, the slices that are left)."""
     undriven = [part for part in slices if not part.driven]
     by_left = {part.cells[0].left_nodes: part for part in undriven}
@@ -209,7 +206,7 @@ def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tu
         return []
 
     connectors = [Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)])
-                  for cell in cells if is_connector(cell, lanes)]
+                  for cell in cells if cell.is_connector]
     return connectors, [part for part in slices if id(part) not in used]
 
 
@@ -240,7 +237,7 @@ def directions_where_met(cells: list[Cell]) -> dict[int, float]:
     return directions
 
 
-def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
+def mark_junctions(slices: list[Slice]) -> None:
     """Tell every slice at which of its ends ways through a junction lie beside it: they begin or end there, on its side.
 
     Where lanes beside each other go on in lanes that are no longer beside each other, there is a junction too: a road has one successor.
@@ -250,7 +247,7 @@ def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
         for at_end in (False, True):
             # a connector that this slice touches lies beyond its end: beside the slices beyond
             touching = {id(cell) for cell in part.beyond(at_end)}
-            if any(is_connector(cell, lanes) for cell in part.beyond(at_end)):
+            if any(cell.is_connector for cell in part.beyond(at_end)):
                 for beyond in slices:
                     if not touching.isdisjoint(map(id, beyond.cells)):
                         beyond.mark(at_end)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -14,20 +14,7 @@ from ....core.driving.layers import Lanes
 from ..sources import LEAST_CURB, MapLayers, MapLine, plan_length, without_repeats
 from ..xml_tree import XmlElement, read_xml, written, xml_text
 from .geometry import Cubics, PlanElement, PlanView
-from .model import (
-    DRIVEN_TYPES,
-    Connection,
-    Junction,
-    LaneNetwork,
-    LaneSection,
-    MapLane,
-    MapRoad,
-    OpenDriveMap,
-    RoadLink,
-    RoadMark,
-    lane_name,
-    travel,
-)
+from .model import DRIVEN_TYPES, Connection, Junction, LaneNetwork, LaneSection, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, lane_name
 from .objects import FIELD_OF, left_out_of, outlines_of, signals_of
 
 # kind of a geometry -> attributes of its values
@@ -35,7 +22,6 @@ GEOMETRIES = {"line": (), "arc": ("curvature",), "spiral": ("curvStart", "curvEn
               "paramPoly3": ("aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV")}
 SHAPE = ("s", "t", "a", "b", "c", "d")
 XODR_KIND = "an OpenDRIVE file"
-MARK_WIDTH = 0.12    # m, where a road mark has none
 LONGEST_ROAD, LONGEST_MAP = 200_000.0, 1_000_000.0   # m of one road, and of all: more is no map but a file that shall fill the memory
 
 
@@ -76,8 +62,7 @@ def _opendrive_of(root: XmlElement) -> OpenDriveMap:
             whole.roads.append(_road_of(element, whole.problems))
         except RoadExtractionError as problem:
             whole.problems.append((element.line, f"road {element.get('id')} cannot be read: {problem}"))
-    for element in root.all("junction"):
-        whole.junctions.append(_junction(element))
+    whole.junctions = [_junction(element) for element in root.all("junction")]
     return whole
 
 
@@ -120,9 +105,7 @@ def _geometry(element):
 
 
 def _link(element):
-    if element is None:
-        return None
-    return RoadLink(element.get("elementType"), element.get("elementId"), element.get("contactPoint"))
+    return None if element is None else RoadLink(element.get("elementType"), element.get("elementId"), element.get("contactPoint"))
 
 
 def _rows_of(element, names, *path):
@@ -163,7 +146,7 @@ def _lane_of(element):
 
 def _mark(element):
     mark = RoadMark(element.number("sOffset", 0.0), element.get("type", "none"), element.get("color", "standard"),
-                    element.number("width", MARK_WIDTH), element.get("weight", "standard"))
+                    element.number("width", RoadMark.width), element.get("weight", "standard"))
     lines = list(element.all("type", "line"))
     dashed = next((line for line in lines if line.number("space", 0.0)), None)
     if dashed is not None:
@@ -211,9 +194,9 @@ def opendrive_text(whole: OpenDriveMap, vendor: str = "Lanewright") -> str:
     root = XmlElement("OpenDRIVE")
     places = np.concatenate([road.plan.at(np.linspace(0, road.plan.length, max(int(road.plan.length / 5), 1) + 1))[0] for road in whole.roads]) \
         if whole.roads else np.zeros((1, 2))
-    (west, south), (east, north) = places.min(0), places.max(0)
-    header = root.add("header", revMajor=whole.version[0], revMinor=whole.version[1], name=whole.name, version="1.0", north=_round(north),
-                      south=_round(south), east=_round(east), west=_round(west), vendor=vendor)
+    (west, south), (east, north) = np.round([places.min(0), places.max(0)], 3)
+    header = root.add("header", revMajor=whole.version[0], revMinor=whole.version[1], name=whole.name, version="1.0", north=north, south=south,
+                      east=east, west=west, vendor=vendor)
     if whole.reference:
         header.add("geoReference", whole.reference)
     x, y, z, heading = whole.offset
@@ -346,10 +329,6 @@ def _add_object(objects: XmlElement, item: dict, minor: int) -> None:
         outline.append(XmlElement(tag, {"id": number} | dict(zip(names, corner)) | {"height": 0.0}))
 
 
-def _round(value: float) -> float:
-    return round(float(value), 3)
-
-
 # The lanes and lines of an OpenDRIVE map as layers like ours.
 
 LANE_TYPE_OF = {"shoulder": "shoulder", "stop": "shoulder", "border": "shoulder", "parking": "parking", "biking": "bicycle", "restricted": "hatched",
@@ -368,9 +347,11 @@ LEAST_WIDTH = 0.05     # m: lanes that are narrower everywhere are none
 def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
     """Lanes, painted borders and edges of a map; `crs` is the WKT of its coordinates, "" where unknown.
 
-    Every section of a lane is a piece, whose lane_id is "road.lane.section"; lanes of roads in junctions are connectors.
+    Every section of a lane is a piece, whose lane_id is "road.lane.section"; a section in which a speed limit changes is cut there. Lanes of roads in
+    junctions are connectors.
     Sidewalks are no lanes of ours: where one begins there is an edge.
     """
+    whole = replace(whole, roads=[road.cut_where_speeds_change() for road in whole.roads])
     rows: list[dict[str, Any]] = []
     layers, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
     numbers, faults = _road_numbers(whole), _Faults()
@@ -381,7 +362,10 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
             if road.section_end(number) - section.s > SHORTEST_SECTION:
                 _add_section(rows, layers.lines, whole, network, surface, number, numbers[road.id], faults)
         progress.report((count + 1) / len(whole.roads))
-    layers.lanes = Lanes.of_pieces(_existing(rows), crs)
+    lane_ids = {row["lane_id"] for row in rows}
+    for row in rows:   # what follows may be no lane of ours
+        row["successors"] = [name for name in row["successors"] if name in lane_ids]
+    layers.lanes = Lanes.of_pieces(rows, crs)
     layers.attributes = {row["lane_id"]: row["known"] for row in rows if row["known"]}
     layers.outlines, layers.signals, layers.left_out = list(outlines_of(whole)), signals_of(whole, crs), left_out_of(whole)
     if whole.problems:
@@ -463,7 +447,7 @@ def _edges(surface, number, id, s, inner, outer, road_number):
 def _lane(network, surface, number, id, s, inner, outer):
     """The values of a lane, its borders in the direction of travel."""
     road, lanes = surface.road, surface.road.sections[number].lanes
-    way, driven = travel(road, id), lanes[id].type in DRIVEN_TYPES
+    way, driven = 1 if road.way_out(id) == "end" else -1, lanes[id].type in DRIVEN_TYPES
     sides = [(border, _kind(lanes, lane), _pattern(lanes, lane)) for border, lane in ((inner, surface.inside(number, id)), (outer, id))]
     left, right = sides[::-1] if id > 0 else sides
     if driven and way < 0:
@@ -504,14 +488,6 @@ def _curb(surface, number, id, s, inner, road_number):
     inner = np.c_[inner[:, :2], inner[:, 2] - near + foot]
     return MapLine(road_number, "edge", "main", "", without_repeats(inner), side="left" if id > 0 else "right",
                    height=rise if rise > LEAST_CURB else np.nan)
-
-
-def _existing(rows):
-    """Successors that were no lanes of ours are dropped."""
-    lane_ids = {row["lane_id"] for row in rows}
-    for row in rows:
-        row["successors"] = [name for name in row["successors"] if name in lane_ids]
-    return rows
 
 
 def _road_numbers(whole: OpenDriveMap) -> dict[str, int]:

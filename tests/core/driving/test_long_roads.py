@@ -3,17 +3,23 @@
 import numpy as np
 import pytest
 from counted_calls import calls
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.driving.alignment import LanesOfRoad, fitted_lanes, without_short_status
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
 from lanewright.core.driving.lane_areas import follow
 from lanewright.core.driving.lane_track import LaneTrack, connect
 from lanewright.core.driving.lanes import laid_out
 from lanewright.core.execution.phase import Threads
+from lanewright.core.execution.remembered import RememberedResults
 from lanewright.core.markings.cross_section.candidates import boundary_candidates, gather_boundaries
+from lanewright.core.markings.cross_section.estimate import estimates_of_roads
+from lanewright.core.markings.cross_section.evidence import driven_offsets, evidence_of
 from lanewright.core.markings.cross_section.sections import sections_of_lines
 from lanewright.core.markings.cross_section.weights import EstimateWeights
 from lanewright.core.markings.lines.painted_lines import PaintedLines
-from lined_streets import Street
+from lanewright.core.road.edges.road_edges import RoadEdges
+from lined_streets import EAST, HEIGHT, NORTH, Street
+from shapely.geometry import LineString
 
 BLOCK = 100.0   # m from one junction to the next
 FEW, MANY = 20, 80
@@ -54,6 +60,48 @@ def test_two_streets_end_to_end_give_the_lanes_of_each():
     assert len(one) == 2
     # grids of stations are cut half a metre apart
     np.testing.assert_allclose(two, np.concatenate([one, one + [BLOCK, BLOCK, 0]]), atol=0.51)
+
+
+def beside_curbs(moved):
+    """Least and greatest offsets of all borders of lanes on the last 300 m of a street of 1.8 km.
+
+    Only its middle is painted, cars park on the left, where nobody drove, and the right curb is moved near its start.
+    """
+    made = Street(length=1800.0).paint(0.0, kind="centre", pattern="dashed")
+    s, layer = np.arange(5.0, 1795.5, 0.5), Features("LineStringZ", ROAD_EDGES)
+    for side, d in (("left", np.full(len(s), 5.8)), ("right", np.where((s > 100.0) & (s < 400.0), moved, 0.0) - 3.5)):
+        layer.add(LineString(np.c_[made.places(s, d), np.full(len(s), HEIGHT)]), road=0, side=side, status="measured", kind="main", edge="curb")
+    lines, edges = PaintedLines.from_features(made.lines, made.frame), RoadEdges.from_features(layer, made.frame)
+    _, _, lanes = make_driving_lines(lines, made.frame, edges=edges)
+    borders = [border[:, :2] + made.frame.origin[:2] - [EAST, NORTH] for k in range(len(lanes)) for border in lanes.borders(k)]
+    return sorted([limit(y[x > 1500.0]) for x, y in (border.T for border in borders) if (x > 1500.0).any() for limit in (np.min, np.max)])
+
+
+def test_a_curb_that_is_corrected_moves_no_lane_a_kilometre_farther_on():
+    as_measured, corrected = (beside_curbs(moved) for moved in (0.0, -0.6))
+    assert len(as_measured) == 8
+    np.testing.assert_allclose(corrected, as_measured, atol=1e-4)
+
+
+def test_a_correction_leaves_the_cross_sections_of_other_stretches_known():
+    """Of five kilometres less than one is looked at again."""
+    def road(end):
+        made = street(50).paint(6.5, 1010.0, end, kind="edge")
+        of_lines = sections_of_lines(PaintedLines.from_features(made.lines, made.frame))[0]
+        candidates = boundary_candidates(gather_boundaries(of_lines), EstimateWeights())
+        return candidates, evidence_of(candidates, of_lines.s, *driven_offsets(made.frame, 0, of_lines.s)), -1
+
+    class Counting(Threads):
+        def run(self, phase, items, *args, **settings):
+            counts.append(len(items))
+            return super().run(phase, items, *args, **settings)
+
+    executor, counts = RememberedResults(Counting(1)), []
+    for end in (1090.0, 1140.0):
+        estimate, = estimates_of_roads([road(end)], 3.5, EstimateWeights(), executor)
+        assert np.isfinite(estimate.total)
+    # all stretches and the road; what is missing later is few, and made by threads of the caller
+    assert counts == [10, 1, 1]
 
 
 def test_tables_hold_the_stations_at_which_a_line_is():

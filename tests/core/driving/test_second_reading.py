@@ -67,6 +67,27 @@ def test_beyond_dashes_on_a_short_street_traffic_may_come_or_go():
     assert oncoming["confidence"] <= 0.6 and other_lanes(oncoming, -1.75) == [(1.75, 3.5, 1)]
 
 
+@pytest.mark.parametrize("crs, across", [("", {1, -1}), ("EPSG:32632", {1})])
+@pytest.mark.parametrize("length", [150.0, 400.0, 3000.0])
+def test_left_of_dashes_one_drives_on_the_left_or_overtakes_on_a_one_way_road(length, crs, across):
+    """Where the country is not known both are said; where traffic is on the right there, the lane on the right leads the same way."""
+    street = Street(length=length, vehicle=1.75).paint(3.5, kind="edge").paint(0.0, kind="", pattern="dashed").paint(-3.5, kind="edge")
+    street.frame.crs = crs
+    found = readings(street)
+    beside, way = found[-1.75], found[-1.75]["direction"]
+    assert way in across and beside["confidence"] <= 0.6 and other_lanes(beside, 1.75) == [(-1.75, 3.5, -way)]
+    assert found[1.75]["direction"] == 1 and found[1.75]["other"] is None and found[1.75]["confidence"] > 0.9
+
+
+@pytest.mark.parametrize("crs, vehicle", [("", -1.75), ("EPSG:32632", -1.75), ("EPSG:32755", 1.75)])
+def test_dashes_with_the_drive_on_the_usual_side_surely_part_the_directions(crs, vehicle):
+    street = Street(length=400.0, vehicle=vehicle).paint(3.5, kind="edge").paint(0.0, kind="", pattern="dashed").paint(-3.5, kind="edge")
+    street.frame.crs = crs
+    found = readings(street)
+    assert {offset: row["direction"] for offset, row in found.items()} == {vehicle: 1, -vehicle: -1}
+    assert all(row["other"] is None and row["confidence"] > 0.9 for row in found.values())
+
+
 @pytest.mark.parametrize("again", [True, False])
 @pytest.mark.parametrize("curb, driven, middle", [(3.9, 1.95, 1.95), (4.3, 2.15, 2.15), (5.0, 2.5, 2.5), (4.0, 1.7, 1.75), (5.6, 1.65, 1.7)])
 def test_beside_a_curb_a_lane_has_the_room_in_whose_middle_one_drives_and_so_has_the_one_across(curb, driven, middle, again):

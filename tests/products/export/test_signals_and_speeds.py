@@ -1,8 +1,11 @@
 """What stands beside lanes and what holds for them comes out of one format as it went into the other."""
 
+from collections import defaultdict
+
 import numpy as np
 import pytest
 import shapely
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.products.export.check.lanelets import check_lanelets
 from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
@@ -75,6 +78,13 @@ def test_lights_signs_and_poles_stand_where_they_stood_and_say_what_they_said(tm
         assert headings == pytest.approx([90 - np.degrees(0.1), 270], abs=0.05)
 
 
+def test_a_trunk_among_the_poles_of_the_roadside_is_no_sign_of_the_map(tmp_path):
+    layers = read_in(tmp_path, street())
+    layers.signals.add(shapely.Point(600030, 5799995, 60.6), kind="trunk", height_m=3.0)
+    written_out = layers_of_opendrive(as_roads(tmp_path, layers), CRS).signals
+    assert sorted(row["kind"] for _, row in written_out) == ["pole", "sign", "traffic_light"]
+
+
 def test_lights_and_signs_hold_for_the_lanes_that_see_them(tmp_path):
     layers = read_in(tmp_path, street())
     for others in (layers, *there_and_back(tmp_path, layers)):
@@ -139,6 +149,30 @@ def test_speed_limits_are_those_of_the_lane_else_of_its_road(tmp_path, types, mo
         assert limits == pytest.approx(sorted(limit for limit in expected if limit), abs=0.01)
 
 
+def test_a_lane_has_every_speed_limit_where_it_holds(tmp_path):
+    types = '<type s="0" type="town"><speed max="30" unit="km/h"/></type><type s="25" type="town"><speed max="50" unit="km/h"/></type>'
+    layers = read_in(tmp_path, street(types=types, more='<speed sOffset="10" max="70" unit="km/h"/>'))
+    for others in (layers, *there_and_back(tmp_path, layers)):
+        limits = defaultdict(float)
+        for k, name in enumerate(others.lanes.lane_id):
+            limits[others.attributes[name]["speed_kmh"]] += float(others.lanes.length[k])
+        assert limits == pytest.approx({30: 10 + 25, 70: 30, 50: 15}, abs=0.05)
+        assert sum(map(len, others.lanes.successors)) == 4, "the parts of a lane lead to each other"
+
+
+def test_signals_without_an_id_hold_for_the_lanes_of_their_own_road_alone(tmp_path):
+    sign = '<signals><signal s="9" t="-4" zOffset="3" orientation="+" dynamic="no" type="31" subtype="-1"/></signals></road>'
+    roads = [road(geometry(0, x, 0, 0, 40), 40, id).replace("</road>", sign) for id, x in (("1", 0), ("2", 50))]
+    layers = read_in(tmp_path, opendrive(roads))
+    assert sorted(row["lanes"] for _, row in layers.signals) == ["1.-1.0", "2.-1.0"]
+
+
+def test_two_roads_of_one_id_are_not_converted(tmp_path):
+    layers = read_in(tmp_path, opendrive([road(geometry(0, x, 0, 0, 40), 40, "1") for x in (0, 50)]))
+    with pytest.raises(RoadExtractionError, match=r"is there 2 times: two roads of the map have one id"):
+        checked(layers.source())
+
+
 def test_the_name_of_a_road_is_carried_and_its_number_is_none(tmp_path):
     for others in there_and_back(tmp_path, read_in(tmp_path, street())):
         assert {known["name"] for known in others.attributes.values()} == {"Long Street"}
@@ -148,9 +182,6 @@ def test_the_name_of_a_road_is_carried_and_its_number_is_none(tmp_path):
 def test_what_no_layer_holds_is_counted(tmp_path):
     layers = read_in(tmp_path, street())
     assert layers.said_left_out() == ["Not carried over: 1 building, 1 controller."]
-    changes = '<type s="0" type="town"><speed max="30" unit="km/h"/></type><type s="25" type="town"><speed max="50" unit="km/h"/></type>'
-    layers = read_in(tmp_path, street(objects="", types=changes))
-    assert layers.said_left_out() == ["Not carried over: 1 change of a speed limit within a lane section, 1 controller."]
     walkway = lanelet_street().replace('<tag k="subtype" v="road"/>', '<tag k="subtype" v="walkway"/>', 1)
     text = walkway.replace("</osm>", '<relation id="900"><tag k="type" v="multipolygon"/><tag k="subtype" v="parking"/></relation></osm>')
     lanelets = layers_of_lanelets(read_lanelet2(written(tmp_path, text, "map.osm")), CRS)
