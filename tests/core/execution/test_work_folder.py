@@ -43,7 +43,8 @@ def test_a_missing_file_makes_it_none(work, name):
 
 @pytest.mark.parametrize("note", [
     b"", b"[]", b"7", b"null", b'"text"', b"{}", b"\x00" * 4096, b"\xff\xfe{}", b"[" * 100_000, b'{"folder": 3, "messages": [], "files": {}}',
-    b'{"folder": null, "messages": [], "files": {}}', b'{"folder": "..", "messages": [], "files": {}}', b"1" * 5000, b" " * (1 << 25)], ids=lambda note: repr(note[:60]))
+    b'{"folder": null, "messages": [], "files": {}}', b'{"folder": "..", "messages": [], "files": {}}', b"1" * 5000, b" " * (1 << 25)],
+    ids=lambda note: repr(note[:60]))
 def test_any_other_note_makes_it_none(work, note):
     (work.path / "survey-1.json").write_bytes(note)
     assert work.finished("survey-1") is None
