@@ -1,6 +1,7 @@
 """A picture for every algorithm's page of the manual: its result on the sample survey, drawn by QGIS in its own style.
 
-Runs every algorithm once on a short sample street (a minute or so) and writes docs/manual/img/<algorithm>.png.
+Runs every algorithm once on a short sample street (a minute or so), then some on two more scenes (minutes), and writes
+docs/manual/img/<algorithm>.png.
 """
 
 import os
@@ -9,6 +10,7 @@ from pathlib import Path
 
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
+from legend_pictures import draw_all
 from plugin_package import ROOT, load
 
 PICTURES = ROOT / "docs" / "manual" / "img"
@@ -64,8 +66,6 @@ def stages(folder):
                            MARKINGS=clusters["MARKINGS"], ROAD_SURFACE=surface["ROAD_SURFACE"])
     made["crosssections"] = run("crosssections", **survey, ROAD_EDGES=edges, MARKING_LINES=lines["MARKING_LINES"], INTERVAL=5, MAX_CROSSFALL=2.6,
                                 DRIVING_LINES=driving["DRIVING_LINES"], OUTPUT=at("sections.gpkg"))
-    made["surfacemodel"] = run("surfacemodel", **survey, ROAD_EDGES=edges, MARKING_LINES=lines["MARKING_LINES"], BREAKLINES=at("breaklines.gpkg"),
-                               TIN=at("triangles.gpkg"))
     made["roadside"] = run("roadside", **survey, ROAD_EDGES=edges, OUTPUT=at("roadside.gpkg"), OBJECTS=at("objects.gpkg"))
     made["assessboundaries"] = run("assessboundaries", INPUT=edges, REFERENCE=sample["TRUTH_BOUNDARIES"], **drive, OUTPUT=at("a_b.gpkg"))
     made["assessmarkings"] = run("assessmarkings", INPUT=clusters["MARKINGS"], REFERENCE=sample["TRUTH_MARKINGS"], **drive,
@@ -77,6 +77,7 @@ def stages(folder):
     made["proposecontrolpoints"] = run("proposecontrolpoints", IMAGE=sample["UAV_IMAGE"], INTENSITY_IMAGE=image["INTENSITY_IMAGE"],
                                        CONTROL_POINTS=at("proposed.gpkg"))
     made["image"] = image["INTENSITY_IMAGE"]
+    made["street"] = dict(**survey, **made["roadmap"])
     return made
 
 
@@ -107,7 +108,6 @@ DRAWN = {
     "drivinglines": (["DRIVING_LINES"], True, False),
     "roadmap": (["DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES", "MARKINGS", "ROAD_SURFACE"], False, False),
     "crosssections": ([("OUTPUT", "CROSS_SECTIONS")], True, False),
-    "surfacemodel": ([("BREAKLINES", "BREAKLINES"), ("TIN", "TIN")], False, False),
     "roadside": ([("OBJECTS", "ROADSIDE_OBJECTS"), ("OUTPUT", "ROADSIDE")], True, False),
     "assessboundaries": ([("OUTPUT", "ASSESSED_LINES")], True, False),
     "assessmarkings": ([("OUTPUT", "ASSESSED_POLYGONS")], True, True),
@@ -205,7 +205,7 @@ def main():
     from qgis.core import QgsApplication
 
     load()
-    application = QgsApplication([], False)
+    application = QgsApplication([], True)   # symbols of a legend are drawn by the interface
     application.initQgis()
     import sys
 
@@ -226,7 +226,8 @@ def main():
             layers = [layer(made[name][output], look, name in PLANS) for output, look in pairs]
             draw(layers + [image] * on_image, PICTURES / f"{name}.png", surface, detail, "#fafafa" if name in ON_WHITE else "#1c1c1e")
             print(name, flush=True)
-    missing = {algorithm.name() for algorithm in plugin.provider.algorithms()} - set(DRAWN)
+        draw_all(run, Path(folder), PICTURES, made["street"])
+    missing = {algorithm.name() for algorithm in plugin.provider.algorithms()} - {path.stem for path in PICTURES.glob("*.png")}
     print("without a picture:", *sorted(name for name in missing if " " not in name))
     os._exit(0)
 

@@ -212,8 +212,7 @@ class _Drafting:
     def _tags(self, nodes, kind, pattern, line):
         places = self.draft.nodes[list(nodes)]
         if kind == "curb":
-            heights = self.curb_heights.at(places[:, :2])
-            height = float(np.nanmedian(heights)) if np.isfinite(heights).any() else np.nan
+            height = self.curb_heights.median(places[:, :2])
             tags = {"type": "curbstone", "subtype": "low" if height < HIGH_CURB else "high"}
             return tags | ({} if np.isnan(height) else {"height": f"{height:.2f}"})
         if pattern in SUBTYPE_OF_PATTERN:

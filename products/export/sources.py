@@ -76,7 +76,7 @@ def checked(source: RoadMapSource) -> RoadMapSource:
     """The same source without successors that are not there, proven fit for a map.
 
     Raises RoadExtractionError if there are no lanes, the CRS is not in metres, a lane has no width or borders that cross, heights are missing, two
-    roads lie at one place, or a layer is of another survey.
+    lanes have one id, two roads lie at one place, or a layer is of another survey.
     """
     lanes = source.lanes
     if not len(lanes):
@@ -90,6 +90,10 @@ def checked(source: RoadMapSource) -> RoadMapSource:
     if np.abs(places).max() > FARTHEST_PLACE:
         raise RoadExtractionError(f"The lanes reach to {np.abs(places).max():.3g} m from the origin of their CRS, which is not on this world. Choose "
                                   "the layer of lanes that Lanewright wrote, or set its CRS right.")
+    if len(set(lanes.lane_id)) < len(lanes):
+        name, count = Counter(lanes.lane_id.tolist()).most_common(1)[0]
+        raise RoadExtractionError(f"Lane {name} is there {count} times: two roads of the map have one id, so that links to them are not clear. Give "
+                                  "each road its own id where the map was made.")
     _check_shapes(lanes)
     if not is_stated(lanes):   # where a map from elsewhere has two roads at one place, it means both
         _check_places(lanes)
@@ -192,13 +196,10 @@ class NearestValues:
             values += [value] * len(pieces)
         self._tree, self._values = shapely.STRtree(parts), np.array(values)
 
-    def at(self, points: np.ndarray, farthest: float = 0.5) -> np.ndarray:
-        """(N,) numbers nearest to (N, 2) points, NaN where none lies within `farthest` metres."""
-        values = np.full(len(points), np.nan)
-        if len(self._values) and len(points):
-            indices, part = self._tree.query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
-            values[indices] = self._values[part]
-        return values
+    def median(self, points: np.ndarray) -> float:
+        """Of the numbers nearest to (N, 2) points within half a metre; NaN where there are none."""
+        _, parts = self._tree.query_nearest(shapely.points(points), max_distance=0.5, all_matches=False)
+        return float(np.median(self._values[parts])) if len(parts) else np.nan
 
 
 # The uncertainty that driving lines carry, lane by lane.

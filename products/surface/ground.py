@@ -113,7 +113,7 @@ def road_ground(survey: Survey, road: int, borders: RoadBorders, reach: float, p
     z[(beyond > reach) | (z > highest)] = np.nan
     z[np.abs(z - _medians_about(z)) > SPIKE + STEEPEST_GROUND * CROSS_CELL] = np.nan
     points = sum(int(grid.count.sum()) for grid, _ in read_grids)
-    return _apart(RoadGround(road, s, d, level, z, sigma, highest, right, left, points, errors), survey)
+    return RoadGround(road, s, d, level, z, sigma, highest, right, left, points, errors)
 
 
 def _lower_envelope(height):
@@ -139,16 +139,19 @@ def medians(values: np.ndarray) -> np.ndarray:
     return np.take_along_axis(np.sort(values, axis=-1), middle[..., None], axis=-1)[..., 0]   # NaN last
 
 
-def _apart(ground, survey):
-    """The ground without the cells that lie nearer to another road of about their height."""
-    if len(survey.frame.roads) > 1:
+def part_roads(grounds: list[RoadGround], survey: Survey) -> None:
+    """Take from each ground the cells that lie nearer to another road of about their height, where that road's ground was seen."""
+    seen, nearer = [np.isfinite(ground.z).astype(float) for ground in grounds], []
+    for ground in grounds:
         i, j = np.nonzero(np.isfinite(ground.z))
-        nearest, s, _ = survey.frame.locate_nearest(*survey.frame.road(ground.road).to_map(ground.s[i], ground.d[j]))
-        for other in set(nearest.tolist()) - {ground.road, -1}:
-            rows = np.flatnonzero(nearest == other)
-            rows = rows[np.abs(survey.road_height(other, s[rows]) - ground.z[i[rows], j[rows]]) < ROAD_REACH]
-            ground.z[i[rows], j[rows]] = np.nan
-    return ground
+        nearest, s, d = survey.frame.locate_nearest(*survey.frame.road(ground.road).to_map(ground.s[i], ground.d[j]))
+        for other, known in zip(grounds, seen):
+            rows = np.flatnonzero((nearest == other.road) & (other.road != ground.road))
+            rows = rows[other.at(s[rows], d[rows], known) > 0.0]
+            rows = rows[np.abs(survey.road_height(other.road, s[rows]) - ground.z[i[rows], j[rows]]) < ROAD_REACH]
+            nearer.append((ground, i[rows], j[rows]))
+    for ground, i, j in nearer:
+        ground.z[i, j] = np.nan
 
 
 def edge_profiles(survey: Survey, ground: RoadGround, lines: FrameLines,

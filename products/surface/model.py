@@ -21,7 +21,7 @@ from ...core.survey.survey import Survey
 from ..inventory.borders import BorderLayers, RoadBorders
 from ..inventory.surface_grid import CROSS_CELL, ROAD_REACH, SLICE_LENGTH
 from .breaklines import KINDS, Breakline, lines_to_follow, road_breaklines
-from .ground import READ_SLICES, road_ground
+from .ground import READ_SLICES, part_roads, road_ground
 from .triangulation import Triangulation, thinned
 
 APART = 0.10            # m by which two breaklines that the triangulation follows are apart at least; an edge's foot and top are nearer
@@ -79,6 +79,7 @@ def make_surface_model(survey: Survey, layers: BorderLayers, settings: SurfaceSe
             grounds.append(ground)
         else:
             without.append(str(road))
+    part_roads(grounds, survey)
     outlines = {ground.road: ground.outline(survey.frame, settings.max_gap) for ground in grounds}
     covered, crossed = _covered(grounds, outlines, survey)
     for k, ground in enumerate(grounds):

@@ -83,20 +83,18 @@ class _RoadCheck:
             self.add("bounds", "header", f"A road begins or ends at x {x:.1f}, y {y:.1f}, outside of them.", None, 0.0)
 
     def plan(self, road: MapRoad) -> None:
-        name, along, last = f"road {road.id}", 0.0, None
+        name, along = f"road {road.id}", 0.0
         for element in road.plan.elements:
             if element.length <= 0:
                 self.add("station", name, f"A geometry at s = {element.s:g} has the length {element.length:g} m.", road, element.s)
             if abs(element.s - along) > MAX_LENGTH_ERROR:
                 self.add("station", name, f"A geometry says s = {element.s:.3f}; before it there are {along:.3f} m.", road, along)
-            if last is not None:
-                gap = float(np.hypot(element.x - last[0], element.y - last[1]))
-                if gap > MAX_GAP_IN_ROAD:
-                    self.add("gap", name, f"{metres(gap)} between two geometries at s = {element.s:.2f}.", road, element.s)
-                turn = abs(float(wrapped(element.heading - last[2])))
-                if turn > MAX_KINK:
-                    self.add("kink", name, f"The direction jumps by {turn:.3f} rad at s = {element.s:.2f}.", road, element.s)
-            last, along = element.end(), along + element.length
+            along += element.length
+        for s, gap, turn in road.plan.jumps(MAX_GAP_IN_ROAD, MAX_KINK):
+            if gap > MAX_GAP_IN_ROAD:
+                self.add("gap", name, f"{metres(gap)} between two geometries at s = {s:.2f}.", road, s)
+            if turn > MAX_KINK:
+                self.add("kink", name, f"The direction jumps by {turn:.3f} rad at s = {s:.2f}.", road, s)
         if abs(road.length - along) > MAX_LENGTH_ERROR:
             self.add("road length", name, f"The road says {road.length:.3f} m; its geometries are {along:.3f} m.", road, along)
 

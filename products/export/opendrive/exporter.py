@@ -47,10 +47,7 @@ class OpenDriveSettings(Limited):
 
 @dataclass
 class _OpenDriveDraft:
-    """The map, the place of every cell in it, and notes for the user.
-
-    place : id of a cell -> (road, section, lane); cells : list of Cell
-    """
+    """The map, its roads with the cells that they come from, and notes for the user."""
 
     map: OpenDriveMap
     roads: list[_DraftRoad] = field(default_factory=list)
@@ -232,9 +229,8 @@ class _Drafting:
                 continue
             beyond = max(lanes) + 1 if left else min(lanes) - 1
             curb = MapLane(beyond, "curb", type(lanes[id].width).constant(CURB_WIDTH), [RoadMark(0.0, "none")])
-            heights = self.curb_heights.at(border[:, :2] + self.origin[:2])
-            if np.isfinite(heights).any():
-                rise = np.array([0.0, 0.0, round(float(np.nanmedian(heights)), 3)])
+            if not np.isnan(height := self.curb_heights.median(border[:, :2] + self.origin[:2])):
+                rise = np.array([0.0, 0.0, round(height, 3)])
                 curb.heights = rise + np.array([[station, inner, inner] for station, inner, _ in lanes[id].heights] or [[0.0, 0.0, 0.0]])
             lanes[beyond] = curb
 
@@ -339,15 +335,12 @@ def _cut_row(one: Slice, at_end: bool) -> int:
 
 @dataclass
 class _DraftRoad:
-    """A road with the cells that its lanes come from.
-
-    road; strip : slices; numbers : lane of every cell of every slice; single : whether it is a way through a junction
-    """
+    """A road with the cells that its lanes come from."""
 
     road: MapRoad
     strip: list[Slice]
-    numbers: list[list[int]]
-    single: bool
+    numbers: list[list[int]]   # lane of every cell of every slice
+    single: bool   # whether it is a way through a junction
 
 
 class _Place(NamedTuple):

@@ -145,7 +145,9 @@ def add_objects(whole: OpenDriveMap, markings: Features | None, signals: Feature
 
 
 def _add_signal(number, place, row, homes, nearest):
-    """A signal on the road of its lanes that is nearest, with references to it on the others; a pole on the nearest of all."""
+    """A signal on the road of its lanes that is nearest, with references to it on the others; a pole on the nearest of all; nothing else."""
+    if row.get("kind") not in ("traffic_light", "sign", "pole"):
+        return
     names = [name.strip() for name in str(row.get("lanes") or "").split(",")]
     near = [min((_nearest([road])(place[:2], np.inf) for road, _ in homes[name]), key=lambda one: one[2]) for name in names if name in homes]
     roads = {found[0].id: found for found in sorted(near, key=lambda one: one[2])}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -350,7 +351,8 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     junctions are connectors.
     Sidewalks are no lanes of ours: where one begins there is an edge.
     """
-    whole, rows = replace(whole, roads=[road.cut_where_speeds_change() for road in whole.roads]), []
+    whole = replace(whole, roads=[road.cut_where_speeds_change() for road in whole.roads])
+    rows: list[dict[str, Any]] = []
     layers, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
     numbers, faults = _road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):

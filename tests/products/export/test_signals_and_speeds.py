@@ -5,6 +5,7 @@ from collections import defaultdict
 import numpy as np
 import pytest
 import shapely
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.products.export.check.lanelets import check_lanelets
 from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
@@ -75,6 +76,13 @@ def test_lights_signs_and_poles_stand_where_they_stood_and_say_what_they_said(tm
         assert found["sign"][1]["value"] == 30 and found["sign"][1]["unit"] == "km/h" and found["sign"][1]["country"] == "DE"
         headings = [found[kind][1]["heading"] for kind in ("traffic_light", "sign")]
         assert headings == pytest.approx([90 - np.degrees(0.1), 270], abs=0.05)
+
+
+def test_a_trunk_among_the_poles_of_the_roadside_is_no_sign_of_the_map(tmp_path):
+    layers = read_in(tmp_path, street())
+    layers.signals.add(shapely.Point(600030, 5799995, 60.6), kind="trunk", height_m=3.0)
+    written_out = layers_of_opendrive(as_roads(tmp_path, layers), CRS).signals
+    assert sorted(row["kind"] for _, row in written_out) == ["pole", "sign", "traffic_light"]
 
 
 def test_lights_and_signs_hold_for_the_lanes_that_see_them(tmp_path):
@@ -157,6 +165,12 @@ def test_signals_without_an_id_hold_for_the_lanes_of_their_own_road_alone(tmp_pa
     roads = [road(geometry(0, x, 0, 0, 40), 40, id).replace("</road>", sign) for id, x in (("1", 0), ("2", 50))]
     layers = read_in(tmp_path, opendrive(roads))
     assert sorted(row["lanes"] for _, row in layers.signals) == ["1.-1.0", "2.-1.0"]
+
+
+def test_two_roads_of_one_id_are_not_converted(tmp_path):
+    layers = read_in(tmp_path, opendrive([road(geometry(0, x, 0, 0, 40), 40, "1") for x in (0, 50)]))
+    with pytest.raises(RoadExtractionError, match=r"is there 2 times: two roads of the map have one id"):
+        checked(layers.source())
 
 
 def test_the_name_of_a_road_is_carried_and_its_number_is_none(tmp_path):

@@ -155,8 +155,8 @@ def test_a_road_of_two_metres_is_too_short_for_a_surface():
         model_of(length=2.0, edges=edges_of(2.0))
 
 
-def crossing_roads(up):
-    """(Survey, edges) of two level roads of 60 m that cross, the one to the north `up` m above the one to the east."""
+def crossing_roads(up, halves=(HALF, HALF)):
+    """(Survey, edges) of two level roads of 60 m that cross, the one to the north `up` m above the one to the east, with edges at `halves`."""
     rng = np.random.default_rng(3)
     x, rows, parts, edges = np.arange(-30.0, 30.1, 0.25), [], [], Features("LineStringZ", ROAD_EDGES)
     for number, (level, placed) in enumerate(((GROUND, lambda x, y: (EAST + x, NORTH + y)), (GROUND + up, lambda x, y: (EAST - y, NORTH + x)))):
@@ -164,7 +164,7 @@ def crossing_roads(up):
         rows.append(np.stack([time, *placed(x, 0 * x), level + SENSOR + 0 * x]))
         px, py = np.sort(rng.uniform(-30, 30, 40_000)), rng.uniform(-6, 6, 40_000)
         parts.append((np.interp(px, x, time), *placed(px, py), level + surface(py) + rng.normal(0, 0.004, len(px))))
-        for d in (HALF, -HALF):
+        for d in (halves[number], -halves[number]):
             edges.add(shapely.linestrings(np.stack([*placed(x, d + 0 * x), level + 0 * x], axis=1)), kind="main", part="bottom", road=number)
     frame = build_frame(Trajectory(*np.concatenate(rows, axis=1)))
     store = SectionStore(SURVEY_POINT, 20.0)
@@ -191,6 +191,13 @@ def test_where_a_road_crosses_above_another_the_surface_has_the_upper_one(up):
     on_deck = np.abs(y) > 8.0 if up == 0.0 else np.full(len(y), True)   # level roads have each other's shape in between
     np.testing.assert_allclose(heights[on_deck], surface(x[on_deck]), atol=0.03)
     assert [note for note in model.notes if "0 and 1" in note] == model.notes and len(model.notes) == (up > 0.0)
+
+
+def test_where_a_narrow_road_joins_a_wide_one_the_corners_of_the_wide_one_are_covered():
+    survey, edges = crossing_roads(0.0, halves=(5.0, 2.0))
+    model = make_surface_model(survey, BorderLayers(edges), SurfaceSettings(reach=0.5))
+    x, y = (values.ravel() for values in np.meshgrid(np.arange(-20.0, 20.1, 0.5), np.arange(-4.8, 4.9, 0.2)))
+    assert np.isfinite(model.surface.heights(EAST + x - model.origin[0], NORTH + y - model.origin[1])).all()
 
 
 def test_tops_of_curbs_and_edges_without_length_or_twice_change_nothing():
