@@ -298,7 +298,7 @@ ROWS = (
     *_room("lanes", "driving",
         ("tapers", "lanes:laid_out", nth(0), "slip road that joins"),
         ("lanes to the ends of their borders", "lanes:_to_its_ends", nth(0)),
-        ("steps between stretches evened out", "lanes:_led", filled(0.0), "island beside an edge line"),
+        ("steps between stretches evened out", "lanes:_without_steps", lambda parts: type(parts[0]).joined(parts), "island beside an edge line"),
         ("lanes connected", "lane_track:connect", nth(0)),
         ("doubtful ends", "lane_track:LaneTrack.without_doubtful_ends", nth(0), "turns from road to road"),
         ("common alignment", "alignment:_of_lane", gives([]), "")),
