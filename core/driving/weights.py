@@ -105,7 +105,7 @@ class _TrackWeights:
     # m, one sigma of the place of a lane between lines that are seen, and of others; and m along the lane over which it is off by as much, where
     # nothing is painted between two lanes, and of others: fitted on four simulated streets, checked on others
     place_sigma: tuple[float, float] = 0.002, 0.2
-    place_reach: tuple[float, float] = 100.0, 1.0
+    place_reach: tuple[float, float] = 100.0, 2.0
     # Lanes that open or close beside another one.
     longest_taper: float = 100.0   # m
     full_share: float = 0.9   # of a lane's width: from there on it is taken to have its full width
