@@ -65,13 +65,13 @@ def test_a_false_piece_of_line_moves_the_lane_behind_it_for_a_few_metres_alone(m
     piece, behind = lane([0.4] * int(metres / 0.5), MEASURED, False, 1), lane([0.0] * 120, INFERRED, True)
     track = _without_steps([piece, behind])
     assert track.d[:len(piece)] == pytest.approx(0.4, abs=0.01) and 0.2 < track.d[len(piece)] < 0.4
-    assert track.d[len(piece) + 10:] == pytest.approx(0.0, abs=0.01) and track.aside == pytest.approx(track.d - np.r_[piece.d, behind.d])
+    assert track.d[len(piece) + 20:] == pytest.approx(0.0, abs=0.01) and track.aside == pytest.approx(track.d - np.r_[piece.d, behind.d])
 
 
 def test_of_two_stretches_that_are_as_sure_as_each_other_both_give_way():
     track = _without_steps([lane([0.2] * 40, INFERRED, True), lane([-0.2] * 40, INFERRED, True)])
     assert track.d == pytest.approx(-track.d[::-1]) and np.abs(track.d[39:41]).max() < 0.15
-    assert track.d[:30] == pytest.approx(0.2, abs=0.01)
+    assert track.d[:20] == pytest.approx(0.2, abs=0.01)
 
 
 def test_between_lines_that_are_seen_on_both_sides_of_a_joint_nothing_is_moved():
