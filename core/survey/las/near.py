@@ -90,6 +90,7 @@ class _Stored:
             near &= np.abs(numbers - (middle - offset) / scale) <= radius / abs(scale)
         return np.c_[self.places(near).T, self.intensity[near]]
 
+
 class _LastRead:
     """The ranges that places lie in that were asked for last, LAS.remembered_points at most: the next place mostly lies in the same ones."""
 

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from ....core.common.features import SIGNALS, Features
-from ..sources import STOP_LINE_HALF, stop_lines, walked_crossings
+from ..sources import STOP_LINE_HALF, stop_lines, walked_crossings, wrapped
 from .model import DRIVEN_TYPES, OpenDriveMap, lane_name
 
 SAMPLES = 1.0          # m between places of reference lines that objects are held against
@@ -182,7 +182,7 @@ def _turned(road, s, row, way):
     if row.get("heading") is None or way == "none":
         return 0.0
     away = np.radians(_heading(road, {"s": s}, np.pi * (way == "-")) - row["heading"])
-    return round(float((away + np.pi) % (2 * np.pi) - np.pi), 6)
+    return round(float(wrapped(away)), 6)
 
 
 def _painted_shapes(markings):
