@@ -72,8 +72,8 @@ def legend_height(classes: dict[QgsMapLayer, set[str]]) -> float:
 def add_legend(layout: QgsPrintLayout, classes: dict[QgsMapLayer, set[str]], room: QRectF, page: int = 0) -> QgsLayoutItemLegend | None:
     """A legend in the upper left corner of `room` (mm) of a page; None, and nothing is added, where it does not fit.
 
-    It lists the classes that there are, of `classes_by_layer`. QGIS's own filter by the map is not used for that: it looks through the layers in the background and
-    has timers, which may outlive the layers, and how large the legend becomes is not known before.
+    It lists the classes that there are, of `classes_by_layer`. QGIS's own filter by the map is not used for that: it looks through the layers
+    in the background and has timers, which may outlive the layers, and how large the legend becomes is not known before.
     """
     legend = QgsLayoutItemLegend(layout)
     layout.addLayoutItem(legend)
