@@ -9,6 +9,7 @@ import numpy as np
 
 from .columns import Columns
 
+SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
 COORDINATE_SCALE = 1e-4  # derived: m: coordinates are integers of 0.1 mm, exact for every LAS scale in use
 MAX_XY_32_BIT = 2e5      # derived: m from the origin: up to here x and y have 32 bits
 
