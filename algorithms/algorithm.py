@@ -146,7 +146,7 @@ class ParameterSpec:
 
     kind : flag, choice, text, columns (roles of those of a table), expression (a condition on rows), crs (such as EPSG:32650);
         clouds (LAS, LAZ or COPC files), cloud, file, folder (which need not be there), layer, trajectory (a layer, or a CSV, TXT or SBET file),
-        raster, painted (polygons, lines or a raster)
+        raster, painted (polygons, lines or a raster), connection (the name of one to PostgreSQL), schema (of one)
     """
 
     kind: str
@@ -158,7 +158,7 @@ class ParameterSpec:
     default: Any = None   # what holds where nothing was given; None for nothing
     choices: tuple = ()   # words of a choice
     geometry: str = "any"   # of a layer, as in Features, or "any"
-    of: str = ""   # the input whose rows an expression is about
+    of: str = ""   # the input whose rows an expression is about, or whose schema is asked for
     file_filter: str = ""   # of a file, as file dialogs take it
 
     is_output = False

@@ -64,6 +64,10 @@ class Call:
         """WKT, or "" where none was chosen; raises RoadExtractionError where it is not known."""
         raise NotImplementedError
 
+    def connection(self, name):
+        """How libpq connects to a database that was chosen; it may hold a password, and nobody is shown it."""
+        raise NotImplementedError
+
     def raster(self, name):
         """The file of a raster input."""
         raise NotImplementedError

@@ -14,8 +14,18 @@ from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
 from ...core.io.crs import as_in_file, horizontal_part, parse_crs
 from .lanelet_map import KIND_OF_WAY, OURS
-from .shared_borders import WIDEST_DOUBLE, cuts_beside, numbered
-from .sources import LEAST_CURB, LOCAL_CRS, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings
+from .shared_borders import SAME_VERTEX, WIDEST_DOUBLE, cuts_beside, numbered
+from .sources import (
+    LEAST_CURB,
+    LOCAL_CRS,
+    NearestValues,
+    RoadMapSource,
+    is_stated,
+    sigma_of_lanes,
+    stop_lines,
+    walked_crossings,
+    without_repeats,
+)
 
 SAME_RISE = 0.1         # m in height between vertices at one place that are one node
 HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
@@ -188,7 +198,7 @@ class _Drafting:
             tags["lanewright:sigma_m"] = f"{self.sigma[k]:.3f}"
         if lanes.status[k] != "measured":
             tags |= {"lanewright:status": lanes.status[k], "lanewright:confidence": f"{lanes.confidence[k]:.2f}"}
-        centre = self._new_nodes(self.middles[rows])
+        centre = self._new_nodes(without_repeats(self.middles[rows], SAME_VERTEX))   # at a kink of a map from elsewhere there are two
         ways = [self._way(nodes, kind, pattern, line) for nodes, kind, pattern, line in (
             (left, lanes.left_kind[k], lanes.left_pattern[k], lanes.left_line[k]),
             (right, lanes.right_kind[k], lanes.right_pattern[k], lanes.right_line[k]))]

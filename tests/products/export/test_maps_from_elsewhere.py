@@ -220,12 +220,23 @@ def test_a_curb_between_lanes_keeps_its_bottom_and_its_top(tmp_path):
                     np.testing.assert_allclose(border[:, 2], level + 0.01 * x, atol=0.002)
 
 
+def test_a_kink_of_a_reference_line_makes_no_node_twice(tmp_path):
+    _, lanes = taken_in(tmp_path, road(geometry(0, 0, 0, 0, 20) + geometry(20, 20, 0, 0.0002, 20), 40))
+    assert "repeated node" not in _checked_lanelets(tmp_path, lanes)
+
+
 def test_a_curb_between_lanelets_is_no_border_twice(tmp_path):
     lanes = section(right=lane(-1) + lane(-2, "biking", 1.5, more='<height sOffset="0" inner="0.12" outer="0.12"/>'))
     _, lanes = taken_in(tmp_path, road(LINE, 40, lanes=lanes))
+    assert "border twice" not in _checked_lanelets(tmp_path, lanes)
+
+
+def _checked_lanelets(folder, lanes):
+    """What the check counts in the Lanelet2 map of two lanes."""
     draft = draft_lanelets(with_shared_borders(checked(RoadMapSource(lanes))))
-    whole = read_lanelet2(written(tmp_path, lanelet2_text(draft, to_degrees(draft.nodes, lanes.crs)), "out.osm"))
-    assert len(whole.lanelets) == 2 and "border twice" not in check_lanelets(whole, *node_places(whole, lanes.crs)).counts()
+    whole = read_lanelet2(written(folder, lanelet2_text(draft, to_degrees(draft.nodes, lanes.crs)), "out.osm"))
+    assert len(whole.lanelets) == 2
+    return check_lanelets(whole, *node_places(whole, lanes.crs)).counts()
 
 
 def test_the_work_for_heights_and_widths_grows_with_their_length():

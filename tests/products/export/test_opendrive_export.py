@@ -150,6 +150,12 @@ def test_a_line_that_no_short_element_follows_is_drawn_by_cubics():
     assert np.abs((np.array(turns) + np.pi) % (2 * np.pi) - np.pi).max() < 1e-3
 
 
+def test_a_curve_that_turns_at_its_end_to_meet_another_road_has_no_kink():
+    along = np.arange(0.0, 40.5)
+    plan = fit_reference(60.0 * np.c_[np.sin(along / 60.0), 1 - np.cos(along / 60.0)], 0.02, (None, 40.0 / 60.0 + 0.05))
+    assert plan.elements[-1].end()[2] == pytest.approx(40.0 / 60.0 + 0.05) and not plan.jumps(1e-9, 1e-9)
+
+
 def test_noise_of_the_survey_makes_no_more_elements_than_the_road_has():
     points = s_curve().borders(0)[0][:, :2]
     points = points - points[0] + np.random.default_rng(3).normal(0, 0.003, points.shape)
