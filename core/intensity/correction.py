@@ -14,7 +14,7 @@ from ..common.progress import Progress
 from ..execution.phase import Phase
 from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
-from ..survey.store.records import SCANNER_NUMBERS, Points
+from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
 from ..survey.store.section_store import StoreIndex, Stretch
 from .asphalt_model import (
@@ -36,6 +36,7 @@ from .weights import ASPHALT
 # Saturated intensities: values that a scanner or an export cut off at an end of their range.
 
 MAX_SHARE_AT_LOWEST = LOWER_QUANTILE   # derived: share at its lowest: the quantile from which asphalt's spread is taken
+SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
 REMEDY = "Export the cloud with the scanner's full intensities (16 bits, not stretched)."
 
 

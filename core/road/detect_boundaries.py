@@ -100,7 +100,7 @@ def _find_curb_points(decimation, settings, progress, ground):
     searches = {"scanlines": planes_of(source, settings.scanlines, settings.curbs.block_length)}
     if settings.method == "both":
         searches["profiles"] = profiles_of(decimation, settings.curbs)
-    steps = with_scanner_noise(steps_of_roads(steps_of_methods, source, (settings.scanlines, settings.curbs), searches,
+    steps = with_scanner_noise(steps_of_roads(_steps_of_methods, source, (settings.scanlines, settings.curbs), searches,
                                               progress.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)))
     points = curbs_along(source, steps, partial(RoadLook, ground))
     tell_corners(points["scanlines"], progress)
@@ -111,7 +111,7 @@ def _find_curb_points(decimation, settings, progress, ground):
     return points
 
 
-def steps_of_methods(source: SurveyScanlines, section: Section, scanlines: ScanlineBoundarySettings,
+def _steps_of_methods(source: SurveyScanlines, section: Section, scanlines: ScanlineBoundarySettings,
                      profiles: CurbSettings) -> tuple[dict[str, Any], dict[str, OcclusionGrid]]:
     """The phase of both methods: what `steps_of_section` or `corners_of_section` finds, by the method of the section."""
     if section[0] == "scanlines" or source.level is None:

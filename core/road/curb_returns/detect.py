@@ -56,7 +56,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     on_islands, behind = on_main_islands(curb_points, survey, beside)
     mains = {road: main_curbs_of(curb_points[~on_islands], survey, road) for road in roads}
     runs = {road: [coordinates[:2] for _, coordinates in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
-    seen = steps_in_plan(decimation, {road: PlanSearch.of(main, survey.frame.road(road), behind[road]) for road, (main, _) in mains.items()},
+    seen = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road), behind[road]) for road, (main, _) in mains.items()},
                          settings, progress.part(0.0, RETURN.led_progress))
     for i, road in enumerate(roads):
         part = progress.part(*(RETURN.led_progress + (1.0 - RETURN.led_progress) * k / len(roads) for k in (i, i + 1)))
@@ -68,7 +68,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
         if not are_replaced(curb_points[of_road & on_islands], curbs):
             on_islands &= ~of_road
             main, chain = main_curbs_of(curb_points, survey, road)
-            again = steps_in_plan(decimation, {road: PlanSearch.of(main, survey.frame.road(road))}, settings)
+            again = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road))}, settings)
             curbs = find_curb_returns(decimation, road, main, again[road], settings, part, elsewhere, look)
         points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
         lines += points
@@ -103,7 +103,7 @@ def _points_of(survey, road, curb, chain):
 
 
 @dataclass(frozen=True)
-class PlanSearch:
+class _PlanSearch:
     """Where steps are looked for in plan along one road.
 
     limits : side -> SearchLimit
@@ -120,7 +120,7 @@ class PlanSearch:
     behind: np.ndarray
 
     @classmethod
-    def of(cls, main: Mapping[str, np.ndarray], line: Road, behind: np.ndarray = np.empty((2, 0))) -> PlanSearch:
+    def of(cls, main: Mapping[str, np.ndarray], line: Road, behind: np.ndarray = np.empty((2, 0))) -> _PlanSearch:
         """The search beside the main curbs of a road, as of `find_curb_returns`."""
         lines = [coordinates for _, coordinates in main_runs(main, line)]
         return cls({side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()},
@@ -130,24 +130,24 @@ class PlanSearch:
 
 
 @dataclass(frozen=True)
-class StepsInPlan:
-    """What `steps_in_plan` finds on one road: `measured` as of `plan_steps_of_section`, None for nothing."""
+class _StepsInPlan:
+    """What `_steps_in_plan` finds on one road: `measured` as of `plan_steps_of_section`, None for nothing."""
 
-    search: PlanSearch
+    search: _PlanSearch
     sections: list[tuple[int, int]]   # (first, last + 1) profile numbers
     measured: tuple[PlanSteps, np.ndarray, np.ndarray] | None
 
 
-def steps_in_plan(decimation: PointDecimation, searches: dict[int, PlanSearch], settings: CurbSettings,
-                  progress: Progress = Progress()) -> dict[int, StepsInPlan]:
-    """{number of a road: StepsInPlan}; `searches` : {number of a road: PlanSearch}"""
+def _steps_in_plan(decimation: PointDecimation, searches: dict[int, _PlanSearch], settings: CurbSettings,
+                  progress: Progress = Progress()) -> dict[int, _StepsInPlan]:
+    """{number of a road: _StepsInPlan}; `searches` : {number of a road: _PlanSearch}"""
     sections = {road: work_sections(decimation.survey, road, settings.profile_width) for road in searches}
     phase = phase_along(plan_steps_of_section, decimation, (searches, settings), settings.profile_width, _join_parts)
     found = decimation.executor.run(phase, [(road, *section) for road, of_road in sections.items() for section in of_road], progress)
-    return {road: StepsInPlan(searches[road], of_road, _join_parts([next(found) for _ in of_road])) for road, of_road in sections.items()}
+    return {road: _StepsInPlan(searches[road], of_road, _join_parts([next(found) for _ in of_road])) for road, of_road in sections.items()}
 
 
-def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray], seen: StepsInPlan, settings: CurbSettings,
+def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray], seen: _StepsInPlan, settings: CurbSettings,
                       progress: Progress = Progress(), elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (),
                       look: RoadLook | None = None) -> list[CurbReturn]:
     """Corners, side streets and islands of one road.
@@ -187,12 +187,12 @@ def _join_parts(parts):
     return PlanSteps.join(steps), np.concatenate(falls), np.concatenate(scanner_noise)
 
 
-def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int], searches: Mapping[int, PlanSearch], settings: CurbSettings,
+def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int], searches: Mapping[int, _PlanSearch], settings: CurbSettings,
                           points_per_cell: int | None = CURBS.points_per_level_cell_in_plan) -> tuple[PlanSteps, np.ndarray, np.ndarray] | None:
     """The phase of curb returns: steps in plan in one section of a road.
 
     item : number of the road, and (first, last + 1) profile numbers
-    searches : {number of a road: PlanSearch}
+    searches : {number of a road: _PlanSearch}
     points_per_cell : as in `decimated_points`, where the ground is not uneven nearly everywhere
 
     Returns PlanSteps, (N,) bool where the raised ground behind each ends, and (N,) m the scanner's noise; None where there are no steps

@@ -9,7 +9,6 @@ import numpy as np
 
 from .columns import Columns
 
-SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
 COORDINATE_SCALE = 1e-4  # derived: m: coordinates are integers of 0.1 mm, exact for every LAS scale in use
 MAX_XY_32_BIT = 2e5      # derived: m from the origin: up to here x and y have 32 bits
 
@@ -44,6 +43,11 @@ def fill_units(metres: np.ndarray, units: np.ndarray) -> np.ndarray:
     with np.errstate(invalid="ignore"):
         np.copyto(units, np.rint(metres, out=metres), casting="unsafe")
     return units
+
+
+def points_of_scanners(records: Any) -> np.ndarray:
+    """(256,) how many of some records each scanner has."""
+    return np.bincount(records["scanner"], minlength=256)
 
 
 def beside_road(road: int) -> int:
