@@ -1,6 +1,7 @@
 """How good a result is: boundaries, markings and driving lines against a reference, from layers of any software."""
 
 import re
+from contextlib import nullcontext
 from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
@@ -296,7 +297,7 @@ class AssessMarkings(Algorithm):
 
     def work(self, call, progress):
         from ..products.assess.layers import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_layer, marking_polygons
-        from ..products.assess.markings import OutcomeRaster, assess_markings
+        from ..products.assess.markings import assess_markings, outcome_raster
 
         settings = call.settings(MARKING_SETTINGS, tolerances=tolerances(call))
         layers = [painted_of(call, name, progress.part(*part))[0] for name, part in (("INPUT", (0.0, 0.15)), ("REFERENCE", (0.15, 0.3)))]
@@ -308,13 +309,10 @@ class AssessMarkings(Algorithm):
         check_marking_reference(reference, result, area, progress.warn)
         classes = [classes_of(layer, field) for layer in (result, reference)]
         image = call.raster_in("IMAGE", crs)
-        cells = None
-        if call.wants("CELLS"):
-            shapes = [*result.geometries, *reference.geometries]
-            cells = OutcomeRaster(call.new_file("CELLS"), shapes, settings.cell_size, crs, max(settings.tolerances))
-        accuracy = assess_markings(result.geometries, reference.geometries, settings, *classes, area, image, cells, progress.part(0.35, 0.9))
-        if cells is not None:
-            cells.close()
+        shapes = [*result.geometries, *reference.geometries]
+        with outcome_raster(call.new_file("CELLS"), shapes, settings.cell_size, crs, max(settings.tolerances)) if call.wants("CELLS") \
+                else nullcontext() as cells:
+            accuracy = assess_markings(result.geometries, reference.geometries, settings, *classes, area, image, cells, progress.part(0.35, 0.9))
         layer = marking_layer(accuracy, result.geometries, reference.geometries, *classes, crs)
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):

@@ -12,9 +12,8 @@ from scipy.spatial import cKDTree
 from ..core.common.errors import RoadExtractionError
 from ..core.common.progress import Progress
 from ..core.common.setting import Limited, setting
-from ..core.io.crs import check_projected, crs_note, place_raster
-from ..core.io.local_files import gdal_exceptions
-from ..core.lazy import gdal
+from ..core.io.crs import check_projected, crs_note
+from ..core.io.geotiff import new_geotiff
 from ..core.survey.blocks import sensor_height_of
 from ..core.survey.frame.road_frame import build_frame
 from ..core.survey.las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
@@ -314,19 +313,10 @@ def _profile(driven, track_z, at, heights, drops, height):
     return np.c_[places, np.interp(places, driven, track_z), road]
 
 
-@gdal_exceptions()
 def write_density(found: Inspection, path: str | Path) -> None:
     """Write the density of an Inspection to a GeoTIFF: float32 points per m², NaN where no point lies."""
     density, (west, north) = found.density
     height, width = density.shape
     cell = found.settings.cell_size
-    dataset = gdal.GetDriverByName("GTiff").Create(
-        str(path), width, height, 1, gdal.GDT_Float32, ["COMPRESS=DEFLATE", "TILED=YES", "PREDICTOR=3"])
-    place_raster(dataset, (west, cell, 0.0, north, 0.0, -cell), found.crs)
-    band = dataset.GetRasterBand(1)
-    band.SetNoDataValue(float("nan"))
-    band.SetDescription("Points per m²")
-    # bytes, not an array: osgeo fails with a numpy other than the one it was built with
-    band.WriteRaster(0, 0, width, height, np.ascontiguousarray(density, np.float32).tobytes())
-    band.FlushCache()
-    del band, dataset
+    with new_geotiff(path, width, height, (west, cell, 0.0, north, 0.0, -cell), found.crs, nodata=np.nan, description="Points per m²") as raster:
+        raster.write(0, 0, density)

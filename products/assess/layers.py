@@ -14,7 +14,7 @@ from ...core.common.features import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES,
 from ...core.common.progress import Progress
 from ...core.curves.line_segments import single_lines
 from ...core.io.crs import check_extent, check_metric, horizontal_part, parse_crs, same_crs
-from ...core.io.local_files import gdal_exceptions, open_raster, reading
+from ...core.io.local_files import gdal_exceptions, gdal_work, open_raster, reading
 from ...core.lazy import gdal, ogr, pyproj
 from ...core.survey.weights import TRAJECTORY
 from .lines import MAX_MATCH_DISTANCE, SIDE_NAMES, BoundaryAccuracy, LineAccuracySettings, LineMatch, interval_lines
@@ -415,7 +415,7 @@ def polygons_of_raster(path: str, progress: Progress = Progress()) -> tuple[list
         layer = source.CreateLayer("painted", None, ogr.wkbPolygon)
         layer.CreateField(ogr.FieldDefn("value", ogr.OFTInteger))
         band = values.GetRasterBand(1)
-        _polygonize(band, layer, progress.part(0.7, 1.0))
+        gdal_work(lambda report: gdal.Polygonize(band, band, layer, 0, ["8CONNECTED=8"], callback=report), progress.part(0.7, 1.0))
         polygons, kinds = [], []
         for feature in layer:
             polygons.append(shapely.from_wkb(bytes(feature.GetGeometryRef().ExportToWkb())))
@@ -426,27 +426,6 @@ def polygons_of_raster(path: str, progress: Progress = Progress()) -> tuple[list
     crs = raster.GetProjection()
     # patches that touch themselves at a corner are no valid polygons
     return list(shapely.make_valid(np.asarray(polygons, object))) if polygons else [], np.array(kinds, int), crs
-
-
-def _polygonize(band, layer, progress):
-    """GDAL cannot pass an exception through its own code: the one that a cancellation raises is stored and raised again."""
-    stopped = []
-
-    def report(share, *_):
-        try:
-            progress.report(share)
-        except Exception as reason:
-            stopped.append(reason)
-            return 0
-        return 1
-
-    try:
-        gdal.Polygonize(band, band, layer, 0, ["8CONNECTED=8"], callback=report)
-    except RuntimeError:
-        if not stopped:
-            raise
-    if stopped:
-        raise stopped[0]
 
 
 def _values(raster, path, progress):

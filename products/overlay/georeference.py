@@ -5,18 +5,19 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import shapely
 
-from ...core.common.errors import Cancelled, RoadExtractionError
+from ...core.common.errors import RoadExtractionError
 from ...core.common.features import RESIDUALS, Features
 from ...core.common.progress import Progress
 from ...core.common.setting import check_limits, setting
 from ...core.io.crs import as_in_file
 from ...core.io.geotiff import GEOTIFF_TILE
-from ...core.io.local_files import gdal_exceptions, open_raster, unfinished_path
+from ...core.io.local_files import gdal_exceptions, gdal_work, open_raster, unfinished_path
 from ...core.lazy import gdal, pyproj
 from .control_points import CONTROL, REQUIRED_COLUMNS, ControlPoints, SourceImage
 
@@ -529,59 +530,35 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
     progress = progress or Progress()
     bounds, width, height = output_grid(found)
     unfinished, tiled = (unfinished_path(path, suffix) for suffix in (".tif", ".source.tif"))
-    source = view = result = None
-    cancelled: list[bool] = []
+    source = view = None
     failure = ""
     cache = gdal.GetCacheMax()
     gdal.SetCacheMax(min(cache, GDAL_CACHE))
     try:
-        source = _with_point_grid(gdal, found, _tiled(gdal, found.image, tiled, _callback(progress, 0.0, 0.1, cancelled)))
-        departure = _departure(gdal, source, found) + _APPROXIMATION
+        source = _with_point_grid(found, gdal_work(partial(_tiled, found.image, tiled), progress.part(0.0, 0.1)))
+        departure = _departure(source, found) + _APPROXIMATION
         # Blocks are resampled while they are written: every tile is compressed once, and Cancel takes effect in between
         view = gdal.Warp("", source, **_warp_options(found, bounds))
-        result = gdal.GetDriverByName("GTiff").CreateCopy(str(unfinished), view, options=_file_options(found.image),
-                                                          callback=_callback(progress, 0.1, 0.8, cancelled))
-        levels = [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]
-        result = None  # GDAL 3.6 may deadlock where it reads what its own threads still write
-        if levels and not cancelled:
-            result = gdal.Open(str(unfinished), gdal.GA_Update)
-            result.BuildOverviews("AVERAGE", levels, callback=_callback(progress, 0.8, 1.0, cancelled))
-        result = None  # closes the file
-        if not cancelled:
-            os.replace(unfinished, path)
-            Path(f"{path}.aux.xml").unlink(missing_ok=True)
+        gdal_work(partial(_write, view, unfinished, found.image), progress.part(0.1, 0.8))
+        # closed and opened again: GDAL 3.6 may deadlock where it reads what its own threads still write
+        if levels := [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]:
+            gdal_work(partial(_add_overviews, unfinished, levels), progress.part(0.8, 1.0))
+        os.replace(unfinished, path)
+        Path(f"{path}.aux.xml").unlink(missing_ok=True)
     except RuntimeError as problem:
         failure = str(problem)
     finally:
-        source = view = result = None
+        source = view = None
         gdal.SetCacheMax(cache)
         for leftover in (unfinished, Path(f"{unfinished}.aux.xml"), tiled):
             leftover.unlink(missing_ok=True)
-    # Raised here, because the error of GDAL would keep its datasets alive until after GDAL itself is unloaded
-    if cancelled:
-        raise Cancelled
-    if failure:
+    if failure:   # raised here: the error of GDAL would keep its datasets alive until after GDAL itself is unloaded
         raise RoadExtractionError(f"The image could not be drawn to {path} ({failure}). Is {found.image.path} whole, and is there room on the disk?")
     progress.report(1.0)
     return departure
 
 
-def _callback(progress, start, end, cancelled):
-    """GDAL's progress as ours; Cancel is noted in `cancelled`, because GDAL has no exception for it."""
-    part = progress.part(start, end)
-
-    def tell(fraction, *_):
-        try:
-            part.report(fraction)
-            return 1
-        except Cancelled:
-            cancelled.append(True)
-            return 0
-
-    return tell
-
-
-def _tiled(gdal, image, path, callback):
+def _tiled(image, path, callback):
     """The path of the image, or of a copy in tiles where it is large and stored line by line (JPEG, PNG).
 
     A rotated image is read across its lines, and each such read would decompress the file from its beginning.
@@ -595,7 +572,7 @@ def _tiled(gdal, image, path, callback):
     return str(path)
 
 
-def _with_point_grid(gdal, found, path):
+def _with_point_grid(found, path):
     """The image with a grid of ground control points in place of a position, as an open GDAL dataset.
 
     GDAL would fit its own polynomial from the map to the image, which is not the inverse of ours: in an oblique image it is
@@ -620,7 +597,7 @@ def _method(found):
     return "GCP_TPS" if found.fit.polynomial.order > 1 else "GCP_POLYNOMIAL"
 
 
-def _departure(gdal, source, found):
+def _departure(source, found):
     """Pixels between the places where GDAL's transformer and the inverse of the polynomial look for the result."""
     area = drawn_area(found)
     pixel, line = _node_grid(area.bounds, 33)
@@ -654,6 +631,11 @@ def _warp_options(found, bounds):
         "dstSRS": wkt or None, "errorThreshold": _APPROXIMATION, "warpOptions": options, **transform, **ends}
 
 
-def _file_options(image):
-    return ["TILED=YES", f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS",
-            f"PREDICTOR={3 if image.kind == 'real' else 2}"]
+def _write(view, path, image, report):
+    options = ["TILED=YES", f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER",
+               "NUM_THREADS=ALL_CPUS", f"PREDICTOR={3 if image.kind == 'real' else 2}"]
+    gdal.GetDriverByName("GTiff").CreateCopy(str(path), view, options=options, callback=report)
+
+
+def _add_overviews(path, levels, report):
+    gdal.Open(str(path), gdal.GA_Update).BuildOverviews("AVERAGE", levels, callback=report)
