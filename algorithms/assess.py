@@ -52,8 +52,8 @@ def layer_of(call, name):
     return None if source is None else _read(source)[0]
 
 
-def layer_and_excluded(call, name):
-    """(AssessedLayer, whether each row is excluded, why) of a reference."""
+def reference_of(call, name):
+    """A reference as AssessedLayer, with why rows are excluded."""
     source = call.source(name)
     excluded = call.rows_where("EXCLUDED", source)
     layer, indices = _read(source)
@@ -61,9 +61,10 @@ def layer_and_excluded(call, name):
     kinds = ["" if kind is None and edge is None else str(kind if edge is None else edge)
              for kind, edge in zip(layer.column("kind"), layer.column("edge"))]
     if excluded is None:
-        kinds = [kind.lower() for kind in kinds]
-        return layer, [kind in NOT_THERE for kind in kinds], kinds
-    return layer, [excluded[k] for k in indices], kinds
+        layer.excluded = [kind.lower() if kind.lower() in NOT_THERE else None for kind in kinds]
+    else:
+        layer.excluded = [kind if excluded[k] else None for kind, k in zip(kinds, indices)]
+    return layer
 
 
 def _read(source):
@@ -198,22 +199,19 @@ class AssessBoundaries(Algorithm):
         from ..products.report.assessment import boundary_report
 
         settings = call.settings(BOUNDARY_SETTINGS, tolerances=tolerances(call))
-        reference, excluded, kinds = layer_and_excluded(call, "REFERENCE")
+        reference = reference_of(call, "REFERENCE")
         result, reference, crs = compared_lines(layer_of(call, "INPUT"), reference, progress)
         progress.report(0.2)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
         for choose in (bottoms_only, along_the_road_only):
-            result, _ = choose(result, progress.warn)
-            reference, kept = choose(reference, progress.warn)
-            excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
-        result, reference, kept = edges_that_compare(result, reference, call.value("EDGES"), progress.warn)
-        excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
-        judged = reference.subset([not x for x in excluded])
+            result, reference = (choose(layer, progress.warn) for layer in (result, reference))
+        result, reference = edges_that_compare(result, reference, call.value("EDGES"), progress.warn)
+        judged, excluded = (reference.subset([(why is None) == is_judged for why in reference.excluded]) for is_judged in (True, False))
         check_reference(judged, result, frame, area, settings.corridor, progress.warn)
         progress.report(0.4)
         accuracy = assess_boundaries(
-            result.geometries, judged.geometries, settings, frame, reference.subset(excluded).geometries,
-            [kind for kind, out in zip(kinds, excluded) if out], area, judged.column("side"), progress.part(0.4, 0.8))
+            result.geometries, judged.geometries, settings, frame, excluded.geometries, excluded.excluded, area, judged.column("side"),
+            progress.part(0.4, 0.8))
         progress.report(0.8)
         layer = boundary_layer(accuracy, crs, progress.part(0.8, 0.95))
         call.layer("OUTPUT", layer)

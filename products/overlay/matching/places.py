@@ -51,7 +51,6 @@ class Photo:
     """Contrast of the photo."""
 
     contrast: np.ndarray   # (H, W) float32
-    luminance: np.ndarray   # (H, W) float32, NaN where there is none
     factor: int   # pixels of the image side by side in a pixel here
 
 
@@ -117,7 +116,7 @@ def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
     except RuntimeError as problem:
         raise RoadExtractionError(f"{image.path} cannot be read as an image ({problem}). Export it anew as a TIFF or JPEG.") from problem
     luminance[(mask < 128) | ~np.isfinite(luminance)] = np.nan
-    return Photo(_paint_contrast(luminance, size * factor), luminance, factor)
+    return Photo(_paint_contrast(luminance, size * factor), factor)
 
 
 # Paint against its surroundings, made comparable between a photo and an intensity image.
@@ -420,35 +419,25 @@ class Placement:
         slope = self.polynomial.jacobian(x, y)
         return np.linalg.solve(slope, (np.column_stack([pixel, line]) - placed)[..., None])[..., 0]
 
-    def drawn(self, values: np.ndarray, photo: Photo, cell: float, shape: tuple[int, ...], corner: tuple[int, int] = (0, 0),
-              reduction: int = 1) -> np.ndarray:
-        """The photo on cells of the map.
+    def drawn(self, photo: Photo, cell: float, shape: tuple[int, ...]) -> np.ndarray:
+        """(H, W) float32, the contrast of a photo on cells (m) of the map from local 0, 0 to the east and south: of dark paint negated, 0 outside.
 
-        values : (h, w) float32, contrast or luminance of the photo
-        photo : Photo that they belong to
-        cell : m
-        shape : rows and columns of cells
-        corner : first column and row, counted from local 0, 0 to the east and to the south
-        reduction : pixels of the photo that are averaged first, where cells are larger than they
-        Returns (H, W) float32, 0 outside the photo
+        Where a cell covers several pixels of the photo these are averaged first.
         """
         height, width = shape
         across = np.linspace(0, width, max(2, -(-width // _NODE) + 1))
         down = np.linspace(0, height, max(2, -(-height // _NODE) + 1))
-        x, y = np.meshgrid((corner[0] + across) * cell, -(corner[1] + down) * cell)
+        x, y = np.meshgrid(across * cell, -down * cell)
         pixel, line = (axis.reshape(x.shape) for axis in self.pixels(x.ravel(), y.ravel()))
+        centre = self.polynomial.centre
+        per_metre = np.sqrt(abs(np.linalg.det(self.polynomial.jacobian(centre[:1], centre[1:])[0])))
+        reduction = max(1, int(cell * per_metre / photo.factor + 0.25))
         factor = photo.factor * reduction
         nodes = [(position / factor - 0.5).astype(np.float32) for position in (pixel, line)]
         # of the middles of the cells: linear between the nodes
         grid = np.meshgrid((np.arange(width) + 0.5) * (len(across) - 1) / width, (np.arange(height) + 0.5) * (len(down) - 1) / height)
         maps = [cv2.remap(node, *(axis.astype(np.float32) for axis in grid), cv2.INTER_LINEAR) for node in nodes]
-        return cv2.remap(reduced(values, reduction), *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0.0)
-
-    def reduction(self, photo: Photo, cell: float) -> int:
-        """Pixels of a photo that a cell (m) covers side by side, at least 1."""
-        centre = self.polynomial.centre
-        per_metre = np.sqrt(abs(np.linalg.det(self.polynomial.jacobian(centre[:1], centre[1:])[0])))
-        return max(1, int(cell * per_metre / photo.factor + 0.25))
+        return self.sign * cv2.remap(reduced(photo.contrast, reduction), *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0.0)
 
 
 # A placement that most pairs of places agree on, whatever the others say (RANSAC).
@@ -497,16 +486,15 @@ def _lie_on_a_line(x, y):
     return across <= COLLINEAR_RATIO * along
 
 
-def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float, weights: np.ndarray,
-                     order: int) -> tuple[Placement, np.ndarray] | None:
-    """A new placement from places of the map that were found displaced in the photo as drawn by an old one.
+def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float,
+                     weights: np.ndarray) -> tuple[Placement, np.ndarray] | None:
+    """A new placement, of order 2 where there are pairs enough, from places of the map that were found displaced in the photo as drawn by an old one.
 
     placement : Placement by which the photo was drawn
     x, y : (N,) m, places on the map
     moved : (N, 2) m, from there to where the drawn photo has them
     tolerance : m, largest residual of a pair that is used
     weights : (N,) what each pair counts
-    order : of the polynomial, 1 or 2; lowered where there are too few pairs for it
     Returns placement, used: Placement and (N,) bool; None where no three pairs agree
     """
     pixel, line = placement.pixels(x + moved[:, 0], y + moved[:, 1])
@@ -515,7 +503,7 @@ def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: 
     for _ in range(_ROUNDS):
         if used.sum() < MIN_CONTROL_POINTS[1]:
             return None
-        degree = highest_order(x[used], y[used], order)
+        degree = highest_order(x[used], y[used])
         fitted = (Placement.fitted(x[used], y[used], pixel[used], line[used], degree, placement.sign) if degree else
                   _turned(placement, x[used], y[used], moved[used]))
         before, used = used, np.hypot(*fitted.metres(x, y, pixel, line).T) <= tolerance
@@ -535,9 +523,9 @@ def _turned(placement, x, y, moved):
     return Placement.fitted(at_x, at_y, *placement.pixels(at_x + shift.real, at_y + shift.imag), 1, placement.sign)
 
 
-def highest_order(x: np.ndarray, y: np.ndarray, most: int) -> int:
-    """The highest order up to `most` that (N,) places determine well; 0 where they lie on a line or are too few."""
-    for order in range(most, 0, -1):
+def highest_order(x: np.ndarray, y: np.ndarray) -> int:
+    """The highest order, 2 or 1, that (N,) places determine well; 0 where they lie on a line or are too few."""
+    for order in (2, 1):
         if len(x) >= _PAIRS_PER_TERM * MIN_CONTROL_POINTS[order] or (order == 1 and len(x) > MIN_CONTROL_POINTS[1]):
             if not _lie_on_a_line(x, y) and (order == 1 or inverse_condition(x, y, order) > 10 * MIN_INVERSE_CONDITION):
                 return order
