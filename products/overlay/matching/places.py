@@ -55,11 +55,7 @@ class Photo:
 
 
 def _read_paint(image: IntensityImage, box: tuple[float, float, float, float] | None = None) -> SurveyedPaint:
-    """The part of an intensity image within a box of map coordinates, its cells made no finer than FINEST_CELL.
-
-    box : west, south, east, north, m; None: the whole image
-    Returns SurveyedPaint; empty where the box lies outside the image
-    """
+    """The part of an intensity image within (west, south, east, north), m, or all of it; cells are no finer than FINEST_CELL."""
     cell = image.cell_size
     first, last = (0, 0), (image.width, image.height)
     if box is not None:
@@ -89,10 +85,8 @@ def _means(pixels, step):
 
 @gdal_exceptions()
 def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
-    """The luminance and contrast of an image, in pixels about as large as a cell of the intensity image or as they are.
+    """The contrast of an image of pixels of about `size` m, in pixels about as large as a `cell` (m) of the intensity image or as they are.
 
-    size : m of a pixel, roughly
-    cell : m of a cell of the intensity image
     Raises RoadExtractionError if the image cannot be read.
     """
     width, height = image.width, image.height
@@ -153,11 +147,9 @@ def _smooth(values, deviation):
 
 
 def reduced(contrast: np.ndarray, factor: int) -> np.ndarray:
-    """The contrast in pixels that are `factor` times as wide, each the mean of those it covers.
+    """(H // factor, W // factor) float32, a contrast (H, W) in pixels that are `factor` times as wide, each the mean of those it covers.
 
-    contrast : (H, W)
-    factor : at least 1; the last columns and rows that fill no pixel are left out
-    Returns (H // factor, W // factor) float32
+    The last columns and rows that fill no pixel are left out.
     """
     if factor == 1:
         return contrast
@@ -206,14 +198,11 @@ class Bounds:
 
 def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bounds, sign: int = 1,
                 progress: Progress = Progress()) -> list[Place]:
-    """The places where the paint of a photo fits that of the intensity image best, the best first.
+    """The places where the paint of a photo fits that of the intensity image best, the best first, some metres or a turn apart.
 
     photo : (H, W) contrast of the photo, in pixels of `bounds.sizes`
-    paint : (h, w) contrast of the intensity image, north up, its outer corner at local 0, 0 and y negative below it
-    cell : m, pixel of the intensity image
-    bounds : Bounds, of the pixels of `photo`
+    paint : (h, w) contrast of the intensity image in cells of `cell` m, north up, its outer corner at local 0, 0 and y negative below it
     sign : 1, or -1 where paint is darker than the road
-    Returns list of Place, each some metres or a turn away from the others
     """
     middle_size = float(np.sqrt(bounds.sizes[0] * bounds.sizes[1]))
     half = 0.5 * max(photo.shape) * middle_size
@@ -344,10 +333,9 @@ MOST_SEARCHED = 1000.0  # m, longest side of an intensity image that is searched
 
 
 def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace) -> tuple[SurveyedPaint, Bounds]:
-    """The paint where an image may lie, and what is to be tried there.
+    """The paint where an image may lie by a RoughPlace in the CRS of the intensity image, and what is to be tried there.
 
-    rough : RoughPlace in its CRS
-    Returns SurveyedPaint, Bounds in its local coordinates, for the pixels of the image itself
+    Bounds are in local coordinates of the SurveyedPaint, for the pixels of the image itself.
     Raises RoadExtractionError if the image covers too much ground, the intensity image has nothing there, or too much would have to be searched.
     """
     ground = max(image.width, image.height) * rough.size
@@ -410,11 +398,7 @@ class Placement:
         return self.polynomial.to_map(x, y)
 
     def metres(self, x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
-        """How far on the map pixels lie from those of places.
-
-        x, y, pixel, line : (N,)
-        Returns (N, 2) m, to first order
-        """
+        """(N, 2) m, how far on the map (N,) pixels lie from those of places, to first order."""
         placed = np.column_stack(self.pixels(x, y))
         slope = self.polynomial.jacobian(x, y)
         return np.linalg.solve(slope, (np.column_stack([pixel, line]) - placed)[..., None])[..., 0]
@@ -449,15 +433,13 @@ _PAIRS_PER_TERM = 2   # an order is fitted to at least so many times the pairs t
 
 
 def agreeing(x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float, weights: np.ndarray) -> np.ndarray:
-    """The pairs whose displacements one affine transformation explains, as many as can be found together.
+    """(N,) bool, the pairs whose displacements one affine transformation explains, as many as can be found; none of too few places.
 
     Where the places lie on a line, as large patches of a straight road do, the transformation is a similarity.
 
-    x, y : (N,) m, places on the map
-    moved : (N, 2) m, their displacements
+    x, y, moved : (N,) and (N, 2) m, places on the map and their displacements
     tolerance : m, from the displacement that the transformation gives
     weights : (N,) what each pair counts
-    Returns (N,) bool; none where there are too few places
     """
     if len(x) < MIN_CONTROL_POINTS[1]:
         return np.zeros(len(x), dtype=bool)
@@ -490,9 +472,7 @@ def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: 
                      weights: np.ndarray) -> tuple[Placement, np.ndarray] | None:
     """A new placement, of order 2 where there are pairs enough, from places of the map that were found displaced in the photo as drawn by an old one.
 
-    placement : Placement by which the photo was drawn
-    x, y : (N,) m, places on the map
-    moved : (N, 2) m, from there to where the drawn photo has them
+    x, y, moved : (N,) and (N, 2) m, places on the map, and from there to where the drawn photo has them
     tolerance : m, largest residual of a pair that is used
     weights : (N,) what each pair counts
     Returns placement, used: Placement and (N,) bool; None where no three pairs agree
@@ -533,13 +513,7 @@ def highest_order(x: np.ndarray, y: np.ndarray) -> int:
 
 
 def left_out_residuals(x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray, used: np.ndarray, order: int) -> np.ndarray:
-    """Residuals of pairs on the map against a polynomial from pixel and line to the map that was fitted without each.
-
-    x, y, pixel, line : (N,)
-    used : (N,) bool, pairs that are fitted
-    order : of the polynomial
-    Returns (N,) m
-    """
+    """(N,) m, residuals of pairs on the map against a polynomial from the image to the map, fitted to those `used` without each."""
     fit = fit_image_polynomial(pixel[used], line[used], x[used], y[used], order)
     residuals = np.column_stack([x, y]) - np.column_stack(fit.polynomial.to_map(pixel, line))
     residuals[used] = fit.left_out

@@ -357,20 +357,13 @@ class _Rival(NamedTuple):
 
 
 def _corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """How well the photo fits about corners of paint.
-
-    x, y : (N,) m, local
-    Returns (N,) correlation of the best place within some decimetres; NaN outside the photo
-    """
+    """(N,) how well the photo fits about corners of paint, (N,) m, local: correlation of the best place within decimetres; NaN outside."""
     maps = _maps(placement, paint, photo, x, y, _OFF)
     return np.array([np.nan if match is None else match.max() for match in maps])
 
 
 def _nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
-    """The shift by some metres that the corners allow best, besides none at all.
-
-    as of `_corner_scores` Returns _Rival, None where no corner lies in the photo
-    """
+    """The shift by some metres that the corners allow best, besides none at all; None where no corner lies in the photo."""
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
     maps = [cv2.dilate(match, near) for match in _maps(placement, paint, photo, x, y, _AROUND) if match is not None]
     if not maps:
@@ -426,12 +419,10 @@ class Found(NamedTuple):
 def _find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float, search: float) -> Found:
     """Find patches of the intensity image in the photo drawn on the same cells.
 
-    paint : (H, W) contrast of the intensity image, 0 where unknown, its corner at local 0, 0
-    drawn : (H, W) contrast of the photo on the same cells
+    paint, drawn : (H, W) contrast of the intensity image, 0 where unknown, its corner at local 0, 0, and of the photo on the same cells
     cell : m
     x, y : (N,) middles of the patches, m, local
-    half : m, half the side of a patch
-    search : m, how far off it may be
+    half, search : m, half the side of a patch, and how far off it may be
     Returns Found, without patches that lie too near the border, hold no paint, or were found at the border of their window
     """
     margin = max(2, round(search / cell))
@@ -447,10 +438,9 @@ def _find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarr
 
 def _correlation_maps(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float,
                      search: float) -> Iterator[np.ndarray | None]:
-    """The correlation of each patch with the photo, for every shift by whole cells.
+    """The correlation of each patch with the photo, for every shift by whole cells; parameters as of `_find_patches`.
 
-    as of `_find_patches`
-    Returns iterator of (2 n + 1, 2 n + 1) float32, the shift by nothing in the middle; None where a patch holds no paint or the photo is empty
+    Yields (2 n + 1, 2 n + 1) float32, the shift by nothing in the middle; None where a patch holds no paint or the photo is empty.
     """
     reach, margin = max(2, round(half / cell)), max(2, round(search / cell))
     edge = reach + margin + 1
