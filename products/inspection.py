@@ -227,11 +227,8 @@ def _key(column, row, layer=0):
 
 
 def _density(counts, size):
-    """Points per unit: over occupied cells, and of_a_point, the mean over points of their own cell.
-
-    The latter is what a density per neighbourhood, as CloudCompare computes it
-    and the figures 4.2 and 4.5 of the driving-line thesis show it, comes close to.
-    """
+    """Points per unit: over occupied cells, and of_a_point, the mean over points of their own cell, to which the density per
+    neighbourhood of CloudCompare and of the driving-line thesis (figures 4.2 and 4.5) comes close."""
     counts = counts / size
     return dict(cells=len(counts), mean=float(counts.mean()), median=float(np.median(counts)), largest=float(counts.max()),
                 of_a_point=float((counts**2).sum() / counts.sum()))
@@ -282,9 +279,8 @@ class _InspectedDrive:
 
 
 def _inspect_drive(trajectory: Trajectory, rows: np.ndarray, heights: np.ndarray) -> _InspectedDrive:
-    """Roads, passes and sensor height of a trajectory.
+    """Roads, passes and sensor height of a trajectory, cleaned and in the clouds' CRS.
 
-    trajectory : Trajectory, cleaned and in the clouds' CRS
     rows, heights : (N,) of points on the track of the vehicle: the nearest trajectory row and the map height in m
     """
     frame = build_frame(trajectory)

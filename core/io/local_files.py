@@ -100,8 +100,8 @@ def open_vector(path: str | Path) -> Any:
 def gdal_work(work: Callable[[Callable[..., int]], Any], progress: Progress) -> Any:
     """What `work` returns, which hands GDAL the callback that it is called with, so that GDAL reports to `progress`.
 
-    GDAL passes no exception through its own code: what the report raises, as Cancelled, stops GDAL's work and is raised afterwards, without GDAL's own
-    error, which would keep its datasets alive.
+    GDAL passes no exception through its own code: what the report raises, as Cancelled, stops GDAL's work and is raised afterwards, without
+    GDAL's own error, which would keep its datasets alive.
     """
     stopped: list[Exception] = []
 

@@ -74,12 +74,7 @@ def _parts():
 
 
 def explain_attributes(layer: QgsVectorLayer, output: str, schema: Sequence[Any]) -> None:
-    """Set names, formats and titles of the fields that a layer has.
-
-    layer : of a result
-    output : the result, such as ROAD_EDGES
-    schema : columns of the result, with aliases
-    """
+    """Set names, formats and titles of the fields of a layer that is a result, such as ROAD_EDGES, whose columns have aliases."""
     for column in schema:
         index = layer.fields().lookupField(column.name)
         if index < 0:
@@ -190,10 +185,7 @@ _TEXT = "<text x='{x}' y='{y}' font-family='sans-serif' font-size='11' text-anch
 
 
 def tip_picture(names: set[str]) -> str:
-    """The expression, in [% %], of the picture that a layer's features have in their map tip; "" where its fields give none.
-
-    names : of the fields of the layer
-    """
+    """The expression, in [% %], of the picture that features with fields of these names have in their map tip; "" where they give none."""
     if {"height_m", "side", "edge"} <= names:
         return _shown(_curb(), '"height_m" IS NOT NULL AND coalesce("edge", \'\') <> \'pavement\'')
     if {"width_m", "left_patt", "right_patt"} <= names:

@@ -304,11 +304,7 @@ def _tile_bounds(tile: tuple[int, int], cell_size: float, margin: int = 0) -> tu
 def outcome_raster(path: str, polygons: Iterable[Any], cell_size: float, crs: str, margin: int = 0) -> Iterator[WriteTile]:
     """A GeoTIFF of the outcomes of `assess_markings`: HIT and so on, 0 where neither side is painted; yields what writes a tile of it.
 
-    path : of the .tif
-    polygons : of result and reference together; the raster covers their extent
-    cell_size : metres
-    crs : WKT, "" if unknown
-    margin : cells by which polygons are widened
+    It covers the polygons of result and reference, widened by `margin` cells of `cell_size` metres. crs : WKT, "" if unknown
     """
     tiles = np.array(_covering_tiles(list(polygons), cell_size, margin) or [(0, 0)])
     (west, south), (east, north) = tiles.min(axis=0).tolist(), tiles.max(axis=0).tolist()

@@ -51,12 +51,9 @@ def _by_side(accuracy):
 
 def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccuracySettings, layer: Features, names: tuple[str, str],
                    station: tuple[np.ndarray, np.ndarray], along: str, total_width: bool = False, notes: Sequence[str] = ()) -> str:
-    """The report of a LineAccuracy as HTML.
+    """The report of a LineAccuracy as HTML. `layer`: of `driving_line_layer`; `names`: result and reference as the user calls them.
 
-    layer : Features of `driving_line_layer`
-    names : (result, reference) as the user calls them
-    station : (N,) metres along the road of the result's places and (M,) of the reference's
-    along : what that is measured along
+    station : (N,) metres along the road of the result's places and (M,) of the reference's; `along` is what that is measured along
     total_width : whether the user gave tolerances as the whole width of the buffer
     """
     along, length = told(along), match.result_points.length
@@ -76,10 +73,8 @@ def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccur
 
 def marking_report(accuracy: MarkingAccuracy, layer: Features, names: tuple[str, str], station: np.ndarray, along: str,
                    image: str | None = None, notes: Sequence[str] = ()) -> str:
-    """The report of a MarkingAccuracy as HTML.
+    """The report of a MarkingAccuracy as HTML. `layer`: of `marking_layer`; `names`: result and reference as the user calls them.
 
-    layer : Features of `marking_layer`
-    names : (result, reference) as the user calls them
     station : (N,) metres along the road of `accuracy.blocks`; `along` is what that is measured along
     image : path of a raster to draw the map over, or None
     """
