@@ -13,9 +13,9 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.features import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS, Features
 from ...core.common.progress import Progress
 from ...core.curves.line_segments import single_lines
-from ...core.io.crs import check_extent, check_metric, horizontal_part, parse_crs, same_crs
+from ...core.io.crs import check_extent, check_metric, horizontal_part, in_other_crs, parse_crs, same_crs
 from ...core.io.local_files import gdal_exceptions, gdal_work, open_raster, reading
-from ...core.lazy import gdal, ogr, pyproj
+from ...core.lazy import gdal, ogr
 from ...core.survey.weights import TRAJECTORY
 from .lines import MAX_MATCH_DISTANCE, SIDE_NAMES, BoundaryAccuracy, LineAccuracySettings, LineMatch, interval_lines
 from .markings import MarkingAccuracy
@@ -218,9 +218,7 @@ def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore
     if same_crs(source, target):
         return replace(layer, crs=wkt)
 
-    move = pyproj.Transformer.from_crs(horizontal_part(source), horizontal_part(target), always_xy=True)
-    moved = [shapely.transform(shape, lambda xyz: np.column_stack([*move.transform(*xyz[:, :2].T), xyz[:, 2:]]), include_z=bool(shape.has_z))
-             for shape in layer.geometries]
+    moved = in_other_crs(layer.geometries, source, target)
     if not np.isfinite(shapely.get_coordinates(moved)).all():
         raise RoadExtractionError(
             f"{layer.label} is in {horizontal_part(source).name} and cannot be brought to {horizontal_part(target).name}. Check its CRS.")
