@@ -429,8 +429,8 @@ def _line_numbers(accuracy, tolerance):
         "COMPLETENESS": complete, "CORRECTNESS": correct,
         "QUALITY": 100 * accuracy.quality[tolerance], "MISCODING": 100 * accuracy.miscoding[tolerance],
         "PRECISION": correct, "RECALL": complete, "F1": f1_of(correct if accuracy.result_length else 0.0, complete),
-        "MEAN": accuracy.lateral.mean, "RMSE": accuracy.rmse,
-        "P95": accuracy.lateral.p95, "MAXIMUM": accuracy.lateral.maximum, "HEIGHT_RMSE": accuracy.height_rmse,
+        "MEAN": accuracy.lateral.mean, "RMSE": accuracy.lateral.rmse,
+        "P95": accuracy.lateral.p95, "MAXIMUM": accuracy.lateral.maximum, "HEIGHT_RMSE": accuracy.height.rmse,
         "GAPS_PER_KM": accuracy.gaps_per_km[tolerance], "MEAN_GAP": accuracy.mean_gap[tolerance],
         "RESULT_LENGTH": accuracy.result_length, "REFERENCE_LENGTH": accuracy.reference_length,
     }

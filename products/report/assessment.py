@@ -63,7 +63,7 @@ def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccur
         "driving_accuracy", accuracy=accuracy, settings=settings, names=names, notes=notes, total_width=total_width, whole=_whole,
         errors_row=_errors_row, min_gap=MIN_REFERENCE_GAP, max_distance=MAX_MATCH_DISTANCE,
         lines=[(str(k), line.reference_length, *(percent(shares[t]) for shares in (line.completeness, line.miscoding) for t in settings.tolerances),
-                _centimetres(line.rmse)) for k, line in enumerate(accuracies, start=1)],
+                _centimetres(line.lateral.rmse)) for k, line in enumerate(accuracies, start=1)],
         map=_outcome_map(layer), error_chart=_error_along_road(station[0], match.lateral, length, along),
         outcome_chart=_outcomes_along_road(
             {"correct": station[0][~wrong], "false": station[0][wrong], "missed": station[1][missed]},
