@@ -66,7 +66,7 @@ class Phase:
     source : what it reads from, open in this process; its `recipe(folder)` puts into the folder what another process needs, unless it is
         there, and gives the Recipe
     together : so many items, one after the other along the road, are best given to one worker, which keeps what they share
-    join : the result of an item from those of the two halves of its range of numbers; None where an item cannot be halved
+    join : the result of an item from those of the two halves of the range of numbers at its end; None where an item cannot be halved
     state : plain value that changes with what an item reads from the source, by which a later run knows its result again; None where none may
     """
 
@@ -81,6 +81,21 @@ class Phase:
     def result(self, item: Any) -> Any:
         """The result of one item, computed here."""
         return self.function(self.source, item, *self.arguments)
+
+
+class Items(Sequence[Any]):
+    """The `count` items of a phase, each of which is made by its number when it is given to a worker: together they would take much memory."""
+
+    def __init__(self, count: int, make: Callable[[int], Any]):
+        self.count, self.make = count, make
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, number: Any) -> Any:
+        if number >= self.count:
+            raise IndexError
+        return self.make(number)
 
 
 class Executor:
@@ -105,7 +120,8 @@ class Executor:
     def run_together(self, phase: Phase, items: Sequence[Any], together: int, progress: Progress = Progress()) -> Iterator[Any]:
         """Yield the results of items of a phase whose function is given lists of them, `together` at most, and returns lists of results."""
         size = max(min(together, len(items) // EXECUTION.least_tasks), 1)
-        for results in self.run(phase, [items[k:k + size] for k in range(0, len(items), size)], progress):
+        lists = Items(-(-len(items) // size), lambda k: [items[number] for number in range(k * size, min((k + 1) * size, len(items)))])
+        for results in self.run(phase, lists, progress):
             yield from results
 
     def passing(self) -> Executor:

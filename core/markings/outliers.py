@@ -14,7 +14,7 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..execution.phase import THREADS, Executor, NoSource, Phase
+from ..execution.phase import THREADS, Executor, Items, NoSource, Phase
 from ..lazy import cv2
 from ..survey.store.columns import Columns
 from ..survey.store.records import COORDINATE_SCALE, take_rows
@@ -26,7 +26,6 @@ NEIGHBOUR_HALO = 2.0      # cost: m of station beyond a window where neighbours 
 MAX_LIMIT_SAMPLE = 1500   # cost: points of a band from which its limit is taken; where there are twice as many, of an evenly spaced sample
 COLUMNS = "s", "d", "x", "y", "z"   # that outliers are told by
 TASK_WINDOWS = 5       # cost: windows of 20 m that are looked at together
-WINDOWS_AT_ONCE = 100      # cost: windows whose columns are held at a time
 TREE_LEAF_POINTS = 20      # cost: points in a leaf of the tree
 MAX_FLOAT32_UNITS = 1 << 24       # derived: units (1.6 km): up to here float32 holds every integer
 QUERIES_PER_BLOCK = 1 << 16       # cost: points asked for at a time: bounds the table of their neighbours
@@ -79,13 +78,8 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
     else:
         windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
         phase = Phase(kept_of_windows, NoSource(), (settings,), lambda item: f"markings {item[0][0] * OUTLIERS.window:.0f} m along a road")
-        keep = [np.empty(0, bool)]
-        for first in range(0, len(windows), WINDOWS_AT_ONCE):
-            batch = windows[first:first + WINDOWS_AT_ONCE]
-            items = [_columns_of(points, *window) for window in batch]
-            part = progress.part(first / len(windows), min(first + WINDOWS_AT_ONCE, len(windows)) / len(windows))
-            keep += executor.run_together(phase, items, TASK_WINDOWS, part)
-        _put(kept, points, np.concatenate(keep))
+        items = Items(len(windows), lambda k: _columns_of(points, *windows[k]))
+        _put(kept, points, np.concatenate([np.empty(0, bool), *executor.run_together(phase, items, TASK_WINDOWS, progress)]))
     progress.info(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept
 

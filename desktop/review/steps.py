@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
+from functools import cache
 from pathlib import Path
 
-from qgis.core import QgsApplication, QgsMapLayer, QgsProcessingUtils, QgsProject, QgsProviderRegistry, QgsVectorLayer
+from qgis.core import QgsMapLayer, QgsProcessingUtils, QgsProject, QgsProviderRegistry, QgsVectorLayer
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
 from ...algorithms.algorithm import SettingSpec
+from ...algorithms.catalogue import ALGORITHMS
 from ...algorithms.destinations import table_of
 from ...algorithms.survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS
 from ...processing_provider.results.origin import origin_of
@@ -63,20 +65,25 @@ def steps_of(road_map: RoadMap, corrections: QgsVectorLayer | None) -> list[Step
         else:
             state = FRESH, tr("fresh"), tr("Nothing that it is made from has changed.")
         before = max(filter(None, (before, provenance.ended)))
-        algorithm = QgsApplication.processingRegistry().createAlgorithmById(f"lanewright:{stage}")
-        settings = tuple(_settings(algorithm, {**road_map.values, **provenance.values}))
-        steps.append(Step(algorithm.declaration.title(), layer, provenance.ended, *state, settings))
+        declared = _declared(stage)
+        settings = tuple(_settings(declared, {**road_map.values, **provenance.values}))
+        steps.append(Step(declared.title(), layer, provenance.ended, *state, settings))
     return steps
 
 
-def _settings(algorithm, values):
+@cache
+def _declared(stage):
+    """The algorithm of a step, made once: the steps are listed after every correction."""
+    return next(algorithm for algorithm in ALGORITHMS if algorithm.ID == stage)()
+
+
+def _settings(declared, values):
     """(label, value, whether it is not the default) of what is decided in this step alone."""
-    for spec in algorithm.declaration.parameters:
+    for spec in declared.parameters:
         if isinstance(spec, SettingSpec) and spec not in (*SURVEY_SETTINGS, *EXECUTION_SETTINGS):
-            default = algorithm.parameterDefinition(spec.name).defaultValue()
-            value = values.get(spec.name, default)
+            value = values.get(spec.name, spec.default)
             text = (tr("yes") if value else tr("no")) if isinstance(value, bool) else f"{value:g}" if isinstance(value, (int, float)) else str(value)
-            yield spec.label, text, value != default
+            yield spec.label, text, value != spec.default
 
 
 def values_again(road_map: RoadMap) -> dict[str, object]:

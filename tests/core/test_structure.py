@@ -26,7 +26,7 @@ NUMBERS = {
     "core/survey": 74,
     "core/road": 19,
     "core/intensity": 12,
-    "core/markings": 69,
+    "core/markings": 66,
     "core/driving": 5,
     "core/corrections": 2,
     "core/pipeline": 2,

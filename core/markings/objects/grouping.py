@@ -9,9 +9,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.arrays import linked_groups
-from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...execution.phase import THREADS, Executor, NoSource, Phase
+from ...execution.phase import THREADS, Executor, Items, NoSource, Phase
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints, columns_of_roads
@@ -21,7 +20,6 @@ from ..weights import GROUPS
 LINKING_WINDOW_CELLS = 1250   # derived: cells of 4 cm: 50 m of station are linked at a time
 LINKING_COLUMNS = ("s", "d", "spacing", "half_width")   # of a point, that linking looks at
 LINKED_POINTS = 50_000   # derived: of paint, that are linked together at most, on average: about 50 ms
-PHASE_POINTS = 500_000   # derived: of paint, whose columns are held for tasks at a time
 # of a point of paint that clustering looks at
 PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
 
@@ -63,18 +61,10 @@ def _linked_windows(marking_points, road, distance, progress, executor):
     points = sum(marking_points.store.size(road, number) for number in marking_points.sections(road))
     # a power of two, so that windows stay together where others change
     together = 2 ** max(int(np.log2(LINKED_POINTS * (last + 1 - first) / max(points, 1))), 0)
-    items, total, begin = [], 0, first
-    for number in range(first, last + 1):
-        check_cancelled()
-        window = _points_to_link(marking_points, road, distance, number)
-        if not items or number % together == 0:
-            items.append([])
-        items[-1].append(window)
-        total += len(window[0])
-        if total >= PHASE_POINTS or number == last:
-            part = progress.part((begin - first) / (last + 1 - first), (number + 1 - first) / (last + 1 - first))
-            yield from (links for batch in executor.run(phase, items, part) for links in batch)
-            items, total, begin = [], 0, number + 1
+    begins = [first, *range((first // together + 1) * together, last + 1, together), last + 1]
+    items = Items(len(begins) - 1, lambda k: [_points_to_link(marking_points, road, distance, number) for number in range(*begins[k:k + 2])])
+    for links in executor.run(phase, items, progress):
+        yield from links
 
 
 def _points_to_link(marking_points, road, distance, number):

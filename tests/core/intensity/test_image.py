@@ -188,14 +188,14 @@ def test_weights_do_not_depend_on_how_many_are_computed_at_a_time():
 
 
 def test_what_is_interpolated_again_for_a_later_tile_is_the_same(tmp_path, monkeypatch):
-    """A diagonal street, whose pieces touch several tiles, and none is kept for the next one."""
+    """A diagonal street, whose pieces touch several tiles, each of which is made apart from the others."""
     from lanewright.core.intensity import image
 
     records = painted_street()
     x, y = records["x"].copy(), records["y"].copy()
     records["x"], records["y"] = np.rint((x - y) * np.sqrt(0.5)), np.rint((x + y) * np.sqrt(0.5))
     usual = all_pixels(image_of(records, tmp_path / "a.tif"))
-    monkeypatch.setattr(image, "IMAGE", replace(image.IMAGE, tiles_ahead=0))
+    monkeypatch.setattr(image, "IMAGE", replace(image.IMAGE, tiles_per_task=1))
     np.testing.assert_array_equal(usual, all_pixels(image_of(records, tmp_path / "b.tif")))
 
 

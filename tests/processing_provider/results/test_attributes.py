@@ -16,6 +16,7 @@ from qgis.core import (
     QgsProcessingContext,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QTextBrowser
 
 SCHEMAS = {"ROAD_EDGES": ("LineStringZ", ROAD_EDGES), "MARKING_LINES": ("LineStringZ", MARKING_LINES), "LANES": ("PolygonZ", LANES),
@@ -112,6 +113,14 @@ def test_numbers_are_rounded_to_what_they_mean_and_values_are_words(qgis_app):
 ])
 def test_a_name_is_short_and_keeps_its_unit(alias, short):
     assert short_alias(alias) == short
+
+
+def test_between_two_layers_of_a_run_the_window_is_drawn(qgis_app):
+    """QGIS loads and styles all layers in one go, which would keep the window still for as long."""
+    drawn = []
+    QTimer.singleShot(0, lambda: drawn.append(True))
+    loaded("DRIVING_LINES", status="measured")
+    assert drawn
 
 
 def test_the_road_plan_is_in_force_and_further_looks_stand_ready(qgis_app):
