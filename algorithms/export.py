@@ -86,21 +86,22 @@ def write_map_layers(call, layers, progress):
     return {"LANE_COUNT": float(len(lanes)), "LENGTH": length}
 
 
-LINE_FIELDS = tuple(field for field in DRIVING_LINES if field.name in ("road", "lane", "status", "station_m", "end_m", "sigma_m"))
-MARKING_LINE_FIELDS = tuple(field for field in MARKING_LINES if field.name in ("road", "line", "kind", "pattern", "width_m"))
-EDGE_FIELDS = tuple(field for field in ROAD_EDGES if field.name in ("road", "height_m", "edge"))
-MARKING_FIELDS = tuple(field for field in MARKINGS if field.name in ("road", "class"))
+# layers that an export takes beside the lanes -> label, help, geometry, fields and which of them are read
+ROAD_MAP_LAYERS = {
+    "DRIVING_LINES": (tr("Driving lines"), tr("Held against the middles of the lanes: the report says how far apart they are. The uncertainty of "
+                                              "every lane comes from them."),
+                      "LineStringZ", DRIVING_LINES, "road lane status station_m end_m sigma_m"),
+    "MARKING_LINES": (tr("Marking lines"), tr("The widths of the painted borders."), "LineStringZ", MARKING_LINES, "road line kind pattern width_m"),
+    "ROAD_EDGES": (tr("Road edges"), tr("The heights of curbs."), "LineStringZ", ROAD_EDGES, "road height_m edge"),
+    "MARKINGS": (tr("Markings"), tr("Zebra crossings, stop lines, arrows and hatched areas."), "PolygonZ", MARKINGS, "road class"),
+}
 
 
 def add_road_map_layers(algorithm):
     """The layers of the road map that an export takes."""
     algorithm.add_input("layer", "LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
-    algorithm.add_input("layer", "DRIVING_LINES", tr("Driving lines"), tr(
-        "Held against the middles of the lanes: the report says how far apart they are. The uncertainty of every lane comes from "
-        "them."), "LineStringZ", optional=True)
-    algorithm.add_input("layer", "MARKING_LINES", tr("Marking lines"), tr("The widths of the painted borders."), "LineStringZ", optional=True)
-    algorithm.add_input("layer", "ROAD_EDGES", tr("Road edges"), tr("The heights of curbs."), "LineStringZ", optional=True)
-    algorithm.add_input("layer", "MARKINGS", tr("Markings"), tr("Zebra crossings, stop lines, arrows and hatched areas."), "PolygonZ", optional=True)
+    for name, (label, text, geometry, _, _) in ROAD_MAP_LAYERS.items():
+        algorithm.add_input("layer", name, label, text, geometry, optional=True)
     algorithm.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it the borders have the heights of the road's surface."), optional=True)
 
 
@@ -116,13 +117,11 @@ def road_map_source(call, progress):
     from ..products.export.sources import RoadMapSource, checked, known_of_roads
 
     areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
-    source = RoadMapSource(
-        Lanes.from_features(areas), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
-        call.features("MARKING_LINES", MARKING_LINE_FIELDS, "LineStringZ"), call.features("ROAD_EDGES", EDGE_FIELDS, "LineStringZ"),
-        call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"), attributes=known_of_roads(areas))
+    layers = {name.lower(): call.features(name, [field for field in schema if field.name in read.split()], geometry)
+              for name, (_, _, geometry, schema, read) in ROAD_MAP_LAYERS.items()}
     if call.algorithm.parameter("SIGNALS") is not None:
-        source.signals = call.features("SIGNALS", SIGNALS, "PointZ")
-    source = checked(source)
+        layers["signals"] = call.features("SIGNALS", SIGNALS, "PointZ")
+    source = checked(RoadMapSource(Lanes.from_features(areas), **layers, attributes=known_of_roads(areas)))
     if call.cloud("ROAD_POINTS"):
         from ..products.export.sources import with_surface_heights
 
@@ -447,8 +446,11 @@ class ExportCad(Algorithm):
     def work(self, call, progress):
         from ..products.report.hd_map import map_export_report
 
-        kind = call.value("FORMAT")
-        self._check_name(call, kind)
+        kind, path = call.value("FORMAT"), call.destination("OUTPUT") or ""
+        named = next((name for name, suffixes in SUFFIXES.items() if path.lower().endswith(suffixes)), kind)
+        if named != kind and path != "TEMPORARY_OUTPUT":
+            raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.").format(
+                path=path, named=named, kind=kind))
         source = road_map_source(call, progress.part(0.0, 0.2))
         for note in source.notes:
             progress.warn(note)
@@ -457,13 +459,6 @@ class ExportCad(Algorithm):
             facts = [(tr("Format"), {"dxf": "DXF", "landxml": "LandXML 1.2"}[kind]), (tr("Lines"), int(numbers["LINES"]))]
             call.text("REPORT", map_export_report(tr("Road map for CAD"), call.layer_name("LANES"), facts, tables, source.notes))
         return numbers
-
-    def _check_name(self, call, kind):
-        path = call.destination("OUTPUT") or ""
-        named = next((name for name, suffixes in SUFFIXES.items() if path.lower().endswith(suffixes)), kind)
-        if named != kind and path != "TEMPORARY_OUTPUT":
-            raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.").format(
-                path=path, named=named, kind=kind))
 
 
 def _dxf(call, source, progress):
@@ -491,9 +486,8 @@ def _landxml(call, source, progress):
     missed = max((alignment.missed for alignment in alignments), default=0.0)
     progress.info(tr("{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.").format(
         count=len(alignments), length=sum(alignment.length for alignment in alignments), missed=missed))
-    rows = [(alignment.name, told(alignment.description), round(alignment.length, 2),
-             len(alignment.plan.elements) if alignment.plan is not None else None, len(alignment.profile))
-            for alignment in alignments]
+    rows = [(one.name, told(one.description), round(one.length, 2), len(one.plan.elements) if one.plan is not None else None, len(one.profile))
+            for one in alignments]
     tables = [(tr("Alignments"), (tr("Name"), tr("What it is"), tr("Length (m)"), tr("Elements"), tr("Points of the profile")), rows)]
     return {"LINES": float(len(alignments)), "ALIGNMENTS": float(len(alignments)), "MISSED": missed}, tables
 

@@ -63,7 +63,6 @@ def _road_fields():
 
 
 def _header_of(file, crs):
-    """The header of the copy."""
     with open_cloud(file.path, known=file) as reader:
         header = deepcopy(reader.header)
     # those of the file itself, which the reader gives in metres
@@ -105,7 +104,6 @@ def _name_classes(header):
 
 
 def _described(points, places, header, counts):
-    """The record of a block of laspy points for the copy."""
     record = laspy.ScaleAwarePointRecord.zeros(len(points), header=header)
     before = np.asarray(points["classification"])
     if points.point_format.id == header.point_format.id:

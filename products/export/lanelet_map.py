@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict, deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,13 +19,16 @@ from ...core.lazy import pyproj
 from .sources import LEAST_LED, LOCAL_CRS, STOP_LINE_HALF, MapLayers, MapLine, metric_wkt, plan_length, utm_of, without_repeats
 from .xml_tree import XmlElement, read_xml
 
+OURS = "lanewright:"   # of tags that the format does not have
+LANE_ID = OURS + "lane_id"   # of a lanelet: its piece of the layer
+
 
 @dataclass
 class Way:
     """A line of nodes, by their ids. line : in the file, 0 where made."""
 
     id: int
-    nodes: list[int]
+    nodes: Sequence[int]
     tags: dict[str, str] = field(default_factory=dict)
     line: int = 0
 
@@ -37,6 +41,11 @@ class Lanelet:
     tags: dict[str, str] = field(default_factory=dict)
     members: dict[str, list[tuple[str, int]]] = field(default_factory=dict)
     line: int = 0
+
+    @property
+    def name(self) -> str:
+        """The lane_id of the lane that it was made of, "" for none."""
+        return self.tags.get(LANE_ID, "")
 
     def way(self, role: str) -> int | None:
         """The id of the only way of a role, None where there is none or more than one."""
@@ -191,41 +200,35 @@ def _lanelets_of(root: XmlElement) -> LaneletMap:
     for element in root.children:
         if element.tag not in ("node", "way", "relation") or element.get("action") == "delete":
             continue
-        id, tags = _id(element, "id"), _tags(element)
-        tags_twice += [(element.tag, id, key) for key in _repeated_tags(element, tags)]
+        id, keys = _id(element, "id"), [child.get("k") for child in element.all("tag")]
+        tags = {child.get("k"): child.get("v") for child in element.all("tag")}
+        if len(keys) > len(tags):
+            tags_twice += [(element.tag, id, key) for key in tags if keys.count(key) > 1]
         if (element.tag, id) in seen:
             twice.append((element.tag, id, element.line))
             continue
         seen.add((element.tag, id))
         if element.tag == "node":
             ids.append(id)
-            places.append((_degrees(element, "lon"), _degrees(element, "lat"), _tag_number(tags, "ele", element)))
+            # maps in local coordinates leave latitude and longitude out, or empty
+            degrees = (element.number(name, np.nan) if element.get(name) else np.nan for name in ("lon", "lat"))
+            places.append((*degrees, _tag_number(tags, "ele", element)))
             local.append((_tag_number(tags, "local_x", element), _tag_number(tags, "local_y", element)))
         elif element.tag == "way":
             ways[id] = Way(id, [_id(child, "ref") for child in element.all("nd")], tags, element.line)
         else:
-            (lanelets if tags.get("type") == "lanelet" else relations)[id] = Lanelet(id, tags, _members(element), element.line)
+            members: dict[str, list[tuple[str, int]]] = {}
+            for child in element.all("member"):
+                members.setdefault(child.get("role"), []).append((child.get("type"), _id(child, "ref")))
+            (lanelets if tags.get("type") == "lanelet" else relations)[id] = Lanelet(id, tags, members, element.line)
     places_array = np.array(places, float).reshape(-1, 3)
-    _check_degrees(places_array, ids)
+    wrong = np.flatnonzero((np.abs(places_array[:, :2]) > (180, 90)).any(1))
+    if len(wrong):
+        lon, lat, _ = places_array[wrong[0]]
+        raise RoadExtractionError(f"Node {ids[wrong[0]]} lies at lon {lon:g}, lat {lat:g}; degrees up to 180 and 90 are needed. "
+                                  "Is the map in another CRS?")
     return LaneletMap(np.array(ids, np.int64), places_array[:, :2], places_array[:, 2], np.array(local, float).reshape(-1, 2), ways, lanelets,
                       relations, twice, tags_twice)
-
-
-def _repeated_tags(element, tags):
-    keys = [child.get("k") for child in element.all("tag")] if element.children else []
-    return [key for key in tags if keys.count(key) > 1] if len(keys) > len(tags) else []
-
-
-def _degrees(element, name):
-    """NaN where there are none: maps in local coordinates leave latitude and longitude out, or empty."""
-    return element.number(name, np.nan) if element.get(name) else np.nan
-
-
-def _members(element):
-    members: dict[str, list[tuple[str, int]]] = {}
-    for child in element.all("member"):
-        members.setdefault(child.get("role"), []).append((child.get("type"), _id(child, "ref")))
-    return members
 
 
 def _id(element, name):
@@ -239,10 +242,6 @@ def _id(element, name):
     return value if value < MAX_ID else value - ALL_IDS
 
 
-def _tags(element):
-    return {child.get("k"): child.get("v") for child in element.all("tag")}
-
-
 def _tag_number(tags, name, element):
     """A tag's number, NaN where there is none."""
     if name not in tags:
@@ -252,21 +251,12 @@ def _tag_number(tags, name, element):
     return tag.number(name)
 
 
-def _check_degrees(places, ids):
-    wrong = np.flatnonzero((np.abs(places[:, 0]) > 180) | (np.abs(places[:, 1]) > 90))
-    if len(wrong):
-        lon, lat = places[wrong[0], :2]
-        raise RoadExtractionError(f"Node {ids[wrong[0]]} lies at lon {lon:g}, lat {lat:g}; degrees up to 180 and 90 are needed. "
-                                  "Is the map in another CRS?")
-
-
 # The lanelets and lines of a Lanelet2 map as layers like ours.
 
 PATTERN_OF_WAY = {"solid": "solid", "dashed": "dashed", "solid_solid": "double-solid",
                   "dashed_dashed": "double-dashed", "solid_dashed": "solid-dashed", "dashed_solid": "dashed-solid"}
 KIND_OF_WAY = {"traffic_light": "traffic_light", "traffic_sign": "sign", "pole": "pole", "post": "pole"}
 CARRIED = ("traffic_light", "traffic_sign", "speed_limit")   # rules of traffic that layers hold
-OURS = "lanewright:"   # of tags that the format does not have
 PAINTED_WAYS = ("line_thin", "line_thick")
 EDGE_WAYS = ("curbstone", "road_border", "guard_rail", "wall", "fence")
 NO_LAND = 1.0   # degrees from latitude and longitude 0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -57,13 +56,6 @@ class RoadMapSource:
         rows = self.marking_lines.rows if self.marking_lines is not None and line.startswith("line ") else ()
         widths = [float(row["width_m"]) for row in rows if str(row.get("line")) == line[5:] and row.get("width_m") is not None]
         return float(np.median(widths)) if widths else np.nan
-
-    def others(self) -> Iterator[tuple[str, Features]]:
-        """(what messages call it, layer) of the layers beside the lanes that there are."""
-        for label, layer in (("Driving lines", self.driving_lines), ("Marking lines", self.marking_lines), ("Road edges", self.road_edges),
-                             ("Markings", self.markings), ("Signals and poles", self.signals)):
-            if layer is not None and len(layer):
-                yield label, layer
 
 
 def is_stated(lanes: Lanes) -> bool:
@@ -160,7 +152,10 @@ def _check_places(lanes):
 def _check_layers(source):
     lanes = source.lanes
     low, high = lanes.left.min(0)[:2] - FARTHEST_LAYER, lanes.left.max(0)[:2] + FARTHEST_LAYER
-    for label, layer in source.others():
+    for label, layer in (("Driving lines", source.driving_lines), ("Marking lines", source.marking_lines), ("Road edges", source.road_edges),
+                         ("Markings", source.markings), ("Signals and poles", source.signals)):
+        if not layer:
+            continue
         west, south, east, north = shapely.total_bounds(np.array([g for g in layer.geometries if g is not None], object))
         if west > high[0] or east < low[0] or south > high[1] or north < low[1]:
             raise RoadExtractionError(f"{label} do not lie where the lanes are: they begin at x {west:.0f}, y {south:.0f}, the lanes at "
@@ -542,10 +537,6 @@ def border_misses(source: Lanes, exported: Lanes) -> tuple[_Misses, _Misses]:
     return _summary(across, places), _summary(rise, places)
 
 
-def _joined(lines):
-    return np.concatenate([np.empty((0, 3)), *lines])
-
-
 def _once(lines):
     """(the lines without those that repeat another, forth or back, as neighbours do with the border between them; the number of each in them)."""
     first = {min(line.tobytes(), line[::-1].tobytes()): line for line in lines}
@@ -556,7 +547,7 @@ def _once(lines):
 def _segments(lines, curved=False):
     """(M, 7) both ends of every segment of lines, and by how much it misses the curve that bends like the lines at its ends, if `curved`."""
     lines, _ = _once(lines)
-    places, line = _joined(lines), np.repeat(np.arange(len(lines)), [len(border) for border in lines])
+    places, line = np.concatenate([np.empty((0, 3)), *lines]), np.repeat(np.arange(len(lines)), [len(border) for border in lines])
     way, same = np.diff(places[:, :2], axis=0), line[1:] == line[:-1]
     turn = np.abs(wrapped(np.diff(np.arctan2(way[:, 1], way[:, 0]))))
     turn = np.concatenate([[np.nan], np.where(same[1:] & same[:-1], turn, np.nan), [np.nan]])
@@ -596,7 +587,7 @@ def _distances(lines, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
     apart_from : (K, 7) segments; places to which one of them is nearer are infinite too
     """
     lines, index = _once(lines)
-    places, begin = _joined(lines), np.cumsum([0, *map(len, lines)])
+    places, begin = np.concatenate([np.empty((0, 3)), *lines]), np.cumsum([0, *map(len, lines)])
     all_segments = np.concatenate([segments, apart_from])
     points, tree = shapely.points(places[:, :2]), shapely.STRtree(shapely.linestrings(all_segments[:, :6].reshape(-1, 2, 3)[:, :, :2]))
     indices, near = tree.query(points, predicate="dwithin", distance=SAME_BORDER)

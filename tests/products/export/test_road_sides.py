@@ -56,5 +56,6 @@ def test_the_line_to_drive_on_stays_between_the_stripes_of_a_double_line():
     draft = draft_lanelets(with_shared_borders(checked(RoadMapSource(lanes))))
     for made in draft.lanelets:
         k = list(lanes.lane_id).index(made.name)
-        np.testing.assert_allclose(draft.nodes[list(draft.ways[made.centre].nodes)], sum(lanes.borders(k)) / 2, atol=1e-6)
-    assert len({made.left for made in draft.lanelets if made.name in ("1.1.1", "1.2.1")}) == 1, "both lanes meet in the middle of the double line"
+        np.testing.assert_allclose(draft.nodes[list(draft.ways[made.way("centerline")].nodes)], sum(lanes.borders(k)) / 2, atol=1e-6)
+    assert len({made.way("left") for made in draft.lanelets if made.name in ("1.1.1", "1.2.1")}) == 1, \
+        "both lanes meet in the middle of the double line"
