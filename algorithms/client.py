@@ -56,7 +56,7 @@ class ExportTemplate(Algorithm):
             raise RoadExtractionError(tr("Nothing says where the map goes. Name a file as {output}, or both {connection} and {schema}.").format(
                 output=call.label("OUTPUT"), connection=call.label("CONNECTION"), schema=call.label("SCHEMA")))
         database = Database(call.connection("CONNECTION"), schema, call.value("CONNECTION")) if schema else None
-        drawing = str(call.output_path("OUTPUT")).lower().endswith(".dxf")
+        drawing = call.wants("OUTPUT") and str(call.output_path("OUTPUT")).lower().endswith(".dxf")
         office = existing_file(call.file("OFFICE"), call.label("OFFICE")) if call.given("OFFICE") else ""
         if drawing and office:
             raise RoadExtractionError(tr("The client's GeoPackage cannot be filled as a DXF drawing. Leave it out, or name the result .gpkg."))
@@ -73,8 +73,8 @@ class ExportTemplate(Algorithm):
             if features.crs and not same_crs(parse_crs(features.crs), parse_crs(crs)):
                 raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.").format(
                     label=call.label(name)))
-        made = apply_template(template, layers, layers_of_client(office, crs) if office else None)
-        stored = apply_template(template, layers, layers_of_client(database, crs), whole=False).layers if database else {}
+        made = apply_template(template, layers, layers_of_client(office, crs, template) if office else None)
+        stored = apply_template(template, layers, layers_of_client(database, crs, template), whole=False).layers if database else {}
         if drawing:
             from ..products.cad import drawn_layers, write_dxf
 
