@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -30,8 +30,7 @@ LETTER = 0.25         # source: m of a text in a drawing of sections, 2.5 mm at 
 SECTIONS_IN_COLUMN = 10   # cost: a column of sections more or less
 
 
-@dataclass(frozen=True)
-class _DxfLine:
+class _DxfLine(NamedTuple):
     """layer : name; places : (N, 3); closed : whether the last place is joined with the first; text : written at the place, `turned` by degrees."""
 
     layer: str
