@@ -234,9 +234,7 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     if before is not None:
         image.take_over(before)
     new = [(tile, pieces) for tile, pieces in work if before is None or before.states.get(tile) != image.states[tile]]
-    with new_geotiff(path, grid.width, grid.height, grid.geotransform, road_points.crs) if path else nullcontext() as file:
-        if file is not None:
-            image.write_tiles(file)
+    with image.new_file(path, before) if path else nullcontext() as file:
         # a few are made before workers would have started
         executor = THREADS if 2 * len(new) < len(work) else road_points.executor
         for column, row, values in _tiles(grid, new, road_points, settings, progress.part(0.3, 1.0), executor):

@@ -9,7 +9,7 @@ from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.phase import Threads
-from lanewright.core.io.geotiff import IntensityImage
+from lanewright.core.io.geotiff import IntensityImage, _NewGeoTiff
 from lanewright.core.pipeline import road_map as chain
 from lanewright.core.pipeline.kept_run import KeptRun
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
@@ -102,10 +102,19 @@ def test_a_corrected_edge_changes_the_stretches_beside_it_alone(street, tmp_path
         asked.setdefault(phase.function.__name__, []).append(len(items))
         return run(self, phase, items, *others)
 
-    _, road_map = made(street, tmp_path, kept, settings=settings)
+    def tiles_written(*others):
+        written = set()
+        with monkeypatch.context() as patch:
+            patch.setattr(_NewGeoTiff, "write", lambda self, *tile: written.add(tile[:2]) or write(self, *tile))
+            found = made(street, tmp_path, kept, *others, settings=settings)
+        return written, found
+
+    write = _NewGeoTiff.write
+    every, (surveyed, road_map) = tiles_written()
     monkeypatch.setattr(Threads, "run", noting)
-    made(street, tmp_path, kept, moved_edge(road_map, 2.0), settings)
-    _, again = made(street, tmp_path, kept, settings=settings)
+    some, _ = tiles_written(moved_edge(road_map, 2.0))
+    others, (found, again) = tiles_written()
+    assert some and some < every and others == some and found == surveyed
     stretches = len(again.road_points.stretches())
     for name in ("surface_points", "corrected_of_stretch"):
         assert stretches > 10 and 1 <= sum(asked[name]) <= stretches / 2, name
