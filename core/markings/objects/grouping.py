@@ -57,7 +57,7 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
 def _linked_windows(marking_points, road, distance, progress, executor):
     """What `links_of_windows` finds in each window of a road, in their order."""
     store, length, beyond = marking_points.store, LINKING_WINDOW_CELLS * CELL_UNITS * COORDINATE_SCALE, 1.0 + distance * GROUPS.reach_along_factor
-    phase = Phase(links_of_windows, store, (road, distance), lambda item: f"markings of road {road}",
+    phase = Phase(links_of_windows, store, (road, distance, LINKING_WINDOW_CELLS), lambda item: f"markings of road {road}",
                   state=lambda item: marking_points.state(road, item[0] * length - beyond, item[1] * length + beyond))
     first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in marking_points.store.span(road))
     points = sum(marking_points.store.size(road, number) for number in marking_points.sections(road))
@@ -68,25 +68,25 @@ def _linked_windows(marking_points, road, distance, progress, executor):
         yield from links
 
 
-def _points_to_link(store, road, distance, number):
-    """LINKING_COLUMNS of the points of a window and of those beyond its end that they may reach, and the cell along the road at which it ends."""
+def _points_to_link(store, road, distance, first, end):
+    """LINKING_COLUMNS of the points between two cells along the road, and of those beyond that they may reach."""
     reach = int(np.ceil(distance * GROUPS.reach_along_factor / (CELL_UNITS * COORDINATE_SCALE))) + 1
-    first, end = number * LINKING_WINDOW_CELLS, (number + 1) * LINKING_WINDOW_CELLS
     records = store.window(road, *(row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, end + reach + 1))).records
     column = records["s"] // CELL_UNITS
     records = records[(column >= first) & (column < end + reach)]
-    return *(records[name] for name in LINKING_COLUMNS), end
+    return [records[name] for name in LINKING_COLUMNS]
 
 
-def links_of_windows(store: SectionStore, item: tuple[int, int], road: int, distance: float) -> list[tuple[np.ndarray, ...]]:
-    """The phase that links the points of windows, (first, last + 1) of their numbers, by `distance`, m.
+def links_of_windows(store: SectionStore, item: tuple[int, int], road: int, distance: float, size: int) -> list[tuple[np.ndarray, ...]]:
+    """The phase that links the points of windows of so many cells, (first, last + 1) of their numbers, by `distance`, m.
 
     Returns of each (K, 2) int occupied cells, (K,) int their component, (K,) bool whether they lie beyond the end, and (M,) int the cell of each
     point that does not.
     """
     links: list[tuple[np.ndarray, ...]] = []
     for number in range(*item):
-        *columns, end = _points_to_link(store, road, distance, number)
+        end = (number + 1) * size
+        columns = _points_to_link(store, road, distance, number * size, end)
         cells, member, component = _components_of_points(dict(zip(LINKING_COLUMNS, columns)), distance)
         links.append((cells, component, cells[:, 0] >= end, member[columns[0] // CELL_UNITS < end]))
     return links

@@ -9,6 +9,7 @@ from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.phase import Threads
+from lanewright.core.intensity.image import ImageSettings
 from lanewright.core.io.geotiff import IntensityImage, _NewGeoTiff
 from lanewright.core.pipeline import road_map as chain
 from lanewright.core.pipeline.kept_run import KeptRun
@@ -96,7 +97,8 @@ def test_a_corrected_edge_or_lane_takes_the_stages_after_it_alone_and_gives_the_
 
 
 def test_a_corrected_edge_changes_the_stretches_beside_it_alone(street, tmp_path, monkeypatch, kept):
-    asked, run, settings = {}, Threads.run, RoadMapSettings(survey=SurveySettings(section_length=1.0))
+    # tiles of 5 m
+    asked, run, settings = {}, Threads.run, RoadMapSettings(survey=SurveySettings(section_length=1.0), image=ImageSettings(cell_size=0.01))
 
     def noting(self, phase, items, *others):
         asked.setdefault(phase.function.__name__, []).append(len(items))
