@@ -58,11 +58,11 @@ def without(monkeypatch, stages):
         monkeypatch.setattr(chain, stage, refused)
 
 
-def moved_edge(road_map, length=np.inf):
+def moved_edge(road_map, length=np.inf, out=0.2):
     """The correction of an edge that lies 20 cm farther out, along so many metres of it."""
     layer = Features("any", CORRECTIONS, crs=road_map.crs)
     line = next(line for line, row in road_map.layer("edges") if row["side"] == "left" and row["status"] == "measured")
-    farther = shapely.transform(substring(line, 0.0, length), lambda places: places + [0.0, 0.2, 0.0], include_z=True)
+    farther = shapely.transform(substring(line, 0.0, length), lambda places: places + [0.0, out, 0.0], include_z=True)
     layer.add(farther, action="move", target="edge", note="seen in the image")
     return layer
 
@@ -114,7 +114,7 @@ def test_a_corrected_edge_changes_the_stretches_beside_it_alone(street, tmp_path
     write = _NewGeoTiff.write
     every, (surveyed, road_map) = tiles_written()
     monkeypatch.setattr(Threads, "run", noting)
-    some, _ = tiles_written(moved_edge(road_map, 2.0))
+    some, _ = tiles_written(moved_edge(road_map, 2.0, out=-0.2))
     others, (found, again) = tiles_written()
     assert some and some < every and others == some and found == surveyed
     stretches = len(again.road_points.stretches())
