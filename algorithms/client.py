@@ -3,29 +3,14 @@
 from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import (
-    CROSS_SECTIONS,
-    DRIVING_LINES,
-    LANES,
-    MARKING_LINES,
-    MARKINGS,
-    ROAD_EDGES,
-    ROAD_SURFACE,
-    ROADSIDE,
-    ROADSIDE_OBJECTS,
-)
 from .algorithm import Algorithm
 from .call import existing_file
+from .map_layers import MAP_LAYERS
 from .texts import tr
 
-# parameter, which is the name of the layer in a template -> label, fields and geometry
-MAP_LAYERS = {
-    "ROAD_EDGES": (tr("Road edges"), ROAD_EDGES, "LineStringZ"), "ROAD_SURFACE": (tr("Road surface"), ROAD_SURFACE, "PolygonZ"),
-    "MARKINGS": (tr("Markings"), MARKINGS, "PolygonZ"), "MARKING_LINES": (tr("Marking lines"), MARKING_LINES, "LineStringZ"),
-    "DRIVING_LINES": (tr("Driving lines"), DRIVING_LINES, "LineStringZ"), "LANES": (tr("Lanes"), LANES, "PolygonZ"),
-    "ROADSIDE": (tr("Roadside"), ROADSIDE, "LineStringZ"), "ROADSIDE_OBJECTS": (tr("Poles, signs and trunks"), ROADSIDE_OBJECTS, "PointZ"),
-    "CROSS_SECTIONS": (tr("Cross-sections"), CROSS_SECTIONS, "LineStringZ"),
-}
+# Parameters, which are the names of the layers in a template
+TEMPLATE_LAYERS = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES", "ROADSIDE", "ROADSIDE_OBJECTS",
+                   "CROSS_SECTIONS")
 
 
 class ExportTemplate(Algorithm):
@@ -50,8 +35,8 @@ class ExportTemplate(Algorithm):
     def declare(self):
         self.add_input("file", "TEMPLATE", tr("Template"), tr("A table of rows that say what becomes what, in UTF-8."),
                        file_filter="CSV (*.csv *.CSV *.tsv *.txt);;All files (*.*)")
-        for name, (label, _, geometry) in MAP_LAYERS.items():
-            self.add_input("layer", name, label, tr("Rows with {name} in the column from are about it.").format(name=name), geometry, optional=True)
+        for name in TEMPLATE_LAYERS:
+            self.add_map_layer(name, tr("Rows with {name} in the column from are about it.").format(name=name), optional=True)
         self.add_input("file", "OFFICE", tr("GeoPackage of the client"), tr(
             "With the client's layers, which may be empty. It stays as it is; the result is a copy with the features added."),
             optional=True, file_filter="GeoPackage (*.gpkg *.GPKG);;All files (*.*)")
@@ -71,11 +56,11 @@ class ExportTemplate(Algorithm):
             raise RoadExtractionError(tr("Nothing says where the map goes. Name a file as {output}, or both {connection} and {schema}.").format(
                 output=call.label("OUTPUT"), connection=call.label("CONNECTION"), schema=call.label("SCHEMA")))
         database = Database(call.connection("CONNECTION"), schema, call.value("CONNECTION")) if schema else None
-        drawing = str(call.output_path("OUTPUT")).lower().endswith(".dxf")
+        drawing = call.wants("OUTPUT") and str(call.output_path("OUTPUT")).lower().endswith(".dxf")
         office = existing_file(call.file("OFFICE"), call.label("OFFICE")) if call.given("OFFICE") else ""
         if drawing and office:
             raise RoadExtractionError(tr("The client's GeoPackage cannot be filled as a DXF drawing. Leave it out, or name the result .gpkg."))
-        known = {name: (schema, geometry) for name, (_, schema, geometry) in MAP_LAYERS.items()}
+        known = {name: (MAP_LAYERS[name].schema, MAP_LAYERS[name].geometry) for name in TEMPLATE_LAYERS}
         template = read_template(existing_file(call.file("TEMPLATE"), call.label("TEMPLATE")), known, mixed=drawing)
         layers = {name: call.features(name, [replace(field, needed=False) for field in schema], geometry)
                   for name, (schema, geometry) in known.items() if call.given(name)}
@@ -88,8 +73,8 @@ class ExportTemplate(Algorithm):
             if features.crs and not same_crs(parse_crs(features.crs), parse_crs(crs)):
                 raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.").format(
                     label=call.label(name)))
-        made = apply_template(template, layers, layers_of_client(office, crs) if office else None)
-        stored = apply_template(template, layers, layers_of_client(database, crs), whole=False).layers if database else {}
+        made = apply_template(template, layers, layers_of_client(office, crs, template) if office else None)
+        stored = apply_template(template, layers, layers_of_client(database, crs, template), whole=False).layers if database else {}
         if drawing:
             from ..products.cad import drawn_layers, write_dxf
 

@@ -31,10 +31,7 @@ READERS = {"number": "parameterAsDouble", "whole": "parameterAsInt", "flag": "pa
 
 
 class QgisCall(Call):
-    """`Call` for QGIS Processing.
-
-    `processing` is the QgsProcessingAlgorithm, `algorithm` its declaration.
-    """
+    """`Call` for QGIS Processing: `processing` is the QgsProcessingAlgorithm, `algorithm` its declaration."""
 
     VECTOR_SUFFIXES = tuple(QgsVectorFileWriter.supportedFormatExtensions())
 

@@ -127,10 +127,7 @@ def load_look(layer, qml):
 
 
 def add_ready_styles(layer: QgsVectorLayer, qml: str) -> None:
-    """Further styles beside the one that a layer has, which stays in force: by class where that one is the road plan, and by fields it has.
-
-    qml : file of the style in force; the folder `by_class` beside it holds the same layer by class
-    """
+    """Further styles beside that of a QML file, which stays in force: by class where the folder by_class has one, and by the layer's fields."""
     names = {field.name() for field in layer.fields()}
     looks = (("status", tr("By status"), _by_status), ("confidence", tr("By confidence"), _by_confidence),
              ("sigma_m", tr("By uncertainty"), _by_uncertainty))

@@ -384,6 +384,8 @@ def _opened(path, flags=0):
     """The dataset of a GeoPackage or Database."""
     if not isinstance(path, Database):
         return gdal.OpenEx(str(path), gdal.OF_VECTOR | flags, allowed_drivers=["GPKG"])
+    if gdal.GetDriverByName("PostgreSQL") is None:   # else GDAL would repeat the connection, password and all
+        raise RuntimeError("GDAL is built without PostgreSQL")
     dataset = gdal.OpenEx(f"PG:{path.connection}", gdal.OF_VECTOR | flags, allowed_drivers=["PostgreSQL"], open_options=[
         f"SCHEMAS={path.schema}", f"ACTIVE_SCHEMA={path.schema}", "LIST_ALL_TABLES=YES"])
     schemas = dataset.ExecuteSQL("SELECT nspname FROM pg_namespace")
@@ -392,10 +394,11 @@ def _opened(path, flags=0):
     return dataset
 
 
-def layers_of_client(path: str | os.PathLike[str] | Database, crs: str) -> dict[str, tuple[str, dict[str, type]]]:
+def layers_of_client(path: str | os.PathLike[str] | Database, crs: str, template: _Template) -> dict[str, tuple[str, dict[str, type]]]:
     """{layer: (geometry, {field: type})} of the client's GeoPackage or database; the geometry is "" where the layer takes any.
 
-    crs : WKT, metric, of the map; "" where unknown. RoadExtractionError if there are no such layers, or one is in another CRS.
+    crs : WKT, metric, of the map; "" where unknown
+    RoadExtractionError if it cannot be read, or a layer that the template fills is in another CRS.
     """
     ours, result = parse_crs(as_in_file(crs)[0]) if crs else None, {}
     with _used(path, _unreadable):
@@ -406,7 +409,7 @@ def layers_of_client(path: str | os.PathLike[str] | Database, crs: str) -> dict[
         for k in range(dataset.GetLayerCount()):
             layer = dataset.GetLayer(k)
             theirs = layer.GetSpatialRef()
-            if ours is not None and theirs is not None and not same_crs(parse_crs(theirs.ExportToWkt()), ours):
+            if template.layer_of(layer.GetName()) and ours is not None and theirs is not None and not same_crs(parse_crs(theirs.ExportToWkt()), ours):
                 raise RoadExtractionError(f"Layer {layer.GetName()} of {path} is in {theirs.GetName()}, and the map in {ours.name}. Give the "
                                           "client's layer the CRS of the map, or bring the map's layers to its CRS.")
             result[layer.GetName()] = kinds.get(ogr.GT_Flatten(layer.GetGeomType()), ""), {
@@ -423,7 +426,7 @@ def write_client_layers(layers: Mapping[str, Features], path: str | Database, of
     with _used(path, _unwritable):
         if office:
             # what a program that has it open keeps in a journal beside it is copied too
-            with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(path)) as copy:
+            with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(str(path))) as copy:
                 database.backup(copy)
         dataset = _opened(path, gdal.OF_UPDATE) if office or isinstance(path, Database) \
             else gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)

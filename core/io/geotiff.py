@@ -178,7 +178,8 @@ class _NewGeoTiff:
     """
 
     @gdal_exceptions()
-    def __init__(self, path: str | os.PathLike[str], width: int, height: int, geotransform: Any, crs: str, byte: bool, nodata: float, copied: bool):
+    def __init__(self, path: str | os.PathLike[str], width: int, height: int, geotransform: Any, crs: str, byte: bool, nodata: float,
+                 description: str, copied: bool):
         options = [f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
                    "BIGTIFF=IF_SAFER", f"NUM_THREADS={IO.compression_threads}"]
         # Intensities are too noisy to be predicted from their neighbours: a predictor costs more time than it saves.
@@ -192,6 +193,7 @@ class _NewGeoTiff:
         self._dataset = gdal.GetDriverByName("GTiff").Create(str(path), width, height, 1, self._type, options)
         place_raster(self._dataset, geotransform, crs)
         self._dataset.GetRasterBand(1).SetNoDataValue(nodata)
+        self._dataset.GetRasterBand(1).SetDescription(description)
 
     @gdal_exceptions()
     def write(self, column: int, row: int, values: np.ndarray) -> None:
@@ -234,11 +236,11 @@ def _copy(path, target):
 
 @contextmanager
 def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransform: Any, crs: str, byte: bool = False,
-                nodata: float = NODATA, like: Path | None = None) -> Iterator[_NewGeoTiff]:
+                nodata: float = NODATA, description: str = "", like: Path | None = None) -> Iterator[_NewGeoTiff]:
     """A new GeoTIFF with one band: tiled, DEFLATE, without empty tiles. It appears at its path only when all is written.
 
     Of several runs that write the same file each ends well, and the last to end is kept. RoadExtractionError if the file cannot be written.
-    geotransform : (6,) of GDAL; crs : WKT, "" for none; byte, nodata : as of _NewGeoTiff
+    geotransform : (6,) of GDAL; crs : WKT, "" for none; byte, nodata : as of _NewGeoTiff; description : what its values are
     like : another one of all this, of which only the pixels that change are written
     """
     target = Path(path)
@@ -247,7 +249,7 @@ def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransf
     try:
         if like is not None:
             _copy(like, unfinished)
-        image = _NewGeoTiff(unfinished, width, height, geotransform, crs, byte, nodata, like is not None)
+        image = _NewGeoTiff(unfinished, width, height, geotransform, crs, byte, nodata, description, like is not None)
         yield image
         image.close()
         os.replace(unfinished, target)

@@ -31,26 +31,19 @@ FIRST = {"edge": "detectboundaries", "marking": "clustermarkings", "lane": "driv
 
 @dataclass(frozen=True)
 class Step:
-    """One stage of a road map.
+    """One stage of a road map."""
 
-    title : of its algorithm; layer : one that it made; made : when; colour : of the state; state, reason : in the user's words
-    settings : (label, value, whether it is not the default)
-    """
-
-    title: str
-    layer: QgsMapLayer
+    title: str   # of its algorithm
+    layer: QgsMapLayer   # one that it made
     made: datetime
-    colour: str
-    state: str
+    colour: str   # of the state
+    state: str   # state, reason: in the user's words
     reason: str
-    settings: tuple[tuple[str, str, bool], ...]
+    settings: tuple[tuple[str, str, bool], ...]   # (label, value, whether it is not the default)
 
 
 def steps_of(road_map: RoadMap, corrections: QgsVectorLayer | None) -> list[Step]:
-    """The steps of which a road map has layers, in the order of the work.
-
-    corrections : the layer of this survey's corrections, None where there is none
-    """
+    """The steps of which a road map has layers, in the order of the work; the layer of corrections is None where there is none."""
     layer_of: dict[str, QgsMapLayer] = {}
     for output, stage in STAGES.items():
         layer = road_map.layer(output)
