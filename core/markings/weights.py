@@ -235,6 +235,8 @@ class _StrandWeights:
     place_step_units: int = 2500   # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
     run_gap_units: int = 600   # 6 cm across without paint separate two runs ...
     max_worn_line_width_units: int = 3300   # ... unless together they are no wider than one worn line
+    double_reach: int = 4   # bins before and after one: a gap at the same place in more than this share of them lies between two lines
+    double_share: float = 0.6
     max_line_width_units: int = 3600   # 36 cm: wider is no line
     max_mixed_width_units: int = 6000   # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
     min_mixed_strand: float = 2.0   # m of paint in a strand of a mixed marking
@@ -323,6 +325,7 @@ class _SelectionWeights:
     min_gap_per_dash: float = 0.4   # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
     dash_pair_length: tuple[float, float] = (1.5, 8.0)   # m: dashes of which two alone are taken for a dashed line
     period_tolerance: float = 0.16   # of the period: how evenly dashes must follow each other
+    equal_dashes: float = 0.2   # m by which all dashes of a line differ at most, where they do not follow each other evenly
     step_tolerance: float = 0.2   # m by which the two steps between three pieces of unequal lengths may differ
     min_short_dashes: int = 4   # dashes of about a metre with gaps as long must be so many
     short_dash_tolerance: float = 0.25   # m: of such dashes, deviation of the length from the median

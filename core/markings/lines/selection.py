@@ -254,7 +254,8 @@ def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> _DashPat
 
     Dashes may be missing: steps between dashes are then whole multiples of the period. Some may be worn at their ends: three of five must have the
     common length. Of three pieces alone all must have it, or their two steps must be equal: by chance one step is soon a multiple of the other. In
-    a line that is solid elsewhere (`beside_solid`) all must have it: there three pieces are what wear left of it, and equal steps chance.
+    a line that is solid elsewhere (`beside_solid`) all must have it: there three pieces are what wear left of it, and equal steps chance. Wear
+    leaves no three pieces of exactly one length: those are dashes, even if they begin anew where roads join.
     """
     if len(spans) < 2:
         return None
@@ -269,6 +270,8 @@ def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> _DashPat
             and max(SELECTION.min_gap_per_dash * dash, 1.5) <= gap <= 13.0
         return _DashPattern(dash, float(steps[0])) if even else None
     period = _period(steps)
+    if period is None and np.ptp(length) <= SELECTION.equal_dashes:
+        period = float(np.median(steps))
     if period is None or period - dash < SELECTION.min_gap_per_dash * dash or alike.mean() < 0.55:
         return None
     if len(spans) == 3 and not alike.all():
