@@ -113,10 +113,9 @@ def _pieces(rows, max_gap):
     s = np.ascontiguousarray(points["s"])
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
              if _line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
-    # a curb that ends in sight and goes on in the same line a few metres farther is lowered there: the mouth of a street is wider, with its corners
+    # a curb that sinks in sight and goes on in the same line some metres farther is lowered there
     dropped = (gap > CURBS.max_joined_gap) & (gap <= min(EDGE.max_sunk_gap, max_gap)) & (across <= EDGE.max_edge_jump) & ~bridged
-    dropped[[k for k in np.flatnonzero(dropped) if _line_across(points, s, k)[0] > IN_LINE_TURN
-             or gap[k] > EDGE.max_dropped_gap and not _sinks(points, s, k)]] = False
+    dropped[[k for k in np.flatnonzero(dropped) if not _sinks(points, s, k) or _line_across(points, s, k)[0] > IN_LINE_TURN]] = False
     breaks = np.flatnonzero(~(joined | bridged | dropped)) + 1
     kinds = np.append(_HIDDEN * bridged + _DROPPED * dropped, _JOINED)
     pieces = []
@@ -127,7 +126,7 @@ def _pieces(rows, max_gap):
 
 
 def _sinks(points, s, k):
-    """Is the curb lower at either end of a gap, which begins at point k, than it is before it?"""
+    """Is the curb lower at either end of a gap, which begins at point k, than it is around it?"""
     around = points["height"][stretch_of(s, s[k] - CURBS.line_fit_length, s[k + 1] + CURBS.line_fit_length)]
     return points["height"][k:k + 2].min() <= EDGE.sunk_share * np.median(around)
 

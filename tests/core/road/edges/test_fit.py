@@ -102,9 +102,9 @@ def test_an_opening_and_a_gap_that_is_too_long_break_the_edge(hidden, gap):
 
 
 @pytest.mark.parametrize(("gap", "sunk", "aside", "kinds"), [
-    (6.0, 0.12, 0.0, ["curb", "dropped", "curb"]), (10.0, 0.05, 0.0, ["curb", "dropped", "curb"]), (10.0, 0.12, 0.0, ["curb", "curb"]),
+    (6.0, 0.05, 0.0, ["curb", "dropped", "curb"]), (10.0, 0.05, 0.0, ["curb", "dropped", "curb"]), (6.0, 0.12, 0.0, ["curb", "curb"]),
     (13.0, 0.05, 0.0, ["curb", "curb"]), (6.0, 0.05, 0.3, ["curb", "curb"])],
-    ids=["drive", "wide drive before which the curb sinks", "mouth of a street", "place", "two curbs"])
+    ids=["drive", "wide drive", "a curb that is cut", "mouth of a street", "two curbs"])
 def test_a_curb_that_is_lowered_in_sight_goes_on_as_a_dropped_one(gap, sunk, aside, kinds):
     stations = np.r_[np.arange(0, 20, 1.0), np.arange(19 + gap, 60, 1.0)]
     points = curb_points(stations, lambda s: 3.5 + aside * (s > 20))
