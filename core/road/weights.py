@@ -720,8 +720,7 @@ class _BoundaryWeights:
     """How two methods are compared."""
 
     # shares of the work
-    profiles_progress: float = 0.3   # share of the work that profiles are, with both methods; of the rest,
-    lattice_progress: float = 0.1   # share at which the scan lattice is known, and
+    lattice_progress: float = 0.1   # share of the work at which the scan lattice is known, and
     returns_progress: float = 0.85   # share at which the search for curb returns begins
     curb_edges_progress: float = 0.1   # share of the edges that those at curbs are; the others need the ground beside the road
     level_strip_margin: float = 0.20   # m beyond the points from which corners are measured, in which scanlines still continue
