@@ -124,7 +124,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     double = c.made_of == DOUBLE
     unused = np.where(double[:, :, None] & double[:, None, :], 2 * (w.double[CENTRE_LINE] - w.double[EDGE_LINE]), unused)
     inside = _inside(evidence.driven, c)
-    idle = scale * (np.where(hatched, 0.0, unused) + rest_cost) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
+    idle = scale * (np.where(hatched, 0.0, unused) + rest_cost) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside[:evidence.own].sum(0)
     cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)
 
     made_left, made_right = c.made_of[:, :, None], c.made_of[:, None, :]
@@ -134,7 +134,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     uncovered = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
     # a street that was driven between two borders has a lane without any paint
     border = np.isin(c.made_of, (CURB, PAVEMENT)) & evidence.bare[:, None]
-    bare = border[:, :, None] & border[:, None, :] & inside.any(0)
+    bare = border[:, :, None] & border[:, None, :] & inside[:evidence.own].any(0)
     possible = ordered & ~outside & (any_paint | bare) & (width < LANES.max_lanes * NEUTRAL.widest_lane)
     base = scale * (through + hatched * w.hatched_lane + uncovered * w.off_asphalt)
     driven_there = inside.any(0)
