@@ -48,11 +48,11 @@ def painted(street, *areas):
     return layer
 
 
-def curbs(street, *offsets):
-    """The layer of road edges with curbs along the street."""
+def curbs(street, *offsets, parts=((5.0, 115.0),)):
+    """The layer of road edges with curbs along the street, the last one in parts."""
     edges = Features("LineStringZ", list(ROAD_EDGES))
-    along = np.arange(5.0, 115.0, 0.5)
-    for chain, offset in enumerate(offsets):
+    for chain, (offset, (first, end)) in enumerate([*((offset, (5.0, 115.0)) for offset in offsets[:-1]), *((offsets[-1], part) for part in parts)]):
+        along = np.arange(first, end, 0.5)
         edges.add(LineString(np.c_[street.places(along, offset), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
                   part="bottom", chain=chain, side="left" if offset > 0 else "right")
     return edges
@@ -225,6 +225,15 @@ def test_a_street_that_was_driven_between_two_curbs_has_lanes_without_any_paint(
 def test_lanes_go_on_between_the_curbs_where_the_paint_stops():
     street = Street(vehicle=-1.75).paint(0.0, 5.0, 60.0, pattern="dashed")
     lines, _ = street.lanes(edges=curbs(street, 3.5, -3.5))
+    for way in (1, -1):
+        parts = [line for line, row in lines if row["direction"] == way]
+        assert sum(line.length for line in parts) == pytest.approx(110.0, abs=2.0)
+        assert max(np.abs(street.offsets(line) + 1.75 * way).max() for line in parts) < 0.05
+
+
+def test_lanes_go_on_where_a_curb_beside_them_is_lowered_for_one_driveway_after_another():
+    street = Street(vehicle=-1.75).paint(0.0, 5.0, 60.0, pattern="dashed")
+    lines, _ = street.lanes(edges=curbs(street, 3.5, -3.5, parts=((5.0, 62.0), (68.0, 78.0), (83.0, 94.0), (99.0, 115.0))))
     for way in (1, -1):
         parts = [line for line, row in lines if row["direction"] == way]
         assert sum(line.length for line in parts) == pytest.approx(110.0, abs=2.0)
