@@ -184,7 +184,8 @@ def _passed_over(c, w):
     """(I, M, M) costs of the boundaries that lie between two others inside a lane; per observation."""
     lane = np.where(c.painted, w.lane_through_paint * _told(c),
                     np.select([np.isin(c.made_of, (CURB, ISLAND)), np.isin(c.made_of, (SURFACE, PAVEMENT)), c.made_of == HATCHING],
-                              [w.lane_through_curb * c.seen, w.lane_through_surface, w.lane_through_hatching], 0.0)) * (c.valid & (c.made_of != OUTSIDE))
+                              [w.lane_through_curb * c.seen, w.lane_through_surface, w.lane_through_hatching], 0.0))
+    lane = lane * (c.valid & (c.made_of != OUTSIDE))
     total = np.cumsum(lane, axis=1)
     return np.maximum(total[:, None, :] - lane[:, None, :] - total[:, :, None], 0.0)
 
