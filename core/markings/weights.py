@@ -373,7 +373,6 @@ class _RoadWeights:
     """What all roads of a survey have in common."""
 
     shortest_bare: float = 20.0   # m driven between two borders beyond all paint: less is where paint or survey just ends
-    bare_gap: float = 10.0   # m of a border that may not be seen there: a driveway is 3 to 6 m wide, and its curb is lowered over a metre either way
     length_of_usual: float = 50.0   # m of lanes that weigh as much as what is usual in the country
     sure_side: float = 1.4   # nats by which one side of traffic must be more probable than the other to be sure: else it is wrong one time in five
     # Arrows on the road.

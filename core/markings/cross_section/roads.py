@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
-from scipy.ndimage import binary_closing
 
 from ...common.arrays import mask_runs
 from ...common.parallel import check_cancelled
@@ -127,8 +126,6 @@ def _driven_bare(p, edges, painted):
         across = d.values - track[d.spans.station]
         for side, there in zip(sides, (across > 0, across < 0)):
             side[d.spans.station[there & along]] = True
-    # a border that is lowered for a driveway may not be seen there
-    sides |= binary_closing(sides, np.ones((1, int(ROADS.bare_gap / STATION_STEP) + 1)))
     runs = mask_runs(sides.all(axis=0) & ~np.isin(np.rint(s / STATION_STEP), painted))
     return np.concatenate([np.empty(0), *(s[first:end] for first, end in runs if (end - first) * STATION_STEP >= ROADS.shortest_bare)])
 

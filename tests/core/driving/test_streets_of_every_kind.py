@@ -48,11 +48,11 @@ def painted(street, *areas):
     return layer
 
 
-def curbs(street, *offsets, parts=None):
-    """The layer of road edges with curbs along the street, or with `parts` of curbs, (offset, first and last station)."""
+def curbs(street, *offsets):
+    """The layer of road edges with curbs along the street."""
     edges = Features("LineStringZ", list(ROAD_EDGES))
-    for chain, (offset, first, end) in enumerate(parts or [(offset, 5.0, 115.0) for offset in offsets]):
-        along = np.arange(first, end, 0.5)
+    along = np.arange(5.0, 115.0, 0.5)
+    for chain, offset in enumerate(offsets):
         edges.add(LineString(np.c_[street.places(along, offset), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
                   part="bottom", chain=chain, side="left" if offset > 0 else "right")
     return edges
@@ -229,13 +229,6 @@ def test_lanes_go_on_between_the_curbs_where_the_paint_stops():
         parts = [line for line, row in lines if row["direction"] == way]
         assert sum(line.length for line in parts) == pytest.approx(110.0, abs=2.0)
         assert max(np.abs(street.offsets(line) + 1.75 * way).max() for line in parts) < 0.05
-
-
-def test_lanes_go_on_beyond_the_paint_where_a_curb_draws_aside_and_is_lowered_there():
-    """Neither part of the curb beyond the paint is 20 m long."""
-    street = Street(vehicle=-1.75).paint(0.0, 5.0, 60.0, pattern="dashed")
-    lines, _ = street.lanes(edges=curbs(street, parts=((3.5, 5.0, 98.0), (-3.5, 5.0, 78.0), (-4.5, 82.0, 98.0))))
-    assert {row["direction"] for line, row in lines if line.bounds[2] - EAST > 94.0} == {1, -1}
 
 
 def test_paint_that_stops_some_metres_before_the_curbs_do_gives_no_lane_of_its_own():
