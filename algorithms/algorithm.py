@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import Any
 
 from ..core.common.setting import limits_of
+from .map_layers import MAP_LAYERS
 from .texts import tr
 
 # In the order of the work
@@ -88,6 +89,10 @@ class Algorithm:
         """Add an input of a kind; `more` are further attributes of ParameterSpec."""
         self.add(ParameterSpec(kind, name, label, text, geometry=geometry, **more))
 
+    def add_map_layer(self, name, text, optional=False):
+        """Add a layer of the road map as an input."""
+        self.add_input("layer", name, MAP_LAYERS[name].label, text, MAP_LAYERS[name].geometry, optional=optional)
+
     def add_survey(self, trajectory_optional=False, without=""):
         """Point clouds, trajectory and the CRS for clouds that carry none; `without` says what happens without a trajectory."""
         self.add_point_clouds()
@@ -121,6 +126,10 @@ class Algorithm:
         text = " ".join(part for part in (text, tr("Fields: {fields}.").format(fields=listed) if fields else "") if part)
         self.add(OutputSpec("layer", name, label, text, optional, by_default=by_default, geometry=geometry, schema=tuple(fields)))
 
+    def add_map_sink(self, name, text="", **more):
+        """Add a layer of the road map as an output."""
+        self.add_sink(name, MAP_LAYERS[name].label, text, MAP_LAYERS[name].geometry, fields=MAP_LAYERS[name].schema, **more)
+
     def add_output(self, kind, name, label, text="", **more):
         """Add a result of another kind; `more` are further attributes of OutputSpec."""
         self.add(OutputSpec(kind, name, label, text, **more))
@@ -146,7 +155,7 @@ class ParameterSpec:
 
     kind : flag, choice, text, columns (roles of those of a table), expression (a condition on rows), crs (such as EPSG:32650);
         clouds (LAS, LAZ or COPC files), cloud, file, folder (which need not be there), layer, trajectory (a layer, or a CSV, TXT or SBET file),
-        raster, painted (polygons, lines or a raster)
+        raster, painted (polygons, lines or a raster), connection (the name of one to PostgreSQL), schema (of one)
     """
 
     kind: str
@@ -158,7 +167,7 @@ class ParameterSpec:
     default: Any = None   # what holds where nothing was given; None for nothing
     choices: tuple = ()   # words of a choice
     geometry: str = "any"   # of a layer, as in Features, or "any"
-    of: str = ""   # the input whose rows an expression is about
+    of: str = ""   # the input whose rows an expression is about, or whose schema is asked for
     file_filter: str = ""   # of a file, as file dialogs take it
 
     is_output = False

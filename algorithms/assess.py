@@ -1,6 +1,7 @@
 """How good a result is: boundaries, markings and driving lines against a reference, from layers of any software."""
 
 import re
+from contextlib import nullcontext
 from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
@@ -51,8 +52,8 @@ def layer_of(call, name):
     return None if source is None else _read(source)[0]
 
 
-def layer_and_excluded(call, name):
-    """(AssessedLayer, whether each row is excluded, why) of a reference."""
+def reference_of(call, name):
+    """A reference as AssessedLayer, with why rows are excluded."""
     source = call.source(name)
     excluded = call.rows_where("EXCLUDED", source)
     layer, indices = _read(source)
@@ -60,9 +61,10 @@ def layer_and_excluded(call, name):
     kinds = ["" if kind is None and edge is None else str(kind if edge is None else edge)
              for kind, edge in zip(layer.column("kind"), layer.column("edge"))]
     if excluded is None:
-        kinds = [kind.lower() for kind in kinds]
-        return layer, [kind in NOT_THERE for kind in kinds], kinds
-    return layer, [excluded[k] for k in indices], kinds
+        layer.excluded = [kind.lower() if kind.lower() in NOT_THERE else None for kind in kinds]
+    else:
+        layer.excluded = [kind if excluded[k] else None for kind, k in zip(kinds, indices)]
+    return layer
 
 
 def _read(source):
@@ -197,22 +199,19 @@ class AssessBoundaries(Algorithm):
         from ..products.report.assessment import boundary_report
 
         settings = call.settings(BOUNDARY_SETTINGS, tolerances=tolerances(call))
-        reference, excluded, kinds = layer_and_excluded(call, "REFERENCE")
+        reference = reference_of(call, "REFERENCE")
         result, reference, crs = compared_lines(layer_of(call, "INPUT"), reference, progress)
         progress.report(0.2)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
         for choose in (bottoms_only, along_the_road_only):
-            result, _ = choose(result, progress.warn)
-            reference, kept = choose(reference, progress.warn)
-            excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
-        result, reference, kept = edges_that_compare(result, reference, call.value("EDGES"), progress.warn)
-        excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
-        judged = reference.subset([not x for x in excluded])
+            result, reference = (choose(layer, progress.warn) for layer in (result, reference))
+        result, reference = edges_that_compare(result, reference, call.value("EDGES"), progress.warn)
+        judged, excluded = (reference.subset([(why is None) == is_judged for why in reference.excluded]) for is_judged in (True, False))
         check_reference(judged, result, frame, area, settings.corridor, progress.warn)
         progress.report(0.4)
         accuracy = assess_boundaries(
-            result.geometries, judged.geometries, settings, frame, reference.subset(excluded).geometries,
-            [kind for kind, out in zip(kinds, excluded) if out], area, judged.column("side"), progress.part(0.4, 0.8))
+            result.geometries, judged.geometries, settings, frame, excluded.geometries, excluded.excluded, area, judged.column("side"),
+            progress.part(0.4, 0.8))
         progress.report(0.8)
         layer = boundary_layer(accuracy, crs, progress.part(0.8, 0.95))
         call.layer("OUTPUT", layer)
@@ -296,7 +295,7 @@ class AssessMarkings(Algorithm):
 
     def work(self, call, progress):
         from ..products.assess.layers import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_layer, marking_polygons
-        from ..products.assess.markings import OutcomeRaster, assess_markings
+        from ..products.assess.markings import assess_markings, outcome_raster
 
         settings = call.settings(MARKING_SETTINGS, tolerances=tolerances(call))
         layers = [painted_of(call, name, progress.part(*part))[0] for name, part in (("INPUT", (0.0, 0.15)), ("REFERENCE", (0.15, 0.3)))]
@@ -308,13 +307,10 @@ class AssessMarkings(Algorithm):
         check_marking_reference(reference, result, area, progress.warn)
         classes = [classes_of(layer, field) for layer in (result, reference)]
         image = call.raster_in("IMAGE", crs)
-        cells = None
-        if call.wants("CELLS"):
-            shapes = [*result.geometries, *reference.geometries]
-            cells = OutcomeRaster(call.new_file("CELLS"), shapes, settings.cell_size, crs, max(settings.tolerances))
-        accuracy = assess_markings(result.geometries, reference.geometries, settings, *classes, area, image, cells, progress.part(0.35, 0.9))
-        if cells is not None:
-            cells.close()
+        shapes = [*result.geometries, *reference.geometries]
+        with outcome_raster(call.new_file("CELLS"), shapes, settings.cell_size, crs, max(settings.tolerances)) if call.wants("CELLS") \
+                else nullcontext() as cells:
+            accuracy = assess_markings(result.geometries, reference.geometries, settings, *classes, area, image, cells, progress.part(0.35, 0.9))
         layer = marking_layer(accuracy, result.geometries, reference.geometries, *classes, crs)
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
@@ -433,8 +429,8 @@ def _line_numbers(accuracy, tolerance):
         "COMPLETENESS": complete, "CORRECTNESS": correct,
         "QUALITY": 100 * accuracy.quality[tolerance], "MISCODING": 100 * accuracy.miscoding[tolerance],
         "PRECISION": correct, "RECALL": complete, "F1": f1_of(correct if accuracy.result_length else 0.0, complete),
-        "MEAN": accuracy.lateral.mean, "RMSE": accuracy.rmse,
-        "P95": accuracy.lateral.p95, "MAXIMUM": accuracy.lateral.maximum, "HEIGHT_RMSE": accuracy.height_rmse,
+        "MEAN": accuracy.lateral.mean, "RMSE": accuracy.lateral.rmse,
+        "P95": accuracy.lateral.p95, "MAXIMUM": accuracy.lateral.maximum, "HEIGHT_RMSE": accuracy.height.rmse,
         "GAPS_PER_KM": accuracy.gaps_per_km[tolerance], "MEAN_GAP": accuracy.mean_gap[tolerance],
         "RESULT_LENGTH": accuracy.result_length, "REFERENCE_LENGTH": accuracy.reference_length,
     }

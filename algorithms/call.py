@@ -16,6 +16,7 @@ from ..core.common.progress import RememberedMessages
 from ..core.lazy import gdal
 from .algorithm import WARNINGS, settings_class
 from .destinations import Unfinished, check_folder, check_suffix, check_writable, destination_path
+from .map_layers import MAP_LAYERS
 from .provenance import provenance_now, run_facts, sign_file, sign_report
 from .survey_files import cloud_files, survey_name
 from .texts import tr
@@ -62,6 +63,10 @@ class Call:
 
     def crs(self, name="CRS"):
         """WKT, or "" where none was chosen; raises RoadExtractionError where it is not known."""
+        raise NotImplementedError
+
+    def connection(self, name):
+        """How libpq connects to a database that was chosen; it may hold a password, and nobody is shown it."""
         raise NotImplementedError
 
     def raster(self, name):
@@ -176,6 +181,11 @@ class Call:
         """A vector input as Features; None where the optional parameter is empty."""
         source = self.source(name)
         return None if source is None else read_features(source, schema, geometry_type)
+
+    def map_layer(self, name):
+        """An input that is a layer of the road map, as Features; None where it is optional and empty, or the algorithm has none."""
+        given = self.algorithm.parameter(name) is not None
+        return self.features(name, MAP_LAYERS[name].schema, MAP_LAYERS[name].geometry) if given else None
 
     def settings(self, specs, **more):
         """The core Settings object that these specs describe; one that the algorithm does not offer keeps its default."""

@@ -3,29 +3,14 @@
 from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import (
-    CROSS_SECTIONS,
-    DRIVING_LINES,
-    LANES,
-    MARKING_LINES,
-    MARKINGS,
-    ROAD_EDGES,
-    ROAD_SURFACE,
-    ROADSIDE,
-    ROADSIDE_OBJECTS,
-)
 from .algorithm import Algorithm
 from .call import existing_file
+from .map_layers import MAP_LAYERS
 from .texts import tr
 
-# parameter, which is the name of the layer in a template -> label, fields and geometry
-MAP_LAYERS = {
-    "ROAD_EDGES": (tr("Road edges"), ROAD_EDGES, "LineStringZ"), "ROAD_SURFACE": (tr("Road surface"), ROAD_SURFACE, "PolygonZ"),
-    "MARKINGS": (tr("Markings"), MARKINGS, "PolygonZ"), "MARKING_LINES": (tr("Marking lines"), MARKING_LINES, "LineStringZ"),
-    "DRIVING_LINES": (tr("Driving lines"), DRIVING_LINES, "LineStringZ"), "LANES": (tr("Lanes"), LANES, "PolygonZ"),
-    "ROADSIDE": (tr("Roadside"), ROADSIDE, "LineStringZ"), "ROADSIDE_OBJECTS": (tr("Poles, signs and trunks"), ROADSIDE_OBJECTS, "PointZ"),
-    "CROSS_SECTIONS": (tr("Cross-sections"), CROSS_SECTIONS, "LineStringZ"),
-}
+# Parameters, which are the names of the layers in a template
+TEMPLATE_LAYERS = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES", "ROADSIDE", "ROADSIDE_OBJECTS",
+                   "CROSS_SECTIONS")
 
 
 class ExportTemplate(Algorithm):
@@ -42,30 +27,40 @@ class ExportTemplate(Algorithm):
             "resources/templates of the plugin holds two, for public catalogues of Germany and the Netherlands.\n\n"
             "The template is checked before anything is read: what is not known is named with its line. With the client's own "
             "GeoPackage the layers are filled in a copy of it, and must have the fields that the template names. Features that no row "
-            "takes are counted in the log. DXF has layers but no fields: points stand as texts.")
-    TAGS = ("client", "feature code", "catalogue", "schema", "mapping", "GeoPackage", "DXF")
+            "takes are counted in the log. DXF has layers but no fields: points stand as texts. In a schema of PostGIS, tables that are there are "
+            "filled and must have the fields, others are made, and either all features are added or none.")
+    TAGS = ("client", "feature code", "catalogue", "schema", "mapping", "GeoPackage", "DXF", "PostGIS")
     NUMBERS = (("FEATURES", tr("Features")), ("LAYERS", tr("Layers")), ("LEFT_OUT", tr("Features that no row takes")))
 
     def declare(self):
         self.add_input("file", "TEMPLATE", tr("Template"), tr("A table of rows that say what becomes what, in UTF-8."),
                        file_filter="CSV (*.csv *.CSV *.tsv *.txt);;All files (*.*)")
-        for name, (label, _, geometry) in MAP_LAYERS.items():
-            self.add_input("layer", name, label, tr("Rows with {name} in the column from are about it.").format(name=name), geometry, optional=True)
+        for name in TEMPLATE_LAYERS:
+            self.add_map_layer(name, tr("Rows with {name} in the column from are about it.").format(name=name), optional=True)
         self.add_input("file", "OFFICE", tr("GeoPackage of the client"), tr(
             "With the client's layers, which may be empty. It stays as it is; the result is a copy with the features added."),
             optional=True, file_filter="GeoPackage (*.gpkg *.GPKG);;All files (*.*)")
-        self.add_output("file", "OUTPUT", tr("Client's map"), tr("A GeoPackage, or a DXF drawing by its ending .dxf."), suffixes=(".gpkg", ".dxf"),
-                        file_filter="GeoPackage (*.gpkg);;DXF (*.dxf)")
+        self.add_input("connection", "CONNECTION", tr("PostGIS connection"), tr(
+            "By the name that QGIS keeps it under, with its password; outside QGIS, the name of a service in ~/.pg_service.conf."), optional=True)
+        self.add_input("schema", "SCHEMA", tr("Schema of PostGIS"), tr("It must be there. A second run adds its features to those of the first."),
+                       optional=True, of="CONNECTION")
+        self.add_output("file", "OUTPUT", tr("Client's map"), tr("A GeoPackage, or a DXF drawing by its ending .dxf."), optional=True,
+                        suffixes=(".gpkg", ".dxf"), file_filter="GeoPackage (*.gpkg);;DXF (*.dxf)")
 
     def work(self, call, progress):
         from ..core.io.crs import parse_crs, same_crs
-        from ..products.client_fields import apply_template, layers_of_file, read_template, write_client_layers
+        from ..products.client_fields import Database, apply_template, layers_of_client, read_template, write_client_layers
 
-        drawing = str(call.output_path("OUTPUT")).lower().endswith(".dxf")
+        schema = call.value("SCHEMA") or ""
+        if bool(schema) != call.given("CONNECTION") or not (schema or call.wants("OUTPUT")):
+            raise RoadExtractionError(tr("Nothing says where the map goes. Name a file as {output}, or both {connection} and {schema}.").format(
+                output=call.label("OUTPUT"), connection=call.label("CONNECTION"), schema=call.label("SCHEMA")))
+        database = Database(call.connection("CONNECTION"), schema, call.value("CONNECTION")) if schema else None
+        drawing = call.wants("OUTPUT") and str(call.output_path("OUTPUT")).lower().endswith(".dxf")
         office = existing_file(call.file("OFFICE"), call.label("OFFICE")) if call.given("OFFICE") else ""
         if drawing and office:
             raise RoadExtractionError(tr("The client's GeoPackage cannot be filled as a DXF drawing. Leave it out, or name the result .gpkg."))
-        known = {name: (schema, geometry) for name, (_, schema, geometry) in MAP_LAYERS.items()}
+        known = {name: (MAP_LAYERS[name].schema, MAP_LAYERS[name].geometry) for name in TEMPLATE_LAYERS}
         template = read_template(existing_file(call.file("TEMPLATE"), call.label("TEMPLATE")), known, mixed=drawing)
         layers = {name: call.features(name, [replace(field, needed=False) for field in schema], geometry)
                   for name, (schema, geometry) in known.items() if call.given(name)}
@@ -78,13 +73,16 @@ class ExportTemplate(Algorithm):
             if features.crs and not same_crs(parse_crs(features.crs), parse_crs(crs)):
                 raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.").format(
                     label=call.label(name)))
-        made = apply_template(template, layers, layers_of_file(office, crs) if office else None)
+        made = apply_template(template, layers, layers_of_client(office, crs, template) if office else None)
+        stored = apply_template(template, layers, layers_of_client(database, crs, template), whole=False).layers if database else {}
         if drawing:
             from ..products.cad import drawn_layers, write_dxf
 
             write_dxf(drawn_layers(made.layers), call.new_file("OUTPUT"), crs)
-        else:
+        elif call.wants("OUTPUT"):
             write_client_layers(made.layers, call.new_file("OUTPUT"), office)
+        if database:
+            write_client_layers(stored, database)
         for name, features in made.layers.items():
             progress.info(tr("{name}: {count:,} features").format(name=name, count=len(features)))
         for what, count in sorted(made.left_out.items()):

@@ -5,8 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import MARKINGS, ROAD_EDGES, ROAD_SURFACE, ROADSIDE, ROADSIDE_OBJECTS
 from .algorithm import Algorithm, SettingSpec
+from .map_layers import MAP_LAYERS
 from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
@@ -22,17 +22,17 @@ CLOUD_SETTINGS = (
                 tr("So far either side of a line of the layer Roadside its points lie. Larger for deep guard rails and thick walls, but it takes in "
                    "what stands close behind; hedges have twice as much, shafts of poles half of it.")),
 )
-# parameter -> label, fields of the layer, those that are read, geometry, help; in the order of CloudLayers
+# parameter -> the fields that are read, help; in the order of CloudLayers
 CLOUD_LAYERS = {
-    "ROAD_SURFACE": (tr("Road surface"), ROAD_SURFACE, "road station_m", "PolygonZ",
+    "ROAD_SURFACE": ("road station_m",
                      tr("Ground within it is road surface (class 11); without it all ground is class 2.")),
-    "ROAD_EDGES": (tr("Road edges"), ROAD_EDGES, "road station_m height_m edge", "LineStringZ",
+    "ROAD_EDGES": ("road station_m height_m edge",
                    tr("Faces and tops of curbs are those of its lines that have a height.")),
-    "MARKINGS": (tr("Markings"), MARKINGS, "road station_m", "PolygonZ",
+    "MARKINGS": ("road station_m",
                  tr("Ground within it that is brighter than the asphalt about it is paint.")),
-    "ROADSIDE": (tr("Roadside"), ROADSIDE, "road station_m kind height_m", "LineStringZ",
+    "ROADSIDE": ("road station_m kind height_m",
                  tr("Made by Roadside: what stands on its lines is guard rail, barrier, wall, fence or, of hedges, vegetation.")),
-    "ROADSIDE_OBJECTS": (tr("Poles, signs and trunks"), ROADSIDE_OBJECTS, "road station_m kind height_m diam_m", "PointZ",
+    "ROADSIDE_OBJECTS": ("road station_m kind height_m diam_m",
                          tr("Made by Roadside: points about them are poles and signs; trunks are vegetation.")),
 }
 
@@ -63,8 +63,8 @@ class ClassifyCloud(Algorithm):
 
     def declare(self):
         self.add_survey()
-        for name, (label, _, _, geometry, text) in CLOUD_LAYERS.items():
-            self.add_input("layer", name, label, text, geometry, optional=True)
+        for name, (_, text) in CLOUD_LAYERS.items():
+            self.add_map_layer(name, text, optional=True)
         self.add_settings(CLOUD_SETTINGS, advanced=True)
         self.add_settings(READING_SETTINGS)
         self.add_output("folder", "OUTPUT", tr("Classified clouds"), tr("A folder for the files, which have the names of the inputs."))
@@ -82,9 +82,9 @@ class ClassifyCloud(Algorithm):
         files = read_headers(call.point_clouds(), given=call.crs())
         copies = _copies(call, files, progress)
         # what was drawn by hand has no station
-        layers = {name: call.features(name, [replace(field, needed=field.needed and field.name != "station_m") for field in schema
-                                             if field.name in read.split()], geometry)
-                  for name, (_, schema, read, geometry, _) in CLOUD_LAYERS.items()}
+        layers = {name: call.features(name, [replace(field, needed=field.needed and field.name != "station_m") for field in MAP_LAYERS[name].schema
+                                             if field.name in read.split()], MAP_LAYERS[name].geometry)
+                  for name, (read, _) in CLOUD_LAYERS.items()}
         survey = open_survey_with(call, layers, progress.part(0.0, 0.4))
         intensity = intensity_source_of(sample_files(files), call.value("INTENSITY_FROM"))[0]
         classifier = PointClassifier(survey, CloudLayers(*layers.values()), call.settings(CLOUD_SETTINGS), call.value("CORRIDOR"), intensity)

@@ -57,12 +57,7 @@ def at_path(value, path):
 
 
 def check_suffix(path, spec, vector_suffixes):
-    """Raise RoadExtractionError where the name promises a kind of file that is not written.
-
-    path : Path
-    spec : OutputSpec
-    vector_suffixes : the endings, without dot, of the vector formats that the program writes
-    """
+    """Raise RoadExtractionError where the name promises a kind of file that is not written; suffixes of vector formats have no dot."""
     if spec.kind == "layer":
         _check_vector_suffix(path, spec.label, vector_suffixes)
         return

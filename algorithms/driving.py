@@ -7,20 +7,10 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import (
-    CURB_POINTS,
-    CURVE_ELEMENTS,
-    DRIVING_LINES,
-    LANES,
-    MARKING_LINES,
-    MARKINGS,
-    PASSES,
-    ROAD_EDGES,
-    ROAD_SURFACE,
-    Features,
-)
+from ..core.common.features import Features
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, SettingSpec
+from .map_layers import MAP_LAYERS
 from .markings import CLUSTER_SETTINGS, IMAGE_SETTINGS, INTENSITY_SETTINGS, LINE_SETTINGS, MARKING_METHOD, OUTLIER_SETTINGS, marking_settings
 from .road import CURB_SETTINGS, EDGE_SETTINGS, METHOD_SETTING, SCANLINE_METHOD_SETTINGS, SURFACE_SETTINGS
 from .survey_input import (
@@ -67,19 +57,17 @@ class DrivingLines(Algorithm):
     RETIRED = ("MAX_BRIDGE", "MAX_INFERRED", "SHORTEST")
 
     def declare(self):
-        self.add_input("layer", "MARKING_LINES", tr("Marking lines"), tr("The layer written by Fit marking lines."), "LineStringZ")
+        self.add_map_layer("MARKING_LINES", tr("The layer written by Fit marking lines."))
         self.add_trajectory()
-        self.add_input("layer", "MARKINGS", tr("Markings"),
-                       tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are distinguished."), "PolygonZ",
-                       optional=True)
-        self.add_input("layer", "ROAD_EDGES", tr("Road edges"), tr("With it lanes without an outer line end at the edge."), "LineStringZ",
-                       optional=True)
+        self.add_map_layer("MARKINGS", tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are "
+                                          "distinguished."), optional=True)
+        self.add_map_layer("ROAD_EDGES", tr("With it lanes without an outer line end at the edge."), optional=True)
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
         self.add_settings(DRIVING_SETTINGS)
-        self.add_sink("DRIVING_LINES", tr("Driving lines"), fields=DRIVING_LINES, geometry="LineStringZ")
-        self.add_sink("LANES", tr("Lanes"), fields=LANES, geometry="PolygonZ", optional=True,
-                      text=tr("The area of each lane between its borders, with what follows it. Exports to HD maps are made from this layer."))
-        self.add_sink("CURVE_ELEMENTS", tr("Curve elements"), fields=CURVE_ELEMENTS, geometry="None", optional=True)
+        self.add_map_sink("DRIVING_LINES")
+        self.add_map_sink("LANES", tr("The area of each lane between its borders, with what follows it. Exports to HD maps are made from this "
+                                      "layer."), optional=True)
+        self.add_map_sink("CURVE_ELEMENTS", optional=True)
 
     def work(self, call, progress):
         from ..core.driving.driving_lines import make_driving_lines
@@ -87,11 +75,9 @@ class DrivingLines(Algorithm):
         from ..core.markings.objects.marking_objects import MarkingObjects
         from ..core.road.edges.road_edges import RoadEdges
 
-        marking_lines = call.features("MARKING_LINES", MARKING_LINES, "LineStringZ")
-        markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
-        edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        layers = {name: call.map_layer(name) for name in ("MARKING_LINES", "MARKINGS", "ROAD_EDGES")}
+        marking_lines, markings, edges = layers.values()
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.3)) if call.cloud("ROAD_POINTS") else None
-        layers = {"MARKING_LINES": marking_lines, "MARKINGS": markings, "ROAD_EDGES": edges}
         frame = frame_of(call, marking_lines.crs, progress, road_points, layers)
         lines, elements, lanes = make_driving_lines(
             PaintedLines.from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
@@ -181,16 +167,9 @@ STAGES = {
 OFFERED = ("BLOCK_LENGTH", "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH", "CELL_SIZE", "CURVE", "DEGREE",
            "COUNTRY", "LANE_WIDTH", "TRAFFIC_SIDE")
 
-LAYERS = (
-    ("ROAD_EDGES", "edges", "LineStringZ", ROAD_EDGES, tr("Road edges")),
-    ("ROAD_SURFACE", "surface", "PolygonZ", ROAD_SURFACE, tr("Road surface")),
-    ("MARKINGS", "markings", "PolygonZ", MARKINGS, tr("Markings")),
-    ("MARKING_LINES", "marking_lines", "LineStringZ", MARKING_LINES, tr("Marking lines")),
-    ("DRIVING_LINES", "driving_lines", "LineStringZ", DRIVING_LINES, tr("Driving lines")),
-    ("LANES", "lanes", "PolygonZ", LANES, tr("Lanes")),
-    ("CURVE_ELEMENTS", "curve_elements", "None", CURVE_ELEMENTS, tr("Curve elements")),
-)
-
+# Layer of the road map -> where RoadMap holds it
+LAYERS = {"ROAD_EDGES": "edges", "ROAD_SURFACE": "surface", "MARKINGS": "markings", "MARKING_LINES": "marking_lines",
+          "DRIVING_LINES": "driving_lines", "LANES": "lanes", "CURVE_ELEMENTS": "curve_elements"}
 
 ESTIMATED = 0.2   # of the work, where the trajectory is estimated first
 
@@ -220,11 +199,10 @@ class RoadMap(Algorithm):
         self.add_settings(SURVEY_SETTINGS)
         add_corrections(self)
         add_execution(self)
-        for name, _, geometry, fields, label in LAYERS:
-            self.add_sink(name, label, fields=fields, geometry=geometry, optional=True)
-        self.add_sink("PASSES", tr("Passes (the trajectory)"), tr("Where the vehicle drove, as this run used it: one line a pass."), fields=PASSES,
-                      geometry="LineStringZ", optional=True)
-        self.add_sink("CURB_POINTS", tr("Curb points"), fields=CURB_POINTS, geometry="PointZ", optional=True, by_default=False)
+        for name in LAYERS:
+            self.add_map_sink(name, optional=True)
+        self.add_map_sink("PASSES", tr("Where the vehicle drove, as this run used it: one line a pass."), optional=True)
+        self.add_map_sink("CURB_POINTS", optional=True, by_default=False)
         self.add_output("cloud", "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True,
                         by_default=False)
         self.add_output("raster", "INTENSITY_IMAGE", tr("Intensity image"), optional=True)
@@ -261,9 +239,9 @@ class RoadMap(Algorithm):
         if road_map.markings is None:
             call.drop_file("INTENSITY_IMAGE")
         layers = {}
-        for name, attribute, geometry, fields, _ in LAYERS:
+        for name, attribute in LAYERS.items():
             layer = layers[attribute] = road_map.layer(attribute)
-            call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
+            call.layer(name, layer if layer is not None else Features(MAP_LAYERS[name].geometry, MAP_LAYERS[name].schema, crs=road_map.crs))
         if call.wants("PASSES"):
             from ..core.survey.frame.placement import passes_to_features
 

@@ -5,33 +5,33 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_ATTRIBUTES, ROAD_EDGES, SIGNALS
+from ..core.common.features import LANES, MAP_FINDINGS, ROAD_ATTRIBUTES
 from ..core.common.setting import Limited, setting
 from ..core.lazy import shapely
 from .algorithm import Algorithm, SettingSpec
 from .call import existing_file
+from .map_layers import MAP_LAYERS
 from .survey_input import road_points_of
 from .texts import languages, told, tr
 
-MAP_LAYERS = (
-    ("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it, and what the map says of its road."),
-     LANES + ROAD_ATTRIBUTES, "PolygonZ", "lane_areas"),
-    ("DRIVING_LINES", tr("Driving lines"), tr("The middle of every lane that is driven, in the direction of travel."), DRIVING_LINES, "LineStringZ",
-     "driving_lines"),
-    ("MARKING_LINES", tr("Marking lines"), tr("Borders that are painted."), MARKING_LINES, "LineStringZ", "marking_lines"),
-    ("ROAD_EDGES", tr("Road edges"), tr("Curbs and borders of the road."), ROAD_EDGES, "LineStringZ", "road_edges"),
-    ("MARKINGS", tr("Markings"), tr("Crossings, stop lines, arrows and hatched areas."), MARKINGS, "PolygonZ", "markings"),
-    ("SIGNALS", tr("Signals and poles"), tr("Traffic lights and signs with the lanes that they hold for, and poles."), SIGNALS, "PointZ",
-     "signal_points"),
-)
+# Layers that a map is read into beside the lanes
+READ_LAYERS = {
+    "DRIVING_LINES": tr("The middle of every lane that is driven, in the direction of travel."),
+    "MARKING_LINES": tr("Borders that are painted."),
+    "ROAD_EDGES": tr("Curbs and borders of the road."),
+    "MARKINGS": tr("Crossings, stop lines, arrows and hatched areas."),
+    "SIGNALS": tr("Traffic lights and signs with the lanes that they hold for, and poles."),
+}
 MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of the driven lanes (m)")))
 
 
 def add_map_layers(algorithm, crs_text):
     """The layers that a map is read into, and their CRS."""
     algorithm.add_input("crs", "CRS", tr("CRS of the layers"), crs_text, optional=True)
-    for name, label, text, fields, geometry, _ in MAP_LAYERS:
-        algorithm.add_sink(name, label, text, fields=fields, geometry=geometry, optional=True)
+    algorithm.add_sink("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it, and what the map says of its road."),
+                       fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", optional=True)
+    for name, text in READ_LAYERS.items():
+        algorithm.add_map_sink(name, text, optional=True)
 
 
 def add_any_map(algorithm, crs_label):
@@ -62,23 +62,24 @@ def read_map(call, progress, lanelets):
 
 
 def map_layers(call, progress, lanelets):
-    """The MapLayers of the file that was given."""
+    """The file that was given as RoadMapSource, not yet checked."""
     from ..products.export.lanelet_map import layers_of_lanelets
     from ..products.export.opendrive.xodr import layers_of_opendrive
 
     whole, crs, notes = read_map(call, progress.part(0.0, 0.5), lanelets)
     layers = (layers_of_lanelets if lanelets else layers_of_opendrive)(whole, crs, progress.part(0.5, 0.95))
-    layers.notes += notes
+    layers.notes += [*notes, *layers.said_left_out()]
     return layers
 
 
 def write_map_layers(call, layers, progress):
-    """Hand on the MapLayers of a map; returns the numbers."""
-    for note in (*layers.notes, *layers.said_left_out()):
+    """Hand on the layers of a map; returns the numbers."""
+    for note in layers.notes:
         progress.warn(note)
-    for name, _, _, _, _, make in MAP_LAYERS:
-        if call.wants(name):
-            call.layer(name, getattr(layers, make)())
+    if call.wants("LANES"):
+        call.layer("LANES", layers.lane_areas())
+    for name in filter(call.wants, READ_LAYERS):
+        call.layer(name, getattr(layers, name.lower()))
     lanes = layers.lanes
     driven = (lanes.type == "driving") | (lanes.type == "connector")
     length = float(lanes.length[driven].sum())
@@ -86,28 +87,28 @@ def write_map_layers(call, layers, progress):
     return {"LANE_COUNT": float(len(lanes)), "LENGTH": length}
 
 
-LINE_FIELDS = tuple(field for field in DRIVING_LINES if field.name in ("road", "lane", "status", "station_m", "end_m", "sigma_m"))
-MARKING_LINE_FIELDS = tuple(field for field in MARKING_LINES if field.name in ("road", "line", "kind", "pattern", "width_m"))
-EDGE_FIELDS = tuple(field for field in ROAD_EDGES if field.name in ("road", "height_m", "edge"))
-MARKING_FIELDS = tuple(field for field in MARKINGS if field.name in ("road", "class"))
+# Layers that an export takes beside the lanes -> the fields that are read, help
+EXPORTED_LAYERS = {
+    "DRIVING_LINES": ("road lane status station_m end_m sigma_m", tr(
+        "Held against the middles of the lanes: the report says how far apart they are. The uncertainty of every lane comes from them.")),
+    "MARKING_LINES": ("road line kind pattern width_m", tr("The widths of the painted borders.")),
+    "ROAD_EDGES": ("road height_m edge", tr("The heights of curbs.")),
+    "MARKINGS": ("road class", tr("Zebra crossings, stop lines, arrows and hatched areas.")),
+}
 
 
 def add_road_map_layers(algorithm):
     """The layers of the road map that an export takes."""
-    algorithm.add_input("layer", "LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
-    algorithm.add_input("layer", "DRIVING_LINES", tr("Driving lines"), tr(
-        "Held against the middles of the lanes: the report says how far apart they are. The uncertainty of every lane comes from "
-        "them."), "LineStringZ", optional=True)
-    algorithm.add_input("layer", "MARKING_LINES", tr("Marking lines"), tr("The widths of the painted borders."), "LineStringZ", optional=True)
-    algorithm.add_input("layer", "ROAD_EDGES", tr("Road edges"), tr("The heights of curbs."), "LineStringZ", optional=True)
-    algorithm.add_input("layer", "MARKINGS", tr("Markings"), tr("Zebra crossings, stop lines, arrows and hatched areas."), "PolygonZ", optional=True)
+    algorithm.add_map_layer("LANES", tr("Made by Driving lines or Road map, with its fields and heights."))
+    for name, (_, text) in EXPORTED_LAYERS.items():
+        algorithm.add_map_layer(name, text, optional=True)
     algorithm.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it the borders have the heights of the road's surface."), optional=True)
 
 
 def add_signals(algorithm):
-    algorithm.add_input("layer", "SIGNALS", tr("Signals and poles"), tr(
+    algorithm.add_map_layer("SIGNALS", tr(
         "Traffic lights, signs and poles: of an imported map, or the poles and signs of Roadside. The field lanes names the lanes that obey."),
-        "PointZ", optional=True)
+        optional=True)
 
 
 def road_map_source(call, progress):
@@ -116,13 +117,9 @@ def road_map_source(call, progress):
     from ..products.export.sources import RoadMapSource, checked, known_of_roads
 
     areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
-    source = RoadMapSource(
-        Lanes.from_features(areas), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
-        call.features("MARKING_LINES", MARKING_LINE_FIELDS, "LineStringZ"), call.features("ROAD_EDGES", EDGE_FIELDS, "LineStringZ"),
-        call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"), attributes=known_of_roads(areas))
-    if call.algorithm.parameter("SIGNALS") is not None:
-        source.signals = call.features("SIGNALS", SIGNALS, "PointZ")
-    source = checked(source)
+    layers = {name.lower(): call.features(name, [field for field in MAP_LAYERS[name].schema if field.name in read.split()], MAP_LAYERS[name].geometry)
+              for name, (read, _) in EXPORTED_LAYERS.items()}
+    source = checked(RoadMapSource(Lanes.from_features(areas), **layers, signals=call.map_layer("SIGNALS"), attributes=known_of_roads(areas)))
     if call.cloud("ROAD_POINTS"):
         from ..products.export.sources import with_surface_heights
 
@@ -176,7 +173,7 @@ class RoadAttributes(Algorithm):
                ("SPEEDS", tr("Lanes with a speed limit")), ("NAMES", tr("Lanes with a name")))
 
     def declare(self):
-        self.add_input("layer", "LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
+        self.add_map_layer("LANES", tr("Made by Driving lines or Road map, with its fields and heights."))
         self.add_input("file", "OSM_FILE", tr("OpenStreetMap file"), tr("An extract in XML with the ending .osm, that holds the roads."),
                        optional=True, file_filter="OpenStreetMap (*.osm *.OSM *.xml);;All files (*.*)")
         self.add_input("layer", "WAYS", tr("Ways"), tr("Instead of the file: lines with the fields name, ref, maxspeed, lanes, oneway, surface, "
@@ -415,11 +412,9 @@ def write_lanelet2(call, source, name, progress):
     return numbers
 
 
-ALIGNMENTS = "products.export.opendrive.exporter:OpenDriveSettings"
-FORMATS = ("dxf", "landxml")
-SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}
+SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}   # format -> endings
 CAD_SETTINGS = (
-    SettingSpec("TOLERANCE", ALIGNMENTS, "tolerance", tr("Tolerance (m)"),
+    SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
                 tr("LandXML: how far a line may be missed by its elements, in plan and in height. DXF has every vertex.")),
 )
 
@@ -438,7 +433,7 @@ class ExportCad(Algorithm):
     def declare(self):
         add_road_map_layers(self)
         self.add_input("choice", "FORMAT", tr("Format"), tr("dxf is drawn by every CAD program, landxml is taken over by programs for road design."),
-                       default=FORMATS[0], choices=FORMATS)
+                       default="dxf", choices=tuple(SUFFIXES))
         self.add_settings(CAD_SETTINGS)
         self.add_output("file", "OUTPUT", tr("CAD file"), tr("With the ending .dxf, or .xml for LandXML."),
                         suffixes=(".dxf", ".xml", ".landxml"), file_filter="DXF (*.dxf);;LandXML (*.xml *.landxml)")
@@ -447,8 +442,11 @@ class ExportCad(Algorithm):
     def work(self, call, progress):
         from ..products.report.hd_map import map_export_report
 
-        kind = call.value("FORMAT")
-        self._check_name(call, kind)
+        kind, path = call.value("FORMAT"), call.destination("OUTPUT") or ""
+        named = next((name for name, suffixes in SUFFIXES.items() if path.lower().endswith(suffixes)), kind)
+        if named != kind and path != "TEMPORARY_OUTPUT":
+            raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.").format(
+                path=path, named=named, kind=kind))
         source = road_map_source(call, progress.part(0.0, 0.2))
         for note in source.notes:
             progress.warn(note)
@@ -457,13 +455,6 @@ class ExportCad(Algorithm):
             facts = [(tr("Format"), {"dxf": "DXF", "landxml": "LandXML 1.2"}[kind]), (tr("Lines"), int(numbers["LINES"]))]
             call.text("REPORT", map_export_report(tr("Road map for CAD"), call.layer_name("LANES"), facts, tables, source.notes))
         return numbers
-
-    def _check_name(self, call, kind):
-        path = call.destination("OUTPUT") or ""
-        named = next((name for name, suffixes in SUFFIXES.items() if path.lower().endswith(suffixes)), kind)
-        if named != kind and path != "TEMPORARY_OUTPUT":
-            raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.").format(
-                path=path, named=named, kind=kind))
 
 
 def _dxf(call, source, progress):
@@ -491,9 +482,8 @@ def _landxml(call, source, progress):
     missed = max((alignment.missed for alignment in alignments), default=0.0)
     progress.info(tr("{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.").format(
         count=len(alignments), length=sum(alignment.length for alignment in alignments), missed=missed))
-    rows = [(alignment.name, told(alignment.description), round(alignment.length, 2),
-             len(alignment.plan.elements) if alignment.plan is not None else None, len(alignment.profile))
-            for alignment in alignments]
+    rows = [(one.name, told(one.description), round(one.length, 2), len(one.plan.elements) if one.plan is not None else None, len(one.profile))
+            for one in alignments]
     tables = [(tr("Alignments"), (tr("Name"), tr("What it is"), tr("Length (m)"), tr("Elements"), tr("Points of the profile")), rows)]
     return {"LINES": float(len(alignments)), "ALIGNMENTS": float(len(alignments)), "MISSED": missed}, tables
 
@@ -502,10 +492,7 @@ SETTINGS = "algorithms.export:SheetSettings"
 PAPERS = ("A4", "A3", "A2", "A1", "A0")
 SCALES = ("1:100", "1:200", "1:250", "1:500", "1:1000", "1:2000", "1:2500", "1:5000")
 # Results that are drawn, from above
-DRAWN = (("DRIVING_LINES", tr("Driving lines"), "LineStringZ"), ("ROAD_EDGES", tr("Road edges"), "LineStringZ"),
-         ("MARKING_LINES", tr("Marking lines"), "LineStringZ"), ("CROSS_SECTIONS", tr("Cross-sections"), "LineStringZ"),
-         ("MARKINGS", tr("Markings"), "PolygonZ"), ("LANES", tr("Lanes"), "PolygonZ"),
-         ("ROAD_SURFACE", tr("Road surface"), "PolygonZ"))
+DRAWN = ("DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES", "CROSS_SECTIONS", "MARKINGS", "LANES", "ROAD_SURFACE")
 
 
 @dataclass(frozen=True)
@@ -566,11 +553,12 @@ class PrintSheets(Algorithm):
     def declare(self):
         # what is printed on every sheet comes first: the layers are chosen already
         self.add_settings(SHEET_SETTINGS)
-        for name, label, geometry in DRAWN:
-            text = tr("Drawn on the sheets, if given.") if geometry == "PolygonZ" else tr("Drawn on the sheets, and leads the axis if given.")
+        for name in DRAWN:
+            area = MAP_LAYERS[name].geometry == "PolygonZ"
+            text = tr("Drawn on the sheets, if given.") if area else tr("Drawn on the sheets, and leads the axis if given.")
             if name == "CROSS_SECTIONS":
                 text = tr("Of the algorithm Cross-sections: drawn on the sheets, and the pages of sections show them with the limits not kept.")
-            self.add_input("layer", name, label, text, geometry, optional=True)
+            self.add_map_layer(name, text, optional=True)
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr(
             "With it cross-sections show the ground as it was measured; without it straight lines between edges, paint and driving lines."),
             optional=True)
@@ -658,7 +646,7 @@ class ConvertMap(Algorithm):
             raise RoadExtractionError(tr("{path} is {kind} already, and {output} would be too. Give the result the ending {ending}.").format(
                 path=path, output=output, kind="Lanelet2" if from_lanelets else "OpenDRIVE", ending=".xodr" if from_lanelets else ".osm"))
         layers = map_layers(call, progress.part(0.0, 0.2), from_lanelets)
-        source = lanes_with_borders(checked(layers.source()))
+        source = lanes_with_borders(checked(layers))
         numbers = (write_opendrive if from_lanelets else write_lanelet2)(call, source, Path(path).name, progress.part(0.2, 1.0))
         return {"SUCCESSORS": numbers["SUCCESSORS"], "FINDINGS": numbers["FINDINGS"], "SIGNAL_COUNT": float(len(layers.signals)),
                 "LEFT_OUT": float(sum(layers.left_out.values()))}

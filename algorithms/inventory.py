@@ -2,36 +2,20 @@
 
 from datetime import datetime
 
-from ..core.common.features import (
-    BREAKLINES,
-    CROSS_SECTIONS,
-    DRIVING_LINES,
-    LANES,
-    MARKING_LINES,
-    ROAD_EDGES,
-    ROADSIDE,
-    ROADSIDE_OBJECTS,
-    SURFACE_FACES,
-)
+from ..core.common.features import BREAKLINES, CROSS_SECTIONS, ROADSIDE, ROADSIDE_OBJECTS, SURFACE_FACES
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, SettingSpec
 from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
-# parameter -> its label, fields and geometry, in the order of BorderLayers
-BORDER_LAYERS = {
-    "ROAD_EDGES": (tr("Road edges"), ROAD_EDGES, "LineStringZ"),
-    "MARKING_LINES": (tr("Marking lines"), MARKING_LINES, "LineStringZ"),
-    "DRIVING_LINES": (tr("Driving lines"), DRIVING_LINES, "LineStringZ"),
-    "LANES": (tr("Lanes"), LANES, "PolygonZ"),
-}
+BORDER_LAYERS = ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES", "LANES")   # in the order of BorderLayers
 
 
 def add_borders(algorithm, *helps, needed=()):
     """Declare the layers of the road map, each with what it is good for, "" where it is not asked for; those `needed` must be given."""
-    for (name, (label, _, geometry)), text in zip(BORDER_LAYERS.items(), helps, strict=True):
+    for name, text in zip(BORDER_LAYERS, helps, strict=True):
         if text:
-            algorithm.add_input("layer", name, label, text, geometry, optional=name not in needed)
+            algorithm.add_map_layer(name, text, optional=name not in needed)
 
 
 def survey_with_borders(call, progress, above_road):
@@ -41,8 +25,7 @@ def survey_with_borders(call, progress, above_road):
     """
     from ..products.inventory.borders import BorderLayers
 
-    layers = {name: call.features(name, schema, geometry) if call.algorithm.parameter(name) is not None else None
-              for name, (_, schema, geometry) in BORDER_LAYERS.items()}
+    layers = {name: call.map_layer(name) for name in BORDER_LAYERS}
     survey = open_survey_with(call, layers, progress, above_road=above_road)
     return survey, BorderLayers(*layers.values())
 

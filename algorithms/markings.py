@@ -1,6 +1,6 @@
 """What is painted: intensity corrected and drawn, paint, markings and the lines along them."""
 
-from ..core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES
+from ..core.common.features import MARKINGS
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, ParameterSpec, SettingSpec
 from .survey_input import bright_road_points_of, check_layers_on_roads, frame_of, paint_of, road_points_of
@@ -190,7 +190,7 @@ class ClusterMarkings(Algorithm):
         self.add_input("cloud", "MARKING_POINTS", tr("Marking points"), tr("The file written by Remove outliers or Extract markings."))
         self.add_trajectory()
         self.add_settings(CLUSTER_SETTINGS)
-        self.add_sink("MARKINGS", tr("Markings"), fields=MARKINGS, geometry="PolygonZ")
+        self.add_map_sink("MARKINGS")
         self.add_output("cloud", "CLUSTERED_POINTS", tr("Clustered points"), tr("The points with the extra field cluster."))
 
     def work(self, call, progress):
@@ -227,14 +227,13 @@ class FitMarkingLines(Algorithm):
 
     def declare(self):
         self.add_input("cloud", "CLUSTERED_POINTS", tr("Clustered points"), tr("The file written by Cluster markings."))
-        self.add_input("layer", "MARKINGS", tr("Markings"), tr("The layer written by Cluster markings together with the points."), "PolygonZ")
+        self.add_map_layer("MARKINGS", tr("The layer written by Cluster markings together with the points."))
         self.add_trajectory()
-        self.add_input("layer", "ROAD_EDGES", tr("Road edges"), tr("With it curbs help to tell edge lines from lane lines."),
-                       "LineStringZ", optional=True)
+        self.add_map_layer("ROAD_EDGES", tr("With it curbs help to tell edge lines from lane lines."), optional=True)
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"),
                        tr("With it the width of the road helps to tell what a line separates."), optional=True)
         self.add_settings(LINE_SETTINGS)
-        self.add_sink("MARKING_LINES", tr("Marking lines"), fields=MARKING_LINES, geometry="LineStringZ")
+        self.add_map_sink("MARKING_LINES")
         self.add_sink("NAMED_MARKINGS", tr("Markings named by their lines"), fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False,
                       text=tr("The markings again, each dash and piece of a line with the class of the line that runs along it: alone, a dash of a "
                               "centre line looks like any other."))
@@ -244,11 +243,11 @@ class FitMarkingLines(Algorithm):
         from ..core.markings.objects.marking_objects import MarkingObjects, with_kinds_of
         from ..core.road.edges.road_edges import RoadEdges
 
-        layer = call.features("MARKINGS", MARKINGS, "PolygonZ")
+        layer = call.map_layer("MARKINGS")
         points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points, {"MARKINGS": layer})
         markings = MarkingObjects.from_features(layer, frame)
-        edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        edges = call.map_layer("ROAD_EDGES")
         check_layers_on_roads(call, {"ROAD_EDGES": edges}, frame, progress)
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.2, 0.3)) if call.cloud("ROAD_POINTS") else None
         lines = fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.3, 1.0),

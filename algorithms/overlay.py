@@ -10,11 +10,8 @@ from .vector_source import LINE, POINT, POLYGON, vertices_of
 
 
 def read_control_point_layer(source, image, crs=""):
-    """ControlPoints of a layer.
+    """ControlPoints of an image, from a VectorSource of points with the fields pixel and line, or a table. crs : WKT where it carries none
 
-    source : VectorSource, points with the fields pixel and line, or a table
-    image : SourceImage that the points belong to
-    crs : WKT where the layer carries none
     Raises RoadExtractionError if the layer holds lines or polygons, or lacks a field.
     """
     from ..products.overlay.control_points import control_points

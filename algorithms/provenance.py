@@ -198,13 +198,9 @@ def sign_report(path: str, facts: Callable[[], list[tuple[str, str]]]) -> None:
 
 
 def run_facts(algorithm: Algorithm, survey: str, clouds: Sequence[str], crs: str, provenance: Provenance) -> list[tuple[str, str]]:
-    """(name, value) of what tells a run from others; names of files without their folders, since a report is handed on.
+    """(name, value) of what tells a run on a survey, with these point clouds and results in a CRS, WKT or "", from others.
 
-    algorithm : that ran
-    survey : name of the survey
-    clouds : paths of its point clouds
-    crs : WKT of the results, "" where unknown
-    provenance : of the run
+    Names of files are without their folders, since a report is handed on.
     """
     files = [Path(path).name for path in clouds]
     named = ", ".join(files[:MOST_FILES]) + (tr(" and {count} more").format(count=len(files) - MOST_FILES) if len(files) > MOST_FILES else "")

@@ -2,7 +2,7 @@
 
 from contextlib import nullcontext
 
-from ..core.common.features import CURB_POINTS, ROAD_EDGES, ROAD_SURFACE, SCANLINES
+from ..core.common.features import CURB_POINTS, ROAD_EDGES
 from .algorithm import Algorithm, SettingSpec
 from .survey_input import SURVEY_SETTINGS, add_execution, check_layers_on_roads, frame_of, open_survey_of
 from .texts import tr
@@ -43,8 +43,7 @@ class NormalizedScanlines(Algorithm):
         self.add_settings(POINT_SETTINGS)
         self.add_settings(SURVEY_SETTINGS, only=("SCANNER_FIELD", "TIME", "INTENSITY_FROM", "FIT_PASSES", "TRAJECTORY_SIGMA"))
         add_execution(self)
-        self.add_sink("SCANLINES", tr("Normalized scanlines"),
-                      tr("Lines with height (Z) and intensity (M)."), fields=SCANLINES, geometry="LineStringZM", optional=True)
+        self.add_map_sink("SCANLINES", tr("Lines with height (Z) and intensity (M)."), optional=True)
         self.add_output("cloud", "RESAMPLED_POINTS", tr("Resampled points"), tr(
             "Points at equal steps along the scanlines, with intensity, station and offset: a cloud of even density."),
             optional=True, by_default=False)
@@ -103,7 +102,7 @@ class BoundariesFromScanlines(Algorithm):
     LOOKS = {"CORNERS": "CURB_POINTS"}
 
     def declare(self):
-        self.add_input("layer", "SCANLINES", tr("Normalized scanlines"), tr("The layer written by Normalized scanlines."), "LineStringZM")
+        self.add_map_layer("SCANLINES", tr("The layer written by Normalized scanlines."))
         self.add_trajectory()
         self.add_settings(BOUNDARY_SETTINGS)
         self.add_sink("CORNERS", tr("Curb corners"), tr("Bottoms and tops, one of each per half metre and side."), fields=CURB_POINTS,
@@ -118,7 +117,7 @@ class BoundariesFromScanlines(Algorithm):
         from ..products.scanline_layer import scanlines_from_features
 
         settings = call.settings(BOUNDARY_SETTINGS)
-        layer = call.features("SCANLINES", SCANLINES, "LineStringZM")
+        layer = call.map_layer("SCANLINES")
         frame = frame_of(call, layer.crs, progress)
         frame.pass_sigma = sigma_of_layer(layer)
         lines, interval = scanlines_from_features(layer, frame)
@@ -164,7 +163,7 @@ class DetectCurbs(Algorithm):
         self.add_survey()
         self.add_settings(CURB_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
-        self.add_sink("CURB_POINTS", tr("Curb points"), fields=CURB_POINTS, geometry="PointZ")
+        self.add_map_sink("CURB_POINTS")
         self.add_sink("PRINCIPAL_POINTS", tr("Principal points"),
                       tr("The highest point of the lowest layer of every cell: what the curbs were looked for on."), geometry="PointZ", optional=True,
                       by_default=False)
@@ -187,7 +186,7 @@ EDGES = "core.road.edges.fit:EdgeSettings"
 EDGE_SETTINGS = (
     SettingSpec("MAX_GAP", EDGES, "max_gap", tr("Longest gap bridged (m)"),
                 tr("Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there. Where both parts of the curb lie "
-                   "in one line, gaps up to twice as long are bridged.")),
+                   "in one line, gaps up to twice as long are bridged. A curb that is lowered in sight is drawn as dropped across up to 12 m.")),
     SettingSpec("FALLBACK_WIDTH", EDGES, "fallback_width", tr("Assumed road width where no curb is seen, 0 = none (m)"),
                 tr("0 draws no edge where none was found. A width draws one at half of it either side of the road's reference line, flagged as "
                    "inferred."), advanced=True),
@@ -200,16 +199,16 @@ class FitRoadEdges(Algorithm):
     TAGS = ("curb", "kerb", "road edge", "spline")
 
     def declare(self):
-        self.add_input("layer", "CURB_POINTS", tr("Curb points"), tr("The layer written by Detect curbs."), "PointZ")
+        self.add_map_layer("CURB_POINTS", tr("The layer written by Detect curbs."))
         self.add_trajectory()
         self.add_settings(EDGE_SETTINGS)
-        self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
+        self.add_map_sink("ROAD_EDGES")
 
     def work(self, call, progress):
         from ..core.road.common.curb_points import CurbPoints
         from ..core.road.edges.fit import fit_road_edges
 
-        layer = call.features("CURB_POINTS", CURB_POINTS, "PointZ")
+        layer = call.map_layer("CURB_POINTS")
         frame = frame_of(call, layer.crs, progress, layers={"CURB_POINTS": layer})
         edges = fit_road_edges(CurbPoints.from_features(layer, frame), frame, call.settings(EDGE_SETTINGS), progress)
         call.layer("ROAD_EDGES", edges.to_features(frame))
@@ -243,7 +242,7 @@ class DetectBoundaries(Algorithm):
         self.add_settings(EDGE_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
         add_execution(self)
-        self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
+        self.add_map_sink("ROAD_EDGES")
 
     def work(self, call, progress):
         from ..core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
@@ -274,20 +273,19 @@ class ExtractRoadSurface(Algorithm):
 
     def declare(self):
         self.add_survey()
-        self.add_input("layer", "ROAD_EDGES", tr("Road edges"),
-                       tr("The layer written by Fit road edges. Without it the surface is grown on both sides."), "LineStringZ", optional=True)
+        self.add_map_layer("ROAD_EDGES", tr("The layer written by Fit road edges. Without it the surface is grown on both sides."), optional=True)
         self.add_settings(SURFACE_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
         self.add_output("cloud", "ROAD_POINTS", tr("Road points"),
                         tr("Class 11, with the extra fields road, pass, station_m, offset_m, half_width and covered for the stages that follow."))
-        self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)
+        self.add_map_sink("ROAD_SURFACE", optional=True)
 
     def work(self, call, progress):
         from ..core.road.edges.road_edges import RoadEdges
         from ..core.road.surface.extract import extract_road_surface
         from ..core.survey.road_points_las import write_road_points
 
-        layer = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        layer = call.map_layer("ROAD_EDGES")
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         edges = None
         if layer is not None:

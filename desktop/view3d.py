@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import numpy as np
 from qgis.core import (
     Qgis,
+    QgsColorRampShader,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
     QgsFeature,
+    QgsFillSymbol,
     QgsGeometry,
+    QgsGradientColorRamp,
     QgsLineString,
     QgsMultiPolygon,
     QgsNullSymbolRenderer,
     QgsPoint,
+    QgsPointCloudExtentRenderer,
     QgsPointCloudLayer,
     QgsPolygon,
     QgsProcessingUtils,
     QgsProject,
     QgsProperty,
     QgsPropertyCollection,
+    QgsProviderRegistry,
     QgsVector3D,
     QgsVectorFileWriter,
     QgsVectorLayer,
@@ -25,11 +33,14 @@ from qgis.core import (
 from qgis.gui import QgisInterface
 from qgis.PyQt.QtGui import QColor
 
+from ..core.common.errors import RoadExtractionError
+from ..core.survey.las.reader import read_blocks
 from ..processing_provider.results.origin import output_of
-from ..processing_provider.results.road_maps import RoadMap
+from ..processing_provider.results.road_maps import RoadMap, clouds_of
 from ..processing_provider.texts import tr
 
-STONE = "#d8d2c4"
+STONE, DARK, BRIGHT = "#d8d2c4", "#3c4045", "#ffffff"
+SAMPLE = 50_000       # points by which the brightness of a cloud is set
 LINE_WIDTH = 2.0       # pixels of driving lines and edges without a curb
 CURB_WIDTH = 0.12     # m
 UNKNOWN_HEIGHT = 0.12  # m that a curb is drawn high whose height is not known
@@ -130,10 +141,48 @@ def _curb_walls(edges):
     return walls
 
 
+def _clouds(road_map, project):
+    """The survey's point clouds as layers of the project, the brighter the stronger their echo; the map shows nothing of them."""
+    from qgis._3d import QgsColorRampPointCloud3DSymbol, QgsPointCloudLayer3DRenderer
+
+    known = {layer.source(): layer for layer in project.mapLayers().values() if isinstance(layer, QgsPointCloudLayer)}
+    options = QgsPointCloudLayer.LayerOptions()
+    options.skipStatisticsCalculation = True
+    clouds = []
+    for path in clouds_of(road_map, project)[0]:
+        providers = QgsProviderRegistry.instance().preferredProvidersForUri(path)
+        if path not in known and providers:
+            cloud = known[path] = QgsPointCloudLayer(path, Path(path).name, providers[0].metadata().key(), options)
+            cloud.setRenderer(QgsPointCloudExtentRenderer(QgsFillSymbol.createSimple({"style": "no", "outline_style": "no"})))
+            weak, strong = _intensities(path)
+            shader = QgsColorRampShader(weak, strong, QgsGradientColorRamp(QColor(DARK), QColor(BRIGHT)))
+            shader.classifyColorRamp(2)
+            symbol, look = QgsColorRampPointCloud3DSymbol(), QgsPointCloudLayer3DRenderer()
+            symbol.setAttribute("Intensity")
+            symbol.setColorRampShader(shader)
+            symbol.setColorRampShaderMinMax(weak, strong)
+            symbol.setPointSize(1.0)
+            look.setSymbol(symbol)
+            look.setLayer(cloud)
+            cloud.setRenderer3D(look)
+            project.addMapLayer(cloud, False)
+            (road_map.group or project.layerTreeRoot()).addLayer(cloud)
+        clouds += [known[path]] if path in known else []
+    return clouds
+
+
+def _intensities(path):
+    """A low and a high one of a cloud's first points."""
+    try:
+        return np.percentile(next(read_blocks(path, SAMPLE, layers=("intensity",))).intensity, (2, 98)).tolist()
+    except (RoadExtractionError, StopIteration):   # damaged, or without points
+        return 0.0, 65535.0
+
+
 def show_in_3d(iface: QgisInterface, road_map: RoadMap, title: str) -> bool:
     """Open a 3D view of the road map with the camera over the middle of the map window; False where QGIS could not open one.
 
-    Point clouds that the project shows come with it.
+    Point clouds that the project shows come with it, else those of the survey where QGIS can show them: COPC, and with PDAL LAS and LAZ too.
     """
     project = QgsProject.instance()
     layers = give_3d_looks(road_map)
@@ -141,8 +190,8 @@ def show_in_3d(iface: QgisInterface, road_map: RoadMap, title: str) -> bool:
     if canvas is None:
         return False
     settings, view = canvas.mapSettings(), iface.mapCanvas()
-    clouds = [layer for layer in view.layers() if isinstance(layer, QgsPointCloudLayer)]
-    settings.setLayers([*clouds, *layers])
+    shown = [layer for layer in view.layers() if isinstance(layer, QgsPointCloudLayer)]
+    settings.setLayers([*(shown or _clouds(road_map, project)), *layers])
     settings.setTerrainRenderingEnabled(False)  # a flat one at height 0 would hide the road or hang far below it
     settings.setBackgroundColor(QColor("#e8edf2"))
     place = view.extent().center()

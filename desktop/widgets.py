@@ -142,13 +142,7 @@ def all_is_there(iface) -> bool:
 
 
 def tell_result(iface, title: str, layers: Sequence[QgsMapLayer], warnings: Sequence[str]) -> None:
-    """What a run made: the map goes there where nothing of it is seen, and its warnings can be read.
-
-    iface : of QGIS
-    title : of the algorithm
-    layers : that came into the project
-    warnings : of the run, as the log has them
-    """
+    """Which layers a run of an algorithm made: the map goes there where nothing of them is seen, and the run's warnings can be read."""
     extent, canvas = extent_of(layers, iface.mapCanvas().mapSettings().destinationCrs()), iface.mapCanvas()
     buttons = []
     if not extent.isEmpty():

@@ -1,6 +1,7 @@
 """One run of an algorithm on files, without QGIS."""
 
 import os
+import re
 from pathlib import Path
 
 from ..algorithms.call import Call, existing_file
@@ -48,6 +49,9 @@ class FileCall(Call):
             return in_metres(parse_crs(text).to_wkt())[0] if text else ""
         except RoadExtractionError as problem:
             raise RoadExtractionError(f"{self.label(name)}: the CRS {text} is not known. Give it as EPSG:number.") from problem
+
+    def connection(self, name):
+        return "service='{}'".format(re.sub(r"(['\\])", r"\\\1", self.value(name)))
 
     def raster(self, name):
         return existing_file(self.value(name), self.label(name))

@@ -21,7 +21,7 @@ from .run import algorithm_named, algorithms, speak
 
 # What a value looks like in the help
 METAVARS = {"layer": "LAYER", "folder": "FOLDER", "crs": "EPSG:NUMBER", "flag": "true|false", "expression": "CONDITION", "text": "TEXT",
-            "columns": "TEXT", "whole": "NUMBER", "number": "NUMBER"}
+            "columns": "TEXT", "connection": "SERVICE", "schema": "NAME", "whole": "NUMBER", "number": "NUMBER"}
 DEMO = {"LENGTH": 100}  # m, of the simulated street
 
 

@@ -159,12 +159,9 @@ def _crs_text(wkt):
 
 
 def write_layer(path, table, features, check_cancelled):
-    """Write a layer into a file that is new, or add it to a GeoPackage.
+    """Write Features into a file that is new, in the format of its ending, or add them to a GeoPackage as a table, "" for that of the file.
 
-    path : str, its ending chooses the format
-    table : name of the layer in a GeoPackage; "" for that of the file
-    features : Features
-    check_cancelled : called now and then; may raise Cancelled
+    `check_cancelled` is called now and then and may raise Cancelled.
     """
     if features.geometry_type.endswith("ZM"):
         measured_lines.write(path, table, features, check_cancelled)

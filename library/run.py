@@ -10,10 +10,7 @@ from .call import FileCall
 
 
 def algorithms():
-    """Every algorithm in the order of the work.
-
-    Returns dict, id to Algorithm: its `parameters` and `numbers` say what it takes and gives
-    """
+    """{id: Algorithm} in the order of the work; `parameters` and `numbers` of each say what it takes and gives."""
     return {declared.ID: declared() for declared in ALGORITHMS}
 
 
@@ -42,7 +39,7 @@ def run(name, progress=None, **parameters):
 
 
 def speak(language="en"):
-    """Make help, messages and reports speak a language, such as "de"; ids, values of choices, fields and files stay as they are.
+    """Make help, messages and reports, but no ids, values of choices, fields and files, speak a language, such as "de".
 
     Raises RoadExtractionError if there is no translation.
     """

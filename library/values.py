@@ -11,10 +11,8 @@ YES, NO = ("true", "yes", "on", "1"), ("false", "no", "off", "0")
 
 
 def checked_values(algorithm, given):
-    """The values of a run by parameter name; what was not given is left out.
+    """The values of a run by parameter name, of texts, numbers, paths or lists of paths; what was not given is left out.
 
-    algorithm : Algorithm
-    given : dict, parameter name to a text, a number, a path or a list of paths
     Raises RoadExtractionError if a name is not the algorithm's, a value is none that the parameter takes, or a necessary one is missing.
     """
     values = {}

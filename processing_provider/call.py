@@ -4,10 +4,12 @@ from pathlib import Path
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
+    QgsDataSourceUri,
     QgsExpression,
     QgsProcessingException,
     QgsProcessingOutputLayerDefinition,
     QgsProperty,
+    QgsProviderRegistry,
     QgsRasterLayer,
     QgsVariantUtils,
     QgsVectorFileWriter,
@@ -29,10 +31,7 @@ READERS = {"number": "parameterAsDouble", "whole": "parameterAsInt", "flag": "pa
 
 
 class QgisCall(Call):
-    """`Call` for QGIS Processing.
-
-    `processing` is the QgsProcessingAlgorithm, `algorithm` its declaration.
-    """
+    """`Call` for QGIS Processing: `processing` is the QgsProcessingAlgorithm, `algorithm` its declaration."""
 
     VECTOR_SUFFIXES = tuple(QgsVectorFileWriter.supportedFormatExtensions())
 
@@ -70,6 +69,13 @@ class QgisCall(Call):
             raise RoadExtractionError(
                 tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=text))
         return in_metres(crs_text(crs))[0]
+
+    def connection(self, name):
+        kept, chosen = QgsProviderRegistry.instance().providerMetadata("postgres").dbConnections(False), self.value(name)
+        if chosen not in kept:
+            raise RoadExtractionError(tr("{label}: QGIS keeps no connection {name} to PostgreSQL. It keeps: {known}.").format(
+                label=self.label(name), name=chosen, known=", ".join(sorted(kept)) or "-"))
+        return QgsDataSourceUri(kept[chosen].uri()).connectionInfo(True)
 
     def raster(self, name):
         path = self.parameters.get(name)

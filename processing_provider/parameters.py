@@ -7,6 +7,7 @@ from qgis.core import (
     QgsProcessing,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterCrs,
+    QgsProcessingParameterDatabaseSchema,
     QgsProcessingParameterEnum,
     QgsProcessingParameterExpression,
     QgsProcessingParameterFeatureSink,
@@ -17,6 +18,7 @@ from qgis.core import (
     QgsProcessingParameterMapLayer,
     QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterNumber,
+    QgsProcessingParameterProviderConnection,
     QgsProcessingParameterRasterDestination,
     QgsProcessingParameterRasterLayer,
     QgsProcessingParameterString,
@@ -92,6 +94,8 @@ INPUTS = {
     "trajectory": _layer,
     "layer": _layer,
     "raster": lambda spec: QgsProcessingParameterRasterLayer(spec.name, spec.label),
+    "connection": lambda spec: QgsProcessingParameterProviderConnection(spec.name, spec.label, "postgres"),
+    "schema": lambda spec: QgsProcessingParameterDatabaseSchema(spec.name, spec.label, spec.of),
     "painted": lambda spec: QgsProcessingParameterMapLayer(spec.name, spec.label, None, False, PAINTED),
 }
 OUTPUTS = {

@@ -12,6 +12,7 @@ from qgis.core import (
     QgsContrastEnhancement,
     QgsDataSourceUri,
     QgsGraduatedSymbolRenderer,
+    QgsMapLayerStyle,
     QgsProcessingLayerPostProcessorInterface,
     QgsProviderConnectionException,
     QgsProviderRegistry,
@@ -24,6 +25,7 @@ from qgis.core import (
     QgsSymbol,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtCore import QCoreApplication, QEventLoop
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtXml import QDomDocument
 
@@ -63,6 +65,8 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         if self.run is not None and context.project() is not None:
             place_layer(layer, context.project(), self.output, self.run)
         layer.triggerRepaint()
+        # QGIS loads all layers of a run in one go: between two of them the window is drawn
+        QCoreApplication.processEvents(QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents)
 
 
 def apply_style(layer, qml, schema=(), output=""):
@@ -123,10 +127,7 @@ def load_look(layer, qml):
 
 
 def add_ready_styles(layer: QgsVectorLayer, qml: str) -> None:
-    """Further styles beside the one that a layer has, which stays in force: by class where that one is the road plan, and by fields it has.
-
-    qml : file of the style in force; the folder `by_class` beside it holds the same layer by class
-    """
+    """Further styles beside that of a QML file, which stays in force: by class where the folder by_class has one, and by the layer's fields."""
     names = {field.name() for field in layer.fields()}
     looks = (("status", tr("By status"), _by_status), ("confidence", tr("By confidence"), _by_confidence),
              ("sigma_m", tr("By uncertainty"), _by_uncertainty))
@@ -137,17 +138,22 @@ def add_ready_styles(layer: QgsVectorLayer, qml: str) -> None:
         return
     in_force = tr("Road plan") if by_class.exists() else tr("By class")
     manager.renameStyle(manager.currentStyle(), in_force)
+    other = layer.clone()   # the layer itself would be drawn and listed anew with every style
     if by_class.exists():
-        manager.addStyleFromLayer(tr("By class"))
-        manager.setCurrentStyle(tr("By class"))
-        layer.setScaleBasedVisibility(False)
-        layer.setLabelsEnabled(False)
-        load_look(layer, by_class)
+        other.setScaleBasedVisibility(False)
+        other.setLabelsEnabled(False)
+        load_look(other, by_class)
+        _keep_style(manager, tr("By class"), other)
     for name, renderer in further:
-        manager.addStyleFromLayer(name)
-        manager.setCurrentStyle(name)
-        layer.setRenderer(renderer(layer))
-    manager.setCurrentStyle(in_force)
+        other.setRenderer(renderer(layer))
+        _keep_style(manager, name, other)
+
+
+def _keep_style(manager, name, layer):
+    """Add the style of another layer under a name."""
+    style = QgsMapLayerStyle()
+    style.readFromLayer(layer)
+    manager.addStyle(name, style)
 
 
 def _by_status(layer):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -30,8 +30,7 @@ LETTER = 0.25         # source: m of a text in a drawing of sections, 2.5 mm at 
 SECTIONS_IN_COLUMN = 10   # cost: a column of sections more or less
 
 
-@dataclass(frozen=True)
-class _DxfLine:
+class _DxfLine(NamedTuple):
     """layer : name; places : (N, 3); closed : whether the last place is joined with the first; text : written at the place, `turned` by degrees."""
 
     layer: str
@@ -43,15 +42,12 @@ class _DxfLine:
 
 def dxf_lines(source: RoadMapSource) -> list[_DxfLine]:
     """Lane borders, driving lines, marking lines by kind and pattern, road edges by what they are, outlines of markings by class."""
-    lines = []
-    lanes = source.lanes
-    seen = set()
+    lanes, borders = source.lanes, dict[bytes, _DxfLine]()
     for k in range(len(lanes)):
         for border in lanes.borders(k):
-            key = min(border.tobytes(), border[::-1].tobytes())
-            if key not in seen and np.hypot(*(border[-1] - border[0])[:2]) > 0.01:
-                seen.add(key)
-                lines.append(_DxfLine(f"LANE_BORDER_{lanes.type[k].upper()}", border))
+            if np.hypot(*(border[-1] - border[0])[:2]) > 0.01:   # neighbours have one between them
+                borders.setdefault(min(border.tobytes(), border[::-1].tobytes()), _DxfLine(f"LANE_BORDER_{lanes.type[k].upper()}", border))
+    lines = list(borders.values())
     lines += _of(source.driving_lines, lambda row: "DRIVING_LINE" + ("" if row.get("status") in (None, "measured") else f"_{row['status'].upper()}"))
     lines += _of(source.marking_lines, lambda row: "_".join(filter(None, ("MARKING", str(row.get("kind") or "line").upper(),
                                                                           str(row.get("pattern") or "").upper().replace("-", "_")))))
@@ -154,11 +150,6 @@ def _of(layer: Features | None, name_of: Callable[[dict[str, Any]], str]) -> lis
     return lines
 
 
-def _colour_of(layer: str) -> int:
-    """The colour of a layer by the beginning of its name."""
-    return next((colour for name, colour in COLOURS.items() if layer.startswith(name)), 9)
-
-
 def write_dxf(lines: list[_DxfLine], path: str, crs: str = "", faces: np.ndarray | None = None) -> None:
     """Write lines, texts and the faces of a surface as a DXF of AutoCAD R12, which every CAD program reads.
 
@@ -178,7 +169,8 @@ def write_dxf(lines: list[_DxfLine], path: str, crs: str = "", faces: np.ndarray
         put((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (9, "$DWGCODEPAGE"), (3, "ANSI_1252"), (0, "ENDSEC"),
             (0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER"), (70, len(layers)))
         for layer in layers:
-            put((0, "LAYER"), (2, _dxf_text(layer)), (70, 0), (62, _colour_of(layer)), (6, "CONTINUOUS"))
+            colour = next((colour for name, colour in COLOURS.items() if layer.startswith(name)), 9)
+            put((0, "LAYER"), (2, _dxf_text(layer)), (70, 0), (62, colour), (6, "CONTINUOUS"))
         put((0, "ENDTAB"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES"))
         for line in lines:
             owner = 8, _dxf_text(line.layer)
@@ -227,15 +219,16 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
     root = XmlElement("LandXML", {"xmlns": NAMESPACE, "version": "1.2", "date": date, "time": time, "language": "English", "readOnly": "false"})
     file_wkt, units = as_in_file(crs)
     unit = next((name for name, foot in FEET_IN_LANDXML.items() if abs(units.across / foot - 1) < IO.same_unit), "")
+    system, *names = ("Imperial", "squareFoot", unit, "cubicFeet", "fahrenheit", "inHG") if unit else (
+        "Metric", "squareMeter", "meter", "cubicMeter", "celsius", "milliBars")
+    root.add("Units").add(system, **dict(zip(("areaUnit", "linearUnit", "volumeUnit", "temperatureUnit", "pressureUnit"), names)),
+                          angularUnit="decimal degrees", directionUnit="decimal degrees")
     if unit:
-        crs = file_wkt
-        root.add("Units").add("Imperial", areaUnit="squareFoot", linearUnit=unit, volumeUnit="cubicFeet", temperatureUnit="fahrenheit",
-                              pressureUnit="inHG", angularUnit="decimal degrees", directionUnit="decimal degrees")
-        alignments = [alignment.in_file(units) for alignment in alignments]
-    else:
-        root.add("Units").add("Metric", areaUnit="squareMeter", linearUnit="meter", volumeUnit="cubicMeter", temperatureUnit="celsius",
-                              pressureUnit="milliBars", angularUnit="decimal degrees", directionUnit="decimal degrees")
-    _add_crs(root, horizontal_part(parse_crs(crs)))
+        crs, alignments = file_wkt, [alignment.in_file(units) for alignment in alignments]
+    if (known := horizontal_part(parse_crs(crs))) is not None:
+        authority = known.to_authority()
+        root.add("CoordinateSystem", desc=known.name, epsgCode=authority[1] if authority and authority[0] == "EPSG" else None,
+                 ogcWktCode=known.to_wkt())
     root.add("Project", name=name)
     root.add("Application", name="Lanewright")
     if surface is not None:
@@ -245,10 +238,12 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
         element = group.add("Alignment", name=alignment.name, length=alignment.length, staStart=0.0, desc=alignment.description)
         geometry = element.add("CoordGeom")
         if alignment.plan is None:
-            _irregular(geometry, alignment.places)
-        else:
-            for piece in elements_without_reversal(alignment.plan):
-                _element(geometry, piece)
+            line = geometry.add("IrregularLine", length=alignment.length)
+            line.add("Start", _place(alignment.places[0]))
+            line.add("End", _place(alignment.places[-1]))
+            line.add("PntList2D", " ".join(map(_place, alignment.places)))
+        for piece in elements_without_reversal(alignment.plan) if alignment.plan is not None else ():
+            _element(geometry, piece)
         if len(alignment.profile):
             profile = element.add("Profile", name=alignment.name).add("ProfAlign", name=alignment.name)
             for station, height in alignment.profile:
@@ -283,46 +278,28 @@ def _place3d(place: np.ndarray) -> str:
     return f"{_place(place)} {place[2]:.4f}"
 
 
-def _add_crs(root, known):
-    if known is not None:
-        authority = known.to_authority()
-        code = authority[1] if authority and authority[0] == "EPSG" else None
-        root.add("CoordinateSystem", desc=known.name, epsgCode=code, ogcWktCode=known.to_wkt())
-
-
 def _place(point: np.ndarray) -> str:
     return f"{point[1]:.5f} {point[0]:.5f}"
 
 
-def _irregular(geometry, places):
-    line = geometry.add("IrregularLine", length=float(np.hypot(*np.diff(places[:, :2], axis=0).T).sum()))
-    line.add("Start", _place(places[0]))
-    line.add("End", _place(places[-1]))
-    line.add("PntList2D", " ".join(_place(place) for place in places))
-
-
 def _element(geometry: XmlElement, piece: PlanElement) -> None:
-    (start, end), headings, _ = piece.at(np.array([0.0, piece.length]))
+    (start, end), (first, last), _ = piece.at(np.array([0.0, piece.length]))
+    points = {"Start": start, "End": end}
     if piece.kind == "line":
-        line = geometry.add("Line", length=piece.length, staStart=piece.s, dir=_azimuth(headings[0]))
-        line.add("Start", _place(start))
-        line.add("End", _place(end))
+        element = geometry.add("Line", length=piece.length, staStart=piece.s, dir=_azimuth(first))
     elif piece.kind == "arc":
         bend = piece.values[0]
-        centre = start + np.array([-np.sin(headings[0]), np.cos(headings[0])]) / bend
-        curve = geometry.add("Curve", rot="ccw" if bend > 0 else "cw", crvType="arc", radius=abs(1 / bend), length=piece.length, staStart=piece.s,
-                             chord=float(np.hypot(*(end - start))), delta=float(np.degrees(abs(bend) * piece.length)),
-                             dirStart=_azimuth(headings[0]), dirEnd=_azimuth(headings[1]))
-        for tag, point in (("Start", start), ("Center", centre), ("End", end)):
-            curve.add(tag, _place(point))
+        points = {"Start": start, "Center": start + np.array([-np.sin(first), np.cos(first)]) / bend, "End": end}
+        element = geometry.add("Curve", rot="ccw" if bend > 0 else "cw", crvType="arc", radius=abs(1 / bend), length=piece.length, staStart=piece.s,
+                               chord=float(np.hypot(*(end - start))), delta=float(np.degrees(abs(bend) * piece.length)),
+                               dirStart=_azimuth(first), dirEnd=_azimuth(last))
     else:
-        bends = piece.values
-        turn = sum(bends)
-        spiral = geometry.add("Spiral", length=piece.length, radiusStart=_radius(bends[0]), radiusEnd=_radius(bends[1]),
-                              rot="ccw" if turn > 0 else "cw", spiType="clothoid", staStart=piece.s,
-                              theta=float(np.degrees(abs(headings[1] - headings[0]))), dirStart=_azimuth(headings[0]), dirEnd=_azimuth(headings[1]))
-        for tag, point in (("Start", start), ("PI", _intersection(start, headings[0], end, headings[1])), ("End", end)):
-            spiral.add(tag, _place(point))
+        points = {"Start": start, "PI": _intersection(start, first, end, last), "End": end}
+        element = geometry.add("Spiral", length=piece.length, radiusStart=_radius(piece.values[0]), radiusEnd=_radius(piece.values[1]),
+                               rot="ccw" if sum(piece.values) > 0 else "cw", spiType="clothoid", staStart=piece.s,
+                               theta=float(np.degrees(abs(last - first))), dirStart=_azimuth(first), dirEnd=_azimuth(last))
+    for tag, point in points.items():
+        element.add(tag, _place(point))
 
 
 def _radius(bend: float) -> str:
@@ -422,18 +399,14 @@ def _joined(pieces):
     """Pieces that go on end to end as one; rows of one lane may come in any order."""
     waiting = list(pieces)
     while waiting:
-        line = waiting.pop(0)
-        grown = True
-        while grown:
-            grown = False
-            for k, piece in enumerate(waiting):
-                if np.hypot(*(piece[0] - line[-1])[:2]) < JOINT:
-                    line, grown = np.concatenate([line, piece[1:]]), True
-                elif np.hypot(*(piece[-1] - line[0])[:2]) < JOINT:
-                    line, grown = np.concatenate([piece, line[1:]]), True
-                if grown:
-                    waiting.pop(k)
-                    break
+        line, k = waiting.pop(0), 0
+        while k < len(waiting):
+            ahead, behind = (np.hypot(*(waiting[k][end] - line[-1 - end])[:2]) < JOINT for end in (0, -1))
+            if ahead or behind:
+                piece = waiting.pop(k)
+                line, k = np.concatenate([line, piece[1:]] if ahead else [piece, line[1:]]), 0
+            else:
+                k += 1
         yield line
 
 

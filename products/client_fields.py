@@ -253,13 +253,14 @@ class _ClientMap(NamedTuple):
 
 
 def apply_template(template: _Template, layers: Mapping[str, Features],
-                   office: Mapping[str, tuple[str, Mapping[str, type]]] | None = None) -> _ClientMap:
+                   office: Mapping[str, tuple[str, Mapping[str, type]]] | None = None, whole: bool = True) -> _ClientMap:
     """The layers of the client. In each of them a feature of ours becomes what the first row that fits says.
 
     layers : ours, by name, in map coordinates in metres; rows about layers that are not given are passed over
-    office : geometry and fields of the layers that the client's own file has, see `layers_of_file`; None where there is no such file
+    office : geometry and fields of the layers that the client's own file or database has, see `layers_of_client`; None where there is none
+    whole : whether all layers must be there; otherwise those that are not are as the template says
 
-    Raises RoadExtractionError if the client's file lacks a layer or field, or a value is none of its type.
+    Raises RoadExtractionError if the client's file or database lacks a layer or field, or a value is none of its type.
     """
     taken: dict[str, set[int]] = {name: set() for name in layers}
     result: dict[str, Features] = {}
@@ -267,7 +268,7 @@ def apply_template(template: _Template, layers: Mapping[str, Features],
         rules = [rule for rule in template.layer_of(name) if rule.source in layers]
         if not rules:
             continue
-        types = _types(template, name, office)
+        types = _types(template, name, office if whole or name in (office or ()) else None)
         made = Features(GEOMETRIES[template.layer_of(name)[0].geometry], [Field(field, kind) for field, kind in types.items()])
         for source in dict.fromkeys(rule.source for rule in rules):
             made.crs = made.crs or layers[source].crs
@@ -297,11 +298,11 @@ def _types(template, name, office):
     lacking = next((field for field in used if field not in fields), "")
     problem = ""
     if name not in office:
-        problem = f"the file of the client has no layer {name}{_like(name, office)}"
+        problem = f"the client has no layer {name}{_like(name, office)}"
     elif kind not in ("", rules[0].geometry):
-        problem = f"layer {name} of the client's file holds a {kind}, and a {rules[0].geometry} is to be written"
+        problem = f"layer {name} of the client holds a {kind}, and a {rules[0].geometry} is to be written"
     elif lacking:
-        problem = f"layer {name} of the client's file has no field {lacking}{_like(lacking, fields)}"
+        problem = f"layer {name} of the client has no field {lacking}{_like(lacking, fields)}"
     if problem:
         raise RoadExtractionError(f"{template.path}, line {rules[0].line}: {problem}.")
     return {field: fields[field] for field in used}
@@ -344,12 +345,23 @@ def _as(kind, shape):
     return shape
 
 
-# Files with layers of their own.
+# Files and databases with layers of their own.
+
+
+class Database(NamedTuple):
+    """A schema of a PostgreSQL database with PostGIS."""
+
+    connection: str   # as libpq takes it; it may hold a password, so nobody is shown it
+    schema: str
+    name: str   # of the connection, for people
+
+    def __str__(self):
+        return f"{self.name}, schema {self.schema}"
 
 
 @contextmanager
-def _geopackage(path, problem_of):
-    """A context in which a GeoPackage is read or written; RoadExtractionError, in the sentence `problem_of` (path, problem), where it cannot be."""
+def _used(path, problem_of):
+    """A context in which the client's layers are read or written; RoadExtractionError, in the sentence `problem_of` (path, problem), where not."""
     try:
         with gdal_exceptions():
             yield
@@ -361,61 +373,86 @@ def _geopackage(path, problem_of):
 
 
 def _unreadable(path, problem):
-    return f"{path} could not be read as a GeoPackage ({problem})."
+    return f"{path} could not be read ({problem})."
 
 
 def _unwritable(path, problem):
-    return f"{path} could not be written as a GeoPackage ({problem})."
+    return f"{path} could not be written ({problem})."
 
 
-def layers_of_file(path: str | os.PathLike[str], crs: str) -> dict[str, tuple[str, dict[str, type]]]:
-    """{layer: (geometry, {field: type})} of the client's GeoPackage; the geometry is "" where the layer takes any.
+def _opened(path, flags=0):
+    """The dataset of a GeoPackage or Database."""
+    if not isinstance(path, Database):
+        return gdal.OpenEx(str(path), gdal.OF_VECTOR | flags, allowed_drivers=["GPKG"])
+    if gdal.GetDriverByName("PostgreSQL") is None:   # else GDAL would repeat the connection, password and all
+        raise RuntimeError("GDAL is built without PostgreSQL")
+    dataset = gdal.OpenEx(f"PG:{path.connection}", gdal.OF_VECTOR | flags, allowed_drivers=["PostgreSQL"], open_options=[
+        f"SCHEMAS={path.schema}", f"ACTIVE_SCHEMA={path.schema}", "LIST_ALL_TABLES=YES"])
+    schemas = dataset.ExecuteSQL("SELECT nspname FROM pg_namespace")
+    if path.schema not in [row.GetField(0) for row in schemas]:
+        raise RuntimeError(f"there is no schema {path.schema}")
+    return dataset
 
-    crs : WKT, metric, of the map; "" where unknown. RoadExtractionError if the file is none, or a layer is in another CRS.
+
+def layers_of_client(path: str | os.PathLike[str] | Database, crs: str, template: _Template) -> dict[str, tuple[str, dict[str, type]]]:
+    """{layer: (geometry, {field: type})} of the client's GeoPackage or database; the geometry is "" where the layer takes any.
+
+    crs : WKT, metric, of the map; "" where unknown
+    RoadExtractionError if it cannot be read, or a layer that the template fills is in another CRS.
     """
     ours, result = parse_crs(as_in_file(crs)[0]) if crs else None, {}
-    with _geopackage(path, _unreadable):
+    with _used(path, _unreadable):
         kinds = {ogr.wkbPoint: "point", ogr.wkbLineString: "line", ogr.wkbPolygon: "polygon", ogr.wkbMultiPoint: "point",
                  ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon", ogr.wkbNone: "row without a place"}
         types = {ogr.OFTInteger: int, ogr.OFTInteger64: int, ogr.OFTReal: float}
-        dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=["GPKG"])
+        dataset = _opened(path)
         for k in range(dataset.GetLayerCount()):
             layer = dataset.GetLayer(k)
             theirs = layer.GetSpatialRef()
-            if ours is not None and theirs is not None and not same_crs(parse_crs(theirs.ExportToWkt()), ours):
+            if template.layer_of(layer.GetName()) and ours is not None and theirs is not None and not same_crs(parse_crs(theirs.ExportToWkt()), ours):
                 raise RoadExtractionError(f"Layer {layer.GetName()} of {path} is in {theirs.GetName()}, and the map in {ours.name}. Give the "
-                                          "client's file the CRS of the map, or bring the map's layers to that of the file.")
+                                          "client's layer the CRS of the map, or bring the map's layers to its CRS.")
             result[layer.GetName()] = kinds.get(ogr.GT_Flatten(layer.GetGeomType()), ""), {
                 field.GetName(): types.get(field.GetType(), str) for field in layer.schema}
     return result
 
 
-def write_client_layers(layers: Mapping[str, Features], path: str, office: str = "") -> None:
+def write_client_layers(layers: Mapping[str, Features], path: str | Database, office: str = "") -> None:
     """Write a GeoPackage, in the units of the survey's own CRS; into a copy of the client's file, whose layers are filled, where there is one.
 
-    RoadExtractionError if there is no GDAL that writes it, or the client's file does not take the features.
+    Of a database, tables that are there are filled and others made: all of them, or none.
+    RoadExtractionError if there is no GDAL that writes it, or the client's file or database does not take the features.
     """
-    with _geopackage(path, _unwritable):
+    with _used(path, _unwritable):
         if office:
             # what a program that has it open keeps in a journal beside it is copied too
-            with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(path)) as copy:
+            with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(str(path))) as copy:
                 database.backup(copy)
-        dataset = gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_UPDATE) if office \
+        dataset = _opened(path, gdal.OF_UPDATE) if office or isinstance(path, Database) \
             else gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)
-        for name, features in layers.items():
-            layer = dataset.GetLayerByName(name) if office else _new_layer(dataset, name, features)
-            _fill(layer, features)
+        there = {dataset.GetLayer(k).GetName() for k in range(dataset.GetLayerCount())}
+        dataset.StartTransaction()
+        try:
+            for name, features in layers.items():
+                layer = dataset.GetLayerByName(name) if name in there else _new_layer(dataset, name, features)
+                _fill(layer, features)
+            dataset.CommitTransaction()
+        except (RoadExtractionError, RuntimeError):
+            dataset.RollbackTransaction()   # at once: the error may keep the dataset alive
+            raise
         dataset.FlushCache()   # what cannot be written when a dataset is let go, nobody is told
         layer = dataset = None
 
 
 def _new_layer(dataset, name, features):
-    crs = osr.SpatialReference(as_in_file(features.crs)[0] if features.crs else UNDEFINED_CARTESIAN)
+    package = dataset.GetDriver().ShortName == "GPKG"
+    crs = osr.SpatialReference(as_in_file(features.crs)[0] if features.crs else UNDEFINED_CARTESIAN) if features.crs or package else None
     kinds = {"PointZ": ogr.wkbPoint25D, "LineStringZ": ogr.wkbLineString25D, "PolygonZ": ogr.wkbPolygon25D}
-    # columns that a GeoPackage has itself, where the client calls a field so
+    # columns of the table itself, also where the client calls a field so
     taken = {field.name.lower() for field in features.schema}
-    options = [f"{option}=lanewright_{column}" for option, column in (("FID", "fid"), ("GEOMETRY_NAME", "geom")) if column in taken]
-    layer = dataset.CreateLayer(name, crs, kinds[features.geometry_type], options)
+    options = [f"{option}={'lanewright_' * (column in taken)}{column}" for option, column in (("FID", "fid"), ("GEOMETRY_NAME", "geom"))]
+    as_they_are = [] if package else ["LAUNDER=NO", "EXTRACT_SCHEMA_FROM_LAYER_NAME=NO"]   # the client's names, with capitals and points
+    layer = dataset.CreateLayer(name, crs, kinds[features.geometry_type], options + as_they_are)
     types = {int: ogr.OFTInteger64, float: ogr.OFTReal, str: ogr.OFTString}
     for field in features.schema:
         layer.CreateField(ogr.FieldDefn(field.name, types[field.type]))
@@ -426,7 +463,6 @@ def _fill(layer, features):
     """Add features to a layer of an open file, as its kind of geometry has them: flat, or of one part in a layer of several."""
     units = as_in_file(features.crs)[1]
     kind = layer.GetGeomType()
-    layer.StartTransaction()
     for shape, row in features:
         if not units.metric:
             shape = shapely.transform(shape, units.in_file, include_z=True)
@@ -438,7 +474,6 @@ def _fill(layer, features):
                 raise RoadExtractionError(f"The field {name} of layer {layer.GetName()} does not take “{value}”: it is too long or large, or of "
                                           "another kind than the field. Change the template or the field.")
         layer.CreateFeature(feature)
-    layer.CommitTransaction()
 
 
 def _stored(feature, name, value):

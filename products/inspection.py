@@ -12,9 +12,8 @@ from scipy.spatial import cKDTree
 from ..core.common.errors import RoadExtractionError
 from ..core.common.progress import Progress
 from ..core.common.setting import Limited, setting
-from ..core.io.crs import check_projected, crs_note, place_raster
-from ..core.io.local_files import gdal_exceptions
-from ..core.lazy import gdal
+from ..core.io.crs import check_projected, crs_note
+from ..core.io.geotiff import new_geotiff
 from ..core.survey.blocks import sensor_height_of
 from ..core.survey.frame.road_frame import build_frame
 from ..core.survey.las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
@@ -228,11 +227,8 @@ def _key(column, row, layer=0):
 
 
 def _density(counts, size):
-    """Points per unit: over occupied cells, and of_a_point, the mean over points of their own cell.
-
-    The latter is what a density per neighbourhood, as CloudCompare computes it
-    and the figures 4.2 and 4.5 of the driving-line thesis show it, comes close to.
-    """
+    """Points per unit: over occupied cells, and of_a_point, the mean over points of their own cell, to which the density per
+    neighbourhood of CloudCompare and of the driving-line thesis (figures 4.2 and 4.5) comes close."""
     counts = counts / size
     return dict(cells=len(counts), mean=float(counts.mean()), median=float(np.median(counts)), largest=float(counts.max()),
                 of_a_point=float((counts**2).sum() / counts.sum()))
@@ -283,9 +279,8 @@ class _InspectedDrive:
 
 
 def _inspect_drive(trajectory: Trajectory, rows: np.ndarray, heights: np.ndarray) -> _InspectedDrive:
-    """Roads, passes and sensor height of a trajectory.
+    """Roads, passes and sensor height of a trajectory, cleaned and in the clouds' CRS.
 
-    trajectory : Trajectory, cleaned and in the clouds' CRS
     rows, heights : (N,) of points on the track of the vehicle: the nearest trajectory row and the map height in m
     """
     frame = build_frame(trajectory)
@@ -314,19 +309,10 @@ def _profile(driven, track_z, at, heights, drops, height):
     return np.c_[places, np.interp(places, driven, track_z), road]
 
 
-@gdal_exceptions()
 def write_density(found: Inspection, path: str | Path) -> None:
     """Write the density of an Inspection to a GeoTIFF: float32 points per m², NaN where no point lies."""
     density, (west, north) = found.density
     height, width = density.shape
     cell = found.settings.cell_size
-    dataset = gdal.GetDriverByName("GTiff").Create(
-        str(path), width, height, 1, gdal.GDT_Float32, ["COMPRESS=DEFLATE", "TILED=YES", "PREDICTOR=3"])
-    place_raster(dataset, (west, cell, 0.0, north, 0.0, -cell), found.crs)
-    band = dataset.GetRasterBand(1)
-    band.SetNoDataValue(float("nan"))
-    band.SetDescription("Points per m²")
-    # bytes, not an array: osgeo fails with a numpy other than the one it was built with
-    band.WriteRaster(0, 0, width, height, np.ascontiguousarray(density, np.float32).tobytes())
-    band.FlushCache()
-    del band, dataset
+    with new_geotiff(path, width, height, (west, cell, 0.0, north, 0.0, -cell), found.crs, nodata=np.nan, description="Points per m²") as raster:
+        raster.write(0, 0, density)

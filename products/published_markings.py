@@ -57,7 +57,8 @@ class IntensityPeaks:
         windows = list(range(int(np.floor(start / COORDINATE_SCALE / profile / count)), int(np.floor(end / COORDINATE_SCALE / profile / count)) + 1))
 
         def records_of(window):
-            return _window(road_points, road, window * count, (window + 1) * count, profile)
+            records = _records_between(road_points, road, window * count * profile, (window + 1) * count * profile)
+            return records, (records["s"] // profile).astype(np.int64)
 
         def peaks_in(window: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             records, profiles = records_of(window)
@@ -74,12 +75,10 @@ class IntensityPeaks:
         yield from ordered_map(paint_in, windows, progress.part(0.6, 1.0))
 
 
-def _window(road_points, road, first, last, profile):
-    """Records of the profiles from `first` to before `last`, and the profile of each."""
-    records = road_points.window(road, (first * profile - 1) * COORDINATE_SCALE, (last * profile + 1) * COORDINATE_SCALE).records
-    row = (records["s"] // profile).astype(np.int64)
-    inside = (row >= first) & (row < last)
-    return take_rows(records, inside), row[inside]
+def _records_between(road_points, road, first, last):
+    """Records with first <= s < last, units of 0.1 mm."""
+    records = road_points.window(road, (first - 1) * COORDINATE_SCALE, (last + 1) * COORDINATE_SCALE).records
+    return take_rows(records, (records["s"] >= first) & (records["s"] < last))
 
 
 def profile_peaks(records: Columns, row: np.ndarray, settings: IntensityPeaks) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -201,12 +200,6 @@ class PointSegments:
             return take_rows(records, inside & dense_enough(records, inside, self))
 
         yield from ordered_map(paint_in, windows, progress.part(0.5, 1.0))
-
-
-def _records_between(road_points, road, first, last):
-    """Records with first <= s < last, units of 0.1 mm."""
-    records = road_points.window(road, (first - 1) * COORDINATE_SCALE, (last + 1) * COORDINATE_SCALE).records
-    return take_rows(records, (records["s"] >= first) & (records["s"] < last))
 
 
 def _segments(records, settings):

@@ -34,20 +34,16 @@ WKB_HEADER = np.dtype([("order", "u1"), ("type", "<u4"), ("count", "<u4")])
 
 @dataclass(frozen=True)
 class ScanlineLayerSettings(Limited):
-    """How scanlines are written.
+    """How scanlines are written."""
 
-    simplify : m by which a simplified line may deviate from the measured one; 0 = not simplified
-    """
-
-    simplify: float = setting(0.002, 0.0, 1.0, "The simplification", "m")
+    simplify: float = setting(0.002, 0.0, 1.0, "The simplification", "m")   # from the measured line; 0 = none
 
 
 def write_scanlines(survey: Survey, settings: ScanlineSettings = ScanlineSettings(), layer: ScanlineLayerSettings | None = None,
                     points: ResampledPoints | None = None, progress: Progress = Progress()) -> tuple[LineSpool, int]:
     """(LineSpool with the fields SCANLINES, number of scanlines) of a survey, and evenly spaced points of them in a cloud, section by section.
 
-    layer : None for an empty LineSpool
-    points : ResampledPoints open for writing, or None for no cloud
+    Without `layer` the LineSpool is empty; without `points`, ResampledPoints open for writing, there is no cloud.
     """
     lattice = find_lattice(survey, settings.rotation_frequency, progress.part(0.0, 0.2))
     spool, count = LineSpool("LineStringZM", SCANLINES, survey.crs), 0
@@ -141,12 +137,7 @@ def _in_frame(frame, road, geometries, rows):
 
 
 class LineSpool:
-    """Lines with Z and M in a temporary file, which can be written like a Features layer.
-
-    Iterating gives (WKB, row) pairs.
-
-    geometry_type, schema, crs : as in Features
-    """
+    """Lines with Z and M in a temporary file, which can be written like a Features layer; iterating gives (WKB, row) pairs."""
 
     def __init__(self, geometry_type: str, schema: Sequence[Field], crs: str = ""):
         self.geometry_type, self.schema, self.crs = geometry_type, list(schema), crs
@@ -237,11 +228,8 @@ def resample_scanlines(lines: Scanlines, spacing: float) -> tuple[np.ndarray, np
 
 
 class ResampledPoints:
-    """A LAZ or LAS file of points along scanlines, used as a context manager.
+    """A LAZ or LAS file of points along scanlines, a context manager: the file appears when it is complete, and not at all after an error.
 
-    The file appears when it is complete, and not at all after an error.
-
-    path : of the file
     origin : (3,) m, map coordinates of the local origin
     crs : WKT, "" where unknown
     farthest : m in x or y from the origin, of the farthest point; beyond 214 km coordinates are rounded to 1 mm

@@ -69,10 +69,7 @@ def plates(scene: Scene, camera: Camera) -> list[tuple[float, float, float]]:
 
 
 def seen_from_above(survey: SampleSurvey) -> tuple[Scene, Camera]:
-    """The street and the camera over it.
-
-    Raises RoadExtractionError if the scene is no street along one axis: there is no image of those.
-    """
+    """The street and the camera over it; RoadExtractionError if the scene is no street along one axis, of which there is no image."""
     if survey.camera is None or not isinstance(survey.scene, Scene):
         raise RoadExtractionError(f"There is no UAV image of the scene {survey.settings.scene}. Leave it out, or choose a street.")
     return survey.scene, survey.camera
@@ -143,10 +140,7 @@ def uav_control_points(survey: SampleSurvey) -> Features:
     return layer
 
 class _StreetColours:
-    """Colours of the ground and of the objects on it.
-
-    seed : of the random numbers
-    """
+    """Colours of the ground and of the objects on it."""
 
     def __init__(self, scene: Scene, camera: Camera, seed: int):
         self.scene, self.camera, self.seed = scene, camera, seed
@@ -242,9 +236,7 @@ def _within(x, y, at_x, at_y, reach):
 def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress: Progress | None = None) -> None:
     """Write the UAV image of a simulated survey, an RGB TIFF without a position on the map, with position tags.
 
-    path : of the TIFF, which appears when it is complete
-
-    Raises RoadExtractionError if the file cannot be written.
+    The file appears when it is complete; RoadExtractionError if it cannot be written.
     """
     from osgeo import gdal
 

@@ -70,10 +70,7 @@ class SampleSettings:
 
 
 def make_sample_survey(settings: SampleSettings | None = None, progress: Progress | None = None) -> SampleSurvey:
-    """Simulate a street and its truth; points are computed on demand.
-
-    Raises RoadExtractionError if the CRS is not recognised, is geographic or not in metres.
-    """
+    """Simulate a street and its truth, points on demand; RoadExtractionError if the CRS is not recognised, is geographic or not in metres."""
     from ..core.io.crs import as_in_file, check_metric, parse_crs
 
     settings = settings or SampleSettings()
@@ -137,11 +134,9 @@ class SampleSurvey:
                     yield number, drive, scanner, lines[start:start + turns]
 
     def blocks(self, noise: bool = True, progress: Progress | None = None) -> Iterator[np.ndarray]:
-        """Points in blocks of time and scanner.
+        """Points in blocks of time and scanner, SAMPLE_POINT arrays in map coordinates, some of them empty.
 
         noise : whether ranges and intensities are noisy and pulses are lost; else every point lies where its pulse met the street
-
-        Yields SAMPLE_POINT arrays in map coordinates, some of them empty
         """
         progress = progress or Progress()
         jobs = list(self._blocks())
@@ -160,12 +155,7 @@ class SampleSurvey:
                     future.cancel()
 
     def points(self, noise: bool = True, progress: Progress | None = None) -> np.ndarray:
-        """All points at once.
-
-        noise, progress : as in `blocks`
-
-        Returns SAMPLE_POINT array in map coordinates, with labels (see street.LABELS), true range, station and offset
-        """
+        """All points at once, as in `blocks`: a SAMPLE_POINT array with labels (see street.LABELS), true range, station and offset."""
         return np.concatenate(list(self.blocks(noise, progress)))
 
     def _measure(self, number, drive, scanner, lines, noise):
@@ -211,14 +201,9 @@ class SampleSurvey:
         return points
 
     def write_cloud(self, path: str | os.PathLike[str], progress: Progress | None = None, noise: bool = True) -> int:
-        """Write the survey as LAS 1.4, point format 6, in blocks; the file appears when it is complete.
+        """Write the survey, with noise as in `blocks`, as LAS 1.4, LAZ by its ending, point format 6; the number of points.
 
-        path : of the file; LAZ where it ends in .laz
-        noise : as in `blocks`
-
-        Returns number of points
-
-        Raises RoadExtractionError if the file cannot be written.
+        The file appears when it is complete; RoadExtractionError if it cannot be written.
         """
         import laspy
 

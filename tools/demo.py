@@ -101,12 +101,12 @@ def accuracy():
     lanes = compare_lines(geometries(PACKAGE, "driving_lines")[0], geometries(TRUTH, "driving_lines")[0], area=area)
     print("\nAgainst the truth of the sample survey (simulated data):")
     print(f"  road edges     complete {percent(edges.completeness[0.10])}, right {percent(edges.correctness[0.10])} "
-          f"within 10 cm; RMSE {100 * edges.rmse:.1f} cm across, {100 * edges.height_rmse:.1f} cm in height")
+          f"within 10 cm; RMSE {100 * edges.lateral.rmse:.1f} cm across, {100 * edges.height.rmse:.1f} cm in height")
     print(f"  markings       precision {percent(paint.precision)}, recall {percent(paint.recall)}, "
           f"F1 {percent(paint.f1)} (by area, one cell of 4 cm tolerance)")
     print(f"  driving lines  recall {percent(lanes.completeness[0.05])} / {percent(lanes.completeness[0.15])}, "
           f"miscoding {percent(1 - lanes.correctness[0.05])} / {percent(1 - lanes.correctness[0.15])} within 5 / 15 cm; "
-          f"RMSE {100 * lanes.rmse:.1f} cm across, {100 * lanes.height_rmse:.1f} cm in height")
+          f"RMSE {100 * lanes.lateral.rmse:.1f} cm across, {100 * lanes.height.rmse:.1f} cm in height")
     for what, share in (("road edges", edges.completeness[0.10]), ("markings", paint.f1),
                         ("driving lines", lanes.completeness[0.15])):
         if not share > 0.7:

@@ -18,6 +18,7 @@ import tempfile
 import time
 import traceback
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -208,10 +209,12 @@ def main():
         titles = [title for title in TITLES if options.only in ("", title)]
         print(f"{len(titles)} readers, {'led by coverage' if atheris else 'at random: atheris is not installed here'}", flush=True)
         total = {"tried": 0, "refused": 0, "problems": 0}
-        for number, title in enumerate(titles):
-            done = in_a_process_of_its_own(title, options, options.seconds / len(titles), Path(folder) / f"{number}.json")
-            print(f"{title}: {done['tried']} files tried, {done['refused']} refused, {done['problems']} problems", flush=True)
-            total = {name: count + done[name] for name, count in total.items()}
+        with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as readers:
+            counts = readers.map(lambda title: in_a_process_of_its_own(title, options, options.seconds / len(titles), Path(folder) / f"{title}.json"),
+                                 titles)
+            for title, done in zip(titles, counts):
+                print(f"{title}: {done['tried']} files tried, {done['refused']} refused, {done['problems']} problems", flush=True)
+                total = {name: count + done[name] for name, count in total.items()}
     print(f"{total['tried']} files tried, {total['refused']} refused, {total['problems']} problems")
     return total["problems"]
 

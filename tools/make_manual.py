@@ -124,7 +124,7 @@ def kind(d):
         "multilayer": tr("files"), "file": tr("file"), "source": tr("vector layer"), "raster": tr("raster"), "crs": tr("CRS"),
         "number": tr("number"), "enum": tr("choice"), "boolean": tr("yes or no"), "string": tr("text"), "sink": tr("vector layer"),
         "fileDestination": tr("file"), "rasterDestination": tr("raster"), "pointcloud": tr("point cloud"), "vector": tr("vector layer"),
-        "matrix": tr("numbers"), "folderDestination": tr("folder"),
+        "matrix": tr("numbers"), "folderDestination": tr("folder"), "providerconnection": tr("text"), "databaseschema": tr("text"),
     }
     return ", ".join([kinds.get(d.type(), d.type()), *([tr("optional")] if optional(d) else [])])
 

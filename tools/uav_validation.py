@@ -52,6 +52,7 @@ def comparison(result, reference, truth, area):
     told = [f"{'':14}" + "".join(f"{100 * tolerance:10.0f} cm" for tolerance in TOLERANCES)]
     for name, shares in (("recall", over_image.completeness), ("miscoding", {t: 1 - c for t, c in over_image.correctness.items()})):
         told.append(f"{name:14}" + "".join(f"{100 * shares[tolerance]:11.1f} %" for tolerance in TOLERANCES))
-    told.append(f"RMSE across {100 * over_image.rmse:.1f} cm over the image, {100 * exact.rmse:.1f} cm against the truth; the image itself is "
-                f"{100 * image_alone.rmse:.1f} cm off along the lanes")
+    over, against, alone = (100 * accuracy.lateral.rmse for accuracy in (over_image, exact, image_alone))
+    told.append(f"RMSE across {over:.1f} cm over the image, {against:.1f} cm against the truth; "
+                f"the image itself is {alone:.1f} cm off along the lanes")
     return told, over_image

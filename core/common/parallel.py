@@ -9,11 +9,12 @@ import os
 import sys
 import threading
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager, suppress
 from functools import partial
 from importlib import import_module
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -49,8 +50,8 @@ def ordered_map(function: Callable[[Item], Result], items: Iterable[Item], progr
 
     Raises Cancelled if the user cancelled; the worker threads end at their next `check_cancelled`.
     """
-    items = list(items)
-    threads = threads or min(MAX_WORKERS, os.cpu_count() or 1)
+    items = items if isinstance(items, Sequence) else list(items)
+    threads, following = threads or min(MAX_WORKERS, os.cpu_count() or 1), iter(items)
     stop = threading.Event()
 
     def check_stopped() -> None:
@@ -65,8 +66,7 @@ def ordered_map(function: Callable[[Item], Result], items: Iterable[Item], progr
         waiting: deque[Future[Result]] = deque()
         try:
             for done in range(len(items)):
-                while len(waiting) <= threads and done + len(waiting) < len(items):
-                    waiting.append(pool.submit(work, items[done + len(waiting)]))
+                waiting += [pool.submit(work, item) for item in islice(following, threads + 1 - len(waiting))]
                 while not wait(list(waiting)[:1], POLL_INTERVAL).done:
                     progress.report(done / len(items))
                     check_cancelled()

@@ -23,23 +23,17 @@ from .weights import CORRECTING
 
 
 class LineKind(ABC):
-    """What is the same in all corrections of one kind of line.
+    """What is the same in all corrections of one kind of line. `known` : (K, 3) local places whose heights are known"""
 
-    reach : m beside a correction within which it is about such a line; known : (K, 3) local places whose heights are known
-    """
-
-    reach = 0.5
+    reach = 0.5   # m beside a correction within which it is about such a line
+    key = "places"   # by which a piece holds (V, C) what it has at every vertex: x, y and more
 
     def __init__(self, frame: RoadFrame, known: np.ndarray):
         self.frame, self.known = frame, known
 
-    @abstractmethod
-    def columns(self, piece: dict[str, Any]) -> np.ndarray:
-        """(V, C) what a piece has at every vertex: x, y and more."""
-
-    @abstractmethod
     def with_columns(self, piece: dict[str, Any], columns: np.ndarray) -> dict[str, Any]:
         """The piece with other vertices."""
+        return {**piece, self.key: columns}
 
     @abstractmethod
     def drawn(self, correction: Correction, places: np.ndarray, like: dict[str, Any] | None, pieces: Sequence[dict[str, Any]]) -> dict[str, Any]:
@@ -47,7 +41,7 @@ class LineKind(ABC):
 
     def part(self, piece: dict[str, Any], first: float, last: float) -> dict[str, Any]:
         """The piece from one place along it to another, with its stations."""
-        columns = cut(self.columns(piece), first, last)
+        columns = cut(piece[self.key], first, last)
         return self.with_columns(self.with_stations(piece, columns), columns)
 
     def with_stations(self, piece: dict[str, Any], columns: np.ndarray) -> dict[str, Any]:
@@ -74,7 +68,8 @@ def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections:
     matched: set[int] = set()
     changed = False
     for correction in corrections:
-        spans = spans_along([kind.columns(piece)[:, :2] for piece in pieces], correction, _distance_of(correction, kind.reach))
+        reach = max(CORRECTING.moved_from, kind.reach) if correction.action == "move" else kind.reach
+        spans = spans_along([piece[kind.key][:, :2] for piece in pieces], correction, reach)
         if correction.action == "draw" and not correction.on_a_road or correction.action != "draw" and not spans:
             continue
         matched.add(correction.row)
@@ -95,8 +90,7 @@ def _replaced(kind, pieces, spans, correction):
         if k not in spans_of:
             result.append(piece)
             continue
-        line = kind.columns(piece)
-        length = float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum())
+        length = float(np.hypot(*np.diff(piece[kind.key][:, :2], axis=0).T).sum())
         parts = pieces_of(length, spans_of[k])
         for a, b, along in parts:
             stretch = piece if len(parts) == 1 else kind.part(piece, a, b)
@@ -121,13 +115,7 @@ def _with_heights(kind, correction):
 
 # Which stretches of lines a correction is about, and lines cut there.
 
-
 Span = tuple[int, float, float]   # (number of the line, from, to), metres along it
-
-
-def _distance_of(correction: Correction, reach: float) -> float:
-    """m beside a correction within which it is about a line."""
-    return max(CORRECTING.moved_from, reach) if correction.action == "move" else reach
 
 
 def spans_along(lines: Sequence[np.ndarray], correction: Correction, reach: float) -> list[Span]:
@@ -225,13 +213,12 @@ def _heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -
 
 
 class _Edges(LineKind):
-    """Pieces hold what EdgePiece holds."""
+    """Pieces hold what EdgePiece holds, but for their vertices, which are local."""
 
-    def columns(self, piece):
-        return piece["local"]
+    key = "local"
 
     def with_columns(self, piece, columns):
-        return dict(piece, local=columns, length=float(np.hypot(*np.diff(columns[:, :2], axis=0).T).sum()))
+        return dict(super().with_columns(piece, columns), length=float(np.hypot(*np.diff(columns[:, :2], axis=0).T).sum()))
 
     def drawn(self, correction, places, like, pieces):
         free = max((piece["chain"] for piece in pieces), default=0) + 1
@@ -273,12 +260,9 @@ USUAL_PATTERN = "solid"
 class _Lines(LineKind):
     """Pieces hold what `pieces_of_lines` gives; of two lines beside each other, such as a double line, the nearer one is meant."""
 
-    def columns(self, piece):
-        return piece["places"]
-
     def with_columns(self, piece, columns):
         arc, _ = piece["curve"].project(columns[[0, -1], 0], columns[[0, -1], 1])
-        return dict(piece, places=columns, arc=arc)
+        return dict(super().with_columns(piece, columns), arc=arc)
 
     def taken(self, piece, correction):
         return dict(self.accepted(piece), kind=correction.kind)

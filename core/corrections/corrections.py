@@ -12,8 +12,7 @@ import shapely
 
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
-from ..io.crs import horizontal_part, parse_crs, same_crs
-from ..lazy import pyproj
+from ..io.crs import in_other_crs, parse_crs, same_crs
 from ..markings.cross_section.weights import TakenReading
 from ..survey.frame.placement import LINE_VERTEX_SPACING
 from ..survey.frame.road_frame import RoadFrame
@@ -152,12 +151,7 @@ def _in_crs(features: Features, crs: str) -> list[Any]:
     source, target = parse_crs(features.crs), parse_crs(crs)
     if source is None or target is None or same_crs(source, target):
         return list(features.geometries)
-
-    transformer = pyproj.Transformer.from_crs(horizontal_part(source), horizontal_part(target), always_xy=True)
-    return [None if geometry is None else shapely.transform(
-        geometry, lambda places: np.c_[np.column_stack(transformer.transform(places[:, 0], places[:, 1])), places[:, 2]], include_z=True)
-        if geometry.has_z else shapely.transform(geometry, lambda places: np.column_stack(transformer.transform(places[:, 0], places[:, 1])))
-        for geometry in features.geometries]
+    return in_other_crs(features.geometries, source, target)
 
 
 def _parts_of(geometry: Any, row: dict[str, Any], frame: RoadFrame, number: int) -> Iterable[np.ndarray]:

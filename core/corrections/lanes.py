@@ -30,12 +30,6 @@ class _DrivingLines(LineKind):
         super().__init__(frame, known)
         self.lane_width = lane_width
 
-    def columns(self, piece):
-        return piece["places"]
-
-    def with_columns(self, piece, columns):
-        return dict(piece, places=columns)
-
     def accepted(self, piece):
         return dict(super().accepted(piece), confidence=SURE, other="")
 
@@ -47,24 +41,21 @@ class _DrivingLines(LineKind):
         places = places if _way(self.frame, correction, places) == way else places[::-1]
         fit = fit_curve(places[:, 0], places[:, 1])
         piece = dict(blank if like is None else like, source="drawn", status=DRAWN, confidence=SURE, other="", curve=fit.curve, rmse=np.nan,
-                     sigma=np.nan, offset=correction.offset, places=places)
+                     sigma=np.nan, offset=correction.offset, places=places, design_speed=None)
         return self.with_stations(dict(piece, drawn_by=correction), places)
 
 
 class _Lanes(LineKind):
     """Pieces hold what `make_lanes` takes, and in `columns` their middle and both borders side by side."""
 
-    reach = LANE_REACH
+    reach, key = LANE_REACH, "columns"
 
     def __init__(self, frame: RoadFrame, known: np.ndarray, lines: list[dict[str, Any]]):
         super().__init__(frame, known)
         self.lines = lines   # driving lines, already corrected: what was drawn has its lane and width there
 
-    def columns(self, piece):
-        return piece["columns"]
-
     def with_columns(self, piece, columns):
-        return dict(piece, columns=columns, changed=True)
+        return dict(super().with_columns(piece, columns), changed=True)
 
     def accepted(self, piece):
         return dict(super().accepted(piece), confidence=SURE, other="", changed=True)

@@ -18,28 +18,17 @@ from .weights import PICK
 
 @dataclass(frozen=True)
 class Seen:
-    """A line in the points, and the evidence for it.
+    """A line in the points, and the evidence for it."""
 
-    target : "edge" or "marking"
-    places : (K, 2) map coordinates along it; of an edge the foot of its face
-    step : m, median height of the face; NaN of paint
-    brightness : times as bright as beside it, median; NaN of an edge
-    width : m of the paint; NaN of an edge
-    scatter : m, one sigma of a place about its neighbours
-    points : that the places were measured from
-    seen : m of its length on which it was seen; the rest was bridged
-    dashed : whether paint breaks off again and again
-    """
-
-    target: str
-    places: np.ndarray
-    step: float
-    brightness: float
-    width: float
-    scatter: float
-    points: int
-    seen: float
-    dashed: bool
+    target: str   # "edge" or "marking"
+    places: np.ndarray   # (K, 2) map coordinates along it; of an edge the foot of its face
+    step: float   # m, median height of the face; NaN of paint
+    brightness: float   # times as bright as beside it, median; NaN of an edge
+    width: float   # m of the paint; NaN of an edge
+    scatter: float   # m, one sigma of a place about its neighbours
+    points: int   # that the places were measured from
+    seen: float   # m of its length on which it was seen; the rest was bridged
+    dashed: bool   # whether paint breaks off again and again
 
     @property
     def length(self) -> float:
@@ -61,8 +50,7 @@ class _Mark:
 def pick_line(points: np.ndarray, x: float, y: float, azimuth: float, targets: Sequence[str] = ("edge", "marking")) -> Seen | None:
     """The curb or painted line at a click, followed both ways for as long as it is seen; None where there is none within a metre.
 
-    points : (N, 4) x, y, z and intensity about the click, m
-    x, y : of the click
+    points : (N, 4) x, y, z and intensity about the click at x, y, m
     azimuth : of the road there, degrees clockwise from north; the line may run otherwise
     targets : what is sought, "edge", "marking" or both, of which the nearer and clearer one is taken
     """
@@ -82,13 +70,10 @@ def pick_line(points: np.ndarray, x: float, y: float, azimuth: float, targets: S
 
 
 def snap_line(points: np.ndarray, places: np.ndarray, target: str) -> Seen | None:
-    """A line that was drawn by hand, laid onto the faces or paint beside it; None where nothing is seen along half of it.
+    """A line that was drawn by hand along (K, 2) places, laid onto the faces or paint beside it; None where half of it is not seen.
 
     Its ends stay the places of its ends along the road; between places where something is seen it runs straight.
-
-    points : (N, 4) x, y, z and intensity about the line, m
-    places : (K, 2) of the line as it was drawn
-    target : "edge" or "marking"
+    points : (N, 4) x, y, z and intensity about the line, m; target : "edge" or "marking"
     """
     cloud = _Cloud(points)
     along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(places, axis=0).T))]

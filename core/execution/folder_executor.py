@@ -10,7 +10,7 @@ import time
 import weakref
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import count
+from itertools import count, islice
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -29,9 +29,8 @@ class KilledWorker(Exception):
 
 @dataclass
 class _Part:
-    """An item of a phase, or half of one, at work."""
+    """What becomes of an item of a phase, or of half of one, in a file."""
 
-    item: Any
     file: Path
     whole: _Part | None = None
     halves: tuple[_Part, ...] = ()
@@ -87,12 +86,14 @@ class FolderExecutor(Executor):
 
         Raises RoadExtractionError of the phase; or if workers ended at half an item, the scheduler is lost, or the folder cannot be used.
         """
+        if not len(items):
+            return
         shipped = self.folder / f"phase{next(self._numbers)}.plain"
         work = Work(self, phase, shipped)
         try:
             write_plain(shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
-            parts = [_Part(item, keep[k] if keep else self.new_file()) for k, item in enumerate(items)]
-            work.submit(parts, items_together(phase, len(parts), self.workers, self.least_together))
+            parts = [_Part(keep[k] if keep else self.new_file()) for k in range(len(items))]
+            work.submit(parts, iter(items), items_together(phase, len(parts), self.workers, self.least_together))
             for part in parts:
                 while not part.done:
                     progress.report(work.done / len(parts))
@@ -141,13 +142,14 @@ class Work:
     def name(self) -> str:
         return self.phase.function.__name__
 
-    def submit(self, parts: Sequence[_Part], together: int = 1) -> None:
-        """Send parts, so many successive ones in a task."""
+    def submit(self, parts: Sequence[_Part], items: Iterator[Any], together: int = 1) -> None:
+        """Send parts, so many successive ones in a task, with their items, which lie in a file from then on."""
         for k in range(0, len(parts), together):
-            task, items = parts[k:k + together], self.executor.new_file()
-            write_plain(items, [part.item for part in task])
-            future = self.pool.submit(self.executor.task(), str(self.shipped), str(items), [str(part.file) for part in task])
-            self.pending[future] = task, items
+            check_cancelled()
+            task, file = parts[k:k + together], self.executor.new_file()
+            write_plain(file, list(islice(items, len(task))))
+            future = self.pool.submit(self.executor.task(), str(self.shipped), str(file), [str(part.file) for part in task])
+            self.pending[future] = task, file
             future.add_done_callback(self._ended.put)
 
     def take(self) -> None:
@@ -158,26 +160,28 @@ class Work:
             self.executor.check(self)
             return
         self.heard = time.monotonic()
-        parts, items = self.pending.pop(future)
-        items.unlink(missing_ok=True)
-        if future.cancelled():
-            raise self.executor.lost(self)
-        error = future.exception()
-        if type(error).__name__ == KilledWorker.__name__:
-            self._divide(parts, str(error))
-        else:
-            self._answered(parts, future.result())
+        parts, file = self.pending.pop(future)
+        try:
+            if future.cancelled():
+                raise self.executor.lost(self)
+            error = future.exception()
+            if type(error).__name__ == KilledWorker.__name__:
+                self._divide(parts, read_plain(file), str(error))
+            else:
+                self._answered(parts, file, future.result())
+        finally:
+            file.unlink(missing_ok=True)
 
-    def _answered(self, parts, answer):
-        at = parts[answer.get("at", 0)]
+    def _answered(self, parts, file, answer):
         if "refused" in answer:
             raise RoadExtractionError(answer["refused"])
         if "disk" in answer:
             raise OSError(answer["disk"])
         if "memory" in answer:
-            self._divide(parts, "")
+            self._divide(parts, read_plain(file), "")
         elif answer:
-            raise RuntimeError(f"{self.executor.worker} failed at {self.phase.place(at.item)}:\n{answer.get('bug', answer)}")
+            at = self.phase.place(read_plain(file)[answer.get("at", 0)])
+            raise RuntimeError(f"{self.executor.worker} failed at {at}:\n{answer.get('bug', answer)}")
         else:
             for part in parts:
                 self._finish(part)
@@ -192,21 +196,21 @@ class Work:
                 half.file.unlink(missing_ok=True)
             self._finish(part.whole)
 
-    def _divide(self, parts, last_words):
+    def _divide(self, parts, items, last_words):
         """Send the parts of a task at which workers end one by one, or the halves of a single one; what is finished is not computed again.
 
         Refuses a single part that is half already, or cannot be halved.
         """
         if len(parts) > 1:
-            self.submit(parts)
+            self.submit(parts, iter(items))
             return
-        part = parts[0]
-        first, last = part.item if self.phase.join else (0, 0)
+        part, item = parts[0], items[0]
+        *place, first, last = item if self.phase.join else (0, 0)
         if part.whole is not None or last - first < 2:
-            raise self.executor.ended(self.phase.place(part.item), last_words)
+            raise self.executor.ended(self.phase.place(item), last_words)
         middle = (first + last) // 2
-        part.halves = tuple(_Part(half, self.executor.new_file(), part) for half in ((first, middle), (middle, last)))
-        self.submit(part.halves)
+        part.halves = _Part(self.executor.new_file(), part), _Part(self.executor.new_file(), part)
+        self.submit(part.halves, iter([(*place, first, middle), (*place, middle, last)]))
 
     def result(self, part: _Part) -> Any:
         until = time.monotonic() + EXECUTION.result_time

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..common.parallel import free_memory
 from ..common.progress import Progress
-from .phase import THREADS, Executor, NoSource, Phase, digest, name_of
+from .phase import THREADS, Executor, Items, NoSource, Phase, digest, name_of
 from .weights import EXECUTION
 
 
@@ -41,8 +41,9 @@ class RememberedResults(Executor):
     def _completed(self, phase, items, state, compute, progress):
         """Yield the results of all items, of which `compute` has an executor give those that are not remembered."""
         names = [digest((name_of(phase.function), phase.arguments, item, state and state(item))) for item in items]
-        missing = {name: item for name, item in zip(names, items) if name not in self._results}
-        results = iter(compute(THREADS if 2 * len(missing) < len(names) else self.executor, list(missing.values())))
+        missing = {name: k for k, name in enumerate(names) if name not in self._results}
+        rows = list(missing.values())
+        results = iter(compute(THREADS if 2 * len(missing) < len(names) else self.executor, Items(len(rows), lambda k: items[rows[k]])))
         for name in names:
             if name in missing:
                 del missing[name]   # a later item may be the same

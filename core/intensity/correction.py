@@ -36,8 +36,8 @@ from .weights import ASPHALT
 # Saturated intensities: values that a scanner or an export cut off at an end of their range.
 
 MAX_SHARE_AT_LOWEST = LOWER_QUANTILE   # derived: share at its lowest: the quantile from which asphalt's spread is taken
-REMEDY = "Export the cloud with the scanner's full intensities (16 bits, not stretched)."
 SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
+REMEDY = "Export the cloud with the scanner's full intensities (16 bits, not stretched)."
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ class AsphaltLook:
         reason = _reason_against(road_points, frame)
         if reason:
             return cls(None, reason)
-        points_by_scanner = sum(_run(points_of_scanners, road_points, (), Progress()))
+        points_by_scanner = road_points.points_of_scanners()
         scanners = int(np.flatnonzero(points_by_scanner)[-1]) + 1
         beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.4))
         step, before = _sampling_step(road_points), IntensityHistograms(scanners)
@@ -326,12 +326,6 @@ def _stripes(points, step):
     begins, ends = np.searchsorted(s, first), np.searchsorted(s, first + ASPHALT.sample_stripe_length)
     count = ends - begins
     return points[np.repeat(begins - (np.cumsum(count) - count), count) + np.arange(count.sum())]
-
-
-def points_of_scanners(road_points: RoadPoints, stretch: Stretch) -> np.ndarray:
-    """The phase that counts points: (256,) how many each scanner has."""
-    sections = (road_points.section(*key).scanner for key in road_points.store.in_stretch(stretch))
-    return sum((np.bincount(scanner, minlength=SCANNER_NUMBERS) for scanner in sections), np.zeros(SCANNER_NUMBERS, np.int64))
 
 
 def _reason_against(road_points, frame):

@@ -14,11 +14,11 @@ from scipy import sparse
 
 from ..common.arrays import order_by, quantiles
 from ..common.errors import RoadExtractionError
-from ..common.parallel import ScratchBuffers
+from ..common.parallel import ScratchBuffers, check_cancelled
 from ..common.progress import Progress
 from ..common.setting import Limited, setting
 from ..execution.phase import THREADS, Executor, Phase, digest
-from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage, new_geotiff
+from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
 from ..lazy import cv2
 from ..survey.consistency import sample_road_points
 from ..survey.frame.road_frame import RoadFrame
@@ -228,21 +228,20 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     """
     grid, work = _looked(road_points, settings, progress)
     image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, road_points.executor.folder)
-    image.pieces = {piece: digest((settings, piece, road_points.state(piece.road, piece.number * PIECE_LENGTH, (piece.number + 1) * PIECE_LENGTH)))
+    image.pieces = {piece: digest((settings, piece, road_points.state(*_span(piece.road, piece.number, PIECE_LENGTH))))
                     for _, pieces in work for piece in pieces}
     image.states = {tile: digest((grid.shape_of(*tile), [image.pieces[piece] for piece in pieces])) for tile, pieces in work}
     if before is not None:
         image.take_over(before)
     new = [(tile, pieces) for tile, pieces in work if before is None or before.states.get(tile) != image.states[tile]]
-    with new_geotiff(path, grid.width, grid.height, grid.geotransform, road_points.crs) if path else nullcontext() as file:
-        if file is not None:
-            image.write_tiles(file)
+    with image.new_file(path, before) if path else nullcontext() as file:
         # a few are made before workers would have started
         executor = THREADS if 2 * len(new) < len(work) else road_points.executor
         for column, row, values in _tiles(grid, new, road_points, settings, progress.part(0.3, 1.0), executor):
             image.put(column, row, values)
             if file is not None:
                 file.write(column, row, values)
+                # compressed by another thread while the next tiles are made
                 file.flush()
     progress.info(grid.summary)
     return image
@@ -276,13 +275,7 @@ def write_intensity_image(road_points: RoadPoints, path: str | PathLike, setting
     ----------
     .. [1] Guan et al. (2014), ISPRS J. Photogramm. Remote Sens. 87, 93-107: the two rules.
     """
-    grid, work = _looked(road_points, settings, progress)
-    with new_geotiff(path, grid.width, grid.height, grid.geotransform, road_points.crs) as file:
-        for column, row, values in _tiles(grid, work, road_points, settings, progress.part(0.3, 1.0), road_points.executor):
-            file.write(column, row, values)
-            # compressed by another thread while the next tiles are made
-            file.flush()
-    progress.info(grid.summary)
+    make_intensity_image(road_points, settings, progress, path).close()
 
 
 def check_fits(width: float, height: float, settings: ImageSettings) -> None:
@@ -298,8 +291,9 @@ def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress
     if not len(road_points):
         raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
-    looked = _run(windows_of_image, road_points, windows, IMAGE.looked_windows, settings, progress.part(0.0, 0.3),
-                  lambda window: (*window, IMAGE.ranking_window), road_points.executor)
+    phase = Phase(windows_of_image, road_points, (settings,), lambda task: road_points.survey.stretch(*_span(*task[0], IMAGE.ranking_window)),
+                  state=lambda task: [road_points.state(*_span(*window, IMAGE.ranking_window)) for window in task])
+    looked = road_points.executor.run_together(phase, windows, IMAGE.looked_windows, progress.part(0.0, 0.3))
     pieces = [piece for window in looked for piece in window]
     # the grid is fixed in the map: pixel column = column of the map's lattice minus the first one
     extents = np.array([piece.extent for piece in pieces], np.int64)
@@ -312,30 +306,18 @@ def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress
 def _tiles(grid: _Grid, work: list[tuple[Tile, list[_Piece]]], road_points: RoadPoints, settings: ImageSettings,
            progress: Progress, executor: Executor) -> Iterator[tuple[int, int, np.ndarray]]:
     """Yield (column, row, (H, W) float32) of every tile with data, in the order of the road."""
-    made, done = _lifetimes(work)
-    sums = _run(sums_of_pieces, road_points, [piece for new in made for piece in new], IMAGE.pieces_per_task, settings, progress,
-                lambda piece: (piece.road, piece.number, PIECE_LENGTH), executor)
-    kept: dict[_Piece, _WeightedSums] = {}
-    for ((column, row), parts), new, old in zip(work, made, done):
-        kept.update((piece, next(sums)) for piece in new)
-        values = grid.tile(column, row, [kept[piece] for piece in parts])
-        if values is not None:
-            yield column * GEOTIFF_TILE, row * GEOTIFF_TILE, values
-        for piece in old:
-            del kept[piece]
+    tasks = [work[k:k + IMAGE.tiles_per_task] for k in range(0, len(work), IMAGE.tiles_per_task)]
+    phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
+        *_span(task[0][1][0].road, task[0][1][0].number, PIECE_LENGTH)))
+    for tiles, task in zip(executor.run(phase, tasks, progress), tasks):
+        for ((column, row), _), values in zip(task, tiles):
+            if values is not None:
+                yield column * GEOTIFF_TILE, row * GEOTIFF_TILE, values
 
 
-def _run(function, road_points, items, together, settings, progress, place, executor):
-    """Yield the results of a phase of items, some of them together in a task; `place` gives road, number and length of one."""
-
-    def span(item):
-        road, number, length = place(item)
-        return road, number * length, (number + 1) * length
-
-    phase = Phase(function, road_points, (settings,), lambda task: road_points.survey.stretch(*span(task[0])),
-                  # of what weighs on cells, images keep the tiles
-                  state=None if function is sums_of_pieces else lambda task: [road_points.state(*span(item)) for item in task])
-    return executor.run_together(phase, items, together, progress)
+def _span(road, number, length):
+    """A road, and the stations between which a window or a piece lies by its number."""
+    return road, number * length, (number + 1) * length
 
 
 def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, list[_Piece]]]:
@@ -345,25 +327,6 @@ def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, l
         for tile in grid.tiles_of(piece.extent):
             pieces_of_tile.setdefault(tile, []).append(piece)
     return sorted(pieces_of_tile.items(), key=lambda item: (item[1][0].road, item[1][0].number, item[0]))
-
-
-def _lifetimes(work: list[tuple[Tile, list[_Piece]]]) -> tuple[list[list[_Piece]], list[list[_Piece]]]:
-    """Of each tile, the pieces that are computed for it and those that are let go after it.
-
-    A piece is kept for the tiles that follow soon, and computed again for those that follow late, such as the ones that another road crosses.
-    """
-    uses: dict[_Piece, list[int]] = {}
-    for k, (_, pieces) in enumerate(work):
-        for piece in pieces:
-            uses.setdefault(piece, []).append(k)
-    made: list[list[_Piece]] = [[] for _ in work]
-    done: list[list[_Piece]] = [[] for _ in work]
-    for piece, tiles in uses.items():
-        cuts = np.flatnonzero(np.diff(tiles) > IMAGE.tiles_ahead)
-        for first, last in zip(np.r_[0, cuts + 1], np.r_[cuts, len(tiles) - 1]):
-            made[tiles[first]].append(piece)
-            done[tiles[last]].append(piece)
-    return made, done
 
 
 def _window_numbers(road_points, road):
@@ -407,9 +370,15 @@ def _sampling_step(points: Points, settings: ImageSettings) -> int:
     return max(int(len(points) * settings.cell_size**2 / (PIECE_LENGTH * width) / IMAGE.far_points_per_cell), 1)
 
 
-def sums_of_pieces(road_points: RoadPoints, pieces: list[_Piece], settings: ImageSettings) -> list[_WeightedSums]:
-    """The phase that interpolates pieces."""
-    return [_sums_of_piece(road_points, piece, settings) for piece in pieces]
+def tiles_of_image(road_points: RoadPoints, tiles: list[tuple[Tile, list[_Piece]]], settings: ImageSettings, grid: _Grid) -> list[np.ndarray | None]:
+    """The phase that makes tiles, (height, width) float32 each or None where it has no data; a piece that some of them share is interpolated once."""
+    sums: dict[_Piece, _WeightedSums] = {}
+    result = []
+    for tile, pieces in tiles:
+        check_cancelled()
+        sums.update({piece: _sums_of_piece(road_points, piece, settings) for piece in pieces if piece not in sums})
+        result.append(grid.tile(*tile, [sums[piece] for piece in pieces]))
+    return result
 
 
 def _sums_of_piece(road_points, piece, settings):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..lazy import pyproj
+from ..lazy import pyproj, shapely
 from .weights import IO
 
 if TYPE_CHECKING:
@@ -418,6 +418,16 @@ def as_in_file(wkt: str) -> tuple[str, FileUnits]:
     """The survey's own CRS, in which a file is written, and its units, of the CRS that was worked in; WKT, "" where unknown."""
     file_wkt = _file_wkt(wkt)
     return (file_wkt, _units_of(parse_crs(file_wkt))) if file_wkt else (wkt, METRES)
+
+
+def in_other_crs(geometries: Iterable[Any], source: CRS, target: CRS) -> list[Any]:
+    """Geometries, of which some may be None, brought from one CRS to another; their heights stay."""
+    transformer = pyproj.Transformer.from_crs(horizontal_part(source), horizontal_part(target), always_xy=True)
+
+    def moved(places):
+        return np.column_stack([*transformer.transform(*places[:, :2].T), places[:, 2:]])
+
+    return [None if geometry is None else shapely.transform(geometry, moved, include_z=bool(geometry.has_z)) for geometry in geometries]
 
 
 def place_of_raster(dataset: Any) -> tuple[tuple[float, ...] | None, str]:

@@ -11,7 +11,7 @@ import os
 import shutil
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from glob import escape
 from pathlib import Path
@@ -19,6 +19,7 @@ from typing import Any
 from uuid import uuid4
 
 from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
 from ..lazy import gdal, ogr
 from .weights import IO
 
@@ -94,6 +95,32 @@ def open_vector(path: str | Path) -> Any:
     """The gdal.Dataset of a vector file; None, or within `gdal_exceptions` a RuntimeError, where it is none of `VECTOR_DRIVERS`."""
     with offline():
         return gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=list(VECTOR_DRIVERS))
+
+
+def gdal_work(work: Callable[[Callable[..., int]], Any], progress: Progress) -> Any:
+    """What `work` returns, which hands GDAL the callback that it is called with, so that GDAL reports to `progress`.
+
+    GDAL passes no exception through its own code: what the report raises, as Cancelled, stops GDAL's work and is raised afterwards, without
+    GDAL's own error, which would keep its datasets alive.
+    """
+    stopped: list[Exception] = []
+
+    def report(share: float, *_: Any) -> int:
+        try:
+            progress.report(share)
+        except Exception as reason:
+            stopped.append(reason)
+        return int(not stopped)
+
+    result = None
+    try:
+        result = work(report)
+    except RuntimeError:
+        if not stopped:
+            raise
+    if stopped:
+        raise stopped[0]
+    return result
 
 
 # GDAL's errors as Python exceptions, and no network, for Lanewright's own calls alone.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -18,14 +19,15 @@ from ..survey.open_survey import Survey
 from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
-from .common.side_curbs import curbs_along, grids_beside
+from .common.occlusion import OcclusionGrid
+from .common.side_curbs import Section, curbs_along, grids_beside, steps_of_roads
 from .common.sides import SIDE_SIGNS
 from .curb_returns.detect import with_curb_returns
 from .edges.fit import EdgeSettings, edges_through, tell_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
-from .profiles.detect import detect_curbs, steps_on_profiles, tell_points
+from .profiles.detect import detect_curbs, profiles_of, steps_of_section, tell_points
 from .scanlines.candidates import ScanlineBoundarySettings
-from .scanlines.detect import SurveyScanlines, steps_on_scanlines, tell_corners
+from .scanlines.detect import SurveyScanlines, corners_of_section, planes_of, tell_corners, with_scanner_noise
 from .scanlines.section_planes import ScanlineSettings
 from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
@@ -90,24 +92,31 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 
 def _find_curb_points(decimation, settings, progress, ground):
     """`find_curb_points` with the points of a PointDecimation."""
-    survey, steps, begun = decimation.survey, {}, 0.0
+    survey = decimation.survey
     if settings.method == "profiles":
         return {"profiles": detect_curbs(survey, settings.curbs, progress, True, decimation, None, ground)}
-    if settings.method == "both":
-        begun = BOUNDARY.profiles_progress
-        steps["profiles"] = steps_on_profiles(decimation, settings.curbs, progress.part(0.0, begun))
-    part = progress.part(begun, 1.0)
-    lattice = find_lattice(survey, settings.planes.rotation_frequency, part.part(0.0, BOUNDARY.lattice_progress))
+    lattice = find_lattice(survey, settings.planes.rotation_frequency, progress.part(0.0, BOUNDARY.lattice_progress))
     source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice, level=_level_for(decimation, settings.scanlines))
-    steps["scanlines"] = steps_on_scanlines(source, settings.scanlines, settings.curbs.block_length,
-                                            part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress))
-    points = curbs_along(source, {method: steps[method] for method in METHODS if method in steps}, partial(RoadLook, ground))
+    searches = {"scanlines": planes_of(source, settings.scanlines, settings.curbs.block_length)}
+    if settings.method == "both":
+        searches["profiles"] = profiles_of(decimation, settings.curbs)
+    steps = with_scanner_noise(steps_of_roads(_steps_of_methods, source, (settings.scanlines, settings.curbs), searches,
+                                              progress.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)))
+    points = curbs_along(source, steps, partial(RoadLook, ground))
     tell_corners(points["scanlines"], progress)
     if settings.method == "both":
         tell_points(points["profiles"], progress)
-    points[settings.method] = with_curb_returns(points[settings.method], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0),
-                                                grids_beside(next(iter(steps.values()))), ground)
+    points[settings.method] = with_curb_returns(points[settings.method], decimation, settings.curbs, progress.part(BOUNDARY.returns_progress, 1.0),
+                                                grids_beside(steps["profiles" if settings.method == "both" else "scanlines"]), ground)
     return points
+
+
+def _steps_of_methods(source: SurveyScanlines, section: Section, scanlines: ScanlineBoundarySettings,
+                     profiles: CurbSettings) -> tuple[dict[str, Any], dict[str, OcclusionGrid]]:
+    """The phase of both methods: what `steps_of_section` or `corners_of_section` finds, by the method of the section."""
+    if section[0] == "scanlines" or source.level is None:
+        return corners_of_section(source, section, scanlines)
+    return steps_of_section(source.level.decimation, section, profiles)
 
 
 def _level_for(decimation, settings):

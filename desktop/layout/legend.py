@@ -45,13 +45,13 @@ def as_it_stands(text: str) -> str:
     return text.replace("[%", "[% '[%' %]")
 
 
-def drawn(layers: list[QgsMapLayer]) -> list[QgsMapLayer]:
-    """The layers of which a legend says something: lines, points and areas, where there are any."""
-    return [layer for layer in layers if layer.type() == Qgis.LayerType.Vector and layer.isSpatial() and layer.featureCount() != 0]
+def classes_by_layer(layers: list[QgsMapLayer]) -> dict[QgsMapLayer, set[str]]:
+    """The layers of which a legend says something, lines, points and areas, with the keys of those classes of their style that some feature has."""
+    return {layer: _classes_of(layer) for layer in layers
+            if layer.type() == Qgis.LayerType.Vector and layer.isSpatial() and layer.featureCount() != 0}
 
 
-def classes_of(layer: QgsMapLayer) -> set[str]:
-    """The keys of those classes of a layer's style that some feature has."""
+def _classes_of(layer):
     context = QgsRenderContext()
     context.expressionContext().appendScopes(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
     renderer = layer.renderer().clone()
@@ -64,16 +64,16 @@ def classes_of(layer: QgsMapLayer) -> set[str]:
     return keys
 
 
-def legend_height(layers: list[QgsMapLayer]) -> float:
+def legend_height(classes: dict[QgsMapLayer, set[str]]) -> float:
     """mm that the longest layer takes in the legend, with the classes there are."""
-    return TITLES + ENTRY * max([1, *(len(classes_of(layer)) for layer in drawn(layers))])
+    return TITLES + ENTRY * max([1, *map(len, classes.values())])
 
 
-def add_legend(layout: QgsPrintLayout, layers: list[QgsMapLayer], room: QRectF, page: int = 0) -> QgsLayoutItemLegend | None:
+def add_legend(layout: QgsPrintLayout, classes: dict[QgsMapLayer, set[str]], room: QRectF, page: int = 0) -> QgsLayoutItemLegend | None:
     """A legend in the upper left corner of `room` (mm) of a page; None, and nothing is added, where it does not fit.
 
-    It lists the classes that there are. QGIS's own filter by the map is not used for that: it looks through the layers in the background and
-    has timers, which may outlive the layers, and how large the legend becomes is not known before.
+    It lists the classes that there are, of `classes_by_layer`. QGIS's own filter by the map is not used for that: it looks through the layers
+    in the background and has timers, which may outlive the layers, and how large the legend becomes is not known before.
     """
     legend = QgsLayoutItemLegend(layout)
     layout.addLayoutItem(legend)
@@ -81,10 +81,9 @@ def add_legend(layout: QgsPrintLayout, layers: list[QgsMapLayer], room: QRectF, 
     legend.setAutoUpdateModel(False)
     root = legend.model().rootGroup()
     root.clear()
-    vectors = drawn(layers)
-    for layer in vectors:
+    for layer, keys in classes.items():
         node = root.addLayer(layer)
-        _leave_out_empty_classes(legend, node, layer)
+        _leave_out_empty_classes(legend, node, keys)
         _print_as_it_stands(legend, node, layer)
     legend.setResizeToContents(False)  # by its own measure the last letters would stand beside its ground
     legend.setSplitLayer(False)
@@ -93,7 +92,7 @@ def add_legend(layout: QgsPrintLayout, layers: list[QgsMapLayer], room: QRectF, 
     legend.setColumnSpace(3)
     for sizes in SIZES:
         _set_sizes(legend, *sizes)
-        for columns in range(1, max(1, len(vectors)) + 1):
+        for columns in range(1, max(1, len(classes)) + 1):
             legend.setColumnCount(columns)
             size = _size(layout, legend)
             if size.height() <= room.height() and size.width() <= room.width():
@@ -115,8 +114,7 @@ def _size(layout, legend):
     return QgsLegendRenderer(legend.model(), settings).minimumSize(QgsLayoutUtils.createRenderContextForLayout(layout, None, DPI))
 
 
-def _leave_out_empty_classes(legend, node: QgsLayerTreeLayer, layer):
-    classes = classes_of(layer)
+def _leave_out_empty_classes(legend, node: QgsLayerTreeLayer, classes):
     key = QgsLayerTreeModelLegendNode.LegendNodeRoles.RuleKeyRole
     order = [row for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)) if str(entry.data(key)) in classes]
     if order:

@@ -38,7 +38,7 @@ from ...processing_provider.texts import tr
 from .axes import axes_of
 from .charts import COLOURS, profile_pages, section_pages
 from .drawing import DARK, GREY, LETTER, Drawing, station_text, text_width
-from .legend import add_legend, as_it_stands, legend_height, text_format
+from .legend import add_legend, as_it_stands, classes_by_layer, legend_height, text_format
 from .map_lines import MapLine, accuracy_of, lines_of, road_lines
 from .pages import Sheet, sheets_along
 
@@ -117,6 +117,7 @@ class _Pages:
     def __init__(self, project, layers, choice, below, ground, progress):
         self.progress = progress
         self.choice, self.layers = choice, list(layers.values())
+        self.classes = classes_by_layer(self.layers)
         self.drawn = [*self.layers, *([below] if below is not None else [])]
         self.crs = map_crs(self.layers, project)
         self.unit = QgsUnitTypes.fromUnitToUnitFactor(self.crs.mapUnits(), Qgis.DistanceUnit.Meters)   # m
@@ -155,7 +156,7 @@ class _Pages:
 
     def _add_pages(self, ground):
         room = self._legend_room(self.frame)
-        probe = add_legend(self.layout, self.layers, room)
+        probe = add_legend(self.layout, self.classes, room)
         self.legend_on_sheets = probe is not None
         if probe is not None:
             self.layout.removeLayoutItem(probe)
@@ -179,16 +180,22 @@ class _Pages:
                 self._add_drawing(paper, page)
                 self._add_drawing(drawing, page, self.frame.map.x(), self.frame.map.y())
 
+    def _report(self):
+        """How far the work is; between two reports QGIS lets the window live."""
+        self.progress.report(self.pages / (self.pages + len(self.sheets)))
+
     def _profiles(self):
+        self._report()
         return profile_pages(self.axes, self.frame.map.width(), self.frame.map.height() - NOTES, self.scale,
                              len(self.sheets)) if self.choice.profile else []
 
     def _sections(self, ground):
+        self._report()
         interval = self.choice.section_interval
         return section_pages(self.axes, self.lines, ground, interval, self.frame.map.width(), self.frame.map.height() - NOTES) if interval else []
 
     def _new_page(self):
-        self.progress.report(self.pages / (self.pages + len(self.sheets)))
+        self._report()
         if self.pages:
             self.layout.pageCollection().addPage(QgsLayoutItemPage(self.layout))
         self.layout.pageCollection().page(self.pages).setPageSize(
@@ -199,7 +206,7 @@ class _Pages:
     def _add_overview(self):
         """The whole road with the sheets on it, and the legend."""
         page, base = self._new_page(), self.frame.band
-        tall, aside = min(legend_height(self.layers), MOST_LEGEND * self.frame.height), True
+        tall, aside = min(legend_height(self.classes), MOST_LEGEND * self.frame.height), True
         for band, aside in ((base, True), (max(base, tall), True), (max(base + ABOVE, tall), False), (base + tall, True)):
             frame = Frame(self.frame.width, self.frame.height, band)
             room = self._legend_room(frame, base)
@@ -207,7 +214,7 @@ class _Pages:
                 room.setRight(frame.title_block(base).left() - 1)
             if band == base + tall:   # all of it stands there
                 room = QRectF(room.x(), room.y(), frame.strip.width() - 2, tall - 2)
-            if add_legend(self.layout, self.layers, room, page) is not None:
+            if add_legend(self.layout, self.classes, room, page) is not None:
                 break
         outlines = shapely.union_all([sheet.outline() for sheet in self.sheets])
         box = outlines.minimum_rotated_rectangle
@@ -247,7 +254,7 @@ class _Pages:
                               f"1 : {self.scale}")
         self._add_key_map(paper, page, sheet)
         if self.legend_on_sheets:
-            add_legend(self.layout, self.layers, self._legend_room(frame), page)
+            add_legend(self.layout, self.classes, self._legend_room(frame), page)
         self._add_scale_and_north(chart, page, frame, self.scale, frame.band)
         self._add_drawing(over, page, frame.map.x(), frame.map.y())
         self._add_drawing(paper, page)
@@ -348,6 +355,7 @@ class _Pages:
 
     def _add_title_block(self, paper, page, frame, contents, number, scale, band=None):
         """Who made what, when, where and how well; captions are drawn, what was chosen stands in labels that can be changed."""
+        self._report()
         block, choice = frame.title_block(band or frame.band), self.choice
         heights = choice.heights or (self.crs.verticalCrs().userFriendlyIdentifier() if self.crs.verticalCrs().isValid()
                                      else tr("as in the point clouds"))

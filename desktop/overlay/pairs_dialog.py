@@ -416,7 +416,6 @@ class TwoPointsDialog(QDialog):
 SIDE = 116       # px, of a cut-out
 GAP = 4          # px, between the two of a pair
 CROSS = 7        # px, half the cross in the middle
-ORDER = 2        # of the polynomial, where the pairs are enough for it
 GREEN, RED = "#33a02c", "#e6323c"
 
 
@@ -478,7 +477,7 @@ class ImagePairs:
             (row["pixel"], row["line"], row.geometry().constGet().x(), row.geometry().constGet().y()) for row in rows)))}
         used = np.array([bool(row["accepted"]) for row in rows])
         x, y = places["easting"] - places["easting"].mean(), places["northing"] - places["northing"].mean()
-        order = highest_order(x[used], y[used], ORDER) if used.any() else 0
+        order = highest_order(x[used], y[used]) if used.any() else 0
         residual = left_out_residuals(x, y, places["pixel"], places["line"], used, order) if order else np.full(len(rows), np.nan)
         column = layer.fields().lookupField("residual")
         layer.dataProvider().changeAttributeValues(
@@ -488,7 +487,7 @@ class ImagePairs:
     def order(self) -> int:
         """Of the polynomial that the accepted pairs determine; 0: none."""
         places = np.array([(row.geometry().constGet().x(), row.geometry().constGet().y()) for row in self.rows() if row["accepted"]])
-        return highest_order(*places.T, ORDER) if len(places) else 0
+        return highest_order(*places.T) if len(places) else 0
 
     def summary(self) -> str:
         """What is known of the image, for the list of images."""

@@ -47,11 +47,7 @@ def corrections_layers(project: QgsProject) -> list[QgsVectorLayer]:
 
 
 def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer | None:
-    """The layer with the corrections of a survey: one that says so, else one that says nothing and lies where the survey does.
-
-    survey : its name
-    extent, crs : where it lies
-    """
+    """The layer with the corrections of a survey: one that names it, else one that names none and lies where the survey does."""
     for layer in corrections_layers(project):
         layer_survey = layer.customProperty(SURVEY)
         if layer_survey == survey or not layer_survey and layer.featureCount() > 0 \
@@ -106,14 +102,9 @@ def lay_above(layer: QgsVectorLayer, road_map: RoadMap, project: QgsProject) -> 
 
 def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateReferenceSystem, former: QgsFeature | None = None,
                    **values: object) -> int:
-    """Write one row; an earlier one of the same target at the same place makes room for it.
+    """Write one row along a line, with values of the fields, None for empty; the number of the feature.
 
-    layer : of corrections
-    line, crs : its course, and the CRS of its coordinates
-    former : an earlier decision about the same piece, None where there is none; one of the same target at this place is found without it
-    values : of the fields; those that are None stay empty
-
-    Returns the number of the feature
+    former : an earlier decision about the same piece, which makes room for it; without, one of the same target at the same place does
     """
     _note_change(layer, values["target"])
     placed = _placed(line, crs, layer)
@@ -150,10 +141,7 @@ def correction_at(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateRe
 
 
 def corrections_of(layer: QgsVectorLayer | None, pieces: Sequence[DoubtfulPiece], crs: QgsCoordinateReferenceSystem) -> dict[int, QgsFeature]:
-    """{number of a piece: the correction that was made of it}; one that moves a piece is known by where the piece begins and lies.
-
-    crs : of the pieces
-    """
+    """{number of a piece: the correction that was made of it}; one that moves a piece is known by where the piece begins and lies."""
     index, made = QgsSpatialIndex(), {}
     for number, piece in enumerate(pieces):
         index.addFeature(number, piece.line.boundingBox())

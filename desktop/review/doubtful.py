@@ -51,10 +51,7 @@ class Doubt:
 
 
 def doubts_of(road_map: RoadMap, kinds: Iterable[str] = ()) -> list[Doubt]:
-    """The doubtful places of a road map along its roads; doubts that lie together are one place.
-
-    kinds : those of DoubtfulPiece that are wanted; none for all
-    """
+    """The doubtful places, of some kinds of DoubtfulPiece or of all, along the roads of a map; doubts that lie together are one."""
     pieces = [piece for output in ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES") for piece in _doubtful_rows(road_map, output)]
     # a lane is looked at once: its area only where its driving line says nothing
     lanes = [(piece.road, piece.station) for piece in pieces if piece.kind == "lane"]
@@ -87,10 +84,7 @@ def _doubtful_rows(road_map, output):
 
 
 def reason(row: dict) -> str:
-    """Why a feature is doubtful, "" where it is not.
-
-    row : {field: value}; what a layer does not have says nothing
-    """
+    """Why a feature of these fields is doubtful, "" where it is not."""
     if (_number(row.get("length_m")) or 0.0) < SHORTEST or row.get("status") in DECIDED:
         return ""
     apart, sure = _number(row.get("agree_cm")), _number(row.get("confidence"))

@@ -18,8 +18,6 @@ def with_points(title: str, clouds: Sequence[str], place: Sequence[float], radiu
                 ready: Callable[[QgsTask, object, str], None]) -> QgsTask:
     """Read the points about a place and work on them; keep the task, for QGIS keeps no reference, and cancel it when it is no longer wanted.
 
-    title : of the task
-    clouds : files
     place, radius : x, y in map coordinates, and m either side
     work : from (N, 4) x, y, z and intensity to a result
     ready : called on the main thread with the task, the result and ""; with None and a sentence where the points were not read

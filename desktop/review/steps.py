@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
+from functools import cache
 from pathlib import Path
 
-from qgis.core import QgsApplication, QgsMapLayer, QgsProcessingUtils, QgsProject, QgsProviderRegistry, QgsVectorLayer
+from qgis.core import QgsMapLayer, QgsProcessingUtils, QgsProject, QgsProviderRegistry, QgsVectorLayer
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
 from ...algorithms.algorithm import SettingSpec
+from ...algorithms.catalogue import ALGORITHMS
 from ...algorithms.destinations import table_of
 from ...algorithms.survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS
 from ...processing_provider.results.origin import origin_of
@@ -29,26 +31,19 @@ FIRST = {"edge": "detectboundaries", "marking": "clustermarkings", "lane": "driv
 
 @dataclass(frozen=True)
 class Step:
-    """One stage of a road map.
+    """One stage of a road map."""
 
-    title : of its algorithm; layer : one that it made; made : when; colour : of the state; state, reason : in the user's words
-    settings : (label, value, whether it is not the default)
-    """
-
-    title: str
-    layer: QgsMapLayer
+    title: str   # of its algorithm
+    layer: QgsMapLayer   # one that it made
     made: datetime
-    colour: str
-    state: str
+    colour: str   # of the state
+    state: str   # state, reason: in the user's words
     reason: str
-    settings: tuple[tuple[str, str, bool], ...]
+    settings: tuple[tuple[str, str, bool], ...]   # (label, value, whether it is not the default)
 
 
 def steps_of(road_map: RoadMap, corrections: QgsVectorLayer | None) -> list[Step]:
-    """The steps of which a road map has layers, in the order of the work.
-
-    corrections : the layer of this survey's corrections, None where there is none
-    """
+    """The steps of which a road map has layers, in the order of the work; the layer of corrections is None where there is none."""
     layer_of: dict[str, QgsMapLayer] = {}
     for output, stage in STAGES.items():
         layer = road_map.layer(output)
@@ -70,20 +65,25 @@ def steps_of(road_map: RoadMap, corrections: QgsVectorLayer | None) -> list[Step
         else:
             state = FRESH, tr("fresh"), tr("Nothing that it is made from has changed.")
         before = max(filter(None, (before, provenance.ended)))
-        algorithm = QgsApplication.processingRegistry().createAlgorithmById(f"lanewright:{stage}")
-        settings = tuple(_settings(algorithm, {**road_map.values, **provenance.values}))
-        steps.append(Step(algorithm.declaration.title(), layer, provenance.ended, *state, settings))
+        declared = _declared(stage)
+        settings = tuple(_settings(declared, {**road_map.values, **provenance.values}))
+        steps.append(Step(declared.title(), layer, provenance.ended, *state, settings))
     return steps
 
 
-def _settings(algorithm, values):
+@cache
+def _declared(stage):
+    """The algorithm of a step, made once: the steps are listed after every correction."""
+    return next(algorithm for algorithm in ALGORITHMS if algorithm.ID == stage)()
+
+
+def _settings(declared, values):
     """(label, value, whether it is not the default) of what is decided in this step alone."""
-    for spec in algorithm.declaration.parameters:
+    for spec in declared.parameters:
         if isinstance(spec, SettingSpec) and spec not in (*SURVEY_SETTINGS, *EXECUTION_SETTINGS):
-            default = algorithm.parameterDefinition(spec.name).defaultValue()
-            value = values.get(spec.name, default)
+            value = values.get(spec.name, spec.default)
             text = (tr("yes") if value else tr("no")) if isinstance(value, bool) else f"{value:g}" if isinstance(value, (int, float)) else str(value)
-            yield spec.label, text, value != default
+            yield spec.label, text, value != spec.default
 
 
 def values_again(road_map: RoadMap) -> dict[str, object]:

@@ -53,43 +53,28 @@ def _in_words(field):
     return f'coalesce(map_get(map({pairs}), to_string("{field}")), to_string("{field}"))'
 
 
-def _part(text, field, *fields):
-    """A piece of a title: an expression, and the fields that it needs."""
-    return text, (field, *fields)
-
-
 def _parts():
-    """The pieces of the titles, in the user's language."""
+    """The pieces of the titles, in the user's language: expressions, which need the fields that they name in double quotes, or else a road."""
     return {
-        "edge": _part(f"'{tr('Road edge')}'", "road"),
-        "side": _part(_in_words("side"), "side"),
-        "length": _part('format_number("length_m", 0) || \' m\'', "length_m"),
-        "height": _part(f"'{tr('height')} ' || format_number(\"height_m\", 2) || ' m'", "height_m"),
-        "status": _part(_in_words("status"), "status"),
-        "sigma": _part("'± ' || CASE WHEN \"sigma_m\" < 0.1 THEN format_number(\"sigma_m\" * 1000, 0) || ' mm' ELSE "
-                       "format_number(\"sigma_m\" * 100, 0) || ' cm' END", "sigma_m"),
-        "line": _part(f"CASE WHEN \"kind\" = 'edge' THEN '{tr('Edge line')}' WHEN \"kind\" = 'centre' THEN '{tr('Centre line')}' "
-                      f"ELSE '{tr('Lane line')}' END || ' ' || \"line\"", "kind", "line"),
-        "pattern": _part(_in_words("pattern"), "pattern"),
-        "lane": _part(f"'{tr('Lane')} ' || \"lane\"", "lane"),
-        "direction": _part(_in_words("direction"), "direction"),
-        "class": _part(f"coalesce(\"class\", '{tr('Paint')}')", "class"),
-        "surface": _part(f"'{tr('Road surface')}'", "road"),
-        "pass": _part(f"'{tr('Pass')} ' || \"pass\"", "pass"),
-        "action": _part(_in_words("action"), "action"),
-        "target": _part(_in_words("target"), "target"),
-        "note": _part('"note"', "note"),
-        "curb_point": _part(f"'{tr('Curb point')}'", "road"),
+        **{field: _in_words(field) for field in ("side", "status", "pattern", "direction", "action", "target")},
+        "edge": f"'{tr('Road edge')}'",
+        "length": 'format_number("length_m", 0) || \' m\'',
+        "height": f"'{tr('height')} ' || format_number(\"height_m\", 2) || ' m'",
+        "sigma": "'± ' || CASE WHEN \"sigma_m\" < 0.1 THEN format_number(\"sigma_m\" * 1000, 0) || ' mm' ELSE "
+                 "format_number(\"sigma_m\" * 100, 0) || ' cm' END",
+        "line": f"CASE WHEN \"kind\" = 'edge' THEN '{tr('Edge line')}' WHEN \"kind\" = 'centre' THEN '{tr('Centre line')}' "
+                f"ELSE '{tr('Lane line')}' END || ' ' || \"line\"",
+        "lane": f"'{tr('Lane')} ' || \"lane\"",
+        "class": f"coalesce(\"class\", '{tr('Paint')}')",
+        "surface": f"'{tr('Road surface')}'",
+        "pass": f"'{tr('Pass')} ' || \"pass\"",
+        "note": '"note"',
+        "curb_point": f"'{tr('Curb point')}'",
     }
 
 
 def explain_attributes(layer: QgsVectorLayer, output: str, schema: Sequence[Any]) -> None:
-    """Set names, formats and titles of the fields that a layer has.
-
-    layer : of a result
-    output : the result, such as ROAD_EDGES
-    schema : columns of the result, with aliases
-    """
+    """Set names, formats and titles of the fields of a layer that is a result, such as ROAD_EDGES, whose columns have aliases."""
     for column in schema:
         index = layer.fields().lookupField(column.name)
         if index < 0:
@@ -168,7 +153,7 @@ def title_of(output: str, fields: set[str]) -> str:
     """The display expression of a result, of the pieces whose fields the layer has; "" where there is none."""
     parts = _parts()
     names = re.findall(r"{(\w+)}", TITLES.get(output, ""))
-    pieces = [parts[name][0] for name in names if set(parts[name][1]) <= fields]
+    pieces = [parts[name] for name in names if set(re.findall(r'"(\w+)"', parts[name]) or ["road"]) <= fields]
     # pieces without a value are left out together with their comma
     return f"array_to_string(array_filter(array({', '.join(pieces)}), @element IS NOT NULL AND @element <> ''), ', ')" if pieces else ""
 
@@ -200,10 +185,7 @@ _TEXT = "<text x='{x}' y='{y}' font-family='sans-serif' font-size='11' text-anch
 
 
 def tip_picture(names: set[str]) -> str:
-    """The expression, in [% %], of the picture that a layer's features have in their map tip; "" where its fields give none.
-
-    names : of the fields of the layer
-    """
+    """The expression, in [% %], of the picture that features with fields of these names have in their map tip; "" where they give none."""
     if {"height_m", "side", "edge"} <= names:
         return _shown(_curb(), '"height_m" IS NOT NULL AND coalesce("edge", \'\') <> \'pavement\'')
     if {"width_m", "left_patt", "right_patt"} <= names:

@@ -30,11 +30,9 @@ NAMES_ONLY = Setting("names_only")               # results name the files they w
 
 
 def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) -> None:
-    """Note where a layer comes from, hide or take away what it replaces, and put an image below the lines of the map it lies under.
+    """Note which Run made a layer, hide or take away what it replaces, and put an image below the lines of the map it lies under.
 
-    layer : in the tree of the project
     output : the result whose look it has, such as ROAD_EDGES
-    run : Run that made it
     """
     node = project.layerTreeRoot().findLayer(layer.id())
     if node is not None:

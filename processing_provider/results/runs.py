@@ -30,7 +30,6 @@ class Run:
 def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsProcessingContext, group: str | None = None) -> Run:
     """The run that has just ended.
 
-    provenance : of the run
     clouds : paths of its point clouds; none for a stage that starts from another's result
     whole : whether it makes a map in one call. Each such run has a group of its own, named by time and survey;
         the stages of a survey share one, since together they make one map
@@ -68,15 +67,7 @@ _runs: list[RunRecord] = []
 
 def note_run(declaration: Any, survey: str, began: datetime, results: Mapping[str, Any] | None = None, failure: str = "",
              warnings: Sequence[str] = ()) -> None:
-    """Remember a run that has just ended.
-
-    declaration : of the algorithm
-    survey : what the survey is called, "" where there is none
-    began : local time
-    results : of the run, None where it failed
-    failure : the sentence that it failed with
-    warnings : as the log has them
-    """
+    """Remember a run that has just ended: when it began by local time, its results or the sentence that it failed with, its warnings."""
     numbers = {number.label: results[number.name] for number in declaration.numbers if results is not None and number.name in results}
     seconds = (datetime.now() - began).total_seconds()
     report = next((path for path in map(str, (results or {}).values()) if path.lower().endswith((".html", ".htm"))), "")

@@ -13,9 +13,9 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.features import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS, Features
 from ...core.common.progress import Progress
 from ...core.curves.line_segments import single_lines
-from ...core.io.crs import check_extent, check_metric, horizontal_part, parse_crs, same_crs
-from ...core.io.local_files import gdal_exceptions, open_raster, reading
-from ...core.lazy import gdal, ogr, pyproj
+from ...core.io.crs import check_extent, check_metric, horizontal_part, in_other_crs, parse_crs, same_crs
+from ...core.io.local_files import gdal_exceptions, gdal_work, open_raster, reading
+from ...core.lazy import gdal, ogr
 from ...core.survey.weights import TRAJECTORY
 from .lines import MAX_MATCH_DISTANCE, SIDE_NAMES, BoundaryAccuracy, LineAccuracySettings, LineMatch, interval_lines
 from .markings import MarkingAccuracy
@@ -152,6 +152,7 @@ class AssessedLayer:
     geometries: list[Any]   # list of shapely geometries
     rows: list[dict[str, Any]] = field(default_factory=list)   # list of dict, field name to value, one per geometry
     crs: str = ""   # WKT, "" if unknown
+    excluded: list[str | None] = field(default_factory=list)   # of a reference: why a row is not judged, None of those that are
 
     def column(self, name: str) -> list[Any]:
         """Values of a field, None where the layer or the row has none; the case of the name is ignored."""
@@ -161,7 +162,8 @@ class AssessedLayer:
     def subset(self, mask: np.ndarray) -> AssessedLayer:
         """The rows of a (N,) bool mask."""
         rows = np.flatnonzero(mask)
-        return AssessedLayer(self.label, [self.geometries[k] for k in rows], [self.rows[k] for k in rows] if self.rows else [], self.crs)
+        geometries, values, excluded = ([column[k] for k in rows] if column else [] for column in (self.geometries, self.rows, self.excluded))
+        return replace(self, geometries=geometries, rows=values, excluded=excluded)
 
 
 def check_kind(layer: AssessedLayer, kinds: Sequence[str], needed: str) -> None:
@@ -216,9 +218,7 @@ def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore
     if same_crs(source, target):
         return replace(layer, crs=wkt)
 
-    move = pyproj.Transformer.from_crs(horizontal_part(source), horizontal_part(target), always_xy=True)
-    moved = [shapely.transform(shape, lambda xyz: np.column_stack([*move.transform(*xyz[:, :2].T), xyz[:, 2:]]), include_z=bool(shape.has_z))
-             for shape in layer.geometries]
+    moved = in_other_crs(layer.geometries, source, target)
     if not np.isfinite(shapely.get_coordinates(moved)).all():
         raise RoadExtractionError(
             f"{layer.label} is in {horizontal_part(source).name} and cannot be brought to {horizontal_part(target).name}. Check its CRS.")
@@ -265,31 +265,27 @@ def _looks_like_degrees(geometries):
     return bool(max(abs(x0), abs(x1)) <= 180 and max(abs(y0), abs(y1)) <= 90 and max(x1 - x0, y1 - y0) < 1.0)
 
 
-def bottoms_only(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> tuple[AssessedLayer, list[int]]:
-    """(the layer without the tops of curbs if it has bottoms too, the rows that remain)."""
-    parts = [str(part).lower() if part is not None else "" for part in layer.column("part")]
+def bottoms_only(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
+    """The layer without the tops of curbs if it has bottoms too."""
+    parts = np.array([str(part).lower() if part is not None else "" for part in layer.column("part")], object)
     if "bottom" not in parts or "top" not in parts:
-        return layer, list(range(len(layer.geometries)))
-    rows = [k for k, part in enumerate(parts) if part != "top"]
+        return layer
     warn(f"{layer.label} holds tops and bottoms of curbs; the bottoms are assessed.")
-    mask = np.zeros(len(parts), bool)
-    mask[rows] = True
-    return layer.subset(mask), rows
+    return layer.subset(parts != "top")
 
 
-def along_the_road_only(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> tuple[AssessedLayer, list[int]]:
-    """(the layer without corners, side streets and islands, which intervals along a road cannot judge; the rows that remain)."""
+def along_the_road_only(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
+    """The layer without corners, side streets and islands, which intervals along a road cannot judge."""
     transverse = np.array([str(kind).lower() in TRANSVERSE_KINDS for kind in layer.column("kind")], bool)
     if not transverse.any() or transverse.all():
-        return layer, list(range(len(layer.geometries)))
-    length = sum(layer.geometries[k].length for k in np.flatnonzero(transverse))
-    warn(f"{layer.label} holds {length:.0f} m of corners, side streets and islands; they are not judged.")
-    return layer.subset(~transverse), np.flatnonzero(~transverse).tolist()
+        return layer
+    warn(f"{layer.label} holds {_length(layer, transverse):.0f} m of corners, side streets and islands; they are not judged.")
+    return layer.subset(~transverse)
 
 
 def edges_that_compare(result: AssessedLayer, reference: AssessedLayer, edges: str = "automatic",
-                       warn: Callable[[str], None] = _ignore) -> tuple[AssessedLayer, AssessedLayer, list[int]]:
-    """(the result, the reference, and the rows of it that remain) with edges of the same kinds: curbs are not judged by edges of the pavement.
+                       warn: Callable[[str], None] = _ignore) -> tuple[AssessedLayer, AssessedLayer]:
+    """(the result, the reference) with edges of the same kinds: curbs are not judged by edges of the pavement.
 
     The field `edge`, else `kind`, says what a line is. Edges "all" keeps both layers as they are; "curbs" leaves edges of the pavement out of
     both; "automatic" leaves them out of the result where the reference says of its lines that they are curbs, and of none that it is an edge
@@ -298,21 +294,19 @@ def edges_that_compare(result: AssessedLayer, reference: AssessedLayer, edges: s
     named = [_what_edges_are(layer) for layer in (result, reference)]
     pavement = [names == PAVEMENT for names in named]
     curbs_alone = bool(np.isin(named[1], CURBS).any() and not pavement[1].any())
-    all_rows = list(range(len(reference.geometries)))
     if edges == "all" or not (pavement[0].any() or pavement[1].any()):
-        return result, reference, all_rows
+        return result, reference
     if edges == "automatic" and not curbs_alone:
         if not np.isin(named[1], (*CURBS, PAVEMENT)).any():
             warn(f"{result.label} holds {_length(result, pavement[0]):.0f} m of edges of the pavement without a curb, and {reference.label} does "
                  "not say what its lines are. If it holds curbs alone, choose curbs as the edges to judge.")
-        return result, reference, all_rows
+        return result, reference
     if pavement[0].any():
         warn(f"{result.label} holds {_length(result, pavement[0]):.0f} m of edges of the pavement without a curb; they are not judged, as the curbs "
              f"of {reference.label} cannot tell whether they are right.")
-    kept = np.flatnonzero(~pavement[1])
     if pavement[1].any():
         warn(f"{reference.label} holds {_length(reference, pavement[1]):.0f} m of edges of the pavement without a curb; they are left out.")
-    return result.subset(~pavement[0]), reference.subset(~pavement[1]), kept.tolist()
+    return result.subset(~pavement[0]), reference.subset(~pavement[1])
 
 
 def _what_edges_are(layer):
@@ -415,7 +409,7 @@ def polygons_of_raster(path: str, progress: Progress = Progress()) -> tuple[list
         layer = source.CreateLayer("painted", None, ogr.wkbPolygon)
         layer.CreateField(ogr.FieldDefn("value", ogr.OFTInteger))
         band = values.GetRasterBand(1)
-        _polygonize(band, layer, progress.part(0.7, 1.0))
+        gdal_work(lambda report: gdal.Polygonize(band, band, layer, 0, ["8CONNECTED=8"], callback=report), progress.part(0.7, 1.0))
         polygons, kinds = [], []
         for feature in layer:
             polygons.append(shapely.from_wkb(bytes(feature.GetGeometryRef().ExportToWkb())))
@@ -426,27 +420,6 @@ def polygons_of_raster(path: str, progress: Progress = Progress()) -> tuple[list
     crs = raster.GetProjection()
     # patches that touch themselves at a corner are no valid polygons
     return list(shapely.make_valid(np.asarray(polygons, object))) if polygons else [], np.array(kinds, int), crs
-
-
-def _polygonize(band, layer, progress):
-    """GDAL cannot pass an exception through its own code: the one that a cancellation raises is stored and raised again."""
-    stopped = []
-
-    def report(share, *_):
-        try:
-            progress.report(share)
-        except Exception as reason:
-            stopped.append(reason)
-            return 0
-        return 1
-
-    try:
-        gdal.Polygonize(band, band, layer, 0, ["8CONNECTED=8"], callback=report)
-    except RuntimeError:
-        if not stopped:
-            raise
-    if stopped:
-        raise stopped[0]
 
 
 def _values(raster, path, progress):

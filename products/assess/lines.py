@@ -82,14 +82,6 @@ class LineAccuracy:
     def miscoding(self) -> dict[float, float]:
         return {tolerance: 1.0 - share for tolerance, share in self.correctness.items()}
 
-    @property
-    def rmse(self) -> float:
-        return self.lateral.rmse
-
-    @property
-    def height_rmse(self) -> float:
-        return self.height.rmse
-
 
 @dataclass(frozen=True)
 class LineMatch:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,13 +13,15 @@ import shapely
 from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...core.common.setting import check_limits, setting
-from ...core.io.crs import NO_PLACE, place_of_raster, place_raster
+from ...core.io.crs import NO_PLACE, place_of_raster
+from ...core.io.geotiff import new_geotiff
 from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.lazy import cv2, gdal, ogr
 from .matching import Rates
 
 HIT, MISSED, FALSE, MISSED_BESIDE, FALSE_BESIDE = 1, 2, 3, 4, 5  # values of the outcome raster
 CHART_BLOCK = 16  # cells, side of the blocks summed up for the chart along the road
+WriteTile = Callable[[tuple[int, int], np.ndarray], None]
 
 
 @dataclass(frozen=True)
@@ -95,14 +98,14 @@ class MarkingAccuracy:
 
 def assess_markings(result: Sequence[Any], reference: Sequence[Any], settings: MarkingAccuracySettings = MarkingAccuracySettings(),
                     result_classes: Sequence[Any] | None = None, reference_classes: Sequence[Any] | None = None, area: Any = None,
-                    seen: str | None = None, outcome_raster: Any = None, progress: Progress = Progress()) -> MarkingAccuracy:
+                    seen: str | None = None, write_tile: WriteTile | None = None, progress: Progress = Progress()) -> MarkingAccuracy:
     """Assess painted polygons cell by cell and object by object.
 
     result, reference : lists of shapely polygons in one metric CRS (`inputs` makes them from lines and rasters)
     result_classes, reference_classes : class of every polygon, or None
     area : shapely polygon; what lies outside is not judged, or None
     seen : path of a raster in the same CRS whose empty cells are not judged, or None
-    outcome_raster : object with `write(tile, values)`, called with (BURN_TILE, BURN_TILE) uint8 of HIT and so on, or None
+    write_tile : called with (column, row) of each tile and its (BURN_TILE, BURN_TILE) uint8 of HIT and so on, or None
     """
     classes = sorted({str(name) for name in (*(result_classes or ()), *(reference_classes or ())) if name is not None})
     counts = _CellCounts(len(result), len(reference), _numbers(result_classes, len(result), classes),
@@ -122,8 +125,8 @@ def assess_markings(result: Sequence[Any], reference: Sequence[Any], settings: M
         widened = {t: [_dilated(ids > 0, t)[inner, inner] for ids in (result_ids, reference_ids)] for t in settings.tolerances}
         values = counts.add(result_ids[inner, inner], reference_ids[inner, inner], widened, judged)
         counts.add_blocks(values, tile, settings.cell_size)
-        if outcome_raster is not None and values.any():
-            outcome_raster.write(tile, values)
+        if write_tile is not None and values.any():
+            write_tile(tile, values)
     return counts.accuracy(classes, settings)
 
 
@@ -297,36 +300,15 @@ def _tile_bounds(tile: tuple[int, int], cell_size: float, margin: int = 0) -> tu
     return tile[0] * side - border, tile[1] * side - border, (tile[0] + 1) * side + border, (tile[1] + 1) * side + border
 
 
-class OutcomeRaster:
-    """A GeoTIFF of the outcomes of `assess_markings`: HIT and so on, 0 where neither side is painted.
+@contextmanager
+def outcome_raster(path: str, polygons: Iterable[Any], cell_size: float, crs: str, margin: int = 0) -> Iterator[WriteTile]:
+    """A GeoTIFF of the outcomes of `assess_markings`: HIT and so on, 0 where neither side is painted; yields what writes a tile of it.
 
-    path : of the .tif
-    polygons : of result and reference together; the raster covers their extent
-    cell_size : metres
-    crs : WKT, "" if unknown
-    margin : cells by which polygons are widened
+    It covers the polygons of result and reference, widened by `margin` cells of `cell_size` metres. crs : WKT, "" if unknown
     """
-
-    @gdal_exceptions()
-    def __init__(self, path: str, polygons: Iterable[Any], cell_size: float, crs: str, margin: int = 0) -> None:
-        tiles = np.array(_covering_tiles(list(polygons), cell_size, margin) or [(0, 0)])
-        (self._west, south), (east, self._north) = tiles.min(axis=0), tiles.max(axis=0)
-        columns, rows = (east - self._west + 1) * BURN_TILE, (self._north - south + 1) * BURN_TILE
-        self._raster = gdal.GetDriverByName("GTiff").Create(
-            str(path), int(columns), int(rows), 1, gdal.GDT_Byte, ["TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE", "BIGTIFF=IF_SAFER"])
-        x0, _, _, y1 = _tile_bounds((self._west, self._north), cell_size)
-        place_raster(self._raster, (x0, cell_size, 0.0, y1, 0.0, -cell_size), crs)
-        band = self._raster.GetRasterBand(1)
-        band.SetNoDataValue(0)
-        band.SetDescription("1 hit, 2 missed, 3 false, 4 missed beside a hit, 5 false beside paint")
-
-    @gdal_exceptions()
-    def write(self, tile: tuple[int, int], values: np.ndarray) -> None:
-        """Write one tile of (BURN_TILE, BURN_TILE) values."""
-        column, row = (tile[0] - self._west) * BURN_TILE, (self._north - tile[1]) * BURN_TILE
-        self._raster.GetRasterBand(1).WriteRaster(int(column), int(row), BURN_TILE, BURN_TILE, np.ascontiguousarray(values, np.uint8).tobytes())
-
-    @gdal_exceptions()
-    def close(self) -> None:
-        """Finish the file."""
-        self._raster = None
+    tiles = np.array(_covering_tiles(list(polygons), cell_size, margin) or [(0, 0)])
+    (west, south), (east, north) = tiles.min(axis=0).tolist(), tiles.max(axis=0).tolist()
+    x0, _, _, y1 = _tile_bounds((west, north), cell_size)
+    with new_geotiff(path, (east - west + 1) * BURN_TILE, (north - south + 1) * BURN_TILE, (x0, cell_size, 0.0, y1, 0.0, -cell_size), crs,
+                     byte=True, nodata=0, description="1 hit, 2 missed, 3 false, 4 missed beside a hit, 5 false beside paint") as raster:
+        yield lambda tile, values: raster.write((tile[0] - west) * BURN_TILE, (north - tile[1]) * BURN_TILE, values)

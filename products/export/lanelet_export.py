@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass, field, replace
 from html import escape
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -13,9 +14,9 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
 from ...core.io.crs import as_in_file, horizontal_part, parse_crs
-from .lanelet_map import KIND_OF_WAY, OURS
-from .shared_borders import WIDEST_DOUBLE, cuts_beside, numbered
-from .sources import LEAST_CURB, LOCAL_CRS, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings
+from .lanelet_map import KIND_OF_WAY, LANE_ID, OURS, Lanelet, Way
+from .shared_borders import SAME_VERTEX, WIDEST_DOUBLE, cuts_beside, numbered
+from .sources import LEAST_CURB, LOCAL_CRS, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings, without_repeats
 
 SAME_RISE = 0.1         # m in height between vertices at one place that are one node
 HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
@@ -37,33 +38,14 @@ class LaneletSettings(Limited):
 
 
 @dataclass
-class _MadeWay:
-    """nodes : numbers; tags : what it is."""
-
-    nodes: tuple[int, ...]
-    tags: dict[str, str]
-
-
-@dataclass
-class _MadeLanelet:
-    """left, right, centre : numbers of ways, centre -1 for none; tags; name : lane_id of the lane that it is a part of, "" for crossings."""
-
-    left: int
-    right: int
-    centre: int
-    tags: dict[str, str]
-    name: str = ""
-
-
-@dataclass
 class _LaneletDraft:
-    """A map before it gets ids and degrees."""
+    """A map before it gets degrees, with numbers from 0 in place of ids: of nodes, of ways, and of lanelets and rules together."""
 
     nodes: np.ndarray   # (N, 3) metres in the CRS of the survey
-    ways: list[_MadeWay] = field(default_factory=list)
-    lanelets: list[_MadeLanelet] = field(default_factory=list)
-    rules: list[tuple[str, list[tuple[str, int]], list[int]]] = field(default_factory=list)   # (subtype, (role, way) members, lanelets that obey)
-    skipped: dict[str, int] = field(default_factory=dict)   # type of lane -> pieces that are no lanelets
+    ways: list[Way] = field(default_factory=list)
+    lanelets: list[Lanelet] = field(default_factory=list)
+    rules: list[Lanelet] = field(default_factory=list)   # what lanelets obey, numbered after them
+    skipped: Counter[str] = field(default_factory=Counter)   # type of lane -> pieces that are no lanelets
     unmet: int = 0   # links of lanes whose ends lie too far apart to be one
     added: int = 0   # links of lanes that meet though the map does not say that they do
 
@@ -145,9 +127,7 @@ class _Drafting:
     def run(self) -> _LaneletDraft:
         lanes = self.lanes
         used = [k for k in range(len(lanes)) if lanes.type[k] in SUBTYPE_OF_LANE]
-        for k in range(len(lanes)):
-            if lanes.type[k] not in SUBTYPE_OF_LANE:
-                self.draft.skipped[lanes.type[k]] = self.draft.skipped.get(lanes.type[k], 0) + 1
+        self.draft.skipped = Counter(kind for kind in lanes.type if kind not in SUBTYPE_OF_LANE)
         among = np.repeat(np.isin(np.arange(len(lanes)), used), np.diff(lanes.start)) & ~self.was_end
         cuts = cuts_beside(lanes, self.left, self.right, among)
         for k in used:
@@ -188,26 +168,32 @@ class _Drafting:
             tags["lanewright:sigma_m"] = f"{self.sigma[k]:.3f}"
         if lanes.status[k] != "measured":
             tags |= {"lanewright:status": lanes.status[k], "lanewright:confidence": f"{lanes.confidence[k]:.2f}"}
-        centre = self._new_nodes(self.middles[rows])
-        ways = [self._way(nodes, kind, pattern, line) for nodes, kind, pattern, line in (
-            (left, lanes.left_kind[k], lanes.left_pattern[k], lanes.left_line[k]),
-            (right, lanes.right_kind[k], lanes.right_pattern[k], lanes.right_line[k]))]
-        self.draft.ways.append(_MadeWay(centre, {"type": "centerline"}))
-        self.draft.lanelets.append(_MadeLanelet(ways[0], ways[1], len(self.draft.ways) - 1, tags, lanes.lane_id[k]))
+        centre = self._new_nodes(without_repeats(self.middles[rows], SAME_VERTEX))   # at a kink of a map from elsewhere there are two
+        self._add_lanelet(tags | {LANE_ID: lanes.lane_id[k]},
+                          left=self._border(left, lanes.left_kind[k], lanes.left_pattern[k], lanes.left_line[k]),
+                          right=self._border(right, lanes.right_kind[k], lanes.right_pattern[k], lanes.right_line[k]),
+                          centerline=self._new_way(centre, {"type": "centerline"}))
 
-    def _way(self, nodes: tuple[int, ...], kind: str, pattern: str, line: str) -> int:
+    def _new_way(self, nodes: tuple[int, ...], tags: dict[str, str]) -> int:
+        """The number of a way of its own."""
+        self.draft.ways.append(Way(len(self.draft.ways), nodes, tags))
+        return len(self.draft.ways) - 1
+
+    def _add_lanelet(self, tags: dict[str, str], **ways: int) -> None:
+        """A lanelet of ways by their roles."""
+        self.draft.lanelets.append(Lanelet(len(self.draft.lanelets), tags, {role: [("way", number)] for role, number in ways.items()}))
+
+    def _border(self, nodes: tuple[int, ...], kind: str, pattern: str, line: str) -> int:
         """The number of the way along these nodes, which neighbours share; one that says more about it takes precedence."""
         key = min(nodes, nodes[::-1])
-        number = self.way_of.get(key)
-        if number is None:
-            number = self.way_of[key] = len(self.draft.ways)
-            self.draft.ways.append(_MadeWay(nodes, {"type": "virtual"}))
-        way = self.draft.ways[number]
+        if key not in self.way_of:
+            self.way_of[key] = self._new_way(nodes, {"type": "virtual"})
+        way = self.draft.ways[self.way_of[key]]
         turned = way.nodes != nodes
         if way.tags["type"] == "virtual":
             mirrored = turned and "-" in pattern and "double" not in pattern
             way.tags = self._tags(nodes, kind, "-".join(pattern.split("-")[::-1]) if mirrored else pattern, line)
-        return number
+        return way.id
 
     def _tags(self, nodes, kind, pattern, line):
         places = self.draft.nodes[list(nodes)]
@@ -228,15 +214,15 @@ class _Drafting:
 
     def _objects(self) -> None:
         for line in stop_lines(self.source.markings):
-            self.draft.ways.append(_MadeWay(self._new_nodes(line), {"type": "stop_line", "subtype": "solid"}))
-        for left, right in walked_crossings(self.source.markings):
-            for side in (left, right):
-                self.draft.ways.append(_MadeWay(self._new_nodes(side), {"type": "pedestrian_marking", "subtype": "dashed"}))
-            self.draft.lanelets.append(_MadeLanelet(len(self.draft.ways) - 2, len(self.draft.ways) - 1, -1, {
-                "type": "lanelet", "subtype": "crosswalk", "location": self.settings.location, "one_way": "no", "participant:pedestrian": "yes"}))
+            self._new_way(self._new_nodes(line), {"type": "stop_line", "subtype": "solid"})
+        for sides in walked_crossings(self.source.markings):
+            left, right = (self._new_way(self._new_nodes(side), {"type": "pedestrian_marking", "subtype": "dashed"}) for side in sides)
+            self._add_lanelet({"type": "lanelet", "subtype": "crosswalk", "location": self.settings.location, "one_way": "no",
+                               "participant:pedestrian": "yes"}, left=left, right=right)
         parts = defaultdict(list)
-        for number, lanelet in enumerate(self.draft.lanelets):
-            parts[lanelet.name].append(number)
+        for lanelet in self.draft.lanelets:
+            if lanelet.name:
+                parts[lanelet.name].append(lanelet)
         for point, row in self.source.signals or ():
             self._signal(shapely.get_coordinates(point, include_z=True)[0], row, parts)
 
@@ -254,16 +240,20 @@ class _Drafting:
             code = known.get("country", "") + known.get("code", "") + ("-" + known["subcode"] if "subcode" in known else "")
             tags["subtype"] = "red_yellow_green" if kind == "traffic_light" else code or "unknown"
             tags |= {OURS + name: value for name, value in known.items()} | ({"height": f"{height:.2f}"} if height else {})
-        self.draft.ways.append(_MadeWay(nodes, tags))
+        way = self._new_way(nodes, tags)
         named = [parts[name.strip()] for name in str(row.get("lanes") or "").split(",") if name.strip() in parts]
-        obeying = [min(numbers, key=lambda number: self._apart(number, place)) for numbers in named]
-        if obeying and kind != "pole":
-            self.draft.rules.append((tags["type"], [("refers", len(self.draft.ways) - 1)], obeying))
+        if not named or kind == "pole":
+            return
 
-    def _apart(self, number, place):
-        """Metres of a lanelet from a place."""
-        nodes = self.draft.ways[self.draft.lanelets[number].centre].nodes
-        return float(np.hypot(*(self.draft.nodes[list(nodes), :2] - place[:2]).T).min())
+        def apart(lanelet):
+            middle = self.draft.nodes[list(self.draft.ways[lanelet.way("centerline")].nodes), :2]
+            return float(np.hypot(*(middle - place[:2]).T).min())
+
+        rule = Lanelet(len(self.draft.lanelets) + len(self.draft.rules), {"type": "regulatory_element", "subtype": tags["type"]},
+                       {"refers": [("way", way)]})
+        self.draft.rules.append(rule)
+        for lanelet in {lanelet.id: lanelet for lanelet in (min(lanelets, key=apart) for lanelets in named)}.values():
+            lanelet.members.setdefault("regulatory_element", []).append(("relation", rule.id))
 
 
 def _without_repeats(nodes: np.ndarray) -> tuple[int, ...]:
@@ -283,8 +273,7 @@ NO_VERTICAL = "not stated by the survey; heights are written as they are"
 SQUARE = 100_000.0     # m: local coordinates of Autoware are those within a square of this size
 
 
-@dataclass(frozen=True)
-class Degrees:
+class Degrees(NamedTuple):
     """How the map's places became latitude and longitude."""
 
     lonlat: np.ndarray   # (N, 2) degrees of WGS 84
@@ -335,28 +324,15 @@ def lanelet2_text(draft: _LaneletDraft, degrees: Degrees, local: bool = False) -
         if local:
             tags |= {"local_x": f"{x - square[0]:.4f}", "local_y": f"{y - square[1]:.4f}"}
         lines.append(f'  <node id="{ids[node]}" visible="true" version="1" lat="{lat:.11f}" lon="{lon:.11f}">{_tags_as_xml(tags)}</node>')
-    first_way = len(used) + 1
-    for number, way in enumerate(draft.ways):
+    first = {"way": len(used) + 1, "relation": len(used) + 1 + len(draft.ways)}
+    for way in draft.ways:
         places = "".join(map('<nd ref="{}"/>'.format, map(ids.__getitem__, way.nodes)))
-        lines.append(f'  <way id="{first_way + number}" visible="true" version="1">{places}{_tags_as_xml(way.tags)}</way>')
-    first_lanelet = first_way + len(draft.ways)
-    first_rule = first_lanelet + len(draft.lanelets)
-    for number, lanelet in enumerate(draft.lanelets):
-        rules = [first_rule + rule for rule, (_, _, obeying) in enumerate(draft.rules) if number in obeying]
-        lines.append(f'  <relation id="{first_lanelet + number}" visible="true" version="1">{_content(lanelet, first_way, rules)}</relation>')
-    for number, (subtype, members, _) in enumerate(draft.rules):
-        content = "".join(f'<member type="way" ref="{first_way + way}" role="{role}"/>' for role, way in members)
-        content += _tags_as_xml({"type": "regulatory_element", "subtype": subtype})
-        lines.append(f'  <relation id="{first_rule + number}" visible="true" version="1">{content}</relation>')
+        lines.append(f'  <way id="{first["way"] + way.id}" visible="true" version="1">{places}{_tags_as_xml(way.tags)}</way>')
+    for relation in (*draft.lanelets, *draft.rules):
+        content = "".join(f'<member type="{kind}" ref="{first[kind] + number}" role="{role}"/>'
+                          for role, members in relation.members.items() for kind, number in members) + _tags_as_xml(relation.tags)
+        lines.append(f'  <relation id="{first["relation"] + relation.id}" visible="true" version="1">{content}</relation>')
     return "\n".join([*lines, "</osm>", ""])
-
-
-def _content(lanelet, first_way, rules):
-    """The members and tags of a lanelet."""
-    tags = lanelet.tags | ({"lanewright:lane_id": lanelet.name} if lanelet.name else {})
-    members = {"left": lanelet.left, "right": lanelet.right, "centerline": lanelet.centre}
-    ways = (f'<member type="way" ref="{first_way + member}" role="{role}"/>' for role, member in members.items() if member >= 0)
-    return "".join((*ways, *(f'<member type="relation" ref="{rule}" role="regulatory_element"/>' for rule in rules))) + _tags_as_xml(tags)
 
 
 def _tags_as_xml(tags):

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict, deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.features import SIGNALS, Features
+from ...core.common.features import MARKING_LINES, ROAD_EDGES, SIGNALS, Features
 from ...core.common.progress import Progress
 from ...core.driving.layers import Lanes
 from ...core.io.crs import parse_crs
 from ...core.lazy import pyproj
-from .sources import LEAST_LED, LOCAL_CRS, STOP_LINE_HALF, MapLayers, MapLine, metric_wkt, plan_length, utm_of, without_repeats
+from .sources import LEAST_LED, LOCAL_CRS, STOP_LINE_HALF, RoadMapSource, add_edge, add_marking_line, metric_wkt, plan_length, utm_of, without_repeats
 from .xml_tree import XmlElement, read_xml
+
+OURS = "lanewright:"   # of tags that the format does not have
+LANE_ID = OURS + "lane_id"   # of a lanelet: its piece of the layer
 
 
 @dataclass
@@ -24,7 +28,7 @@ class Way:
     """A line of nodes, by their ids. line : in the file, 0 where made."""
 
     id: int
-    nodes: list[int]
+    nodes: Sequence[int]
     tags: dict[str, str] = field(default_factory=dict)
     line: int = 0
 
@@ -37,6 +41,11 @@ class Lanelet:
     tags: dict[str, str] = field(default_factory=dict)
     members: dict[str, list[tuple[str, int]]] = field(default_factory=dict)
     line: int = 0
+
+    @property
+    def name(self) -> str:
+        """The lane_id of the lane that it was made of, "" for none."""
+        return self.tags.get(LANE_ID, "")
 
     def way(self, role: str) -> int | None:
         """The id of the only way of a role, None where there is none or more than one."""
@@ -191,41 +200,35 @@ def _lanelets_of(root: XmlElement) -> LaneletMap:
     for element in root.children:
         if element.tag not in ("node", "way", "relation") or element.get("action") == "delete":
             continue
-        id, tags = _id(element, "id"), _tags(element)
-        tags_twice += [(element.tag, id, key) for key in _repeated_tags(element, tags)]
+        id, keys = _id(element, "id"), [child.get("k") for child in element.all("tag")]
+        tags = {child.get("k"): child.get("v") for child in element.all("tag")}
+        if len(keys) > len(tags):
+            tags_twice += [(element.tag, id, key) for key in tags if keys.count(key) > 1]
         if (element.tag, id) in seen:
             twice.append((element.tag, id, element.line))
             continue
         seen.add((element.tag, id))
         if element.tag == "node":
             ids.append(id)
-            places.append((_degrees(element, "lon"), _degrees(element, "lat"), _tag_number(tags, "ele", element)))
+            # maps in local coordinates leave latitude and longitude out, or empty
+            degrees = (element.number(name, np.nan) if element.get(name) else np.nan for name in ("lon", "lat"))
+            places.append((*degrees, _tag_number(tags, "ele", element)))
             local.append((_tag_number(tags, "local_x", element), _tag_number(tags, "local_y", element)))
         elif element.tag == "way":
             ways[id] = Way(id, [_id(child, "ref") for child in element.all("nd")], tags, element.line)
         else:
-            (lanelets if tags.get("type") == "lanelet" else relations)[id] = Lanelet(id, tags, _members(element), element.line)
+            members: dict[str, list[tuple[str, int]]] = {}
+            for child in element.all("member"):
+                members.setdefault(child.get("role"), []).append((child.get("type"), _id(child, "ref")))
+            (lanelets if tags.get("type") == "lanelet" else relations)[id] = Lanelet(id, tags, members, element.line)
     places_array = np.array(places, float).reshape(-1, 3)
-    _check_degrees(places_array, ids)
+    wrong = np.flatnonzero((np.abs(places_array[:, :2]) > (180, 90)).any(1))
+    if len(wrong):
+        lon, lat, _ = places_array[wrong[0]]
+        raise RoadExtractionError(f"Node {ids[wrong[0]]} lies at lon {lon:g}, lat {lat:g}; degrees up to 180 and 90 are needed. "
+                                  "Is the map in another CRS?")
     return LaneletMap(np.array(ids, np.int64), places_array[:, :2], places_array[:, 2], np.array(local, float).reshape(-1, 2), ways, lanelets,
                       relations, twice, tags_twice)
-
-
-def _repeated_tags(element, tags):
-    keys = [child.get("k") for child in element.all("tag")] if element.children else []
-    return [key for key in tags if keys.count(key) > 1] if len(keys) > len(tags) else []
-
-
-def _degrees(element, name):
-    """NaN where there are none: maps in local coordinates leave latitude and longitude out, or empty."""
-    return element.number(name, np.nan) if element.get(name) else np.nan
-
-
-def _members(element):
-    members: dict[str, list[tuple[str, int]]] = {}
-    for child in element.all("member"):
-        members.setdefault(child.get("role"), []).append((child.get("type"), _id(child, "ref")))
-    return members
 
 
 def _id(element, name):
@@ -239,10 +242,6 @@ def _id(element, name):
     return value if value < MAX_ID else value - ALL_IDS
 
 
-def _tags(element):
-    return {child.get("k"): child.get("v") for child in element.all("tag")}
-
-
 def _tag_number(tags, name, element):
     """A tag's number, NaN where there is none."""
     if name not in tags:
@@ -252,21 +251,12 @@ def _tag_number(tags, name, element):
     return tag.number(name)
 
 
-def _check_degrees(places, ids):
-    wrong = np.flatnonzero((np.abs(places[:, 0]) > 180) | (np.abs(places[:, 1]) > 90))
-    if len(wrong):
-        lon, lat = places[wrong[0], :2]
-        raise RoadExtractionError(f"Node {ids[wrong[0]]} lies at lon {lon:g}, lat {lat:g}; degrees up to 180 and 90 are needed. "
-                                  "Is the map in another CRS?")
-
-
 # The lanelets and lines of a Lanelet2 map as layers like ours.
 
 PATTERN_OF_WAY = {"solid": "solid", "dashed": "dashed", "solid_solid": "double-solid",
                   "dashed_dashed": "double-dashed", "solid_dashed": "solid-dashed", "dashed_solid": "dashed-solid"}
 KIND_OF_WAY = {"traffic_light": "traffic_light", "traffic_sign": "sign", "pole": "pole", "post": "pole"}
 CARRIED = ("traffic_light", "traffic_sign", "speed_limit")   # rules of traffic that layers hold
-OURS = "lanewright:"   # of tags that the format does not have
 PAINTED_WAYS = ("line_thin", "line_thick")
 EDGE_WAYS = ("curbstone", "road_border", "guard_rail", "wall", "fence")
 NO_LAND = 1.0   # degrees from latitude and longitude 0
@@ -303,7 +293,7 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
     return places, target
 
 
-def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
+def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Progress()) -> RoadMapSource:
     """Lanes, painted borders and edges of a map in a CRS, WKT or EPSG:n; "" takes the UTM zone of the map.
 
     `lane_id` of a lane is the lanelet's id; footways are left out; a way of the type of a line is a marking line, curbs and borders of the road
@@ -317,10 +307,11 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
         for id, (left, right) in _borders_abreast(network, along).items():
             rows[id] = {**_lane_row(network, id, left, right, along[id]), "lane": number_of[id]}
             progress.report(len(rows) / len(shown))
-    layers = MapLayers(Lanes.of_pieces([rows[id] for id in shown], crs), list(_lines(whole, places)),
-                       outlines=list(_outlines(whole, places, network)),
-                       signals=_signals(whole, places, crs), left_out=_left_out(whole))
-    layers.attributes = {str(id): known for id in shown if (known := _known(whole, whole.lanelets[id]))}
+    lines, edges = _lines(whole, places, crs)
+    layers = RoadMapSource.of_map(
+        Lanes.of_pieces([rows[id] for id in shown], crs), lines, edges, _outlines(whole, places, network),
+        attributes={str(id): known for id in shown if (known := _known(whole, whole.lanelets[id]))}, signals=_signals(whole, places, crs),
+        left_out=_left_out(whole))
     if not crs:
         layers.notes.append("The map has local coordinates: its place on the earth is not known, and the layers have no CRS.")
     left_out = len(whole.lanelets) - len(network.left)
@@ -331,14 +322,17 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
     return layers
 
 
-def _lines(whole, places):
-    """The painted borders and edges among the ways of a map."""
+def _lines(whole, places, crs):
+    """(MARKING_LINES, ROAD_EDGES) of the painted borders and edges among the ways of a map."""
+    lines, edges = Features("LineStringZ", MARKING_LINES, crs=crs), Features("LineStringZ", ROAD_EDGES, crs=crs)
     for way in whole.ways.values():
         kind = way.tags.get("type", "")
         points = without_repeats(places[whole.rows(way)]) if kind in (*PAINTED_WAYS, *EDGE_WAYS) and len(whole.rows(way)) > 1 else ()
-        if len(points) > 1:
-            pattern = PATTERN_OF_WAY.get(way.tags.get("subtype", ""), "")
-            yield MapLine(1, "edge" if kind in EDGE_WAYS else "marking", "lane", pattern, points, edge="curb" if kind == "curbstone" else "pavement")
+        if len(points) > 1 and kind in EDGE_WAYS:
+            add_edge(edges, points, 1, "curb" if kind == "curbstone" else "pavement")
+        elif len(points) > 1:
+            add_marking_line(lines, points, 1, "lane", PATTERN_OF_WAY.get(way.tags.get("subtype", ""), ""))
+    return lines, edges
 
 
 def _outlines(whole, places, network):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,22 +33,17 @@ class AttributeSettings(Limited):
     turn: float = 0.5
 
 
-@dataclass(frozen=True)
-class _RoadWay:
-    """A line of a road in the CRS of the lanes, and its tags. places : (N, 2) metres."""
-
-    places: np.ndarray
-    tags: Mapping[str, str]
+Ways = list[tuple[np.ndarray, Mapping[str, Any]]]   # lines of roads, (N, 2) places, and their tags
 
 
-def read_osm_ways(path: str, crs: str, progress: Progress = Progress()) -> list[_RoadWay]:
+def read_osm_ways(path: str, crs: str, progress: Progress = Progress()) -> Ways:
     """The ways with a tag highway of a file in the XML of OpenStreetMap, in a CRS (WKT).
 
     Raises RoadExtractionError if the file is none of that kind, or has no road.
     """
     root = read_xml(path, "osm", "a file in the XML of OpenStreetMap", progress)
     degrees = {node.get("id"): (node.number("lon"), node.number("lat")) for node in root.all("node") if node.get("lat")}
-    ways = []
+    ways: Ways = []
     for way in root.all("way"):
         tags = {tag.get("k"): tag.get("v") for tag in way.all("tag")}
         places = [degrees[child.get("ref")] for child in way.all("nd") if child.get("ref") in degrees]
@@ -59,23 +54,23 @@ def read_osm_ways(path: str, crs: str, progress: Progress = Progress()) -> list[
     return ways_in(ways, "EPSG:4326", crs)
 
 
-def ways_in(ways: Iterable[tuple[np.ndarray, Mapping[str, Any]]], stored: str, crs: str) -> list[_RoadWay]:
-    """Roads of lines, (N, 2) in the CRS `stored`, and their tags or fields, in the CRS of the lanes (WKT); what is for walking is left out.
+def ways_in(ways: Ways, stored: str, crs: str) -> Ways:
+    """Ways with tags or fields from the CRS `stored` in that of the lanes (WKT), in metres; what is for walking is left out.
 
     The field other_tags, as GDAL writes it, is read too.
     """
     transformer = pyproj.Transformer.from_crs(stored, crs, always_xy=True)
-    roads = []
+    roads: Ways = []
     for line, fields in ways:
         tags = dict(re.findall(r'"([^"]+)"=>"([^"]*)"', str(fields.get("other_tags") or "")))
         tags |= {name.lower(): str(value).strip() for name, value in fields.items() if value not in (None, "")}
         places = np.c_[transformer.transform(line[:, 0], line[:, 1])]
         if tags.get("highway") not in NO_ROADS and np.isfinite(places).all() and len(places := without_repeats(places)) > 1:
-            roads.append(_RoadWay(places, tags))
+            roads.append((places, tags))
     return roads
 
 
-def attributes_along(lanes: Lanes, ways: list[_RoadWay], settings: AttributeSettings = AttributeSettings()) -> dict[str, dict[str, Any]]:
+def attributes_along(lanes: Lanes, ways: Ways, settings: AttributeSettings = AttributeSettings()) -> dict[str, dict[str, Any]]:
     """lane_id -> what is known of ROAD_ATTRIBUTES of lanes most of whose length lies along ways that say it.
 
     At each of its places a lane belongs to the nearest way within the corridor that runs as the lane does, of one-way roads in the direction of
@@ -85,14 +80,14 @@ def attributes_along(lanes: Lanes, ways: list[_RoadWay], settings: AttributeSett
     ways : in the same CRS
     """
     places, heading, owner = _places(lanes, settings.step)
-    starts = np.concatenate([np.empty((0, 2)), *(way.places[:-1] for way in ways)])
-    ends = np.concatenate([np.empty((0, 2)), *(way.places[1:] for way in ways)])
-    of_way = np.repeat(np.arange(len(ways)), [len(way.places) - 1 for way in ways])
+    starts = np.concatenate([np.empty((0, 2)), *(line[:-1] for line, _ in ways)])
+    ends = np.concatenate([np.empty((0, 2)), *(line[1:] for line, _ in ways)])
+    of_way = np.repeat(np.arange(len(ways)), [len(line) - 1 for line, _ in ways])
     tree = shapely.STRtree(shapely.linestrings(np.stack([starts, ends], axis=1)))
     place, segment = tree.query(shapely.points(places), predicate="dwithin", distance=settings.corridor)
     run = ends[segment] - starts[segment]
     cosine = (np.c_[np.cos(heading), np.sin(heading)][place] * run).sum(1) / np.hypot(*run.T)
-    allowed = np.array([_way_allowed(way.tags) for way in ways], int)[of_way[segment]] if len(ways) else np.empty(0, int)
+    allowed = np.array([_way_allowed(tags) for _, tags in ways], int)[of_way[segment]] if len(ways) else np.empty(0, int)
     driven = (lanes.direction[owner[place]] != 0) & np.isin(lanes.type[owner[place]], ("driving", "connector"))
     good = (np.abs(cosine) > np.cos(settings.turn)) & (~driven | (allowed * cosine >= 0))
     place, segment, cosine = place[good], segment[good], cosine[good]
@@ -101,7 +96,7 @@ def attributes_along(lanes: Lanes, ways: list[_RoadWay], settings: AttributeSett
     _, first = np.unique(place[order], return_index=True)
     votes: dict[int, dict[str, Counter]] = defaultdict(lambda: defaultdict(Counter))
     for row in order[first]:
-        for name, value in _said(ways[of_way[segment[row]]].tags, cosine[row] > 0).items():
+        for name, value in _said(ways[of_way[segment[row]]][1], cosine[row] > 0).items():
             votes[int(owner[place[row]])][name][value] += 1
     counts = np.bincount(owner, minlength=len(lanes))
     return {str(lanes.lane_id[k]): known for k, of_lane in votes.items()

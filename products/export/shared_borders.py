@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -28,8 +27,7 @@ MOST_MET = 0.01          # m by which a way of a map from elsewhere may miss its
 FACING_TRIED = 4          # vertices around one that may face it
 
 
-@dataclass(frozen=True)
-class _SharedBorders:
+class _SharedBorders(NamedTuple):
     """lanes : Lanes with common borders; gaps : (P, 2) median metres between the stripes at each left and right border, 0 for one line;"""
 
     lanes: Lanes
@@ -64,7 +62,11 @@ def meet_lanes(lanes: Lanes) -> Lanes:
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
     left, right = lanes.left.copy(), lanes.right.copy()
     most = MOST_MET if is_stated(lanes) else WIDEST_DOUBLE
-    for connector, lane, at_end in _joints(lanes, row_of):
+    joints = [joint for k, names in enumerate(lanes.successors) for name in names if name in row_of
+              for joint in ((k, row_of[name], True), (row_of[name], k, False))]
+    for connector, lane, at_end in joints:   # whether the lane follows the connector
+        if lanes.type[connector] != "connector" or lanes.type[lane] == "connector":
+            continue
         rows = np.arange(lanes.start[connector], lanes.start[connector + 1])
         end_row, corner_row = (rows[-1], lanes.start[lane]) if at_end else (rows[0], lanes.start[lane + 1] - 1)
         for side in (left, right):
@@ -73,15 +75,6 @@ def meet_lanes(lanes: Lanes) -> Lanes:
             if SAME_VERTEX < distance < most or distance < SAME_VERTEX and step[2]:
                 side[rows] += _fading(side[rows], at_end)[:, None] * step
     return replace(lanes, left=left, right=right)
-
-
-def _joints(lanes, row_of):
-    """(connector, lane that it joins, whether that follows it)."""
-    for k, names in enumerate(lanes.successors):
-        for j in (row_of[name] for name in names if name in row_of):
-            for connector, lane, at_end in ((k, j, True), (j, k, False)):
-                if lanes.type[connector] == "connector" != lanes.type[lane]:
-                    yield connector, lane, at_end
 
 
 def _fading(line, at_end):
@@ -124,14 +117,9 @@ def share_borders(lanes: Lanes) -> _SharedBorders:
     moved = target[nodes]
     gap = np.zeros(len(places))
     gap[pairs.ravel()] = np.repeat(beyond, 2)
-    gaps = np.stack([[_typical(gap[nodes[side + a:side + b]]) for a, b in zip(lanes.start[:-1], lanes.start[1:])] for side in (0, count)], axis=1)
+    gaps = np.array([[np.median(gap[nodes[side + a:side + b]]) for side in (0, count)] for a, b in zip(lanes.start[:-1], lanes.start[1:])])
+    gaps[gaps <= LEAST_STRIPE_GAP] = 0.0
     return _SharedBorders(replace(lanes, left=moved[:count], right=moved[count:]), gaps, float(np.hypot(*(target - places)[:, :2].T).max()))
-
-
-def _typical(gaps):
-    """Metres between the stripes at a border, 0 where most of it is one line."""
-    gap = float(np.median(gaps)) if len(gaps) else 0.0
-    return gap if gap > LEAST_STRIPE_GAP else 0.0
 
 
 def numbered(rows: np.ndarray, rise: float = SAME_ROAD_RISE) -> tuple[np.ndarray, np.ndarray]:
@@ -339,7 +327,12 @@ def with_inferred_ways(source: RoadMapSource) -> RoadMapSource:
 
 def _junctions(lanes):
     """Lists of _Way whose areas touch."""
-    ways = _ways(lanes)
+    row_of = {name: k for k, name in enumerate(lanes.lane_id)}
+    before = {name: k for k, names in enumerate(lanes.successors) if lanes.type[k] == "driving" for name in names}
+    # every connector between two lanes that are driven
+    ways = [_Way(k, before[lanes.lane_id[k]], row_of[lanes.successors[k][0]]) for k in range(len(lanes))
+            if lanes.type[k] == "connector" and lanes.lane_id[k] in before and len(lanes.successors[k]) == 1]
+    ways = [way for way in ways if lanes.type[way.exit] == "driving"]
     borders = [lanes.borders(way.row) for way in ways]
     areas = np.array([shapely.make_valid(shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders], object)
     height = np.array([left[:, 2].mean() for left, _ in borders])
@@ -347,15 +340,6 @@ def _junctions(lanes):
     level = np.abs(height[first] - height[second]) < SAME_LEVEL
     group = linked_groups(first[level], second[level], len(ways))
     return [[ways[k] for k in rows] for _, rows in members_of(group) if len(rows) > 1]
-
-
-def _ways(lanes):
-    """Every connector between two lanes that are driven."""
-    row_of = {name: k for k, name in enumerate(lanes.lane_id)}
-    before = {name: k for k, names in enumerate(lanes.successors) if lanes.type[k] == "driving" for name in names}
-    ways = [_Way(k, before[lanes.lane_id[k]], row_of[lanes.successors[k][0]]) for k in range(len(lanes))
-            if lanes.type[k] == "connector" and lanes.lane_id[k] in before and len(lanes.successors[k]) == 1]
-    return [way for way in ways if lanes.type[way.exit] == "driving"]
 
 
 def _missing_way(lanes, group, entry, exit):
@@ -387,16 +371,11 @@ def _arm(lanes, row, end):
 
 def _is_led_to(lanes, starts, goals):
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
-    waiting, visited = deque(starts), set(starts)
-    while waiting:
-        row = waiting.popleft()
-        if row in goals:
-            return True
-        for name in lanes.successors[row]:
-            if row_of[name] not in visited:
-                visited.add(row_of[name])
-                waiting.append(row_of[name])
-    return False
+    reached, new = set(), set(starts)
+    while new:
+        reached |= new
+        new = {row_of[name] for row in new for name in lanes.successors[row]} - reached
+    return not reached.isdisjoint(goals)
 
 
 def _joined(first, last):

@@ -89,7 +89,7 @@ class RoadBorders:
         if strips is not None:
             return strips[0].right, strips[0].left
         track = self._track(road, s)
-        return _nearest_outside(np.sort(np.array([d for d, _ in _crossings(self.edges, road, s)])), float(track.min()), float(track.max()))
+        return _nearest_outside(_offsets(_crossings(self.edges, road, s)), float(track.min()), float(track.max()))
 
     def _track(self, road, s):
         """Offsets of the passes that drove a station; 0 where none did."""
@@ -99,43 +99,41 @@ class RoadBorders:
     def at(self, road: int, s: float) -> tuple[Strip, list[Strip]] | None:
         """The carriageway and its lanes, from right to left, at a station of a road; None where the layers know no carriageway."""
         track = self._track(road, s)
-        lines = np.sort(np.array([d for d, _ in _crossings(self.lines, road, s)]))
+        lines = _offsets(_crossings(self.lines, road, s))
         lanes = self._lanes(road, s, lines)
-        crossed = _crossings(self.edges, road, s)
-        edges = np.sort(np.array([d for d, _ in crossed]))
+        edges = _crossings(self.edges, road, s)
         # the track lies on the carriageway; edges are looked for beyond it and beyond the lanes that nobody doubts
-        right, left = _nearest_outside(edges, float(track.min()), float(track.max()))
+        right, left = _nearest_outside(_offsets(edges), float(track.min()), float(track.max()))
         if not lanes and len(lines) > 1:
             lanes = self._between(lines, right, left)
-        outer = [strip.right for strip in lanes], [strip.left for strip in lanes]
-        if not lanes and not (np.isfinite(right) and np.isfinite(left)):
+        between_edges = bool(np.isfinite(right) and np.isfinite(left))
+        if not lanes and not between_edges:
             if self.given:
                 return None
             lanes = self._driven(track)
-            outer = [strip.right for strip in lanes], [strip.left for strip in lanes]
-        borders = "edges" if np.isfinite(right) and np.isfinite(left) else lanes[0].borders if lanes else "edges"
+        borders = "edges" if between_edges or not lanes else lanes[0].borders
         if not np.isfinite(right):
-            right = min([*outer[0], *lines])
+            right = min([*(strip.right for strip in lanes), *lines])
         if not np.isfinite(left):
-            left = max([*outer[1], *lines])
+            left = max([*(strip.left for strip in lanes), *lines])
         if track.max() < right or track.min() > left:
             return None   # lanes beside the road that was driven, such as of a street that it joins
-        curbs = {d for d, row in crossed if row.get("edge") != "pavement"}
+        curbs = {d for d, row, _ in edges if row.get("edge") != "pavement"}
         return Strip(float(right), float(left), 0, "carriageway", 0, borders, (right in curbs, left in curbs)), lanes
 
     def _lanes(self, road, s, lines):
         if self.lane_borders is not None and len(self.lane_borders.rows):
             strips = []
             crossed: dict[int, list[float]] = {}
-            for d, k in _numbered_crossings(self.lane_borders, road, s):
+            for d, _, k in _crossings(self.lane_borders, road, s):
                 crossed.setdefault(k // 2, []).append(d)
-            for piece, ds in crossed.items():
-                row = self.lane_borders.rows[piece]
+            for lane, ds in crossed.items():
+                row = self.lane_borders.rows[2 * lane]
                 if len(ds) == 2 and row["type"] != "connector":
                     strips.append(Strip(min(ds), max(ds), int(row["lane"]), row["type"], int(row["direction"]), "lanes"))
             return _apart(strips)
         strips = []
-        for d, row in _crossings(self.driving, road, s):
+        for d, row, _ in _crossings(self.driving, road, s):
             half = 0.5 * float(row.get("width_m") or self.country.usual_lane)
             right, left = _within(lines[lines < d], d - half), _within(lines[lines > d], d + half)
             strips.append(Strip(right, left, int(row.get("lane") or 0), "driving", int(row.get("direction") or 0), "lines"))
@@ -191,22 +189,22 @@ def _pieces(features, frame, wanted=lambda row: True):
 
 
 def _lane_borders(features, frame):
-    """Both borders of every lane: lines 2 k and 2 k + 1 belong to row k."""
+    """Both borders of every lane: lines 2 k and 2 k + 1 belong to lane k."""
     lanes = Lanes.from_features(features)
     shapes = [shapely.linestrings(border) for k in range(len(lanes)) for border in lanes.borders(k)]
-    rows = [dict(lane=lanes.lane[k], type=lanes.type[k], direction=lanes.direction[k]) for k in range(len(lanes))]
+    rows = [dict(lane=lanes.lane[k], type=lanes.type[k], direction=lanes.direction[k]) for k in range(len(lanes)) for _ in range(2)]
     return _Pieces(lines_in_frame(shapes, np.repeat(lanes.road, 2), frame), rows)
 
 
+def _offsets(crossings):
+    """(N,) offsets of crossings, ascending."""
+    return np.sort(np.array([d for d, _, _ in crossings]))
+
+
 def _crossings(pieces, road, s):
-    """[(offset, row)] of the lines of a layer at a station."""
+    """[(offset, row, number of the line)] where the lines of a layer, which may be None, cross the section at a station."""
     if pieces is None:
         return []
-    return [(d, pieces.rows[k]) for d, k in _numbered_crossings(pieces, road, s)]
-
-
-def _numbered_crossings(pieces, road, s):
-    """[(offset, number of the line)] where lines cross the section at a station."""
     crossings, lines = [], pieces.lines
     for k in np.flatnonzero((lines.road == road) & (pieces.low <= s) & (pieces.high >= s)).tolist():
         rows = lines.line(k)
@@ -215,7 +213,7 @@ def _numbered_crossings(pieces, road, s):
         for j in step[:1].tolist():
             ahead = along[j + 1] - along[j]
             if abs(d[j + 1] - d[j]) <= MAX_BORDER_OBLIQUITY * abs(ahead):
-                crossings.append((float(d[j] + (s - along[j]) / ahead * (d[j + 1] - d[j])), k))
+                crossings.append((float(d[j] + (s - along[j]) / ahead * (d[j + 1] - d[j])), pieces.rows[k], k))
     return crossings
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from scipy import ndimage
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import CROSS_SECTIONS, Features
@@ -88,10 +89,9 @@ class RoadSections:
 
 def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers(), settings: CrossSectionSettings = CrossSectionSettings(),
                            progress: Progress = Progress()) -> RoadSections:
-    """Measure sections across every road.
+    """Measure sections across every road of a survey, opened with enough height above the road for the clearance.
 
-    survey : Survey, opened with enough height above the road for the clearance
-    layers : BorderLayers, of which any may be missing. Without edges and lines a lane of the country's usual width about the track is measured
+    layers : any may be missing; without edges and lines a lane of the country's usual width about the track is measured
     Raises RoadExtractionError if no section lies on the survey.
     """
     borders = RoadBorders(layers, survey.frame, country(settings.country))
@@ -168,7 +168,7 @@ def _section(survey, road, s, borders, errors, interval, stretch):
     if whole is None:
         return None, 0
     heading = _heading(survey, borders, road, s, carriageway)
-    level = _level(grid, heights, carriageway)
+    level = _level(grid, heights, whole)
     clearances = _clearances(survey, road, s, interval, (grid.d, level), [carriageway, *lanes])
     noisy, parts = 0, []
     rolled = CHECKED_ROLL if errors.opposite else UNCHECKED_ROLL
@@ -226,11 +226,9 @@ def _plane(grid, heights, strip):
     return _Plane(float(x[1]), along, sigma, heights - fitted)
 
 
-def _level(grid, heights, strip):
-    """(J,) the profile of the stretch at its middle station; NaN where no slice saw it."""
-    plane = _plane(grid, heights, strip)
-    along = 0.0 if plane is None else plane.along
-    level = heights - along * (grid.s - grid.s.mean())[:, None]
+def _level(grid, heights, plane):
+    """(J,) the profile of the stretch at its middle station, by the plane through the carriageway; NaN where no slice saw it."""
+    level = heights - plane.along * (grid.s - grid.s.mean())[:, None]
     profile = np.full(heights.shape[1], np.nan)
     columns = np.isfinite(level).any(axis=0)
     profile[columns] = np.nanmedian(level[:, columns], axis=0)
@@ -266,8 +264,7 @@ def _clearances(survey, road, s, interval, profile, strips):
 
 def _clear_of(points, above, strips):
     """(N,) heights of the lowest thing above N strips, NaN where there is none."""
-    heights = [clear_height(points, above, strip.right, strip.left) for strip in strips]
-    return np.array([np.nan if height is None else height for height in heights])
+    return np.array([_clear_height(points, above, strip.right, strip.left) for strip in strips])
 
 
 def _curbs(d, profile, strip):
@@ -376,18 +373,12 @@ VEHICLE_CELL = 0.25       # m, of the cells that tell what hangs together
 LINKED_CELLS = 2, 1, 1    # cells along, across and up by which the points of one thing may lie apart, on either side
 
 
-def clear_height(points: Points, h: np.ndarray, right: float, left: float) -> float | None:
-    """Height of the lowest thing above a strip.
-
-    points : (N,) Points of a stretch of road
-    h : (N,) m, heights above the surface
-    right, left : m, offsets of the strip's borders
-    Returns m; None where nothing was seen above it
-    """
+def _clear_height(points: Points, h: np.ndarray, right: float, left: float) -> float:
+    """Height of the lowest of points, (N,) m above the surface, above a strip between two offsets; NaN where nothing was seen above it."""
     d = points.d
     near = np.flatnonzero((d > right + OVERHEAD_INSIDE) & (d < left - OVERHEAD_INSIDE) & (h > STANDS_FROM))
     if not len(near):
-        return None
+        return np.nan
     s, d, h = points.s[near], d[near], h[near]
     i, j = (np.floor(v / CLEARANCE_CELL).astype(np.int64) for v in (s - s.min(), d - right))
     shape = int(i.max()) + 1, int(j.max()) + 1
@@ -396,12 +387,10 @@ def clear_height(points: Points, h: np.ndarray, right: float, left: float) -> fl
     standing[i[low], j[low]] = True
     reach = np.ones((2 * STANDING_REACH + 1,) * 2)
     if standing.any():
-        from scipy.ndimage import binary_dilation
-
-        standing = binary_dilation(standing, reach)
+        standing = ndimage.binary_dilation(standing, reach)
     free = ~low & ~standing[i, j]
     if not free.any():
-        return None
+        return np.nan
     cell, h = (i * shape[1] + j)[free], h[free]
     order = np.lexsort((h, cell))
     cell, h = cell[order], h[order]
@@ -412,7 +401,7 @@ def clear_height(points: Points, h: np.ndarray, right: float, left: float) -> fl
     solid = needed <= last
     solid[solid] = h[needed[solid]] - lowest[solid] < OVERHEAD_DEPTH
     lowest = np.sort(lowest[solid])
-    return float(lowest[MIN_OVERHEAD_COLUMNS - 1]) if len(lowest) >= MIN_OVERHEAD_COLUMNS else None
+    return float(lowest[MIN_OVERHEAD_COLUMNS - 1]) if len(lowest) >= MIN_OVERHEAD_COLUMNS else np.nan
 
 
 def _on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
@@ -421,8 +410,6 @@ def _on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
     A vehicle that moves beside the scanner is drawn out, and in places only the upper part of its flank was seen. What hangs together from below
     LOWEST_OVERHEAD and is neither higher nor broader than vehicles may be is taken for one; a deck on a pier is not, for it is broader.
     """
-    from scipy.ndimage import binary_dilation, find_objects, label
-
     on_vehicle = np.zeros(len(s), bool)
     standing = np.flatnonzero(h > STANDS_FROM)
     if not len(standing):
@@ -431,12 +418,13 @@ def _on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
     cells = tuple(np.floor((v - v.min()) / VEHICLE_CELL).astype(np.int64) for v in (s, d, h))
     filled = np.zeros([int(c.max()) + 1 for c in cells], bool)
     filled[cells] = True
-    groups, count = label(binary_dilation(filled, np.ones([2 * reach + 1 for reach in LINKED_CELLS])), np.ones((3, 3, 3)))
+    groups, count = ndimage.label(ndimage.binary_dilation(filled, np.ones([2 * reach + 1 for reach in LINKED_CELLS])), np.ones((3, 3, 3)))
     group = groups[cells]
     lowest, highest = np.full(count + 1, np.inf), np.full(count + 1, -np.inf)
     np.minimum.at(lowest, group, h)
     np.maximum.at(highest, group, h)
-    breadth = np.array([0.0, *((across.stop - across.start - 2 * LINKED_CELLS[1]) * VEHICLE_CELL for _, across, _ in find_objects(groups))])
+    breadth = np.array([0.0, *((across.stop - across.start - 2 * LINKED_CELLS[1]) * VEHICLE_CELL for _, across, _ in
+                              ndimage.find_objects(groups))])
     vehicle = (lowest < LOWEST_OVERHEAD) & (highest < HIGHEST_VEHICLE) & (breadth < BROADEST_VEHICLE)
     on_vehicle[standing] = vehicle[group]
     return on_vehicle
@@ -449,12 +437,10 @@ MIN_SECTION_VERTICES = 2
 
 
 def sections_to_features(sections: RoadSections) -> tuple[Features, Features]:
-    """The layer CROSS_SECTIONS, and its rows as a table.
+    """The layer CROSS_SECTIONS, and the same rows without geometry as a table.
 
-    Returns
-        lines : Features of lines with Z from the left border to the right one, one row for every carriageway and lane of every section;
-            a strip whose surface was not seen is drawn straight between the heights known
-        table : the same rows without geometry
+    A line with Z runs from the left border of every carriageway and lane of every section to the right one; where the surface was not seen it
+    is drawn straight between the heights known.
     """
     lines, table = Features("LineStringZ", CROSS_SECTIONS, crs=sections.crs), Features("None", CROSS_SECTIONS, crs=sections.crs)
     limits = sections.settings.limits()

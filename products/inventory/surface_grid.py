@@ -13,7 +13,6 @@ from ...core.common.arrays import order_by
 from ...core.road.common.pseudo_scanlines import lowest_layers
 from ...core.survey.frame.passes import Pass
 from ...core.survey.frame.road_frame import RoadFrame
-from ...core.survey.store.records import Points
 from ...core.survey.survey import Survey
 
 SLICE_LENGTH = 1.0        # m along the road over which a transverse profile is averaged
@@ -54,25 +53,12 @@ class SurfaceGrid:
 
 
 def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: tuple[float, float]) -> SurfaceGrid:
-    """Read a stretch of road.
-
-    road : number
-    start : m, station of the first slice
-    slices : number of slices, SLICE_LENGTH each
-    offsets : (right, left) m between which the road is looked at
-    """
+    """Read a stretch of a road from a station (m) on, in so many slices of SLICE_LENGTH, between (right, left) offsets (m)."""
     end = start + slices * SLICE_LENGTH
-    first, last = survey.road_height(road, np.array([start, end]))
-    slope = float(last - first) / (end - start)
+    base, last = survey.road_height(road, np.array([start, end])).tolist()
+    slope = (last - base) / (end - start)
     points = survey.window(road, start, end)
-    d = points.d
-    near = np.flatnonzero((d >= offsets[0]) & (d < offsets[1]))
-    return _grid_of_points(points[near], road, start, slices, offsets, float(first), slope)
-
-
-def _grid_of_points(points: Points, road: int, start: float, slices: int, offsets: tuple[float, float], base: float,
-                   slope: float) -> SurfaceGrid:
-    """SurfaceGrid of points."""
+    points = points[np.flatnonzero((points.d >= offsets[0]) & (points.d < offsets[1]))]
     columns = max(int(np.ceil((offsets[1] - offsets[0]) / CROSS_CELL)), 1)
     s, d = points.s, points.d
     h = points.z - base - slope * (s - start)
@@ -209,11 +195,9 @@ def _line(x, y):
 
 
 def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> HeightErrors:
-    """The errors that explain the overlaps best: least squares with the priors above, robust against single windows.
+    """The errors that explain the overlaps of one road best: least squares with the priors above, robust against single windows.
 
-    overlaps : of one road
     passes : all passes of the survey, by number
-    Returns HeightErrors; without overlaps, an empty one
     """
     overlaps = list(overlaps)
     if not overlaps:

@@ -74,12 +74,9 @@ class ControlPoints:
 
 def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], image: SourceImage, what: str,
                    crs: str = "") -> ControlPoints:
-    """Control points of a table.
+    """Control points of the rows of a table, texts or numbers, that belong to an image; `what` is the table's name for error messages.
 
     names : of the columns, or None where the table has no header
-    rows : of texts or numbers
-    image : SourceImage that the points belong to
-    what : name of the table for error messages
     crs : WKT of the map coordinates in the table, "" where unknown
     Raises RoadExtractionError if a needed column is missing, no row is of this image or has numbers, or the points lie outside the image.
     """
@@ -141,10 +138,7 @@ def _rows_of_image(rows, image, column, what):
 
 
 def _find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
-    """Columns of a table with a header.
-
-    Columns named only `x` and `y` are map coordinates, unless other columns have the names of these.
-    """
+    """Columns of a table with a header; those named only `x` and `y` are map coordinates, unless other columns have the names of these."""
     columns = _columns_named(names)
     plain = _plain(names)
     for bare, keys in (("x", ("easting", "pixel")), ("y", ("northing", "line"))):
@@ -365,12 +359,7 @@ class SourceImage:
     nodata: float | None = None   # value of pixels without data, or None
 
     def pixel_of(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pixel and line of map coordinates, by the position of the image itself.
-
-        x, y : (N,) m
-        Returns pixel, line: (N,)
-        Raises ValueError if the image has no position.
-        """
+        """Pixel and line, (N,) each, of map coordinates (N,) m, by the position of the image itself; ValueError if it has none."""
         if self.geotransform is None:
             raise ValueError("the image has no position")
         x0, xp, xl, y0, yp, yl = self.geotransform
@@ -379,22 +368,13 @@ class SourceImage:
         return pixel, line
 
     def holds(self, pixel: np.ndarray, line: np.ndarray, margin: float = 0.0) -> np.ndarray:
-        """Whether places lie in the image.
-
-        pixel, line : (N,)
-        margin : pixels around the image that count as inside
-        Returns (N,) bool
-        """
-        return ((pixel >= -margin) & (pixel <= self.width + margin) & (line >= -margin) & (line <= self.height + margin))
+        """(N,) bool, whether (N,) places lie in the image or at most `margin` pixels beside it."""
+        return (pixel >= -margin) & (pixel <= self.width + margin) & (line >= -margin) & (line <= self.height + margin)
 
 
 @gdal_exceptions()
 def open_image(path: str | Path) -> SourceImage:
-    """Read the description of an image.
-
-    path : of a file that GDAL reads
-    Raises RoadExtractionError if there is no such file, or it is no raster with bands.
-    """
+    """The description of an image file that GDAL reads; RoadExtractionError if there is none, or it is no raster with bands."""
     if not Path(path).is_file():
         raise RoadExtractionError(f"There is no file {path}. Give the image itself (TIFF, JPEG or PNG).")
     dataset = open_raster(path)
@@ -406,7 +386,6 @@ def open_image(path: str | Path) -> SourceImage:
     kind = ("byte" if first.DataType == gdal.GDT_Byte else
             "real" if first.DataType in (gdal.GDT_Float32, gdal.GDT_Float64) else "integer")
     return SourceImage(
-        str(path), dataset.RasterXSize, dataset.RasterYSize, transform,
-        crs, dataset.RasterCount,
+        str(path), dataset.RasterXSize, dataset.RasterYSize, transform, crs, dataset.RasterCount,
         dataset.RasterCount > 1 and last.GetColorInterpretation() == gdal.GCI_AlphaBand,
         first.GetColorTable() is not None and dataset.RasterCount == 1, kind, first.GetNoDataValue())

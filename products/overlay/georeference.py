@@ -5,18 +5,19 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import shapely
 
-from ...core.common.errors import Cancelled, RoadExtractionError
+from ...core.common.errors import RoadExtractionError
 from ...core.common.features import RESIDUALS, Features
 from ...core.common.progress import Progress
 from ...core.common.setting import check_limits, setting
 from ...core.io.crs import as_in_file
 from ...core.io.geotiff import GEOTIFF_TILE
-from ...core.io.local_files import gdal_exceptions, open_raster, unfinished_path
+from ...core.io.local_files import gdal_exceptions, gdal_work, open_raster, unfinished_path
 from ...core.lazy import gdal, pyproj
 from .control_points import CONTROL, REQUIRED_COLUMNS, ControlPoints, SourceImage
 
@@ -88,9 +89,8 @@ def _rmse(vectors):
 
 
 def georeference(image: SourceImage, points: ControlPoints, settings: GeoreferenceSettings | None = None) -> Georeferencing:
-    """Fit a polynomial to control points and assess it.
+    """Fit a polynomial to control points, in a projected CRS in metres or in local metres, and assess it.
 
-    points : ControlPoints in a projected CRS in metres, or in local metres
     Raises RoadExtractionError if there are fewer than 1, 3, 6, 10 control points for order 0, 1, 2, 3; if they lie on a line or do not determine the
     polynomial; if the polynomial mirrors or folds the image; if the CRS is not in metres; or if the image of a shift has no position.
     """
@@ -126,10 +126,7 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
 
 
 def residual_vectors(found: Georeferencing) -> Features:
-    """Residuals of the control and check points as vectors on the map, in their true length.
-
-    Returns Features RESIDUALS: LineStringZ from the place of a point by the polynomial to its measured place
-    """
+    """Features RESIDUALS of the control and check points: LineStringZ from the place of each by the polynomial to its measured place."""
     from shapely import LineString
 
     points, errors = found.points, found.errors
@@ -205,22 +202,13 @@ def _unfolded(fit, area, hull, points, used, order):
 
 
 def _node_grid(bounds: tuple[float, float, float, float], count: int) -> tuple[np.ndarray, np.ndarray]:
-    """A regular grid of places in the image.
-
-    bounds : smallest pixel and line, largest pixel and line
-    count : nodes per side
-    Returns pixel, line: (count ** 2,)
-    """
+    """Pixel and line, (count ** 2,) each, of a regular grid within bounds: smallest pixel and line, largest pixel and line."""
     across, down = np.meshgrid(np.linspace(bounds[0], bounds[2], count), np.linspace(bounds[1], bounds[3], count))
     return across.ravel(), down.ravel()
 
 
 def _own_pixel_size(fit: _ControlPointFit, area: shapely.Geometry) -> float:
-    """Pixel size of the image on the map.
-
-    area : shapely polygon in pixel and line
-    Returns m, median over the area
-    """
+    """m, the size of the image's pixels on the map: median over an area, a polygon in pixel and line."""
     pixel, line = _node_grid(area.bounds, 9)
     inside = shapely.contains_xy(area, pixel, line)
     return float(np.sqrt(np.median(np.abs(np.linalg.det(fit.polynomial.jacobian(pixel[inside], line[inside]))))))
@@ -317,11 +305,7 @@ MIN_CONTROL_POINTS = (1, 3, 6, 10)  # by order: a shift needs one point, order t
 
 
 def term_powers(order: int) -> np.ndarray:
-    """Powers of the terms u^a v^b with a + b <= order.
-
-    order : of the polynomial
-    Returns (K, 2) int, K = (order + 1)(order + 2) / 2
-    """
+    """(K, 2) int powers a, b of the terms u^a v^b with a + b <= order, K = (order + 1)(order + 2) / 2."""
     return np.array([(total - b, b) for total in range(order + 1) for b in range(total + 1)])
 
 
@@ -397,23 +381,14 @@ class _ControlPointFit:
 
 
 def principal_extents(places: np.ndarray) -> tuple[float, float]:
-    """Extents of places along their principal axes.
-
-    places : (N, 2)
-    Returns along, across: in the unit of the places
-    """
+    """Extents of (N, 2) places along their principal axes, the longer one first."""
     _, _, turned = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
     along, across = np.ptp((places - places.mean(axis=0)) @ turned.T, axis=0)
     return float(along), float(across)
 
 
 def inverse_condition(pixel: np.ndarray, line: np.ndarray, order: int) -> float:
-    """Smallest over largest singular value of the terms at control points.
-
-    pixel, line : (N,)
-    order : of the polynomial
-    Returns 0 to 1; 0 where the points do not determine the coefficients
-    """
+    """Smallest over largest singular value of the terms of an order at (N,) places, 0 to 1; 0 where these do not determine it."""
     centre, whiten = _frame(np.column_stack([pixel, line]))
     singular = np.linalg.svd(_terms((np.column_stack([pixel, line]) - centre) @ whiten, order), compute_uv=False)
     return float(singular[-1] / singular[0])
@@ -427,14 +402,11 @@ def _frame(places):
 
 
 def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray, order: int) -> _ControlPointFit:
-    """Fit a polynomial of order 1 to 3: X = sum a_ij u^i v^j, and Y likewise.
+    """Fit a polynomial of order 1 to 3, X = sum a_ij u^i v^j and Y likewise, to (N,) places in the image and on the map, m.
 
-    pixel, line : (N,) in the image; N at least MIN_CONTROL_POINTS[order], not on a line
-    easting, northing : (N,) m
-    order : 1, 2 or 3
-
-    The terms are those of the polynomials of ArcGIS and GDAL. They are centred and scaled, and solved by QR. With R of the QR, h_i = |R^-T t_i|^2 is
-    the leverage, and r_i / (1 - h_i) the residual of a point that is left out (Belsley, Kuh and Welsch 1980, Regression Diagnostics).
+    N is at least MIN_CONTROL_POINTS[order], and the places in the image lie on no line. The terms are those of the polynomials of ArcGIS and
+    GDAL. They are centred and scaled, and solved by QR. With R of the QR, h_i = |R^-T t_i|^2 is the leverage, and r_i / (1 - h_i) the
+    residual of a point that is left out (Belsley, Kuh and Welsch 1980, Regression Diagnostics).
     """
     places, target = np.column_stack([pixel, line]).astype(float), np.column_stack([easting, northing]).astype(float)
     centre, whiten = _frame(places)
@@ -448,12 +420,7 @@ def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarra
 
 def fit_shift(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray,
               geotransform: tuple[float, ...]) -> _ControlPointFit:
-    """Fit of order 0: the image keeps the scale and rotation of its approximate position and is only shifted.
-
-    pixel, line : (N,) in the image
-    easting, northing : (N,) m
-    geotransform : approximate position of the image, six numbers as in GDAL
-    """
+    """Fit of order 0 to (N,) places in the image and on the map, m: a shift from an approximate position, six numbers as in GDAL."""
     x0, xp, xl, y0, yp, yl = geotransform
     places, target = np.column_stack([pixel, line]).astype(float), np.column_stack([easting, northing]).astype(float)
     slope = np.array([[xp, xl], [yp, yl]])
@@ -477,22 +444,15 @@ _ALGORITHMS = {"nearest": "near", "bilinear": "bilinear", "cubic": "cubic"}
 
 
 def drawn_area(found: Georeferencing) -> shapely.Geometry:
-    """The part of the image that is drawn.
-
-    Returns shapely polygon in pixel and line
-    """
+    """The part of the image that is drawn, a polygon in pixel and line."""
     frame = shapely.box(0, 0, found.image.width, found.image.height)
     return found.hull.intersection(frame) if found.cut and found.hull is not None else frame
 
 
 def output_grid(found: Georeferencing) -> tuple[tuple[float, float, float, float], int, int]:
-    """Bounds and size of the result.
+    """((min x, min y, max x, max y) m, width, height in pixels) of the result.
 
     Bounds are whole multiples of the pixel size. A shift at the pixel size of the image keeps the bounds of the image, so that no pixel is resampled.
-
-    Returns
-        bounds : (min x, min y, max x, max y), m
-        width, height : pixels
     Raises RoadExtractionError if the result would have more than MAX_RESULT_PIXELS.
     """
     outline = drawn_area(found).exterior
@@ -521,67 +481,41 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
     """Write the image as a tiled GeoTIFF with lossless compression and overviews; the file appears when it is complete.
 
     Images of bytes get an alpha band. Images of larger integers get 0, and those of real numbers NaN, as no-data value, unless the image has its own.
-
-    path : of the GeoTIFF
-    Returns pixels, greatest distance between the places where GDAL and the polynomial put a pixel
+    Returns pixels, the greatest distance between the places where GDAL and the polynomial put a pixel.
     Raises RoadExtractionError if the result would be too large, the image cannot be read, or the file cannot be written.
     """
     progress = progress or Progress()
     bounds, width, height = output_grid(found)
     unfinished, tiled = (unfinished_path(path, suffix) for suffix in (".tif", ".source.tif"))
-    source = view = result = None
-    cancelled: list[bool] = []
+    source = view = None
     failure = ""
     cache = gdal.GetCacheMax()
     gdal.SetCacheMax(min(cache, GDAL_CACHE))
     try:
-        source = _with_point_grid(gdal, found, _tiled(gdal, found.image, tiled, _callback(progress, 0.0, 0.1, cancelled)))
-        departure = _departure(gdal, source, found) + _APPROXIMATION
+        source = _with_point_grid(found, gdal_work(partial(_tiled, found.image, tiled), progress.part(0.0, 0.1)))
+        departure = _departure(source, found) + _APPROXIMATION
         # Blocks are resampled while they are written: every tile is compressed once, and Cancel takes effect in between
         view = gdal.Warp("", source, **_warp_options(found, bounds))
-        result = gdal.GetDriverByName("GTiff").CreateCopy(str(unfinished), view, options=_file_options(found.image),
-                                                          callback=_callback(progress, 0.1, 0.8, cancelled))
-        levels = [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]
-        result = None  # GDAL 3.6 may deadlock where it reads what its own threads still write
-        if levels and not cancelled:
-            result = gdal.Open(str(unfinished), gdal.GA_Update)
-            result.BuildOverviews("AVERAGE", levels, callback=_callback(progress, 0.8, 1.0, cancelled))
-        result = None  # closes the file
-        if not cancelled:
-            os.replace(unfinished, path)
-            Path(f"{path}.aux.xml").unlink(missing_ok=True)
+        gdal_work(partial(_write, view, unfinished, found.image), progress.part(0.1, 0.8))
+        # closed and opened again: GDAL 3.6 may deadlock where it reads what its own threads still write
+        if levels := [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]:
+            gdal_work(partial(_add_overviews, unfinished, levels), progress.part(0.8, 1.0))
+        os.replace(unfinished, path)
+        Path(f"{path}.aux.xml").unlink(missing_ok=True)
     except RuntimeError as problem:
         failure = str(problem)
     finally:
-        source = view = result = None
+        source = view = None
         gdal.SetCacheMax(cache)
         for leftover in (unfinished, Path(f"{unfinished}.aux.xml"), tiled):
             leftover.unlink(missing_ok=True)
-    # Raised here, because the error of GDAL would keep its datasets alive until after GDAL itself is unloaded
-    if cancelled:
-        raise Cancelled
-    if failure:
+    if failure:   # raised here: the error of GDAL would keep its datasets alive until after GDAL itself is unloaded
         raise RoadExtractionError(f"The image could not be drawn to {path} ({failure}). Is {found.image.path} whole, and is there room on the disk?")
     progress.report(1.0)
     return departure
 
 
-def _callback(progress, start, end, cancelled):
-    """GDAL's progress as ours; Cancel is noted in `cancelled`, because GDAL has no exception for it."""
-    part = progress.part(start, end)
-
-    def tell(fraction, *_):
-        try:
-            part.report(fraction)
-            return 1
-        except Cancelled:
-            cancelled.append(True)
-            return 0
-
-    return tell
-
-
-def _tiled(gdal, image, path, callback):
+def _tiled(image, path, callback):
     """The path of the image, or of a copy in tiles where it is large and stored line by line (JPEG, PNG).
 
     A rotated image is read across its lines, and each such read would decompress the file from its beginning.
@@ -595,7 +529,7 @@ def _tiled(gdal, image, path, callback):
     return str(path)
 
 
-def _with_point_grid(gdal, found, path):
+def _with_point_grid(found, path):
     """The image with a grid of ground control points in place of a position, as an open GDAL dataset.
 
     GDAL would fit its own polynomial from the map to the image, which is not the inverse of ours: in an oblique image it is
@@ -620,7 +554,7 @@ def _method(found):
     return "GCP_TPS" if found.fit.polynomial.order > 1 else "GCP_POLYNOMIAL"
 
 
-def _departure(gdal, source, found):
+def _departure(source, found):
     """Pixels between the places where GDAL's transformer and the inverse of the polynomial look for the result."""
     area = drawn_area(found)
     pixel, line = _node_grid(area.bounds, 33)
@@ -654,6 +588,11 @@ def _warp_options(found, bounds):
         "dstSRS": wkt or None, "errorThreshold": _APPROXIMATION, "warpOptions": options, **transform, **ends}
 
 
-def _file_options(image):
-    return ["TILED=YES", f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS",
-            f"PREDICTOR={3 if image.kind == 'real' else 2}"]
+def _write(view, path, image, report):
+    options = ["TILED=YES", f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER",
+               "NUM_THREADS=ALL_CPUS", f"PREDICTOR={3 if image.kind == 'real' else 2}"]
+    gdal.GetDriverByName("GTiff").CreateCopy(str(path), view, options=options, callback=report)
+
+
+def _add_overviews(path, levels, report):
+    gdal.Open(str(path), gdal.GA_Update).BuildOverviews("AVERAGE", levels, callback=report)

@@ -81,10 +81,9 @@ def _by_points(pixel, line, easting, northing, middle, reach):
 
 
 def similarity(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray) -> tuple[complex, complex]:
-    """The least-squares similarity from an image to the map, in complex numbers: map = shift + factor * (pixel - i line).
+    """(factor, shift) of the least-squares similarity from an image to the map, as complex numbers: map = shift + factor * (pixel - i line).
 
-    pixel, line, easting, northing : (N,), N at least 2
-    Returns factor, shift: NaN where all points lie in one place
+    Of (N,) places, N at least 2; NaN where all lie in one place.
     """
     source, target = pixel - 1j * line, easting + 1j * northing
     a = source - source.mean()
@@ -118,11 +117,9 @@ def _by_tags(tags, crs, reach, size, size_range):
 
 
 def to_map(x: np.ndarray, y: np.ndarray, source: str, target: str) -> tuple[np.ndarray, np.ndarray]:
-    """Places in another CRS.
+    """(N,) x and y, or longitude and latitude, brought from one CRS, WKT or code, to another; where either is "" nothing is changed.
 
-    x, y : (N,) in the source CRS, longitude and latitude where that is geographic
-    source, target : WKT or codes; where either is "" nothing is changed
-    Returns x, y: (N,), infinite where a place has none in the target CRS
+    They are infinite where a place has none in the target CRS.
     """
     from ...core.io.crs import horizontal_part, parse_crs, same_crs
 
@@ -238,13 +235,10 @@ _STRETCH = (1.0, 99.5)  # percentiles of a cut-out's values shown as black and w
 @gdal_exceptions()
 def pair_cutouts(image: SourceImage, intensity: IntensityImage, pixel: np.ndarray, line: np.ndarray, easting: np.ndarray,
                  northing: np.ndarray, half: float = 1.6, side: int = 120) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """The two cut-outs of each pair, its place in their middle.
+    """The two cut-outs of each of (N,) places in the image and the intensity image, N at least 2, the place in their middle.
 
-    pixel, line : (N,) in the image; N at least 2
-    easting, northing : (N,) m, in the intensity image
-    half : m, half the side of a cut-out
-    side : pixels of a cut-out
-    Returns iterator of two (side, side, 3) uint8, red, green, blue; black where there is nothing
+    half, side : m, half the side of a cut-out, and its pixels
+    Yields two (side, side, 3) uint8, red, green, blue; black where there is nothing.
     """
     dataset = open_raster(image.path)
     if image.palette:

@@ -51,12 +51,9 @@ def _by_side(accuracy):
 
 def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccuracySettings, layer: Features, names: tuple[str, str],
                    station: tuple[np.ndarray, np.ndarray], along: str, total_width: bool = False, notes: Sequence[str] = ()) -> str:
-    """The report of a LineAccuracy as HTML.
+    """The report of a LineAccuracy as HTML. `layer`: of `driving_line_layer`; `names`: result and reference as the user calls them.
 
-    layer : Features of `driving_line_layer`
-    names : (result, reference) as the user calls them
-    station : (N,) metres along the road of the result's places and (M,) of the reference's
-    along : what that is measured along
+    station : (N,) metres along the road of the result's places and (M,) of the reference's; `along` is what that is measured along
     total_width : whether the user gave tolerances as the whole width of the buffer
     """
     along, length = told(along), match.result_points.length
@@ -66,7 +63,7 @@ def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccur
         "driving_accuracy", accuracy=accuracy, settings=settings, names=names, notes=notes, total_width=total_width, whole=_whole,
         errors_row=_errors_row, min_gap=MIN_REFERENCE_GAP, max_distance=MAX_MATCH_DISTANCE,
         lines=[(str(k), line.reference_length, *(percent(shares[t]) for shares in (line.completeness, line.miscoding) for t in settings.tolerances),
-                _centimetres(line.rmse)) for k, line in enumerate(accuracies, start=1)],
+                _centimetres(line.lateral.rmse)) for k, line in enumerate(accuracies, start=1)],
         map=_outcome_map(layer), error_chart=_error_along_road(station[0], match.lateral, length, along),
         outcome_chart=_outcomes_along_road(
             {"correct": station[0][~wrong], "false": station[0][wrong], "missed": station[1][missed]},
@@ -76,10 +73,8 @@ def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccur
 
 def marking_report(accuracy: MarkingAccuracy, layer: Features, names: tuple[str, str], station: np.ndarray, along: str,
                    image: str | None = None, notes: Sequence[str] = ()) -> str:
-    """The report of a MarkingAccuracy as HTML.
+    """The report of a MarkingAccuracy as HTML. `layer`: of `marking_layer`; `names`: result and reference as the user calls them.
 
-    layer : Features of `marking_layer`
-    names : (result, reference) as the user calls them
     station : (N,) metres along the road of `accuracy.blocks`; `along` is what that is measured along
     image : path of a raster to draw the map over, or None
     """

@@ -109,12 +109,7 @@ MIN_LABEL_DISTANCE = 12  # px between the labels of two levels
 
 
 class Chart:
-    """A chart; its parts are drawn in the order of the calls.
-
-    x_range, y_range : (lowest, highest) of the axes
-    x_label, y_label : with units
-    height : pixels
-    """
+    """A chart over axes from lowest to highest, so many pixels high, with labels that name units; parts are drawn in the order of the calls."""
 
     def __init__(self, x_range: tuple[float, float], y_range: tuple[float, float], x_label: str, y_label: str, height: int = 220) -> None:
         self.height = height
@@ -287,8 +282,7 @@ def draw_map(layers: Mapping[str, Any], background: tuple[np.ndarray, Sequence[f
 
     layers : Features by the names in `style`, which is like MAP_STYLE; missing ones are left out
     background : (grey image (H, W) uint8 with 0 where empty, (min x, min y, max x, max y)) or None
-    bounds : (min x, min y, max x, max y); by default those of the layers with a margin of 3 m
-    longest : pixels of the longer side
+    bounds : (min x, min y, max x, max y), `longest` pixels at the longer side; by default those of the layers with a margin of 3 m
     paper : grey level where neither a layer nor the image covers the map
     """
     shapes = [g for features in layers.values() if features is not None for g in features.geometries if g is not None]

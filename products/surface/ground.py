@@ -109,18 +109,15 @@ def road_ground(survey: Survey, road: int, borders: RoadBorders, reach: float, p
     d = read_grids[0][0].d
     z, sigma = np.concatenate(z)[:len(s)], np.concatenate(sigma)[:len(s)]
     beyond, level = np.maximum(right[:, None] - d, d - left[:, None]), survey.road_height(road, s)
-    highest = level[:, None] + _lower_envelope(z - level[:, None]) + STANDING_HEIGHT + STEEPEST_GROUND * np.maximum(beyond, 0.0)
+    # the highest surface below the heights on which nothing narrower stands
+    size = 3, int(round(STANDING_WIDTH / CROSS_CELL)) + 1
+    lowest = minimum_filter(np.where(np.isfinite(z), z - level[:, None], np.inf), size, mode="nearest")
+    envelope = maximum_filter(np.where(np.isfinite(lowest), lowest, -np.inf), size, mode="nearest")
+    highest = level[:, None] + envelope + STANDING_HEIGHT + STEEPEST_GROUND * np.maximum(beyond, 0.0)
     z[(beyond > reach) | (z > highest)] = np.nan
     z[np.abs(z - _medians_about(z)) > SPIKE + STEEPEST_GROUND * CROSS_CELL] = np.nan
     points = sum(int(grid.count.sum()) for grid, _ in read_grids)
     return RoadGround(road, s, d, level, z, sigma, highest, right, left, points, errors)
-
-
-def _lower_envelope(height):
-    """(I, J) the highest surface below the heights on which nothing narrower than STANDING_WIDTH stands."""
-    size = 3, int(round(STANDING_WIDTH / CROSS_CELL)) + 1
-    lowest = minimum_filter(np.where(np.isfinite(height), height, np.inf), size, mode="nearest")
-    return maximum_filter(np.where(np.isfinite(lowest), lowest, -np.inf), size, mode="nearest")
 
 
 def _medians_about(z):
@@ -167,7 +164,8 @@ def edge_profiles(survey: Survey, ground: RoadGround, lines: FrameLines,
     cells = int(round(PROFILE_REACH / CROSS_CELL))
     u = (np.arange(-cells, cells) + 0.5) * CROSS_CELL
     places = np.stack([lines.x, lines.y], axis=1)
-    normal = np.concatenate([np.empty((0, 2)), *(_normals(places[lines.line(k)]) for k in range(len(lines)))])
+    along = np.concatenate([np.empty((0, 2)), *(np.gradient(places[lines.line(k)], axis=0) for k in range(len(lines)))])
+    normal = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.maximum(np.hypot(*along.T), 1e-9)[:, None]
     tree = cKDTree(places)
     span = survey.store.span(ground.road)
 
@@ -199,9 +197,3 @@ def edge_profiles(survey: Survey, ground: RoadGround, lines: FrameLines,
     heights = np.full(len(places) * 2 * cells, np.nan)
     heights[key[first]] = 0.5 * (z[first + (count - 1) // 2] + z[first + count // 2])
     return u, heights.reshape(-1, 2 * cells), normal
-
-
-def _normals(places):
-    """(n, 2) unit vectors to the left of a line at its (n, 2) vertices."""
-    along = np.gradient(places, axis=0)
-    return np.stack([-along[:, 1], along[:, 0]], axis=1) / np.maximum(np.hypot(*along.T), 1e-9)[:, None]

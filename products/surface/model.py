@@ -168,7 +168,9 @@ def _cells(grounds, frame, followed, area):
     for ground in grounds:
         i, j = np.nonzero(np.isfinite(ground.z))
         cells, road = ground.cells(frame), frame.road(ground.road)
-        near = cKDTree(_along_lines(edges)).query(cells[:, :2], distance_upper_bound=SLICE_LENGTH)[0] if len(edges) else np.full(len(cells), np.inf)
+        # places on the edges half a slice apart at most
+        along = shapely.get_coordinates(shapely.segmentize(edges, SLICE_LENGTH / 2))
+        near = cKDTree(along).query(cells[:, :2], distance_upper_bound=SLICE_LENGTH)[0] if len(edges) else np.full(len(cells), np.inf)
         rows = np.flatnonzero(np.isfinite(near))
         ends = [np.stack(road.to_map(ground.s[i[rows]] + way * SLICE_LENGTH / 2, ground.d[j[rows]]), axis=1) for way in (-1, 1)]
         mixed = np.zeros(len(cells), bool)
@@ -177,11 +179,6 @@ def _cells(grounds, frame, followed, area):
         kept.append(cells[~mixed])
         judged.append(((ground.d[j] > ground.right[i]) & (ground.d[j] < ground.left[i]))[~mixed])
     return np.concatenate(kept), np.concatenate(judged)
-
-
-def _along_lines(lines):
-    """(N, 2) places on lines, half a slice apart at most."""
-    return shapely.get_coordinates(shapely.segmentize(lines, SLICE_LENGTH / 2))
 
 
 def _fixed(followed, area, cells, tolerance):

@@ -10,11 +10,9 @@ _SPACING = 0.25  # m between nodes of the axis; a cubic through a node is then a
 
 
 class RoadAxis:
-    """A horizontal alignment of elements whose curvature changes linearly.
+    """A horizontal alignment of elements whose curvature changes linearly, through (0, 0) at station 0.
 
-    The axis passes through (0, 0) at station 0. Evaluation and its inverse agree to a few micrometres for
-    offsets below 0.6 of the radius.
-
+    Evaluation and its inverse agree to a few micrometres for offsets below 0.6 of the radius.
     elements : list of (length, curvature at start, curvature at end), m and 1/m, left positive
     start : m, station at which the first element begins (may be negative)
     heading : radians counter-clockwise from east, at `start`

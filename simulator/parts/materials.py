@@ -14,10 +14,7 @@ CARRIAGEWAY_LABELS = tuple(LABEL[name] for name in ("road", "paint", "worn paint
 
 
 class Texture:
-    """Deterministic smooth noise of mean 0 and standard deviation about 1, for worn paint and patchy asphalt.
-
-    seed : equal seeds give equal noise
-    """
+    """Smooth noise of mean 0 and standard deviation about 1, for worn paint and patchy asphalt; equal seeds give equal noise."""
 
     def __init__(self, seed: int):
         self._tile = np.random.default_rng([seed, 7]).standard_normal((_SIZE, _SIZE)).astype(np.float32).ravel()

@@ -155,11 +155,7 @@ Marking = Union[PaintedLine, PaintedFigure]
 
 
 class Paint:
-    """All markings of a road.
-
-    markings : PaintedLine and PaintedFigure
-    texture : Texture of the wear
-    """
+    """All markings of a road, PaintedLine and PaintedFigure, with the Texture of their wear."""
 
     def __init__(self, markings: Sequence[Marking], texture: Texture):
         self.markings = list(markings)

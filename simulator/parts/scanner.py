@@ -88,14 +88,7 @@ class Scanner:
         return share[used], directions[:, used]
 
     def pulses(self, drive: Drive, lines: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """The N pulses of (L,) consecutive turns.
-
-        Returns
-            origin : (3, N) m, local
-            direction : (3, N) unit vectors
-            times : (N,) s since the start of the drive
-            angle : (N,) degrees, scan angle
-        """
+        """The N pulses of (L,) consecutive turns: (3, N) m, local, origins and unit vectors, (N,) s since the start of the drive, scan angles, °."""
         share, along = self.line()
         x, y, z, roll, pitch, heading = drive.pose(np.append(lines, lines[-1] + 1) / self.rotation_rate)
         turn = attitude(roll, pitch, heading)

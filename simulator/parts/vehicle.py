@@ -43,12 +43,9 @@ class Drive:
         return s, d, x, y
 
     def pose(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Position and attitude of the vehicle at (N,) s since the start.
+        """x, y, z, m, local, and roll, pitch, heading, radians, of the vehicle at (N,) s since the start, (N,) each.
 
-        Returns
-            x, y, z : (N,) m, local
-            roll, pitch, heading : (N,) radians; roll is positive with the right side down, pitch with the nose up, heading
-                clockwise from grid north
+        Roll is positive with the right side down, pitch with the nose up, heading clockwise from grid north.
         """
         s, d, x, y = self._ground_track(t)
         *_, ahead_x, ahead_y = self._ground_track(t + 0.01)

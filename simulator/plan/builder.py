@@ -34,8 +34,6 @@ def strip(path: Path, start: float, end: float, right: Offset, left: Offset) -> 
 class PlanBuilder:
     """Collects markings, lanes and objects; everything random follows from the seed.
 
-    name : of the scene
-    seed : of all random numbers
     area : the surveyed area, m, local; paint, lanes and truth end at its border
     """
 

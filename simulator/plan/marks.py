@@ -53,11 +53,7 @@ def stations_between(start: float, end: float) -> np.ndarray:
 
 
 class PlanPaint:
-    """All markings of a plan.
-
-    markings : Mark
-    texture : Texture of the wear
-    """
+    """All markings of a plan, with the Texture of their wear."""
 
     def __init__(self, markings: Sequence[Mark], texture: Texture):
         self.markings, self._texture = list(markings), texture
@@ -77,11 +73,7 @@ class PlanPaint:
 
 
 class Areas:
-    """Polygons that are looked up by place.
-
-    outlines : (n, 2) m
-    numbers : (P,) int16, what to give for each
-    """
+    """Polygons, (n, 2) m outlines, that are looked up by place; `numbers`: (P,) int16, what to give for each."""
 
     def __init__(self, outlines: Sequence[np.ndarray], numbers: np.ndarray):
         self._numbers = numbers

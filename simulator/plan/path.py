@@ -14,11 +14,7 @@ _SPACING = 0.25  # m between nodes; chords of an arc of 10 m are then shorter th
 
 
 class Path:
-    """A line through places, continued straight beyond both ends.
-
-    places : (N, 2) m, local, at most about half a metre apart
-    start : m, station of the first place
-    """
+    """A line through (N, 2) places, m, local, at most half a metre apart, continued straight beyond both ends; it begins at station `start`, m."""
 
     def __init__(self, places: np.ndarray, start: float = 0.0):
         steps = np.hypot(*np.diff(places, axis=0).T)

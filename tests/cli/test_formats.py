@@ -146,3 +146,43 @@ def test_who_opens_a_table_of_postgis_sees_the_style_and_learns_which_result_of_
     origin = origin_of(layer)
     assert (origin.provenance.algorithm, origin.output) == ("fitroadedges", "ROAD_EDGES")
     assert layer.renderer().type() != "singleSymbol"
+
+
+@pytest.fixture
+def kept_connection(database):
+    """The database as a connection that QGIS keeps, with its password; what it is called."""
+    from qgis.core import QgsDataSourceUri, QgsSettings
+
+    uri, settings = QgsDataSourceUri(database[0]), QgsSettings()
+    for name, value in {"host": uri.host(), "port": PORT, "database": "postgres", "username": "lane", "saveUsername": "true",
+                        "password": "secret", "savePassword": "true"}.items():  # pragma: allowlist secret
+        settings.setValue(f"PostgreSQL/connections/B12/{name}", value)
+    yield "B12"
+    settings.remove("PostgreSQL/connections/B12")
+
+
+def test_the_tables_of_a_client_take_all_of_a_map_or_nothing(survey, tmp_path, database, kept_connection):
+    sql = database[1]
+    sql('CREATE SCHEMA client; CREATE TABLE client."Achsen" ("CODE" text, road text NOT NULL, geom geometry(LineString, 32650))')
+    boundaries(survey, tmp_path, "edges.gpkg")
+
+    def delivered(*rows, schema="client", connection=kept_connection):
+        (tmp_path / "office.csv").write_text("\n".join(["from;where;layer;CODE;NO:int", *rows]))
+        return call("run", "lanewright:exporttemplate", "--TEMPLATE=office.csv", "--ROAD_EDGES=edges.gpkg", f"--CONNECTION={connection}",
+                    f"--SCHEMA={schema}", folder=tmp_path)
+
+    for row, says in (("ROAD_EDGES;;Achsen;A1;", "could not be written"), ("ROAD_EDGES;;Achsen;A1;{number}", "has no field NO")):
+        refused = delivered("ROAD_EDGES;side=left;Borde;B1;{number}", row.replace("ROAD_EDGES;;", "ROAD_EDGES;side=right;"))
+        assert refused.returncode == 1 and says in refused.stderr and "secret" not in refused.stderr + refused.stdout
+        assert sql("SELECT to_regclass('client.\"Borde\"') IS NULL AND count(*) = 0 FROM client.\"Achsen\"") == "t"
+    for given, says in ((dict(schema="clients"), "there is no schema clients"), (dict(schema=""), "Nothing says where the map goes"),
+                        (dict(connection="B13"), "QGIS keeps no connection B13 to PostgreSQL. It keeps: B12.")):
+        refused = delivered("ROAD_EDGES;;Borde;B1;{number}", **given)
+        assert refused.returncode == 1 and says in refused.stderr and "secret" not in refused.stderr + refused.stdout
+    sql('ALTER TABLE client."Achsen" ALTER road DROP NOT NULL')
+    for run_number in (1, 2):
+        done = delivered("ROAD_EDGES;side=left;Borde;B1;{number}", "ROAD_EDGES;side=right;Achsen;A1;")
+        assert done.returncode == 0, done.stderr
+        assert sql('SELECT count(*) FROM client."Borde"') == str(run_number * int(sql('SELECT max("NO") FROM client."Borde"')))
+    assert sql('SELECT bool_and("CODE" = \'B1\' AND ST_NDims(geom) = 3 AND ST_SRID(geom) = 32650) FROM client."Borde"') == "t"
+    assert sql('SELECT bool_and("CODE" = \'A1\' AND ST_NDims(geom) = 2) FROM client."Achsen"') == "t"

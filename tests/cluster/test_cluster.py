@@ -38,7 +38,7 @@ from lanewright.library import run
 from lanewright.simulator.survey import SampleSettings, make_sample_survey
 
 ROOT = Path(__file__).resolve().parents[2]
-PHASES = ["steps_of_section", "corners_of_section", "plan_steps_of_section"]
+PHASES = ["_steps_of_methods", "plan_steps_of_section"]
 boundaries = partial(boundaries_by, length=60.0)   # three sections of 20 m
 
 
@@ -127,7 +127,7 @@ def test_cancel_ends_within_two_seconds_and_leaves_the_workers_idle(cluster, sec
 
 def test_where_the_scheduler_is_killed_one_sentence_says_so_and_the_next_run_goes_on(new_cluster, by_threads, tmp_path):
     first, work = new_cluster(), WorkFolder(str(tmp_path / "work"))
-    executor = AtPhase(KeptResults(cluster_of(first.address, False, work), work), "corners_of_section", lambda: first.scheduler.kill())
+    executor = AtPhase(KeptResults(cluster_of(first.address, False, work), work), "_steps_of_methods", lambda: first.scheduler.kill())
     with pytest.raises(RoadExtractionError, match="connection to the Dask scheduler was lost.*same WORK_FOLDER"):
         boundaries(executor)
     assert not list(work.path.glob("run-*"))

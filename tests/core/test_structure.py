@@ -26,7 +26,7 @@ NUMBERS = {
     "core/survey": 74,
     "core/road": 19,
     "core/intensity": 12,
-    "core/markings": 69,
+    "core/markings": 66,
     "core/driving": 5,
     "core/corrections": 2,
     "core/pipeline": 2,
@@ -61,6 +61,15 @@ def room_of(name):
 
 
 @functools.cache
+def imports_of(path):
+    """(import, whether it is for type checkers alone) of every import of a file, also those inside functions."""
+    nodes = list(ast.walk(tree_of(path)))
+    typing = {inner for node in nodes if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
+              for inner in ast.walk(node)}
+    return [(node, node in typing) for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom))]
+
+
+@functools.cache
 def imported(path, for_types=False):
     """(module imported, line) of every import from these rooms, also those inside functions; those for type checkers alone on wish."""
     return [(target, line) for target, line, _ in named_imports(path, for_types)]
@@ -69,11 +78,8 @@ def imported(path, for_types=False):
 def named_imports(path, for_types=False):
     """(module, line, name) of the same."""
     package = list(name_of(path))[:-1]
-    tree = tree_of(path)
-    typing = {inner for node in ast.walk(tree) if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
-              for inner in ast.walk(node)}
-    for node in ast.walk(tree):
-        if (node in typing and not for_types) or not isinstance(node, ast.ImportFrom) or not node.level:
+    for node, typing in imports_of(path):
+        if (typing and not for_types) or not isinstance(node, ast.ImportFrom) or not node.level:
             continue
         base = package[:len(package) - (node.level - 1)] + (node.module.split(".") if node.module else [])
         for alias in node.names:
@@ -190,7 +196,7 @@ def test_a_folder_says_what_it_is_for():
 
 def test_none_of_them_imports_qgis():
     for path in FILES:
-        for node in ast.walk(tree_of(path)):
+        for node, _ in imports_of(path):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else \
                 [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
             assert not any(name.split(".")[0] == "qgis" for name in names), path

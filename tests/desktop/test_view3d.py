@@ -8,9 +8,9 @@ from lanewright.core.common.features import DRIVING_LINES, MARKINGS, ROAD_EDGES
 from lanewright.desktop.view3d import give_3d_looks, show_in_3d
 from lanewright.processing_provider.results.road_maps import road_maps
 from qgis._3d import Qgs3DMapSettings, QgsLine3DSymbol, QgsVectorLayer3DRenderer
-from qgis.core import Qgis, QgsProject, QgsRectangle
+from qgis.core import Qgis, QgsProject, QgsProviderRegistry, QgsRectangle
 from qgis.gui import QgsMapCanvas
-from road_map_layers import EAST, NORTH, added
+from road_map_layers import EAST, NORTH, added, run_at
 
 
 @pytest.fixture
@@ -60,3 +60,29 @@ def test_the_camera_looks_at_the_road_in_the_middle_of_the_map_window(road_map):
     assert len(settings.layers()) == 4 and not settings.terrainRenderingEnabled()
     iface.createNewMapCanvas3D = lambda name: None
     assert not show_in_3d(iface, road_map, "road")
+
+
+@pytest.mark.skipif("copc" not in QgsProviderRegistry.instance().providerList(), reason="this QGIS shows no COPC")
+def test_points_of_the_survey_come_with_the_view_once_where_qgis_can_show_them(project, tmp_path):
+    import laspy
+    from copc_files import write_copc
+
+    cloud = laspy.create(point_format=6, file_version="1.4")
+    cloud.x, cloud.y, cloud.z = EAST + np.arange(100) / 5, NORTH + np.zeros(100), np.full(100, 100.0)
+    cloud.intensity = 10 * np.arange(100)
+    cloud.write(tmp_path / "street.laz")
+    copc = write_copc(tmp_path / "street.laz", tmp_path / "street.copc.laz")
+    added(project, "DRIVING_LINES", DRIVING_LINES, ("LINESTRING Z (0 0 100, 20 0 100)", dict(lane=1, direction=1)),
+          run=run_at(8, POINT_CLOUDS=[str(tmp_path / "street.laz"), str(copc)]))
+    for _ in range(2):
+        settings = Qgs3DMapSettings()
+        view = SimpleNamespace(mapSettings=lambda: settings, cameraController=lambda: SimpleNamespace(setLookingAtPoint=lambda *values: None))
+        canvas = QgsMapCanvas()
+        iface = SimpleNamespace(mapCanvas=lambda: canvas, createNewMapCanvas3D=lambda name: view)
+        assert show_in_3d(iface, road_maps(project)[0], "road")
+        points = [layer for layer in settings.layers() if layer.type() == Qgis.LayerType.PointCloud]
+        assert [layer.source() for layer in points] == [str(copc)]
+        symbol = points[0].renderer3D().symbol()
+        assert symbol.attribute() == "Intensity" and 0 < symbol.colorRampShaderMin() < 100 < 900 < symbol.colorRampShaderMax() < 1000
+        assert points[0].renderer().type() == "extent", "the map shows nothing of them"
+    assert sum(layer.type() == Qgis.LayerType.PointCloud for layer in project.mapLayers().values()) == 1

@@ -105,6 +105,20 @@ def test_what_cannot_work_is_said_in_one_sentence(survey, tmp_path, monkeypatch,
     assert sorted(os.listdir(tmp_path)) == ["drive.gpkg", "s.laz"]
 
 
+def test_a_database_that_is_not_there_is_said_and_no_file_needs_to_be_named(survey, tmp_path, monkeypatch):
+    """Outside QGIS a connection is a service of PostgreSQL, so that no password stands in a command."""
+    gdal = pytest.importorskip("osgeo.gdal")
+    monkeypatch.setenv("PGSERVICEFILE", str(tmp_path / "services.conf"))
+    (tmp_path / "client.csv").write_text("from;layer\nROAD_EDGES;A")
+    given = dict(TEMPLATE=tmp_path / "client.csv", ROAD_EDGES=survey / "truth.gpkg")
+    (tmp_path / "services.conf").touch()
+    says = '"b12" not found' if gdal.GetDriverByName("PostgreSQL") else "built without PostgreSQL"
+    for further, said in ((dict(CONNECTION="b12", SCHEMA="roads"), f"b12, schema roads could not be read .*{says}"),
+                          (dict(CONNECTION="b12"), "Nothing says where the map goes"), ({}, "Nothing says where the map goes")):
+        with pytest.raises(RoadExtractionError, match=said):
+            run("exporttemplate", **given, **further)
+
+
 def test_without_gdal_rasters_are_refused_with_what_to_install(survey, tmp_path, monkeypatch):
     find = measured_lines.find_spec
     monkeypatch.setattr(measured_lines, "find_spec", lambda name: None if name == "osgeo" else find(name))

@@ -10,7 +10,7 @@ import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import MARKING_LINES, MARKINGS, ROADSIDE_OBJECTS, Features
 from lanewright.products.cad import drawn_layers
-from lanewright.products.client_fields import apply_template, layers_of_file, read_template, write_client_layers
+from lanewright.products.client_fields import apply_template, layers_of_client, read_template, write_client_layers
 
 UTM = pyproj.CRS.from_epsg(32632).to_wkt()
 SOURCES = {"MARKINGS": (MARKINGS, "PolygonZ"), "MARKING_LINES": (MARKING_LINES, "LineStringZ"), "ROADSIDE_OBJECTS": (ROADSIDE_OBJECTS, "PointZ")}
@@ -108,7 +108,8 @@ def test_what_the_client_has_just_written_is_in_the_copy_of_its_file(street, tmp
         program.execute("PRAGMA journal_mode=WAL")
         program.execute("INSERT INTO AREA (CODE) VALUES ('theirs')")
         program.commit()
-        made = apply_template(template(tmp_path, "from;where;layer;CODE", "MARKINGS;;AREA;12"), street, layers_of_file(path, UTM))
+        said = template(tmp_path, "from;where;layer;CODE", "MARKINGS;;AREA;12")
+        made = apply_template(said, street, layers_of_client(path, UTM, said))
         write_client_layers(made.layers, filled, path)
     layer = (dataset := ogr.Open(filled)).GetLayerByName("AREA")
     assert [feature["CODE"] for feature in layer] == ["theirs", "12", "12"]
@@ -158,7 +159,8 @@ def filled_with(street, tmp_path, kind, smaller, code, geometry="wkbPolygon"):
     field.SetWidth(8 if kind == "OFTString" else 0)
     dataset.CreateLayer("AREA", osr.SpatialReference(UTM), getattr(ogr, geometry)).CreateField(field)
     dataset = None
-    made = apply_template(template(tmp_path, "from;where;layer;CODE", f"MARKINGS;;AREA;{code}"), street, layers_of_file(path, UTM))
+    said = template(tmp_path, "from;where;layer;CODE", f"MARKINGS;;AREA;{code}")
+    made = apply_template(said, street, layers_of_client(path, UTM, said))
     write_client_layers(made.layers, str(tmp_path / "filled.gpkg"), path)
 
 
@@ -188,9 +190,9 @@ def test_the_file_of_the_client_is_filled_as_its_layers_are(street, tmp_path):
     layer.CreateField(ogr.FieldDefn("CODE", ogr.OFTString))
     layer.CreateField(ogr.FieldDefn("CHECKED", ogr.OFTString))
     layer = dataset = None
-    office = layers_of_file(path, UTM)
-    assert office == {"AREA": ("polygon", {"CODE": str, "CHECKED": str})}
     said = template(tmp_path, "from;where;layer;CODE", "MARKINGS;;AREA;12", "ROADSIDE_OBJECTS;;POLES;13")
+    office = layers_of_client(path, UTM, said)
+    assert office == {"AREA": ("polygon", {"CODE": str, "CHECKED": str})}
     markings = {"MARKINGS": street["MARKINGS"]}   # of what is not given, the file needs no layer
     write_client_layers(apply_template(said, markings, office).layers, filled, path)
     layer = (dataset := ogr.Open(filled)).GetLayerByName("AREA")
@@ -204,7 +206,9 @@ def test_the_file_of_the_client_is_filled_as_its_layers_are(street, tmp_path):
     with pytest.raises(RoadExtractionError, match="has no field KODE"):
         apply_template(template(tmp_path, "from;where;layer;KODE", "MARKINGS;;AREA;1"), street, office)
     with pytest.raises(RoadExtractionError, match="is in WGS 84 / UTM zone 32N, and the map in"):
-        layers_of_file(path, "EPSG:32633")
+        layers_of_client(path, "EPSG:32633", said)
+    other = template(tmp_path, "from;where;layer;CODE", "ROADSIDE_OBJECTS;;POLES;13")
+    assert layers_of_client(path, "EPSG:32633", other) == office, "the template does not fill what is in another CRS"
 
 
 def test_without_gdal_a_geopackage_is_refused_in_one_sentence(street, tmp_path, monkeypatch):

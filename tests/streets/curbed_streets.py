@@ -65,8 +65,8 @@ def survey_of(points, drive=None, east=EAST, section_length=20.0, second=None, s
     rows = np.concatenate([np.array(d) for _, d in parts], axis=1)
     frame = build_frame(Trajectory(rows[0], rows[1] + east, rows[2] + NORTH, rows[3] + GROUND))
     store = SectionStore(SURVEY_POINT, section_length)
-    road = frame.road(0)
     for number, (cloud, (driven_at, *track)) in enumerate(parts):
+        road = frame.roads[frame.passes[number].road]
         x, y, z, time = cloud
         x, y, z = frame.to_local(x + east, y + NORTH, z + GROUND)
         along, _ = road.locate(*frame.to_local(track[0] + east, track[1] + NORTH, track[2] + GROUND)[:2])
@@ -78,7 +78,7 @@ def survey_of(points, drive=None, east=EAST, section_length=20.0, second=None, s
         records["time"], records["pass_number"] = time[good], number
         if shuffled is not None:
             records = records[np.random.default_rng(shuffled).permutation(len(records))]
-        store.append(0, records)
+        store.append(road.number, records)
     return Survey([], frame, store, "", {p.number: SENSOR for p in frame.passes}, None, [0], True, True)
 
 

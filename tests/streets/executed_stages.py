@@ -27,8 +27,8 @@ from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey.store import section_store
 
-PHASES = ["ground_of_windows", "surface_points", "points_of_scanners", "levels_of_stretch", "corrected_of_stretch",
-          "windows_of_image", "sums_of_pieces", "scatter_of_windows", "paint_of_window", "kept_of_windows", "links_of_windows",
+PHASES = ["ground_of_windows", "surface_points", "levels_of_stretch", "corrected_of_stretch",
+          "windows_of_image", "tiles_of_image", "scatter_of_windows", "paint_of_window", "kept_of_windows", "links_of_windows",
           "combs_of_windows", "shapes_of_clusters", "outlines_of_markings", "seen_in_stretch", "sections_of_stretch", "estimate_of_road",
           "heights_of_windows"]
 
@@ -40,14 +40,13 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(section_store, "STRETCH_POINTS", 40_000)
         patch.setattr(ground_grid, "SURFACE", replace(ground_grid.SURFACE, measured_windows=2))
         patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, looked_windows=1))
-        patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, pieces_per_task=3))
+        patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, tiles_per_task=1))
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
         patch.setattr(outliers, "TASK_WINDOWS", 1)
         patch.setattr(heights, "HEIGHT_POINTS", 1)
         patch.setattr(linking, "LINKING_WINDOW_CELLS", 250)
         patch.setattr(linking, "LINKED_POINTS", 300)
-        patch.setattr(linking, "PHASE_POINTS", 3000)
         if executor is not None:
             patch.setattr(opening, "executor_for", lambda *_: KeptResults(executor, work) if work else executor)
         survey = opening.open_survey([path], made.trajectory, execution=ExecutionSettings(work_folder=str(work.path) if work else ""))

@@ -116,19 +116,30 @@ def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.n
 
 def _surface_coverage(points, road, first, count):
     """The same for stations first to first + count of the grid."""
+    seen = _known[points.store]
+    if points.store.count not in seen:
+        seen[points.store.count] = _seen_on_roads(points)
     covered = np.zeros((count, BINS), bool)
     total, number = np.zeros((2, count, 2))
-    length = points.store.section_length
-    phase = Phase(seen_in_stretch, points, (first, count), lambda item: points.survey.stretch(road, item[1] * length, item[2] * length),
-                  state=points.store.state)
-    for begin, *sums in (entry for batch in points.executor.run(phase, points.stretches(road)) for entry in batch):
-        window = slice(begin, begin + len(sums[0]))
-        covered[window] |= sums[0]
-        total[window] += sums[1]
-        number[window] += sums[2]
+    for begin, *sums in seen[points.store.count].get(road, ()):
+        a, b = max(begin, first), min(begin + len(sums[0]), first + count)
+        if a < b:
+            covered[a - first:b - first] |= sums[0][a - begin:b - begin]
+            for values, of_section in zip((total, number), sums[1:]):
+                values[a - first:b - first] += of_section[a - begin:b - begin]
     with np.errstate(invalid="ignore", divide="ignore"):
         ends = (1e-3 * total / number).T * np.array([[1.0], [-1.0]])
     return covered, ends
+
+
+def _seen_on_roads(points):
+    """{road: what `seen_in_stretch` gives of all its sections}"""
+    stretches, length, seen = points.stretches(), points.store.section_length, {}
+    phase = Phase(seen_in_stretch, points, (), lambda item: points.survey.stretch(item[0], item[1] * length, item[2] * length),
+                  state=points.store.state)
+    for sections, (road, *_) in zip(points.executor.run(phase, stretches), stretches):
+        seen.setdefault(road, []).extend(sections)
+    return seen
 
 
 def point_spacing(road_points: RoadPoints, road: int, s: np.ndarray) -> np.ndarray:
@@ -145,20 +156,20 @@ def point_spacing(road_points: RoadPoints, road: int, s: np.ndarray) -> np.ndarr
     return np.interp(s, middles, median_filter(side, EVIDENCE.sections_alike, mode="mirror"))
 
 
-def seen_in_stretch(points: RoadPoints, stretch: Stretch, first: int, count: int) -> list[tuple[int, np.ndarray, np.ndarray, np.ndarray]]:
-    """The phase that looks where the surface was scanned, at stations `first` to `first + count` of the grid.
+def seen_in_stretch(points: RoadPoints, stretch: Stretch) -> list[tuple[int, np.ndarray, np.ndarray, np.ndarray]]:
+    """The phase that looks where the surface was scanned.
 
-    Returns of each section the first of the N stations that it shows, less `first`; (N, BINS) bool, the bins with points; (N, 2) sums of half widths
-    (mm) and (N, 2) numbers of points on the left and on the right.
+    Returns of each section the number of the first of the N stations of the grid that it shows; (N, BINS) bool, the bins with points; (N, 2) sums of
+    half widths (mm) and (N, 2) numbers of points on the left and on the right.
     """
-    return [_seen_in_section(points.section(*key).records, first, count) for key in points.store.in_stretch(stretch)]
+    return [_seen_in_section(points.section(*key).records) for key in points.store.in_stretch(stretch)]
 
 
-def _seen_in_section(records, first, count):
+def _seen_in_section(records):
     """What `seen_in_stretch` gives of one section."""
     step, wide, reach = (int(round(length / COORDINATE_SCALE)) for length in (STATION_STEP, BIN, FAR))
-    k, d = (records["s"] + step // 2) // step - first, records["d"]
-    inside = (k >= 0) & (k < count) & (np.abs(d) < reach)
+    k, d = (records["s"] + step // 2) // step, records["d"]
+    inside = np.abs(d) < reach
     if not inside.any():
         return 0, np.zeros((0, BINS), bool), np.zeros((0, 2)), np.zeros((0, 2))
     half_width = records["half_width"]

@@ -19,7 +19,7 @@ from ...curves.base import Curve, CurveFit
 from ...curves.bspline import Profile, fit_splines, smooth_profiles
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
-from ...execution.phase import THREADS, NoSource, Phase
+from ...execution.phase import THREADS, Items, NoSource, Phase
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import LINE_VERTEX_SPACING
 from ...survey.frame.road_frame import RoadFrame
@@ -31,7 +31,6 @@ from ..cross_section.sections import EdgeSections, sections_of_lines
 from ..cross_section.sequence import separated_kinds
 from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights, TakenReading
 from ..objects.classify import LINE_KINDS
-from ..objects.grouping import PHASE_POINTS
 from ..objects.marking_objects import MarkingObjects
 from ..weights import STRANDS
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
@@ -376,24 +375,15 @@ def _traced(points, markings, frame, edges, settings, executor, progress):
     dropped, roads = 0, points.roads()
     edge_lines = edges_beside(edges, roads)
     phase = Phase(_lines_of_road, NoSource(), (settings,), lambda item: "the marking lines of a road")
-    for batch in _roads_together(points):
-        items = [_paint_of_road(points, markings, road, edge_lines[road]) for road in batch]
-        for road, (of_road, trend, left_out) in zip(batch, executor.run(phase, items)):
-            dropped += left_out
-            courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
-            selected += [(int(road), chosen) for chosen in of_road]
-        progress.report((roads.index(batch[-1]) + 1) / len(roads))
+    items = Items(len(roads), lambda k: _paint_of_road(points, markings, roads[k], edge_lines[roads[k]]))
+    for (of_road, trend, left_out), road in zip(executor.run(phase, items, progress), roads):
+        dropped += left_out
+        courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
+        selected += [(int(road), chosen) for chosen in of_road]
     return selected, courses, dropped
 
 
 PAINT_OF_LINES = "s", "d", "z", "cluster", "spacing"   # that strands are traced by
-
-
-def _roads_together(points):
-    """Roads in batches whose paint is in memory together."""
-    size = [sum(points.store.size(road, number) for number in points.sections(road)) for road in points.roads()]
-    batch = (np.cumsum([0, *size])[:-1] // PHASE_POINTS).tolist()
-    return [[road for road, number in zip(points.roads(), batch) if number == wanted] for wanted in sorted(set(batch))]
 
 
 def _paint_of_road(points, markings, road, edges):

@@ -15,7 +15,7 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.setting import Limited, setting
 from ...curves.robust import median
-from ...execution.phase import THREADS, Executor, NoSource, Phase
+from ...execution.phase import THREADS, Executor, Items, NoSource, Phase
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
@@ -313,7 +313,6 @@ def _scanning_distance(records, line, frame):
 # The phases: what is computed of some clusters or windows apart from all others; their items hold the columns that they need.
 
 TASK_POINTS = 20_000   # derived: of paint, that a worker process is given together on average: about a tenth of a second of its time
-PHASE_POINTS = 500_000   # derived: of paint, whose columns are held for tasks at a time
 
 
 def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> list[tuple[Any, ...] | None]:
@@ -422,32 +421,22 @@ class ApartWork:
     def _run(self, function: Callable[..., Any], columns: Callable[[int, int], tuple[np.ndarray, ...]], bounds: np.ndarray, progress: Progress,
              looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),
              read: Callable[[Any], list[Any]] = list) -> list[Any]:
-        """Results of all clusters.
-
-        `columns` gives those of the clusters from a number to before another, one after the other: PHASE_POINTS are there at a time.
-        """
+        """Results of all clusters; `columns` gives those of the clusters from a number to before another, one after the other."""
         phase = Phase(function, NoSource(), arguments, lambda item: f"markings of road {self.road}")
-        batches, results = _cuts(bounds, PHASE_POINTS), []
-        for begin, end in zip(batches[:-1].tolist(), batches[1:].tolist()):
-            batch_bounds = bounds[begin:end + 1]
-            cuts = _lasting_cuts(batch_bounds, TASK_POINTS)
-            batch_columns = columns(begin, end)
-            items = [_item(batch_columns, batch_bounds[a:b + 1] - batch_bounds[0], None if looks is None else list(looks[begin + a:begin + b]))
-                     for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist())]
-            part = progress.part(begin / batches[-1], end / batches[-1])
-            results += [result for chunk in self.executor.run(phase, items, part) for result in read(chunk)]
-        return results
+        cuts = _lasting_cuts(bounds, TASK_POINTS).tolist()
 
+        def item(k):
+            a, b = cuts[k:k + 2]
+            return *columns(a, b), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
 
-def _cuts(bounds, points):
-    """Ascending numbers of clusters, from the first to the end, with so many points between two of them at least."""
-    total = bounds[-1] - bounds[0]
-    return np.unique(np.r_[0, np.searchsorted(bounds - bounds[0], np.arange(points, total, points)), len(bounds) - 1])
+        chunks = self.executor.run(phase, Items(len(cuts) - 1, item), progress) if len(bounds) > 1 else []
+        return [result for chunk in chunks for result in read(chunk)]
 
 
 def _lasting_cuts(bounds, points):
-    """The same with so many points on average: a cut lies where the sizes of the clusters beside it say so, whatever comes before them.
+    """Ascending numbers of clusters, from the first to the end, with so many points between two of them on average.
 
+    A cut lies where the sizes of the clusters beside it say so, whatever comes before them.
     What is asked of a task is then remembered where other clusters changed.
     """
     size = np.diff(bounds).astype(np.uint64)
@@ -460,11 +449,6 @@ def _columns_at(records, rows, names):
     """Some columns of some rows."""
     selected = records.take(rows)
     return tuple(selected[name] for name in names)
-
-
-def _item(columns, bounds, looks):
-    """What a phase needs of some clusters, whose bounds in the columns are given."""
-    return (*(column[bounds[0]:bounds[-1]] for column in columns), bounds - bounds[0], *([] if looks is None else [looks]))
 
 
 def _polygons(found):

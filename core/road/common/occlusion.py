@@ -52,12 +52,6 @@ class OcclusionGrid:
         ground = self.ground[first:last]
         ground[:, cells[starts]] = np.fmin(ground[:, cells[starts]], lowest)
 
-    def add(self, part: OcclusionGrid) -> None:
-        """Add what a grid of some of these profiles holds."""
-        rows = slice(part.first - self.first, part.first - self.first + len(part.tall))
-        self.tall[rows] |= part.tall
-        self.ground[rows] = np.fmin(self.ground[rows], part.ground)
-
     @classmethod
     def join(cls, parts: Sequence[OcclusionGrid]) -> OcclusionGrid:
         """One grid of the profiles of several, which follow each other."""

@@ -11,49 +11,81 @@ import numpy as np
 from ...common.progress import Progress
 from ...execution.phase import Phase
 from ...survey.frame.road import Road
+from ...survey.frame.road_frame import RoadFrame
 from ..weights import CURBS
 from .corners import CurbSteps
 from .curb_limits import CurbLimits
 from .curb_points import CurbPoints, curb_points_at
 from .occlusion import OcclusionGrid
-from .sides import SIDE_SIGNS, OutermostTrack, expected_height, hidden_points, join_sections
+from .sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, hidden_points, join_sections
 from .tracking import StepChain, curb_chains, drop_short_curbs, is_road, link_steps, select_along_road, with_pieces_in_line
 
 if TYPE_CHECKING:
     from ..surface.road_look import RoadLook, SideLook
 
 AnySteps = TypeVar("AnySteps", bound=CurbSteps)
+Section = tuple[str, int, int, int]   # method, number of a road, first and last + 1 number of its profiles or planes
 
 
-def steps_of_road(function: Callable, source: Any, road: int, settings: Any, sections: Sequence[tuple[int, int]], width: float,
-                  progress: Progress) -> tuple[dict[str, CurbSteps], dict[str, OcclusionGrid]]:
-    """Steps of each side on which there are any, and what was seen beside the road.
+@dataclass(frozen=True)
+class Search:
+    """Where a method looks for steps.
 
-    function : the phase; (source, section, road, settings) -> side -> CurbSteps, and side -> OcclusionGrid
-    source : PointDecimation of a survey, or scanlines
-    sections : (first, last + 1) numbers of profiles or planes
-    width : m from one to the next
+    width : m of road per profile, or from one plane to the next
+    limits : CurbLimits of what is taken for a curb
+    sections : {number of a road: [(first, last + 1) numbers of profiles or planes]}
+    bounds : {number of a road: (K,) m, stations at which blocks begin and end}
     """
-    first, last = sections[0][0], sections[-1][1]
-    occlusion = {side: OcclusionGrid(width, first, last - first, CURBS.max_curb_offset) for side in SIDE_SIGNS}
-    parts: dict[str, list[CurbSteps]] = {side: [] for side in SIDE_SIGNS}
-    for curb_steps, grids in source.executor.run(phase_along(function, source, (road, settings), width, join_sections), sections, progress):
-        for side, steps in curb_steps.items():
-            parts[side].append(steps)
-        for side, grid in grids.items():
-            occlusion[side].add(grid)
-    return {side: type(curb_steps[0]).join(curb_steps) for side, curb_steps in parts.items() if curb_steps}, occlusion
+
+    width: float
+    limits: CurbLimits
+    sections: dict[int, list[tuple[int, int]]]
+    bounds: dict[int, np.ndarray]
+
+    @classmethod
+    def of(cls, spans: Mapping[int, tuple[float, float]], frame: RoadFrame, width: float, limits: CurbLimits, block_length: float,
+           beyond: int = 0) -> Search:
+        """A Search between two stations of each road, m, and as many planes `beyond`; `block_length` is that of `block_bounds`."""
+        return cls(width, limits, {road: fixed_sections(int(np.floor(start / width)), int(np.ceil(end / width)) + beyond, width)
+                                   for road, (start, end) in spans.items()},
+                   {road: block_bounds(frame.road(road), start, end, block_length) for road, (start, end) in spans.items()})
+
+
+def steps_of_roads(function: Callable, source: Any, settings: tuple[Any, ...], searches: Mapping[str, Search],
+                   progress: Progress) -> dict[str, dict[tuple[int, str], SideSteps]]:
+    """{method: {(number of a road, side): SideSteps}}; what several methods read of one place is worked on together.
+
+    function : the phase; (source, Section, *settings) -> side -> CurbSteps, and side -> OcclusionGrid
+    source : PointDecimation of a survey, or scanlines
+    """
+    sections = [(method, road, *section) for method, search in searches.items() for road, of_road in search.sections.items() for section in of_road]
+    sections.sort(key=lambda section: (section[1], section[2] * searches[section[0]].width))
+    parts: dict[tuple[str, int, str], list[CurbSteps]] = {}
+    grids: dict[tuple[str, int, str], list[OcclusionGrid]] = {}
+    survey = getattr(source, "survey", None)
+    phase = Phase(function, source, settings, lambda section: _place_of(survey, *section[1:], searches[section[0]].width), join_sections,
+                  CURBS.sections_together * len(searches))
+    for (steps_by_side, beside), (method, road, *_) in zip(source.executor.run(phase, sections, progress), sections):
+        for found, values in ((parts, steps_by_side), (grids, beside)):
+            for side, of_side in values.items():
+                found.setdefault((method, road, side), []).append(of_side)
+    result: dict[str, dict[tuple[int, str], SideSteps]] = {method: {} for method in searches}
+    for (method, road, side), of_side in grids.items():
+        steps, search = parts.get((method, road, side)), searches[method]
+        result[method][road, side] = SideSteps(type(steps[0]).join(steps) if steps else None, search.width, search.limits, search.bounds[road],
+                                               OcclusionGrid.join(of_side))
+    return result
+
+
+def _place_of(survey, road, first, last, width):
+    """What messages call profiles or planes of a road."""
+    start, end = first * width, last * width
+    return f"road {road}, {start:.0f} to {end:.0f} m" if survey is None else survey.stretch(road, start, end)
 
 
 def phase_along(function: Callable, source: Any, arguments: tuple[Any, ...], width: float, join: Callable) -> Phase:
-    """A phase over sections of profiles or planes of a road, whose number is the first argument; `width` : m from one to the next."""
-    road, survey = arguments[0], getattr(source, "survey", None)
-
-    def place(section):
-        start, end = (k * width for k in section)
-        return f"road {road}, {start:.0f} to {end:.0f} m" if survey is None else survey.stretch(road, start, end)
-
-    return Phase(function, source, arguments, place, join, CURBS.sections_together)
+    """A phase over sections of profiles: (number of a road, first, last + 1); `width` : m from one profile to the next."""
+    return Phase(function, source, arguments, lambda section: _place_of(source.survey, *section, width), join, CURBS.sections_together)
 
 
 def merged_passes(found: Sequence[AnySteps]) -> AnySteps:
@@ -110,22 +142,23 @@ def curbs_along(source: Any, found: Mapping[str, Mapping[tuple[int, str], SideSt
     found : method -> (number of the road, side) -> SideSteps; the method with the stricter model of a curb comes first
     look_at : gives the RoadLook of a road; None where nothing but the steps is known of the ground
     """
-    parts: list[dict[str, CurbPoints]] = []
+    items = []
     for road in sorted({road for road, _ in next(iter(found.values()))}):
-        sides = [(side, {method: steps[road, side] for method, steps in found.items()}) for side in SIDE_SIGNS]
-        phase = Phase(_curbs_of_side, source, (road, look_at(road) if look_at else None), lambda item: f"the {item[0]} side of a road")
-        parts += source.executor.run(phase, sides)
+        look = look_at(road) if look_at else None
+        items += [(road, side, {method: steps[road, side] for method, steps in found.items()}, look and look.side(sign))
+                  for side, sign in SIDE_SIGNS.items()]
+    phase = Phase(_curbs_of_side, source, (), lambda item: f"the {item[1]} side of road {item[0]}")
+    parts = list(source.executor.run(phase, items))
     methods, crs = [*found, "both"] if len(found) > 1 else [*found], getattr(source, "survey", source).crs
     return {method: CurbPoints.join([part[method] for part in parts if method in part], crs) for method in methods}
 
 
-def _curbs_of_side(source: Any, item: tuple[str, Mapping[str, SideSteps]], road: int, look: RoadLook | None) -> dict[str, CurbPoints]:
+def _curbs_of_side(source: Any, item: tuple[int, str, Mapping[str, SideSteps], SideLook | None]) -> dict[str, CurbPoints]:
     """The phase that follows the curb: {method: CurbPoints} on one side of a road, as of `curbs_along`.
 
-    item : the side, and what each method saw there
+    item : number of the road, the side, what each method saw there, and SideLook
     """
-    side, methods = item
-    survey, beside = getattr(source, "survey", source), None if look is None else look.side(SIDE_SIGNS[side])
+    (road, side, methods, beside), survey = item, getattr(source, "survey", source)
     chains = {method: SideChains.of(seen.steps, seen, beside) for method, seen in methods.items() if seen.steps is not None and len(seen.steps)}
     # scanlines may have been told how high the scanner is
     points = {method: points_of_side(source if method == "scanlines" else survey, road, side, [of_method], methods[method].occlusion)

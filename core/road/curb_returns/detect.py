@@ -8,12 +8,14 @@ does not belong to the road.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from ...common.progress import Progress
 from ...survey.frame.placement import PlaceIndex
+from ...survey.frame.road import Road
 from ...survey.weights import FRAME
 from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints, curb_points_at
@@ -54,18 +56,20 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     on_islands, behind = on_main_islands(curb_points, survey, beside)
     mains = {road: main_curbs_of(curb_points[~on_islands], survey, road) for road in roads}
     runs = {road: [coordinates[:2] for _, coordinates in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
+    seen = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road), behind[road]) for road, (main, _) in mains.items()},
+                         settings, progress.part(0.0, RETURN.led_progress))
     for i, road in enumerate(roads):
-        part = progress.part(i / len(roads), (i + 1) / len(roads))
+        part = progress.part(*(RETURN.led_progress + (1.0 - RETURN.led_progress) * k / len(roads) for k in (i, i + 1)))
         look = None if ground is None else RoadLook(ground, road)
         main, chain = mains[road]
         elsewhere = [run for other_road in roads if other_road != road for run in runs[other_road]]
         of_road = curb_points.road == road
-        islands = curb_points[of_road & on_islands]
-        curbs = find_curb_returns(decimation, road, main, settings, part.part(0.0, 0.5) if len(islands) else part, elsewhere, look, behind[road])
-        if not are_replaced(islands, curbs):
+        curbs = find_curb_returns(decimation, road, main, seen[road], settings, part, elsewhere, look)
+        if not are_replaced(curb_points[of_road & on_islands], curbs):
             on_islands &= ~of_road
             main, chain = main_curbs_of(curb_points, survey, road)
-            curbs = find_curb_returns(decimation, road, main, settings, part.part(0.5, 1.0), elsewhere, look)
+            again = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road))}, settings)
+            curbs = find_curb_returns(decimation, road, main, again[road], settings, part, elsewhere, look)
         points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
         lines += points
         parts += points + hidden
@@ -98,36 +102,65 @@ def _points_of(survey, road, curb, chain):
                           along=np.round(along, 3), support=steps.support, sigma=np.nan if curb.sigma is None else np.round(curb.sigma, 4))
 
 
-def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray], settings: CurbSettings,
-                      progress: Progress = Progress(), elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (), look: RoadLook | None = None,
-                      behind: np.ndarray = np.empty((2, 0))) -> list[CurbReturn]:
+@dataclass(frozen=True)
+class _PlanSearch:
+    """Where steps are looked for in plan along one road.
+
+    limits : side -> SearchLimit
+    known : places of the main curbs
+    barrier : local places that the driven ground does not go beyond
+    tips : ends of the main curbs
+    behind : (2, K) local m, x and y of places that are road although something stands between them and the track
+    """
+
+    limits: dict[str, SearchLimit]
+    known: KnownPlaces
+    barrier: PlaceIndex
+    tips: FollowedEnds
+    behind: np.ndarray
+
+    @classmethod
+    def of(cls, main: Mapping[str, np.ndarray], line: Road, behind: np.ndarray = np.empty((2, 0))) -> _PlanSearch:
+        """The search beside the main curbs of a road, as of `find_curb_returns`."""
+        lines = [coordinates for _, coordinates in main_runs(main, line)]
+        return cls({side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()},
+                   KnownPlaces(places_along(line, main, CURBS.max_joined_gap)),
+                   PlaceIndex(places_along(line, main, RETURN.min_opening_length), FRAME.corridor),
+                   FollowedEnds.of(lines, np.full(len(lines), np.nan)), behind)
+
+
+def _steps_in_plan(decimation, searches, settings, progress=Progress()):
+    """{number of a road: its _PlanSearch, and what `plan_steps_of_section` finds on it}; `searches` : {number of a road: _PlanSearch}"""
+    sections = [(road, *section) for road in searches for section in work_sections(decimation.survey, road, settings.profile_width)]
+    phase = phase_along(plan_steps_of_section, decimation, (searches, settings), settings.profile_width, _join_parts)
+    found: dict[int, list] = {road: [] for road in searches}
+    for of_section, (road, *_) in zip(decimation.executor.run(phase, sections, progress), sections):
+        found[road].append(of_section)
+    return {road: (searches[road], _join_parts(of_road)) for road, of_road in found.items()}
+
+
+def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray],
+                      seen: tuple[_PlanSearch, tuple[PlanSteps, np.ndarray, np.ndarray] | None], settings: CurbSettings,
+                      progress: Progress = Progress(), elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (),
+                      look: RoadLook | None = None) -> list[CurbReturn]:
     """Corners, side streets and islands of one road.
 
     main : side -> (N, 4) points of the main curb, by station: station, offset, height above the expected road in m,
         1 where it was measured and 0 where it is hidden
+    seen : as of `_steps_in_plan`
     elsewhere : (x, y) of the main curbs of other roads, local m
     look : RoadLook of the road; without, a curb may lie anywhere
-    behind : (2, K) local m, x and y of places that are road although something stands between them and the track
     """
-    survey = decimation.survey
-    limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
-    line = survey.frame.road(road)
-    known_places = KnownPlaces(places_along(line, main, CURBS.max_joined_gap))
-    barrier = PlaceIndex(places_along(line, main, RETURN.min_opening_length), FRAME.corridor)
-    runs = main_runs(main, line)
-    tips = FollowedEnds.of([coordinates for _, coordinates in runs], np.full(len(runs), np.nan))
-    arguments = road, limits, known_places, barrier, tips, settings, behind
-    phase = phase_along(plan_steps_of_section, decimation, arguments, settings.profile_width, _join_parts)
-    sections = work_sections(survey, road, settings.profile_width)
-    measured = _join_parts(decimation.executor.run(phase, sections, progress.part(0.0, RETURN.led_progress)))
+    search, measured = seen
     if measured is None:
         return []
-    steps, falls, scanner_noise = measured
+    line, limits, known_places = decimation.survey.frame.road(road), search.limits, search.known
+    runs, (steps, falls, scanner_noise) = main_runs(main, line), measured
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)
               and has_road_before(steps[c.steps], line, look)]
-    curbs = classify_curbs(chains, steps, falls, runs, line, limits, survey.frame.passes_of(road), elsewhere)
-    noisy = _noisy_sections(sections, line, steps, scanner_noise, settings)
-    curbs = with_led_on(curbs, runs, decimation, road, noisy, known_places, limits, settings, progress.part(RETURN.led_progress, 1.0))
+    curbs = classify_curbs(chains, steps, falls, runs, line, limits, decimation.survey.frame.passes_of(road), elsewhere)
+    noisy = _noisy_sections(work_sections(decimation.survey, road, settings.profile_width), line, steps, scanner_noise, settings)
+    curbs = with_led_on(curbs, runs, decimation, road, noisy, known_places, limits, settings, progress)
     return with_curbs_beyond(curbs, decimation, road, known_places)
 
 
@@ -149,22 +182,18 @@ def _join_parts(parts):
     return PlanSteps.join(steps), np.concatenate(falls), np.concatenate(scanner_noise)
 
 
-def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, limits: Mapping[str, SearchLimit],
-                          known: KnownPlaces, barrier: PlaceIndex, tips: FollowedEnds, settings: CurbSettings, behind: np.ndarray,
+def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int], searches: Mapping[int, _PlanSearch], settings: CurbSettings,
                           points_per_cell: int | None = CURBS.points_per_level_cell_in_plan) -> tuple[PlanSteps, np.ndarray, np.ndarray] | None:
     """The phase of curb returns: steps in plan in one section of a road.
 
-    section : (first, last + 1) profile numbers
-    limits : side -> SearchLimit
-    known : places of the main curbs
-    barrier : local places that the driven ground does not go beyond
-    tips : ends of the main curbs
-    behind : (2, K) local x and y of places that are road although something stands between them and the track
+    item : number of the road, and (first, last + 1) profile numbers
+    searches : {number of a road: _PlanSearch}
     points_per_cell : as in `decimated_points`, where the ground is not uneven nearly everywhere
 
     Returns PlanSteps, (N,) bool where the raised ground behind each ends, and (N,) m the scanner's noise; None where there are no steps
     """
-    survey, width, clear = decimation.survey, decimation.width, settings.limits.clear_height
+    (road, *section), survey, width, clear = item, decimation.survey, decimation.width, settings.limits.clear_height
+    limits, known, barrier, tips, behind = (getattr(searches[road], name) for name in ("limits", "known", "barrier", "tips", "behind"))
     margin = int(np.ceil(RETURN.section_margin / width))
     profiles = section[0] - margin, section[1] + margin
     limit = None if points_per_cell is None or decimation.mostly_uneven(road, sum(section) // 2) else points_per_cell
@@ -175,7 +204,7 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     noisy = _is_noisy(raster, clear)
     if noisy and limit is not None:
         # averages need every point
-        return plan_steps_of_section(decimation, section, road, limits, known, barrier, tips, settings, behind, points_per_cell=None)
+        return plan_steps_of_section(decimation, item, searches, settings, points_per_cell=None)
     line, slopes = survey.frame.road(road), ground_slopes(raster.low)
     inside = np.concatenate([np.array([x, y])[:, inner], behind], axis=1)
     bounds = barrier.places[barrier.within(*raster.box)].T

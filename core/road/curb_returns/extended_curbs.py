@@ -239,11 +239,11 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
     open_ends = np.flatnonzero(~met.within(ends.x + RETURN.leaving_length * ends.tx, ends.y + RETURN.leaving_length * ends.ty,
                                            0.5 * RETURN.leaving_length))
     ends, owner = ends[open_ends], owner[open_ends]
-    phase = phase_along(_led_steps_of_section, decimation, (road, ends, settings), settings.profile_width, _join_led)
+    phase = phase_along(_led_steps_of_section, decimation, (ends, settings), settings.profile_width, _join_led)
     continuations: list[CurbReturn] = []
     main_ends = CurbLines([(x, y) for _, (x, y, _) in runs])
     extended = {id(curb): curb for curb in curbs}
-    for number, line_steps in _join_led(list(decimation.executor.run(phase, sections, progress))):
+    for number, line_steps in _join_led(list(decimation.executor.run(phase, [(road, *section) for section in sections], progress))):
         # inside a tight bend a place may have no station
         line_steps = _until_met(line_steps[np.isfinite(line.locate(line_steps.x, line_steps.y)[0])], met)
         k, at_head = owner[number], ends.uphill[number] < 0
@@ -280,18 +280,19 @@ def _join_led(parts: Sequence[list[tuple[int, PlanSteps]] | None]) -> list[tuple
     return [led for part in parts if part is not None for led in part]
 
 
-def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, ends: FollowedEnds,
+def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int, int], ends: FollowedEnds,
                          settings: CurbSettings) -> list[tuple[int, PlanSteps]]:
     """The phase of faint curbs: what continues from the ends in one section of a road.
 
-    section : (first, last + 1) profile numbers
+    section : number of the road, and (first, last + 1) profile numbers
     ends : FollowedEnds of the curbs
 
     Returns a list of (number of the end, PlanSteps)
     """
+    road, first, last = section
     width, line, reach = decimation.width, decimation.survey.frame.road(road), RETURN.max_led_length + RETURN.led_length
     stations, _ = line.locate(ends.x, ends.y)
-    members = np.flatnonzero((stations >= section[0] * width) & (stations < section[1] * width))
+    members = np.flatnonzero((stations >= first * width) & (stations < last * width))
     if not len(members):
         return []
     profiles = int(np.floor((stations[members].min() - reach) / width)), int(np.ceil((stations[members].max() + reach) / width))

@@ -19,7 +19,7 @@ from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
-from ..common.side_curbs import SideSteps, block_bounds, curbs_along, grids_beside, merged_passes, steps_of_road
+from ..common.side_curbs import Search, Section, curbs_along, grids_beside, merged_passes, steps_of_roads
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
 from ..curb_returns.detect import with_curb_returns
 from ..surface.ground_grid import MeasuredGround
@@ -45,7 +45,8 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
         with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own_decimation:
             return detect_curbs(survey, settings, progress, include_returns, own_decimation, beside, ground)
     ground = ground or MeasuredGround(survey)
-    steps = steps_on_profiles(decimation, settings, progress.part(0.0, PROFILE.main_curb_progress))
+    steps = steps_of_roads(steps_of_section, decimation, (settings,), {"profiles": profiles_of(decimation, settings)},
+                           progress.part(0.0, PROFILE.main_curb_progress))["profiles"]
     beside = {} if beside is None else beside
     beside.update(grids_beside(steps))
     main = curbs_along(decimation, {"profiles": steps}, partial(RoadLook, ground))["profiles"]
@@ -61,30 +62,21 @@ def tell_points(points: CurbPoints, progress: Progress) -> None:
     progress.info(f"Curb points: {measured:,} measured, {len(points) - measured:,} hidden by something in front.")
 
 
-def steps_on_profiles(decimation: PointDecimation, settings: CurbSettings, progress: Progress) -> dict[tuple[int, str], SideSteps]:
-    """The steps on profiles of each side of every road: (number of the road, side) -> SideSteps."""
-    survey, width, found = decimation.survey, settings.profile_width, {}
-    roads = survey.store.roads()
-    for i, road in enumerate(roads):
-        steps, beside = steps_of_road(steps_of_section, decimation, road, settings, work_sections(survey, road, width), width,
-                                      progress.part(i / len(roads), (i + 1) / len(roads)))
-        bounds = block_bounds(survey.frame.road(road), *survey.store.span(road), settings.block_length)
-        for side, grid in beside.items():
-            found[road, side] = SideSteps(steps.get(side), width, settings.limits, bounds, grid)
-    return found
+def profiles_of(decimation: PointDecimation, settings: CurbSettings) -> Search:
+    """The profiles of all roads."""
+    survey = decimation.survey
+    spans = {road: survey.store.span(road) for road in survey.store.roads()}
+    return Search.of(spans, survey.frame, settings.profile_width, settings.limits, settings.block_length)
 
 
-def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int,
-                     settings: CurbSettings) -> tuple[dict[str, CurbSteps], dict[str, OcclusionGrid]]:
+def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbSettings) -> tuple[dict[str, CurbSteps], dict[str, OcclusionGrid]]:
     """The phase of profiles: steps in one section of a road.
-
-    section : (first, last + 1) profile numbers
 
     Returns
         steps : side -> CurbSteps, passes merged
         occlusion : side -> OcclusionGrid of these profiles
     """
-    width = decimation.width
+    (_, road, *section), width = item, decimation.width
     around = max(CURBS.spread_profiles, int(np.ceil(PROFILE.averaging_length / width)))
     tracks = {side: OutermostTrack(decimation.survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
     occlusion = {side: OcclusionGrid(width, section[0], section[1] - section[0], CURBS.max_curb_offset) for side in SIDE_SIGNS}

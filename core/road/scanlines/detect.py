@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -27,8 +28,8 @@ from ...survey.weights import READING
 from ..common.curb_points import CurbPoints
 from ..common.decimation import LevelGround
 from ..common.occlusion import OcclusionGrid
-from ..common.side_curbs import SideSteps, block_bounds, curbs_along, merged_passes, steps_of_road
-from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections
+from ..common.side_curbs import Search, Section, SideSteps, curbs_along, merged_passes, steps_of_roads
+from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height
 from ..edges.fit import EdgeCurve, point_table, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 from ..surface.ground_grid import MeasuredGround
@@ -50,8 +51,8 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
 
     Returns CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb.
     """
-    steps = {"scanlines": steps_on_scanlines(source, settings, block_length, progress)}
-    points = curbs_along(source, steps, None if ground is None else partial(RoadLook, ground))["scanlines"]
+    steps = steps_of_roads(corners_of_section, source, (settings,), {"scanlines": planes_of(source, settings, block_length)}, progress)
+    points = curbs_along(source, with_scanner_noise(steps), None if ground is None else partial(RoadLook, ground))["scanlines"]
     tell_corners(points, progress)
     return points
 
@@ -62,34 +63,20 @@ def tell_corners(points: CurbPoints, progress: Progress) -> None:
     progress.info(f"Corners of curbs: {measured:,} measured on scanlines, {hidden:,} hidden by objects.")
 
 
-def steps_on_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings, block_length: float,
-                       progress: Progress) -> dict[tuple[int, str], SideSteps]:
-    """The corners on each side of every road: (number of the road, side) -> SideSteps. `block_length` : as of `curbs_from_scanlines`."""
-    roads, interval, found = source.roads(), source.interval, {}
-    for i, road in enumerate(roads):
-        start, end = source.span(road)
-        sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
-        corners, beside = steps_of_road(corners_of_section, source, road, settings, sections, interval,
-                                        progress.part(i / len(roads), (i + 1) / len(roads)))
-        bounds = block_bounds(source.frame.road(road), start, end, block_length)
-        for side, grid in beside.items():
-            of_side = _with_scanner_noise(corners[side]) if side in corners and len(corners[side]) else None
-            found[road, side] = SideSteps(of_side, interval, settings.limits, bounds, grid)
-    return found
+def planes_of(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings, block_length: float) -> Search:
+    """The planes of all roads. `block_length` : as of `curbs_from_scanlines`."""
+    return Search.of({road: source.span(road) for road in source.roads()}, source.frame, source.interval, settings.limits, block_length, beyond=1)
 
 
-def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[int, int], road: int,
+def corners_of_section(source: SurveyScanlines | LayerScanlines, item: Section,
                        settings: ScanlineBoundarySettings) -> tuple[dict[str, CurbCorners], dict[str, OcclusionGrid]]:
     """The phase of scanlines: corners in one section of a road.
-
-    source : SurveyScanlines or LayerScanlines
-    section : (first, last + 1) numbers of planes
 
     Returns
         corners : side -> CurbCorners, merged over passes and scanners where they agree
         occlusion : side -> OcclusionGrid of these planes
     """
-    interval, (begin, end) = source.interval, section
+    interval, (_, road, begin, end) = source.interval, item
     margin = max(plane_fit_rows(interval, settings), SCANLINE.neighbour_lines + gap_fill_rows(interval)) + 1
     tracks = {side: OutermostTrack(source.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
     occlusion = {side: OcclusionGrid(interval, begin, end - begin, CURBS.max_curb_offset) for side in SIDE_SIGNS}
@@ -106,9 +93,9 @@ def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[
         for side, sign in SIDE_SIGNS.items():
             origin = np.floor(nearest[side].min())
             outward = grid.outward(sign, origin)
-            occlusion[side].add_points(sign * tall[0], tall[1], tall[2], section, outward.part(margin, margin + end - begin))
+            occlusion[side].add_points(sign * tall[0], tall[1], tall[2], (begin, end), outward.part(margin, margin + end - begin))
             if strip is not None:
-                occlusion[side].add_level_ground(section, *strip[sign])
+                occlusion[side].add_level_ground((begin, end), *strip[sign])
             of_side = find_candidates(closed.outward(sign, origin), outward.low, nearest[side], settings)
             candidates[side] = of_side[(of_side.row >= margin) & (of_side.row < margin + end - begin)]
         for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
@@ -157,10 +144,13 @@ def merged_corners(found: Sequence[CurbCorners]) -> CurbCorners:
     return CurbCorners.join([upright, sloped])
 
 
-def _with_scanner_noise(corners):
-    """The corners with `scanner_noise` set to the median noise of this road."""
-    corners.scanner_noise = np.full(len(corners), np.clip(np.median(corners.noise), CURBS.min_scanner_noise, SCANLINE.max_usual_noise))
-    return corners
+def with_scanner_noise(found: dict[str, dict[tuple[int, str], SideSteps]]) -> dict[str, dict[tuple[int, str], SideSteps]]:
+    """The same, once the corners of each side of a road have the median noise there for `scanner_noise`."""
+    for side in found["scanlines"].values():
+        if side.steps is not None and len(side.steps):
+            corners: Any = side.steps
+            corners.scanner_noise = np.full(len(corners), np.clip(np.median(corners.noise), CURBS.min_scanner_noise, SCANLINE.max_usual_noise))
+    return found
 
 
 def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progress: Progress = Progress()) -> RoadEdges:

@@ -6,7 +6,7 @@ and between the limits of the road belong to its surface.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -63,17 +63,16 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     Raises RoadExtractionError if no road surface is found.
     """
     road_points = RoadPoints.of_survey(survey)
-    stretches, margins, cubes = [], Margins(), []
-    roads = survey.store.roads()
-    for k, road in enumerate(roads):
-        part = progress.part(k / len(roads), (k + 1) / len(roads))
-        carriageway = find_carriageway(survey, road, edges, settings, part.part(0.0, 0.5), ground)
+    stretches, margins, cubes, found = [], Margins(), [], {}
+    for road, carriageway in carriageways(survey, edges, settings, progress.part(0.0, 0.5), ground):
         if carriageway is None:
             progress.warn(f"Road {road}: no ground was measured near the track, so this road has no surface.")
             cubes += [(counted_cubes(survey.section(road, number)), None) for number in survey.store.sections(road) if counted]
-            continue
-        per_row = _take_points(survey, road, carriageway, road_points, counted, cubes, part.part(0.5, 1.0))
-        stretches += outlines(survey.frame, road, carriageway, per_row)
+        else:
+            found[road] = carriageway
+    per_row = _take_points(survey, found, road_points, counted, cubes, progress.part(0.5, 1.0))
+    for road, carriageway in found.items():
+        stretches += outlines(survey.frame, road, carriageway, per_row[road])
         margins.add(road, carriageway, *(rows_with_edge(edges, road, carriageway.cells.stations, curb) for curb in (True, False)))
     if not len(road_points):
         raise RoadExtractionError("No road surface was found: no points lie under or beside the trajectory at the height "
@@ -88,21 +87,32 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     return road_points, surface
 
 
-def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, settings: SurfaceSettings,
-                     progress: Progress = Progress(), ground: MeasuredGround | None = None) -> Carriageway | None:
-    """Height and limits of one road, row by row.
+def carriageways(survey: Survey, edges: RoadEdges | None, settings: SurfaceSettings, progress: Progress = Progress(),
+                 ground: MeasuredGround | None = None) -> Iterator[tuple[int, Carriageway | None]]:
+    """Height and limits of every road, row by row; the ground of all roads is measured together.
 
     ground : MeasuredGround of the survey, or None to measure it here
 
-    Returns Carriageway, or None where no ground was measured near the track
+    Yields the number of a road and its Carriageway, None where no ground was measured near the track
     """
-    windows = windows_of(survey, road)
-    stations = (windows[0] + np.arange(SURFACE.window_rows * len(windows)) + 0.5) * SURFACE.row_length
-    measured = edge_offsets(edges, road, stations)
-    missing = np.isnan(measured["left"][0]) | np.isnan(measured["right"][0])
+    ground, beside, wanted = ground or MeasuredGround(survey), {}, []
+    for road in survey.store.roads():
+        windows = windows_of(survey, road)
+        stations = (windows[0] + np.arange(SURFACE.window_rows * len(windows)) + 0.5) * SURFACE.row_length
+        measured = edge_offsets(edges, road, stations)
+        missing = np.isnan(measured["left"][0]) | np.isnan(measured["right"][0])
+        profiled = missing.reshape(-1, SURFACE.window_rows).any(axis=1).tolist()
+        beside[road] = windows, profiled, stations, measured
+        wanted += [(road, row, want) for row, want in zip(windows, profiled)]
+    ground.measure(wanted, progress.part(0.0, SURFACE.measured_progress))
+    for k, (road, of_road) in enumerate(beside.items(), start=1):
+        yield road, _carriageway(survey, road, settings, ground, *of_road)
+        progress.report(SURFACE.measured_progress + (1.0 - SURFACE.measured_progress) * k / len(beside))
 
-    per_window = missing.reshape(-1, SURFACE.window_rows).any(axis=1)
-    cells, profiles = (ground or MeasuredGround(survey)).windows(road, windows, per_window.tolist(), progress.part(0.0, SURFACE.measured_progress))
+
+def _carriageway(survey, road, settings, ground, windows, profiled, stations, measured):
+    """The Carriageway of one road, beside whose rows at (R,) stations these edges were measured."""
+    cells, profiles = ground.windows(road, windows, profiled)
     prior = survey.road_height(road, stations)
     followed = follow_road(cells, prior)
     if followed is None:
@@ -117,7 +127,6 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
             grown[side] = grown_limit(profiles, cells, height, prior, sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown[side].offset - sign * SURFACE.grown_inset, offset)
         limits[side] = offset, bounded
-        progress.report(SURFACE.measured_progress + (1.0 - SURFACE.measured_progress) * (0.6 if side == "left" else 0.9))
     limits = _with_mouths(limits, closed, tracks, cells, followed.ground, cells_driven(survey.frame, road, cells), settings.max_width)
     has_road = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + SURFACE.min_surface_width)
     tolerance = float(np.clip(SURFACE.tolerance_floor + SURFACE.tolerance_sigmas * followed.noise, 0.0, settings.height_tolerance))
@@ -145,18 +154,22 @@ def _has_road(ground, offsets):
     return np.convolve(measured, np.ones(11), "same") > 0
 
 
-def _take_points(survey, road, carriageway, road_points, counted, cubes, progress):
-    """Put the surface points of one road into `road_points`, and what is counted of its sections into `cubes`; the points in each row of cells."""
-    per_row = np.zeros(len(carriageway.height), np.int64)
+def _take_points(survey, found, road_points, counted, cubes, progress):
+    """Put the surface points into `road_points`, and what is counted of sections into `cubes`; {road: points in each row of cells}.
+
+    `found` : {road: Carriageway}
+    """
+    per_row = {road: np.zeros(len(carriageway.height), np.int64) for road, carriageway in found.items()}
     executor, length = survey.executor.passing(), survey.store.section_length
-    phase = Phase(surface_points, road_points, (counted,), lambda item: survey.stretch(road, item[0][1] * length, item[0][2] * length),
+    phase = Phase(surface_points, road_points, (counted,), lambda item: survey.stretch(item[0][0], item[0][1] * length, item[0][2] * length),
                   state=lambda item: None)   # what is asked of a survey stays as it is
-    items = [(stretch, surface_about(carriageway, stretch, length)) for stretch in survey.store.stretches([road])]
-    for index, first_row, rows, of_sections in executor.run(phase, items, progress):
+    items = [(stretch, surface_about(found[stretch[0]], stretch, length)) for stretch in survey.store.stretches(list(found))]
+    for (index, first_row, rows, of_scanners, of_sections), ((road, *_), _) in zip(executor.run(phase, items, progress), items):
         road_points.store.adopt(index, executor.folder)
         cubes += of_sections
-        first = first_row - carriageway.cells.first_row
-        per_row[first:first + len(rows)] += rows
+        road_points.of_scanners = of_scanners + (0 if road_points.of_scanners is None else road_points.of_scanners)
+        first = first_row - found[road].cells.first_row
+        per_row[road][first:first + len(rows)] += rows
     return per_row
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.linalg import solveh_banded
@@ -327,7 +328,7 @@ def _levels(count, mean, column_size):
 PROFILES_PER_WINDOW = round(SURFACE.window_rows * SURFACE.row_length / SURFACE.profile_row)
 CELL_NAMES = ("height", "rough", "count")   # what is known of the cells: the brightness of ground is that of its profiles
 
-Wanted = tuple[int, bool, bool]   # first row of a window, and whether its cells and its profiles are to be measured
+Wanted = tuple[int, int, bool, bool]   # road and first row of a window, and whether its cells and its profiles are to be measured
 
 
 def windows_of(survey: Survey, road: int) -> list[int]:
@@ -344,13 +345,13 @@ class MeasuredGround:
         self._file: ArrayFile | None = None
         self._kept: tuple[dict[tuple[int, int], int], ...] = {}, {}   # of cells and of profiles, by road and first row
 
-    def cells(self, road: int, progress: Progress = Progress()) -> GroundCells:
-        """The GroundCells of a whole road."""
-        rows = windows_of(self.survey, road)
-        return self.windows(road, rows, [False] * len(rows), progress)[0]
+    def cells(self, road: int) -> GroundCells:
+        """The GroundCells of a whole road; those of all roads are measured together."""
+        rows = {number: windows_of(self.survey, number) for number in self.survey.store.roads()}
+        self.measure([(number, row, False) for number, of_road in rows.items() for row in of_road])
+        return self.windows(road, rows[road], [False] * len(rows[road]))[0]
 
-    def windows(self, road: int, rows: Sequence[int], profiled: Sequence[bool],
-                progress: Progress = Progress()) -> tuple[GroundCells, SurfaceProfiles | None]:
+    def windows(self, road: int, rows: Sequence[int], profiled: Sequence[bool]) -> tuple[GroundCells, SurfaceProfiles | None]:
         """The ground of consecutive windows of a road.
 
         rows : first row of each window
@@ -360,7 +361,7 @@ class MeasuredGround:
             cells : GroundCells of all windows
             profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
-        self._measure(road, rows, profiled, progress)
+        self.measure([(road, row, wanted) for row, wanted in zip(rows, profiled)])
         half = _ground_columns(FRAME.corridor, SURFACE.column_width)
         cells = np.empty((len(CELL_NAMES), SURFACE.window_rows * len(rows), 2 * half), np.float32)
         for number, row in enumerate(rows):
@@ -378,17 +379,18 @@ class MeasuredGround:
         return ground, SurfaceProfiles((first.ravel() + 0.5) * SURFACE.profile_row, (np.arange(-half, half) + 0.5) * SURFACE.profile_column,
                                        *profiles)
 
-    def _measure(self, road, rows, profiled, progress):
-        """Keep what is wanted of windows and not known yet."""
+    def measure(self, wanted: Sequence[tuple[int, int, bool]], progress: Progress = Progress()) -> None:
+        """Keep what is not known yet of windows of any roads: number of the road, first row, and whether the profiles are wanted."""
         kept_cells, kept_profiles = self._kept
-        windows = [window for window in ((row, (road, row) not in kept_cells, wanted and (road, row) not in kept_profiles)
-                                         for row, wanted in zip(rows, profiled))
-                   if any(window[1:])]
+        windows = [(road, row, (road, row) not in kept_cells, profiled and (road, row) not in kept_profiles) for road, row, profiled in wanted]
+        windows = [window for window in windows if any(window[2:])]
+        if not windows:
+            return
         executor = self.survey.executor.passing()
-        phase = Phase(ground_of_windows, self.survey, (road,), lambda item: self.survey.stretch(
-            road, item[0][0] * SURFACE.row_length, (item[-1][0] + SURFACE.window_rows) * SURFACE.row_length))
+        phase = Phase(ground_of_windows, self.survey, (), lambda item: self.survey.stretch(
+            item[0][0], item[0][1] * SURFACE.row_length, (item[-1][1] + SURFACE.window_rows) * SURFACE.row_length))
         self._file = self._file or ArrayFile()
-        for (row, *_), measured in zip(windows, executor.run_together(phase, windows, SURFACE.measured_windows, progress)):
+        for measured, (road, row, *_) in zip(executor.run_together(phase, windows, SURFACE.measured_windows, progress), windows):
             for kept, values in zip(self._kept, measured):
                 if values is not None:
                     kept[road, row] = self._file.put([values], values.nbytes)
@@ -398,7 +400,7 @@ class MeasuredGround:
         out[:] = self._file.get(self._kept[kind][road, row], out.size, out.dtype).reshape(out.shape)
 
 
-def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> list[tuple[np.ndarray | None, np.ndarray | None]]:
+def ground_of_windows(survey: Survey, windows: Sequence[Wanted]) -> list[tuple[np.ndarray | None, np.ndarray | None]]:
     """The phase that measures the ground.
 
     windows : what is wanted of each window
@@ -409,11 +411,8 @@ def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> l
         profiles : (5, P, K) float32, the attributes NAMES of its SurfaceProfiles
     """
     result = []
-
-    def height(s):
-        return survey.road_height(road, s)
-
-    for row, with_cells, with_profiles in windows:
+    for road, row, with_cells, with_profiles in windows:
+        height = partial(survey.road_height, road)
         points = survey.window(road, row * SURFACE.row_length, (row + SURFACE.window_rows) * SURFACE.row_length)
         profiles = SurfaceProfiles.of(points, row * SURFACE.row_length, SURFACE.window_rows * SURFACE.row_length, FRAME.corridor, height,
                                       lambda seen: ahead_of_vehicle(survey, seen, seen.s)) if with_profiles else None

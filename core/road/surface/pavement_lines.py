@@ -22,7 +22,7 @@ from ..common.tracking import GapLine
 from ..edges.fit import EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
 from ..weights import EDGE, SURFACE
-from .extract import SurfaceSettings, find_carriageway
+from .extract import SurfaceSettings, carriageways
 from .ground_grid import MeasuredGround
 from .pavement_edge import Carriageway, edge_offsets
 
@@ -40,9 +40,7 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
     Returns RoadEdges, the given ones first; the others have `what` pavement and no height
     """
     pieces: list[EdgePiece] = []
-    roads = survey.store.roads()
-    for k, road in enumerate(roads):
-        carriageway = find_carriageway(survey, road, edges, SurfaceSettings(), progress.part(k / len(roads), (k + 1) / len(roads)), ground)
+    for road, carriageway in carriageways(survey, edges, SurfaceSettings(), progress, ground):
         if carriageway is not None:
             pieces += _pavement_pieces(survey.frame, road, carriageway, edges, settings.max_gap, len(pieces))
     if pieces:

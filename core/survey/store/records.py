@@ -45,6 +45,11 @@ def fill_units(metres: np.ndarray, units: np.ndarray) -> np.ndarray:
     return units
 
 
+def points_of_scanners(records: Any) -> np.ndarray:
+    """(256,) how many of some records each scanner has."""
+    return np.bincount(records["scanner"], minlength=256)
+
+
 def beside_road(road: int) -> int:
     """The number under which a store keeps ground beyond the corridor of a road, by the station of the vehicle that saw it."""
     return -1 - road

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...execution.phase import THREADS, Executor, Recipe
 from .columns import Columns
-from .records import ROAD_POINT, Points, join_columns, point_dtype
+from .records import ROAD_POINT, Points, join_columns, point_dtype, points_of_scanners
 from .section_store import SectionStore, Stretch, opened_store
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ class RoadPoints:
     pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)   # {road number: SigmaAlong}, as in RoadFrame
     survey: Any = field(default=None, repr=False)   # Survey whose points these are, None where they are their own
     density: Any = ()   # CubeDensity of all points of the survey and of these, where that was asked for
+    of_scanners: np.ndarray | None = None   # as of `points_of_scanners`, where they were counted
 
     @property
     def executor(self) -> Executor:
@@ -89,6 +90,10 @@ class RoadPoints:
 
     def window(self, road: int, start: float, end: float) -> Points:
         return self.store.window(road, start, end)
+
+    def points_of_scanners(self) -> np.ndarray:
+        """(256,) how many points each scanner has."""
+        return sum(points_of_scanners(self.section(*key).records) for key in self.all_sections()) if self.of_scanners is None else self.of_scanners
 
     def all_sections(self) -> list[tuple[int, int]]:
         """(road, section number) of every section that has points, in order."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import shapely
@@ -55,7 +55,7 @@ def check_lanelets(whole: LaneletMap, places: np.ndarray, crs: str = "", progres
         check.lanelet(lanelet)
     for relation in whole.others.values():
         check.members(relation)
-    _add_rule_findings(whole, check.findings, check.place_of)
+    check.rules()
     progress.report(0.6)
     check.sides()
     check.joints()
@@ -195,6 +195,23 @@ class _LaneletCheck:
             if not same_way(self.places[rows], self.places[self.network.left[lanelet.id]]):
                 self.findings.add("centre line", name, "The centre line runs against it.", place)
 
+    def rules(self) -> None:
+        """Relations that are no lanelets: rules of traffic, areas, and lanelets whose type is misspelt."""
+        used = {id for lanelet in (*self.whole.lanelets.values(), *self.whole.others.values())
+                for kind, id in lanelet.members.get("regulatory_element", ()) if kind == "relation"}
+        for relation in self.whole.others.values():
+            name, kind, place = f"relation {relation.id}", relation.tags.get("type", ""), self.place_of(relation)
+            if kind == "regulatory_element":
+                for text in _rule(relation, relation.id in used):
+                    self.findings.add("regulatory element", name, text, place)
+            elif kind == "multipolygon":   # the outer ways, in any order and direction, make rings
+                ways = [self.whole.ways[id] for kind, id in relation.members.get("outer", ()) if kind == "way" and id in self.whole.ways]
+                ends = Counter(way.nodes[row] for way in ways if way.nodes for row in (0, -1))
+                if not ends or any(count % 2 for count in ends.values()):
+                    self.findings.add("open area", name, "The ways of its outline do not come back to where they begin.", place)
+            elif "left" in relation.members and "right" in relation.members:
+                self.findings.add("lanelet tag", name, f"It has borders left and right, but its type is {kind!r}.", place)
+
     def sides(self) -> None:
         """Left and right by the habit of the map: a border runs with the traffic, unless it is the left one of both directions."""
         odd = []
@@ -332,22 +349,6 @@ def _participant_tags(tags, walked):
         yield "Nobody may use it."
 
 
-def _add_rule_findings(whole: LaneletMap, findings: Findings, place: Callable[[Lanelet], np.ndarray]) -> None:
-    """Add what is wrong with relations that are no lanelets: rules of traffic, areas, and lanelets whose type is misspelt."""
-    used = {id for lanelet in (*whole.lanelets.values(), *whole.others.values()) for kind, id in lanelet.members.get("regulatory_element", ())
-            if kind == "relation"}
-    for relation in whole.others.values():
-        name, kind = f"relation {relation.id}", relation.tags.get("type", "")
-        if kind == "regulatory_element":
-            for text in _rule(relation, relation.id in used):
-                findings.add("regulatory element", name, text, place(relation))
-        elif kind == "multipolygon":
-            if not _closed(whole, relation):
-                findings.add("open area", name, "The ways of its outline do not come back to where they begin.", place(relation))
-        elif "left" in relation.members and "right" in relation.members:
-            findings.add("lanelet tag", name, f"It has borders left and right, but its type is {kind!r}.", place(relation))
-
-
 def _rule(relation, used):
     subtype = relation.tags.get("subtype", "")
     if subtype not in RULES:
@@ -362,10 +363,3 @@ def _rule(relation, used):
             yield f"The role {role!r} is not known."
     if not used:
         yield "No lanelet obeys it."
-
-
-def _closed(whole, relation):
-    """Whether the outer ways of an area, in any order and direction, make rings."""
-    ways = [whole.ways[id] for kind, id in relation.members.get("outer", ()) if kind == "way" and id in whole.ways]
-    ends = Counter(way.nodes[row] for way in ways if way.nodes for row in (0, -1))
-    return bool(ends) and all(count % 2 == 0 for count in ends.values())

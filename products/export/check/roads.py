@@ -7,7 +7,7 @@ ASAM OpenDRIVE 1.7 and 1.8, the tables of attributes and the rules at the end of
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ import shapely
 
 from ....core.common.errors import RoadExtractionError
 from ....core.common.progress import Progress
-from ..opendrive.model import DRIVEN_TYPES, MARK_TYPES, OPEN_END, ROAD_LANE_TYPES, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, RoadLink
+from ..opendrive.model import DRIVEN_TYPES, LINK_NAMES, MARK_TYPES, OPEN_END, ROAD_LANE_TYPES, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, RoadLink
 from ..opendrive.xodr import GEOMETRIES
 from ..sources import SAME_LEVEL, metric_wkt, wrapped
 from ..xml_tree import XmlElement
@@ -65,17 +65,15 @@ class _RoadCheck:
     def statements(self) -> None:
         """What the file says that the format does not have, and whether its header fits the roads."""
         if self.whole.tree is not None:
-            for fault, element, text, road, s in statements(self.whole.tree):
-                self.add(fault, element, text, self.whole.road(road), s)
+            _Statements(self.whole.tree, lambda fault, element, text, road, s: self.add(fault, element, text, self.whole.road(road), s))
         if self.whole.reference:
             try:
                 metric_wkt(self.whole.reference, "The map")
             except RoadExtractionError as problem:
                 self.add("reference", "header", str(problem), None, 0.0)
-        if self.whole.bounds is not None and self.whole.roads:
-            self._bounds(*self.whole.bounds)
-
-    def _bounds(self, west, south, east, north):
+        if self.whole.bounds is None or not self.whole.roads:
+            return
+        west, south, east, north = self.whole.bounds
         places = np.concatenate([road.plan.at(np.array([0.0, road.plan.length]))[0] for road in self.whole.roads])
         outside = (places < np.array([west, south]) - FARTHEST_BOUND) | (places > np.array([east, north]) + FARTHEST_BOUND)
         if (east > west or north > south) and outside.any():
@@ -119,14 +117,11 @@ class _RoadCheck:
             for lane in section.lanes.values():
                 self._lane(road, section.s, lane, f"road {road.id}, section {number}, lane {lane.id}", road.section_end(number) - section.s)
             outlines.append(self._borders(road, number))
-        self._offset_steps(road, starts)
-        if road.junction == "-1":
-            self.areas.append((road, shapely.union_all(outlines)))
-
-    def _offset_steps(self, road, starts):
         for s, step in zip(*road.lane_offset.steps()):
             if step > MAX_WIDTH_STEP and s not in starts:
                 self.add("width step", f"road {road.id}", f"The lane offset jumps by {metres(step)} at s = {s:.2f}.", road, s)
+        if road.junction == "-1":
+            self.areas.append((road, shapely.union_all(outlines)))
 
     def _lane(self, road, start, lane, name, length):
         if lane.type not in ROAD_LANE_TYPES:
@@ -232,7 +227,7 @@ class _Links:
 
     def road(self, road: MapRoad) -> None:
         for end in ("start", "end"):
-            link = road.link(end)
+            link = road.links.get(end)
             if link is not None:
                 fault, text = self._to_junction(road, link) if link.element == "junction" else self._to_road(road, end, link)
                 if fault:
@@ -242,7 +237,9 @@ class _Links:
         """(fault, what was seen) of a road's link to a junction, ("", "") where it is right."""
         if link.id not in self.known:
             return "road link", f"There is no junction {link.id}."
-        if road.junction == "-1" and not self.network.connections.get((link.id, road.id)) and not self._is_left_by(link.id, road.id):
+        # whether a connecting road of the junction leads to it
+        left = any(one.junction == link.id and one.touches(end, "road", road.id) for one in self.whole.roads for end in LINK_NAMES)
+        if road.junction == "-1" and not self.network.connections.get((link.id, road.id)) and not left:
             return "one-sided link", f"Junction {link.id} has no connection with it."
         return "", ""
 
@@ -253,14 +250,9 @@ class _Links:
             return "road link", f"There is no {link.element or 'element'} {link.id}."
         if link.contact not in ("start", "end"):
             return "road link", f"It touches the {link.contact or 'unnamed'} end of road {link.id}."
-        if road.junction == linked.junction == "-1" and linked.link(link.contact) != RoadLink("road", road.id, end):
+        if road.junction == linked.junction == "-1" and linked.links.get(link.contact) != RoadLink("road", road.id, end):
             return "one-sided link", f"Road {link.id} is not linked back."
         return "", ""
-
-    def _is_left_by(self, junction: str, road: str) -> bool:
-        """Whether a connecting road of a junction leads to a road."""
-        return any(connecting.junction == junction and connecting.touches(end, "road", road)
-                   for connecting in self.whole.roads for end in ("start", "end"))
 
     def junctions(self) -> None:
         reached = {(junction.id, connection.connecting) for junction in self.whole.junctions for connection in junction.connections}
@@ -277,7 +269,7 @@ class _Links:
     def _inside(self, road, reached):
         """A road of a junction leads somewhere at both ends, and is one of (junction, road) that connections name."""
         for end in ("start", "end") if road.junction in self.known else ():
-            if road.link(end) is None:
+            if road.links.get(end) is None:
                 self.findings.add("road link", f"road {road.id}, {end}", "It lies in a junction and leads nowhere.", self.place(road, end))
         if road.junction != "-1" and (road.junction, road.id) not in reached:
             self.findings.add("unused junction road", f"road {road.id}", f"Junction {road.junction} has no connection to it.",
@@ -309,7 +301,7 @@ class _Links:
                     continue
                 self._joined(name, key, end, corners, neighbour, neighbour_end, target, driven)
             declared = end in lane.data.get(OPEN_END, "").split()
-            if self.network.is_open(key, end, self.touched) and not declared and self._width(corners) > LEAST_LANE:
+            if self.network.is_open(key, end, self.touched) and not declared and np.hypot(*(corners[0] - corners[1])[:2]) > LEAST_LANE:
                 fault = "dead end" if end == road.way_out(key[2]) else "no way in"
                 self.findings.add(fault, name, f"At its {end} it is linked to no driven lane.", corners[0])
 
@@ -326,17 +318,13 @@ class _Links:
                                         ("kink at a link", kink * driven, MAX_KINK_AT_LINK, f"{kink:.3f} rad")):
             if size > most:
                 self.findings.add(fault, name, f"{text} between it and lane {other[2]} of road {other[0]} at its {end}.", own[0])
-        self._driven_on(name, key, end, own[0], other, there, target, driven)
-
-    def _driven_on(self, name, key, end, place, other, there, target, driven):
-        """Linked lanes are driven the same way, and linked back but for lanes of a junction."""
         road, to = self.network.roads[key[0]], self.network.roads[other[0]]
-        if driven and target.type in DRIVEN_TYPES:
-            if (end == road.way_out(key[2])) == (there == to.way_out(other[2])):
-                self.findings.add("direction at a link", name, f"Lane {other[2]} of road {other[0]} is driven against it.", place)
-        if key[0] == other[0] or road.junction == "-1" and to.junction == "-1":
-            if not any(back == key for back, _ in self.network.touching(other, there)):
-                self.findings.add("one-sided link", name, f"Lane {other[2]} of road {other[0]} is not linked back.", place)
+        if driven and target.type in DRIVEN_TYPES and (end == road.way_out(key[2])) == (there == to.way_out(other[2])):
+            self.findings.add("direction at a link", name, f"Lane {other[2]} of road {other[0]} is driven against it.", own[0])
+        # lanes of a junction need not be linked back
+        if (key[0] == other[0] or road.junction == to.junction == "-1") and not any(
+                back == key for back, _ in self.network.touching(other, there)):
+            self.findings.add("one-sided link", name, f"Lane {other[2]} of road {other[0]} is not linked back.", own[0])
 
     def _end(self, key, end):
         """(left, right) end of a lane's borders along the road, (3,) each, and the heading there."""
@@ -354,9 +342,6 @@ class _Links:
             x, y, _ = left[1] - left[0] + right[1] - right[0]
             corners = self.ends[key, end] = left[row], right[row], float(np.arctan2(y, x))
         return corners
-
-    def _width(self, end):
-        return float(np.hypot(*(end[0] - end[1])[:2]))
 
 
 def _connection_faults(junction, connection, incoming, connecting):
@@ -432,135 +417,117 @@ ROAD_RECORDS = ((("type",), False), (("planView", "geometry"), True), (("elevati
 LANE_RECORDS = (("width", True), ("border", True), ("roadMark", False), ("height", False), ("speed", False))
 
 
-def statements(root: XmlElement) -> Iterator[tuple[str, str, str, str, float]]:
-    """Every statement of the element <OpenDRIVE> that the format does not allow: a fault of FAULTS, what it is about, what was seen, and where: the
-    id of a road, "" for none, and metres along it."""
-    header = root.find("header")
-    if header is not None:
-        yield from _header(header)
-    minor = _number(header, "revMinor", MINORS[-1]) if header is not None else MINORS[-1]
-    seen: dict[str, set[str]] = {"object": set(), "signal": set()}
-    for road in root.all("road"):
-        yield from _road(road, seen, minor)
-    for junction in root.all("junction"):
-        yield from _junction(junction)
+class _Statements:
+    """Adds every statement of the element <OpenDRIVE> that the format does not allow.
+
+    add : takes a fault of FAULTS, what it is about, what was seen, the id of a road, "" for none, and metres along it
+    """
+
+    def __init__(self, root: XmlElement, add: Callable[[str, str, str, str, float], None]) -> None:
+        self.add, header = add, root.find("header")
+        self.minor = _number(header, "revMinor", MINORS[-1]) if header is not None else MINORS[-1]
+        self.seen: dict[str, set[str]] = {"object": set(), "signal": set()}
+        if header is not None:
+            self._header(header)
+        for road in root.all("road"):
+            self._road(road)
+        for junction in root.all("junction"):
+            self._junction(junction)
+
+    def _header(self, header):
+        try:
+            major, minor = header.number("revMajor"), header.number("revMinor")
+        except RoadExtractionError as problem:
+            self.add("value", "header", str(problem), "", 0.0)
+        else:
+            if major != 1 or minor not in MINORS:
+                self.add("value", "header", f"The version is {major:g}.{minor:g}; there are 1.0 to 1.{MINORS[-1]}.", "", 0.0)
+        south, north, west, east = (_number(header, name, 0.0) for name in ("south", "north", "west", "east"))
+        if south > north or west > east:
+            self.add("bounds", "header", f"South {south:g} to north {north:g}, west {west:g} to east {east:g}.", "", 0.0)
+
+    def _road(self, road):
+        id, length = road.get("id"), _number(road, "length", 0.0)
+
+        def say(fault, part, text, s=0.0):
+            self.add(fault, f"road {id}, {part}" if part else f"road {id}", text, id, s)
+
+        for path, zero in ROAD_RECORDS:
+            for text in _order(road, path, "s", length, zero):
+                say("record order", path[-1], text)
+        shapes = [(_number(shape, "s", 0.0), _number(shape, "t", 0.0)) for shape in road.all("lateralProfile", "shape")]
+        if shapes != sorted(shapes):
+            say("record order", "shape", "The shapes do not go on from s to s and from t to t.")
+        for geometry in road.all("planView", "geometry"):
+            _state_geometry(geometry, say)
+        numbers = _state_lanes(road, length, say)
+        for kind, seen in self.seen.items():
+            for element in road.all(f"{kind}s", kind):
+                _state_object(element, kind, length, numbers, seen, say)
+        for element in _within(road):
+            for text in _values(element, self.minor):
+                say("value", "", text)
+
+    def _junction(self, junction):
+        name, seen = f"junction {junction.get('id')}", set()
+        for connection in junction.all("connection"):
+            label, road = f"{name}, connection {connection.get('id')}", connection.get("connectingRoad")
+            if connection.get("id") in seen:
+                self.add("id twice", label, "There is another connection of this id.", road, 0.0)
+            seen.add(connection.get("id"))
+            links = [(link.get("from"), link.get("to")) for link in connection.all("laneLink")]
+            if len(set(links)) < len(links):
+                self.add("connection", label, "It links the same lanes twice.", road, 0.0)
 
 
-def _header(header):
-    try:
-        major, minor = header.number("revMajor"), header.number("revMinor")
-    except RoadExtractionError as problem:
-        yield "value", "header", str(problem), "", 0.0
-    else:
-        if major != 1 or minor not in MINORS:
-            yield "value", "header", f"The version is {major:g}.{minor:g}; there are 1.0 to 1.{MINORS[-1]}.", "", 0.0
-    south, north, west, east = (_number(header, name, 0.0) for name in ("south", "north", "west", "east"))
-    if south > north or west > east:
-        yield "bounds", "header", f"South {south:g} to north {north:g}, west {west:g} to east {east:g}.", "", 0.0
+# Parts of a road; `say` takes a fault, which part of the road, what was seen, and metres along the road.
+
+def _state_geometry(geometry, say):
+    shapes = [child for child in geometry.children if child.tag in GEOMETRIES]
+    s = _number(geometry, "s", 0.0)
+    if len(shapes) > 1:
+        say("two at once", "geometry", f"The geometry at s = {s:g} is {' and '.join(child.tag for child in shapes)}.", s)
+    if any(child.tag == "arc" and _number(child, "curvature", 1.0) == 0 for child in shapes):
+        say("value", "geometry", f"The arc at s = {s:g} has no curvature; it is a line.", s)
 
 
-def _road(road, seen, minor):
-    id, length = road.get("id"), _number(road, "length", 0.0)
-    lanes = list(_lanes(road, length))
-    for records in (_records(road, length), _plan(road), _of_lanes(lanes), _of_objects(road, length, lanes, seen),
-                    (("value", "", text, 0.0) for element in _within(road) for text in _values(element, minor))):
-        for fault, part, text, s in records:
-            yield fault, f"road {id}, {part}" if part else f"road {id}", text, id, s
-
-
-# The statements of a road, each (fault, what, text, s).
-
-def _records(road, length):
-    for path, zero in ROAD_RECORDS:
-        for text in _order(road, path, "s", length, zero):
-            yield "record order", path[-1], text, 0.0
-    shapes = [(_number(shape, "s", 0.0), _number(shape, "t", 0.0)) for shape in road.all("lateralProfile", "shape")]
-    if shapes != sorted(shapes):
-        yield "record order", "shape", "The shapes do not go on from s to s and from t to t.", 0.0
-
-
-def _lanes(road, length):
-    """(start of the section, its length, lane) of every lane."""
+def _state_lanes(road, length, say):
+    """Returns the numbers of all lanes."""
     sections = list(road.all("lanes", "laneSection"))
     starts = [*(_number(section, "s", 0.0) for section in sections), length]
+    numbers = []
     for section, start, end in zip(sections, starts[:-1], starts[1:]):
-        for side in ("left", "center", "right"):
-            for lane in section.all(side, "lane"):
-                yield start, end - start, lane
+        for lane in (lane for side in ("left", "center", "right") for lane in section.all(side, "lane")):
+            name = f"section at {start:g}, lane {lane.get('id')}"
+            for tag, zero in LANE_RECORDS:
+                for text in _order(lane, (tag,), "sOffset", end - start, zero):
+                    say("record order", name, f"{tag}: {text}", start)
+            if lane.find("width") is not None and lane.find("border") is not None:
+                say("two at once", name, "It has widths and borders; only the widths are read.", start)
+            numbers.append(_number(lane, "id", 0.0))
+            if numbers[-1] % 1:
+                say("value", name, f"Its number is {lane.get('id')}.", start)
+    return {int(number) for number in numbers if np.isfinite(number)}
 
 
-def _of_lanes(lanes):
-    for start, length, lane in lanes:
-        for fault, text in _lane(lane, length):
-            yield fault, f"section at {start:g}, lane {lane.get('id')}", text, start
-
-
-def _of_objects(road, length, lanes, seen):
-    numbers = {int(_number(lane, "id", 0.0)) for _, _, lane in lanes}
-    for kind in seen:
-        for element in road.all(f"{kind}s", kind):
-            for fault, text, s in _beside(element, kind, length, numbers, seen[kind]):
-                yield fault, f"{kind} {element.get('id')}", text, s
-
-
-def _plan(road):
-    for geometry in road.all("planView", "geometry"):
-        shapes = [child for child in geometry.children if child.tag in GEOMETRIES]
-        s = _number(geometry, "s", 0.0)
-        if len(shapes) > 1:
-            yield "two at once", "geometry", f"The geometry at s = {s:g} is {' and '.join(child.tag for child in shapes)}.", s
-        for child in shapes:
-            if child.tag == "arc" and _number(child, "curvature", 1.0) == 0:
-                yield "value", "geometry", f"The arc at s = {s:g} has no curvature; it is a line.", s
-
-
-def _lane(lane, length):
-    """(fault, text) of a lane of a section of some length."""
-    for tag, zero in LANE_RECORDS:
-        for text in _order(lane, (tag,), "sOffset", length, zero):
-            yield "record order", f"{tag}: {text}"
-    if lane.find("width") is not None and lane.find("border") is not None:
-        yield "two at once", "It has widths and borders; only the widths are read."
-    if _number(lane, "id", 0.0) % 1:
-        yield "value", f"Its number is {lane.get('id')}."
-
-
-def _beside(one, kind, length, numbers, seen):
-    """(fault, text, s) of an object or signal."""
-    s, t = _number(one, "s", 0.0), _number(one, "t", 0.0)
+def _state_object(one, kind, length, numbers, seen, say):
+    """An object or signal of a road with lanes of these numbers."""
+    name, s, t = f"{kind} {one.get('id')}", _number(one, "s", 0.0), _number(one, "t", 0.0)
     if one.get("id") in seen:
-        yield "id twice", f"There is another {kind} of this id.", s
+        say("id twice", name, f"There is another {kind} of this id.", s)
     seen.add(one.get("id"))
     if abs(t) > FARTHEST_OBJECT:
-        yield "object off the road", f"It is {abs(t):.0f} m beside the reference line.", s
+        say("object off the road", name, f"It is {abs(t):.0f} m beside the reference line.", s)
     if kind == "signal" and not -STATED_NEAR <= s <= length + STATED_NEAR:
-        yield "object off the road", f"It is at s = {s:.2f} of {length:.2f} m.", s
+        say("object off the road", name, f"It is at s = {s:.2f} of {length:.2f} m.", s)
     for validity in one.all("validity"):
         first, last = _number(validity, "fromLane", 0.0), _number(validity, "toLane", 0.0)
         if first > last or not numbers.issuperset((first, last)):
-            yield "lane link", f"It is valid from lane {first:g} to lane {last:g}, which the road does not have.", s
-    for corners in _corners(one):
-        if 0 < corners < 3:
-            yield "value", f"Its outline has {corners} corners.", s
-
-
-def _corners(one):
-    """How many corners each closed outline of an object has."""
+            say("lane link", name, f"It is valid from lane {first:g} to lane {last:g}, which the road does not have.", s)
     for outline in [*one.all("outlines", "outline"), *one.all("outline")]:
-        if outline.get("closed", "true") != "false":
-            yield sum(child.tag in ("cornerRoad", "cornerLocal") for child in outline.children)
-
-
-def _junction(junction):
-    name, seen = f"junction {junction.get('id')}", set()
-    for connection in junction.all("connection"):
-        label = f"{name}, connection {connection.get('id')}"
-        if connection.get("id") in seen:
-            yield "id twice", label, "There is another connection of this id.", connection.get("connectingRoad"), 0.0
-        seen.add(connection.get("id"))
-        links = [(link.get("from"), link.get("to")) for link in connection.all("laneLink")]
-        if len(set(links)) < len(links):
-            yield "connection", label, "It links the same lanes twice.", connection.get("connectingRoad"), 0.0
+        corners = sum(child.tag in ("cornerRoad", "cornerLocal") for child in outline.children)
+        if 0 < corners < 3 and outline.get("closed", "true") != "false":
+            say("value", name, f"Its outline has {corners} corners.", s)
 
 
 def _order(parent, path, key, length, zero):

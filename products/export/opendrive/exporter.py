@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +20,6 @@ from .reference_line import side_by_side
 from .road_shape import RoadShape, add_heights, add_lanes, centre_of, fit_borders, heights_above_road, shape_steps
 from .strips import Cell, Slice, connector_slices, cut_into_cells, directions_where_met, end_to_end, mark_junctions, slices_of, strips_of
 
-LINK_AT = {"start": "predecessor", "end": "successor"}   # an end of a road -> its link there
 ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
 MIDDLES_SHARE = 0.5       # of the tolerance by which borders are moved to their driving lines
 CURVES_SHARE = 0.4        # of it by which widths may miss the moved borders: what is left is for corners, where two roads meet
@@ -42,16 +41,13 @@ class OpenDriveSettings(Limited):
     tolerance: float = setting(0.02, 0.002, 0.5, "Tolerance", "m")
     version: str = "1.7"
     traffic_side: str = "automatic"
-    dash: tuple[float, float] = USUAL_DASH
 
 
-@dataclass
-class _OpenDriveDraft:
-    """The map, its roads with the cells that they come from, and notes for the user."""
+class _OpenDriveDraft(NamedTuple):
+    """The map, and notes for the user."""
 
     map: OpenDriveMap
-    roads: list[_DraftRoad] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    notes: list[str]
 
 
 def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDriveSettings(), progress: Progress = Progress()) -> _OpenDriveDraft:
@@ -68,21 +64,19 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     origin = np.append(np.floor(places[:, :2].mean(0) / ROUND_ORIGIN) * ROUND_ORIGIN, 0.0)
     local = replace(source, lanes=replace(lanes, left=lanes.left - origin, right=lanes.right - origin))
     drafting = _Drafting(local, origin, settings)
-    draft = _OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
-    draft.notes += drafting.notes
+    whole = OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0))
     strips = drafting.strips()
     directions = directions_where_met([cell for strip, _ in strips for part in strip for cell in part.cells])
     shaped = drafting.shaped([strip for strip, _ in strips], progress.part(0.0, 0.5))
     borders = fit_borders(shaped, CURVES_SHARE * settings.tolerance, directions)
+    roads = []
     for number, (shape, functions, (_, single)) in enumerate(zip(shaped, borders, strips), start=1):
-        draft_road = drafting.road(*shape, functions, number, single)
-        draft.roads.append(draft_road)
-        draft.map.roads.append(draft_road.road)
+        roads.append(drafting.road(*shape, functions, number, single))
         progress.report(0.5 + 0.5 * number / len(strips))
-    draft.notes += _link_roads(draft.map, draft.roads)
-    draft.notes += _said_open_ends(draft.map)
-    add_objects(draft.map, source.markings, source.signals, origin)
-    return draft
+    whole.roads = [road.road for road in roads]
+    notes = drafting.notes + _link_roads(whole, roads) + _said_open_ends(whole)
+    add_objects(whole, source.markings, source.signals, origin)
+    return _OpenDriveDraft(whole, notes)
 
 
 class _Drafting:
@@ -111,28 +105,21 @@ class _Drafting:
     def strips(self) -> list[tuple[list[Slice], bool]]:
         """(slices of a road, whether it is a way through a junction), ordinary roads first."""
         mark_junctions(self.slices)
-        ordinary, inside, beside = self._parted()
-        inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if cell.is_connector}
-        ordinary, between = _between_junctions(ordinary, inside_ids)
-        return (_ordinary_roads(ordinary) + [(strip, False) for strip in strips_of(beside, set())]
-                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors, is_stated(self.lanes)))
-
-    def _parted(self) -> tuple[list[Slice], list[Slice], list[Slice]]:
-        """(slices of ordinary roads, slices within junctions, slices that nobody drives and that touch a junction).
-
-        Ways through a junction are cut off from the slices in which they begin or end.
-        """
+        # slices of ordinary roads, those within junctions, and those that nobody drives and that touch a junction
         ordinary, inside, beside = [], [], []
         for part in self.slices:
             if (part.at_start or part.at_end) and not part.driven:
                 beside.append(part)
             elif part.at_start and part.at_end and part.length < LONGEST_JUNCTION:
                 inside.append(part)
-            else:
+            else:   # ways through a junction are cut off from the slices in which they begin or end
                 ways, rest = _ways_cut_off(part)
                 inside += ways
                 ordinary += rest
-        return ordinary, inside, beside
+        inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if cell.is_connector}
+        ordinary, between = _between_junctions(ordinary, inside_ids)
+        return (_ordinary_roads(ordinary) + [(strip, False) for strip in strips_of(beside, set())]
+                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors, is_stated(self.lanes)))
 
     def shaped(self, strips: list[list[Slice]], progress: Progress) -> list[tuple[RoadShape, list[Slice], list[int]]]:
         """For each road its shape, its slices, and the number of the border in each at which lane 0 lies."""
@@ -164,7 +151,8 @@ class _Drafting:
             section.lanes[apart].marks = [self._mark_between(part, centre, apart)]
             self._add_curbs(section.lanes, part, ids)
             section.order = sorted(section.lanes, reverse=True)
-        road.data = _shares(status)
+        if set(status) != {"measured"}:
+            road.data = {f"lanewright:{name}_m": f"{metres:.1f}" for name, metres in sorted(status.items())}
         speeds = {speed for section in road.sections for lane in section.lanes.values() for _, speed in lane.speeds}
         road.speeds = [(0.0, speed) for speed in speeds if len(speeds) == 1]   # simulators read that of the road
         return _DraftRoad(road, strip, numbers, single)
@@ -180,15 +168,13 @@ class _Drafting:
                           "lanewright:confidence": f"{self.lanes.confidence[cell.piece]:.2f}"}
 
     def _known(self, cell: Cell) -> dict[str, Any]:
-        """What is known of the road of a cell."""
         return self.source.attributes.get(self.lanes.lane_id[cell.piece], {})
 
     def _about(self, cell: Cell, left: bool) -> tuple[str, str, str]:
         """(kind, pattern, line) of the border on one side along the road."""
-        lanes, k = self.lanes, cell.piece
-        side = left if cell.direction >= 0 else not left
-        columns = (lanes.left_kind, lanes.left_pattern, lanes.left_line) if side else (lanes.right_kind, lanes.right_pattern, lanes.right_line)
-        return columns[0][k], columns[1][k], columns[2][k]
+        side = "left" if left == (cell.direction >= 0) else "right"
+        kind, pattern, line = (getattr(self.lanes, f"{side}_{name}")[cell.piece] for name in ("kind", "pattern", "line"))
+        return kind, pattern, line
 
     def _mark(self, cell: Cell, left: bool) -> RoadMark:
         kind, pattern, line = self._about(cell, left)
@@ -198,7 +184,7 @@ class _Drafting:
         width = self.source.paint_width(line)
         mark = RoadMark(0.0, name, "white" if name not in ("none", "edge") else "standard", RoadMark.width if np.isnan(width) else round(width, 3))
         if "broken" in name:
-            mark.dash, mark.gap = self.settings.dash
+            mark.dash, mark.gap = USUAL_DASH
         return mark
 
     def _mark_between(self, one: Slice, number: int, lane: int) -> RoadMark:
@@ -210,18 +196,13 @@ class _Drafting:
         if not painted:
             return next(filter(None, (lane_mark, neighbour_mark)), RoadMark(0.0, "none"))
         mark = next((mark for mark in painted if " " in mark.type), painted[0])
-        if len(painted) == 2 and (gap := self._gap(one.cells[number - 1], False)):
+        if len(painted) == 2 and self.source.gaps is not None and (
+                gap := float(self.source.gaps[one.cells[number - 1].piece, int(one.cells[number - 1].direction >= 0)])):
             lines = self._about(one.cells[number - 1], False)[2], self._about(one.cells[number], True)[2]
             if lines[0] != lines[1]:
                 _make_double(mark, left, right, lane)
             mark.apart = round(gap, 3) * (" " in mark.type)
         return mark
-
-    def _gap(self, cell: Cell, left: bool) -> float:
-        """Metres between the two stripes of the border on one side along the road."""
-        if self.source.gaps is None:
-            return 0.0
-        return float(self.source.gaps[cell.piece, 0 if left == (cell.direction >= 0) else 1])
 
     def _add_curbs(self, lanes: dict[int, MapLane], one: Slice, ids: list[int]) -> None:
         for cell, id, border, left in ((one.cells[0], ids[0], one.cells[0].left, True), (one.cells[-1], ids[-1], one.cells[-1].right, False)):
@@ -251,20 +232,16 @@ def _said_open_ends(whole: OpenDriveMap) -> list[str]:
 
 
 def _between_junctions(slices, inside):
-    """(slices, those of them that are too short for a road and lie between ways through junctions)."""
+    """(slices, those of them that are too short for a road and touch only ways through junctions, at both ends)."""
     between = []
     while True:
-        short = [part for part in slices if part.driven and part.length < SHORTEST_WAY and _lies_within(part, inside)]
+        short = [part for part in slices if part.driven and part.length < SHORTEST_WAY and all(
+            neighbours and inside.issuperset(map(id, neighbours)) for neighbours in (part.beyond(False), part.beyond(True)))]
         if not short:
             return slices, between
         between += short
         inside = inside | {id(cell) for part in short for cell in part.cells}
         slices = [part for part in slices if not any(part is added for added in short)]
-
-
-def _lies_within(one, inside):
-    """Whether a slice touches cells at both ends, and only those of these ids."""
-    return all(neighbours and inside.issuperset(map(id, neighbours)) for neighbours in (one.beyond(False), one.beyond(True)))
 
 
 def _ordinary_roads(slices):
@@ -301,11 +278,6 @@ def _make_double(mark, left, right, lane):
         mark.dash, mark.gap = dashed.dash, dashed.gap
 
 
-def _shares(status):
-    """What userData says of the metres of each status, where not all is measured."""
-    return {} if set(status) == {"measured"} else {f"lanewright:{name}_m": f"{metres:.1f}" for name, metres in sorted(status.items())}
-
-
 def _ways_cut_off(part: Slice) -> tuple[list[Slice], list[Slice]]:
     """(the ways through junctions that begin or end in a slice, what is left of it): all of it is a way where it is too short for both."""
     ways: list[Slice] = []
@@ -333,8 +305,7 @@ def _cut_row(one: Slice, at_end: bool) -> int:
 
 # Links between the roads of an export: lanes of sections, ends of roads, junctions with their connections.
 
-@dataclass
-class _DraftRoad:
+class _DraftRoad(NamedTuple):
     """A road with the cells that its lanes come from."""
 
     road: MapRoad
@@ -370,18 +341,12 @@ def _link_roads(whole: OpenDriveMap, drafts: list[_DraftRoad]) -> list[str]:
         for end, neighbours in (("end", cell.after), ("start", cell.before)):
             for neighbour in neighbours:
                 if id(neighbour) in place_of:
-                    _link(drafts, touches, place, end, place_of[id(neighbour)], _end_towards(neighbour, cell))
-    junction = _clusters(drafts, touches)
-    notes = []
-    for k, end in touches:
-        notes += _end_link(drafts, k, end, touches, junction)
-    _connections(whole, drafts, touches, junction)
-    return sorted(set(notes))
-
-
-def _end_towards(cell, other):
-    """The end of a cell at which another one is, as "start" or "end"."""
-    return "start" if any(other is back for back in cell.before) else "end"
+                    other_end = "start" if any(cell is back for back in neighbour.before) else "end"
+                    _link(drafts, touches, place, end, place_of[id(neighbour)], other_end)
+    junction = _junctions(drafts, touches)
+    notes = {note for k, end in touches for note in _end_link(drafts, k, end, touches, junction)}
+    _connect(whole, drafts, touches, junction)
+    return sorted(notes)
 
 
 def _link(drafts, touches, here, end, there, other_end):
@@ -389,90 +354,65 @@ def _link(drafts, touches, here, end, there, other_end):
     sections = drafts[here.draft].road.sections
     beyond = here.section + STEP[end]
     if here.draft == there.draft and there.section == beyond:
-        lane = sections[here.section].lanes[here.lane]
-        if there.lane not in lane.links(end):
-            lane.links(end).append(there.lane)
+        linked = sections[here.section].lanes[here.lane].links[end]
+        if there.lane not in linked:
+            linked.append(there.lane)
     elif not 0 <= beyond < len(sections):
         touch = _Touch(here.lane, there.draft, other_end, there.lane)
         if touch not in touches[here.draft, end]:
             touches[here.draft, end].append(touch)
 
 
-def _clusters(drafts, touches):
-    """Number of the junction of every way through one: those at one road's end, or end to end, are of one junction."""
+def _junctions(drafts, touches):
+    """{way through a junction: id of that}: ways at one road's end, or end to end, are of one. Roads and junctions share one space of ids in some
+    readers."""
     pairs = []
     for (k, _), touched in touches.items():
         cluster = [way for way in (*(touch.other for touch in touched), k) if drafts[way].single]
         pairs += [(cluster[0], way) for way in cluster[1:]]
     group = linked_groups(*np.array(pairs, int).reshape(-1, 2).T, len(drafts))
-    numbers: dict[int, int] = {}
-    return {k: numbers.setdefault(int(group[k]), len(numbers)) for k, draft in enumerate(drafts) if draft.single}
+    ids: dict[int, str] = {}
+    return {k: ids.setdefault(int(group[k]), str(len(drafts) + 1 + len(ids))) for k, draft in enumerate(drafts) if draft.single}
 
 
 def _end_link(drafts, k, end, touches, junction):
-    """Link one end of a road; sentences on what cannot be linked."""
-    touched = touches[k, end]
+    """Link one end of a road to its junction, or to the road of its touches with the most lanes there: OpenDRIVE has one link an end. Sentences on
+    what cannot be linked."""
+    road, touched = drafts[k].road, touches[k, end]
     ways = [touch.other for touch in touched if touch.other in junction]
     if ways and k not in junction:
-        setattr(drafts[k].road, LINK_AT[end], RoadLink("junction", _junction_id(drafts, junction[ways[0]])))
+        road.links[end] = RoadLink("junction", junction[ways[0]])
         return []
     # a junction lies between this road and those whose ends are linked to it
     touched = [touch for touch in touched
                if k in junction or not any(back.other in junction for back in touches.get((touch.other, touch.other_end), ()))]
-    return _road_link(drafts, drafts[k].road, end, touched) if touched else []
+    lanes = Counter((touch.other, touch.other_end) for touch in touched)
+    if not lanes:
+        return []
+    (neighbour, neighbour_end), *others = sorted(lanes, key=lambda way: (-lanes[way], way))
+    road.links[end] = RoadLink("road", drafts[neighbour].road.id, neighbour_end)
+    for touch in touched:
+        if (touch.other, touch.other_end) == (neighbour, neighbour_end):
+            road.lanes_at(end)[touch.lane].links[end].append(touch.other_lane)
+    return [f"Road {road.id} touches {len(lanes)} roads at its {end} without a connector; it is linked to road {drafts[neighbour].road.id} alone."
+            ] if others else []
 
 
-def _road_link(drafts, road, end, found):
-    """Link one end of a road to the road of its touches with the most lanes there: OpenDRIVE has one link an end."""
-    lanes = Counter((touch.other, touch.other_end) for touch in found)
-    ends = sorted(lanes, key=lambda way: (-lanes[way], way))
-    neighbour, neighbour_end = ends[0]
-    setattr(road, LINK_AT[end], RoadLink("road", drafts[neighbour].road.id, neighbour_end))
-    for touch in found:
-        if (touch.other, touch.other_end) == ends[0]:
-            road.lanes_at(end)[touch.lane].links(end).append(touch.other_lane)
-    if len(ends) > 1:
-        return [f"Road {road.id} touches {len(ends)} roads at its {end} without a connector; it is linked to road {drafts[neighbour].road.id} alone."]
-    return []
-
-
-def _junction_id(drafts: list[_DraftRoad], number: int) -> str:
-    """The id of a junction: beyond those of the roads, as both share one space in some readers."""
-    return str(len(drafts) + 1 + number)
-
-
-def _connections(whole, drafts, touches, junction):
-    junctions = {number: Junction(_junction_id(drafts, number)) for number in sorted(set(junction.values()))}
-    for k, number in junction.items():
-        drafts[k].road.junction = junctions[number].id
+def _connect(whole, drafts, touches, junction):
+    """The junctions with what drives into them; what roads say of one that nobody drives into is dropped."""
+    junctions = {id: Junction(id) for id in junction.values()}
+    for k, id in junction.items():
+        drafts[k].road.junction = id
     for (k, end), touched in sorted(touches.items()):
-        road = drafts[k].road
-        if k in junction:
-            continue
-        lanes = _incoming(road, end, touched, junction)
+        road, lanes = drafts[k].road, defaultdict(list)
+        for touch in touched:
+            if k not in junction and touch.other in junction and road.way_out(touch.lane) == end:
+                lanes[touch.other, touch.other_end].append((touch.lane, touch.other_lane))
         for (way, way_end), links in sorted(lanes.items()):
             connections = junctions[junction[way]].connections
             connections.append(Connection(str(len(connections)), road.id, drafts[way].road.id, way_end, links))
     whole.junctions = [formed for formed in junctions.values() if formed.connections]
-    ids = {formed.id for formed in whole.junctions}
-    for draft in drafts:
-        _forget_junctions(draft.road, ids)
-
-
-def _incoming(road, end, touched, junction):
-    """{(way through a junction, its end): (lane, lane) pairs} of what drives out of a road at its end, which is incoming traffic of the junction."""
-    lanes = defaultdict(list)
-    for touch in touched:
-        if touch.other in junction and road.way_out(touch.lane) == end:
-            lanes[touch.other, touch.other_end].append((touch.lane, touch.other_lane))
-    return lanes
-
-
-def _forget_junctions(road, known):
-    """Drop what a road says of junctions that are not known, as nothing connects there."""
-    for end, name in LINK_AT.items():
-        link = road.link(end)
-        if link is not None and link.element == "junction" and link.id not in known:
-            setattr(road, name, None)
-    if road.junction not in known:
-        road.junction = "-1"
+    known = {formed.id for formed in whole.junctions}
+    for road in whole.roads:
+        road.links = {end: link for end, link in road.links.items() if link.element != "junction" or link.id in known}
+        road.junction = road.junction if road.junction in known else "-1"

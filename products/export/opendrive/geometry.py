@@ -107,7 +107,7 @@ class PlanElement:
         u = np.asarray(u, float)
         if not self.is_polynomial:
             return on_spirals(u, self.x, self.y, self.heading, *self.bends())
-        p, a, b = self._parameter(u), np.array(self._polynomials()[0]), np.array(self._polynomials()[1])
+        p, a, b = self._polynomials(u)
         powers = np.stack([np.ones_like(p), p, p**2, p**3])
         slopes = np.stack([np.zeros_like(p), np.ones_like(p), 2 * p, 3 * p**2])
         bends = np.stack([np.zeros_like(p), np.zeros_like(p), 2 * np.ones_like(p), 6 * p])
@@ -126,20 +126,15 @@ class PlanElement:
         first, last = (*self.values, *self.values, 0.0, 0.0)[:2]
         return first, (last - first) / self.length if self.length else 0.0
 
-    def _polynomials(self):
-        """Coefficients of u(p) and v(p)."""
-        if self.kind == "poly3":
-            return (0.0, 1.0, 0.0, 0.0), self.values
-        return self.values[:4], self.values[4:]
-
-    def _parameter(self, u):
-        """The parameter at arc lengths: proportional in paramPoly3, as the standard has it, by a table in poly3."""
+    def _polynomials(self, u):
+        """The parameter p at arc lengths, proportional in paramPoly3, as the standard has it, by a table in poly3; coefficients of u(p) and v(p)."""
         if self.kind == "paramPoly3":
-            return u / self.length if self.normalized and self.length else u
+            return u / self.length if self.normalized and self.length else u, np.array(self.values[:4]), np.array(self.values[4:])
         _, b, c, d = self.values
         p = np.linspace(0.0, self.length, max(int(self.length / TABLE_STEP), 8) + 1)
         slope = np.hypot(1.0, b + p * (2 * c + p * 3 * d))
-        return np.interp(u, np.append(0.0, np.cumsum((slope[1:] + slope[:-1]) / 2 * np.diff(p))), p)
+        along = np.append(0.0, np.cumsum((slope[1:] + slope[:-1]) / 2 * np.diff(p)))
+        return np.interp(u, along, p), np.array([0.0, 1.0, 0.0, 0.0]), np.array(self.values)
 
     def end(self) -> tuple[float, float, float]:
         """x, y and heading of its end."""
@@ -268,7 +263,7 @@ def fit_cubics(bundles: Sequence[LineBundle]) -> list[list[Cubics]]:
     while divided:
         system = _System(divided)
         rows = system.solved()
-        bad = system.missed(rows)
+        bad = system.missed(rows, system.s, system.values, system.piece)
         bad |= system.missed_between(rows, [bundle for bundle, missed in zip(divided, system.of_bundles(bad)) if not missed.any()])
         left = []
         for bundle, missed, first in zip(divided, system.of_bundles(bad), system.first):
@@ -408,10 +403,6 @@ class _System:
         prescribed[no_cubic & np.roll(no_cubic, 1), 1] = 0.0
         return prescribed.ravel()
 
-    def missed(self, rows):
-        """(K,) bool of the pieces that miss their places."""
-        return self._missed(rows, self.s, self.values, self.piece)
-
     def missed_between(self, rows, chosen):
         """(K,) bool of the pieces of the chosen bundles that miss their lines between the places."""
         quarters, shares = [(np.empty(0), np.empty(0), np.empty(0, int))], np.arange(1, 4) / 4
@@ -419,9 +410,10 @@ class _System:
             if bundle in chosen:
                 s = (bundle.knots[:-1, None] + np.diff(bundle.knots)[:, None] * shares).ravel()
                 quarters.append((s, np.interp(s, x, value), begin + np.arange(len(s)) // len(shares)))
-        return self._missed(rows, *map(np.concatenate, zip(*quarters)))
+        return self.missed(rows, *map(np.concatenate, zip(*quarters)))
 
-    def _missed(self, rows, s, values, k):
+    def missed(self, rows, s, values, k):
+        """(K,) bool of the pieces that miss values at places s, which lie on pieces k."""
         h = self.span[k]
         a, b, c, d = _basis((s - self.knots[k]) / h, h)
         miss = np.abs(a * rows[k, 1] + b * rows[k, 2] + c * rows[k + 1, 1] + d * rows[k + 1, 2] - values)

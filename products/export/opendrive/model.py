@@ -6,7 +6,7 @@ import re
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -18,6 +18,7 @@ from .geometry import LEAST_STEP, STEP_RUN, Cubics, PlanView
 ROAD_LANE_TYPES = ("none", "driving", "stop", "shoulder", "biking", "sidewalk", "border", "restricted", "parking", "bidirectional", "median",
                    "special1", "special2", "special3", "roadWorks", "tram", "rail", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus",
                    "taxi", "HOV", "mwyEntry", "mwyExit", "curb", "walking", "slipLane", "shared")
+LINK_NAMES = {"start": "predecessor", "end": "successor"}   # an end of a road or lane -> its link there
 OPEN_END = "lanewright:open_end"   # userData of a driven lane at whose start or end, or both, the survey shows no lane to go on in
 DRIVEN_TYPES = ("driving", "bidirectional", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus", "taxi", "HOV", "mwyEntry", "mwyExit",
                 "slipLane", "stop")
@@ -51,16 +52,11 @@ class MapLane:
     type: str = "driving"
     width: Cubics = field(default_factory=lambda: Cubics(np.empty((0, 5))))
     marks: list[RoadMark] = field(default_factory=list)
-    predecessors: list[int] = field(default_factory=list)
-    successors: list[int] = field(default_factory=list)
+    links: dict[str, list[int]] = field(default_factory=lambda: {"start": [], "end": []})   # numbers of the lanes that each end is linked to
     heights: np.ndarray = field(default_factory=lambda: np.empty((0, 3)))
     border: bool = False    # `width` holds the distance of its outer border from the reference line instead
     data: dict[str, str] = field(default_factory=dict)
     speeds: list[tuple[float, float]] = field(default_factory=list)   # (metres from the section's start, km/h from there on, NaN for no limit)
-
-    def links(self, end: str) -> list[int]:
-        """Numbers of the lanes that its "start" or "end" is linked to."""
-        return self.predecessors if end == "start" else self.successors
 
 
 @dataclass
@@ -72,8 +68,7 @@ class LaneSection:
     order: list[int] = field(default_factory=list)   # of the numbers in the file
 
 
-@dataclass
-class RoadLink:
+class RoadLink(NamedTuple):
     """What a road's end touches: road or junction, its id, and which end of that road."""
 
     element: str
@@ -91,8 +86,7 @@ class MapRoad:
     name: str = ""
     junction: str = "-1"
     rule: str = "RHT"
-    predecessor: RoadLink | None = None
-    successor: RoadLink | None = None
+    links: dict[str, RoadLink] = field(default_factory=dict)   # what its "start" and its "end" touch
     elevation: Cubics = field(default_factory=Cubics.constant)
     superelevation: Cubics = field(default_factory=Cubics.constant)
     shape: np.ndarray = field(default_factory=lambda: np.empty((0, 6)))
@@ -116,13 +110,9 @@ class MapRoad:
         """The lanes by number at its "start" or "end"."""
         return self.sections[0 if end == "start" else -1].lanes if self.sections else {}
 
-    def link(self, end: str) -> RoadLink | None:
-        """What its "start" or "end" touches."""
-        return self.predecessor if end == "start" else self.successor
-
     def touches(self, end: str, element: str, id: str) -> bool:
         """Whether its "start" or "end" is linked to the road or junction of an id."""
-        link = self.link(end)
+        link = self.links.get(end)
         return link is not None and (link.element, link.id) == (element, id)
 
     def cut_where_speeds_change(self) -> MapRoad:
@@ -136,6 +126,10 @@ class MapRoad:
             sections += [LaneSection(section.s + first, {id: _part(lane, first, last, length) for id, lane in section.lanes.items()}, section.order)
                          for first, last in zip(cuts, [*cuts[1:], length])]
         return replace(self, sections=sections) if len(sections) > len(self.sections) else self
+
+    def lane_name(self, id: int, section: int) -> str:
+        """The lane_id of a lane's section; commas part lists of them."""
+        return f"{re.sub('[,.]', '_', self.id)}.{id}.{section}"
 
     def way_out(self, id: int) -> str:
         """The end, "start" or "end", at which the traffic of a lane leaves the road."""
@@ -152,18 +146,17 @@ def _part(lane, first, last, length):
         lane, width=Cubics(width[held(width[:, 0])]).moved(-first), heights=heights[held(heights[:, 0])] - [first, 0.0, 0.0],
         marks=[replace(mark, s=mark.s - first) for mark in lane.marks[held([mark.s for mark in lane.marks])]],
         speeds=[(s - first, speed) for s, speed in lane.speeds[held([s for s, _ in lane.speeds])]],
-        predecessors=[lane.id] if first > 0 else lane.predecessors, successors=[lane.id] if last < length else lane.successors)
+        links={"start": [lane.id] if first > 0 else lane.links["start"], "end": [lane.id] if last < length else lane.links["end"]})
 
 
-@dataclass
-class Connection:
+class Connection(NamedTuple):
     """A way through a junction. `lanes` : (from, to) numbers."""
 
     id: str
     incoming: str
     connecting: str
     contact: str
-    lanes: list[tuple[int, int]] = field(default_factory=list)
+    lanes: list[tuple[int, int]]
 
 
 @dataclass
@@ -207,11 +200,6 @@ class OpenDriveMap:
 
 # Which lane follows which on a map of OpenDRIVE.
 
-def lane_name(road: str, lane: int, section: int) -> str:
-    """The lane_id of a lane's section; commas part lists of them."""
-    return f"{re.sub('[,.]', '_', road)}.{lane}.{section}"
-
-
 LaneKey = tuple[str, int, int]   # road, number of the section, lane
 STEP, OTHER_END = {"start": -1, "end": 1}, {"start": "end", "end": "start"}   # from section to section beyond an end of a lane
 
@@ -237,11 +225,11 @@ class LaneNetwork:
     def touching(self, key: LaneKey, end: str) -> list[tuple[LaneKey, str]]:
         """(lane, which of its ends) of all lanes that a lane's end is linked to, whether they exist or not."""
         road, lane = self.roads[key[0]], self.lane(key)
-        numbers = lane.links(end) if lane is not None else []
+        numbers = lane.links[end] if lane is not None else []
         beyond = key[1] + STEP[end]
         if 0 <= beyond < len(road.sections):
             return [((road.id, beyond, number), OTHER_END[end]) for number in numbers]
-        link = road.link(end)
+        link = road.links.get(end)
         if link is None:
             return []
         if link.element != "junction":
@@ -266,7 +254,7 @@ class LaneNetwork:
         road, touching = self.roads[key[0]], self.touching(key, end)
         if not self.driven(key) or any(self.driven(neighbour) for neighbour, _ in touching) or not touching and (key, end) in touched:
             return False
-        link = road.link(end)
+        link = road.links.get(end)
         return 0 <= key[1] + STEP[end] < len(road.sections) or link is not None and (
             link.element == "junction" and link.id in self.junctions or link.id in self.roads)
 

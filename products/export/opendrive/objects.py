@@ -11,7 +11,7 @@ import shapely
 
 from ....core.common.features import SIGNALS, Features
 from ..sources import STOP_LINE_HALF, stop_lines, walked_crossings, wrapped
-from .model import DRIVEN_TYPES, OpenDriveMap, lane_name
+from .model import DRIVEN_TYPES, OpenDriveMap
 
 SAMPLES = 1.0          # m between places of reference lines that objects are held against
 FARTHEST = 25.0        # m from a reference line
@@ -119,7 +119,7 @@ def _lanes_obeying(road, item):
     number, lanes = _section_at(road, item["s"])
     named = [id for id in lanes if not item["validity"] or any(min(pair) <= id <= max(pair) for pair in item["validity"])]
     same_way = [id for id in named if item["orientation"] not in ("+", "-") or item["orientation"] == _sign(road, id)]
-    return [lane_name(road.id, id, number) for id in same_way or named * bool(item["validity"])]
+    return [road.lane_name(id, number) for id in same_way or named * bool(item["validity"])]
 
 
 # From the layers to the roads.

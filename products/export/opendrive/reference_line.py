@@ -62,21 +62,23 @@ def reference_steps(points: np.ndarray, tolerance: float, ends: tuple[float | No
                     turn_tolerance: float = 0.01) -> Steps[PlanView | None]:
     """`fit_reference` as a task, so that many lines are fitted side by side."""
     points = np.asarray(points, float)
-    fit, after = (yield from _fit_of(points, tolerance, ends, turn_tolerance)), None
+    fit, goal = (yield from _fit_of(points, tolerance, ends, turn_tolerance)), None
     if ends[1] is not None and abs(wrapped((yield _smoothed, (fit, fit.last))[2] - ends[1])) > turn_tolerance:
         # a road that turns at its end does so along the longest element that leads there, which is found from the end backwards
         back = yield from _fit_of(points[::-1], tolerance, (ends[1] + np.pi, None), turn_tolerance)
         last = yield from back.farthest(0, (yield from back.pose(0)), back.last)
         if last is None:
             return None
-        reached, element, pose = last
+        reached, _, pose = last
         if reached < back.last:
-            pose = pose._replace(heading=pose.heading + np.pi)
+            goal = _Pose(points[-1, 0], points[-1, 1], ends[1])
             points = np.concatenate([points[:back.last - reached], [pose[:2]]])
-            fit = yield from _fit_of(points, tolerance, (ends[0], pose.heading), turn_tolerance)
-            after = PlanElement(0.0, pose.x, pose.y, pose.heading, element.length, element.kind, tuple(-value for value in element.values[::-1]))
+            fit = yield from _fit_of(points, tolerance, (ends[0], pose.heading + np.pi), turn_tolerance)
     elements = yield from fit.run()
-    return PlanView(_in_order([*elements, after] if after is not None else elements)) if elements is not None else None
+    if elements is not None and goal is not None:   # from where the others end, which may miss the pose by what an arc or a line may
+        after = _spiral_between(_Pose(*elements[-1].end()), goal)
+        elements = [*elements, after] if after is not None else None
+    return PlanView(_in_order(elements)) if elements is not None else None
 
 
 def _fit_of(points, tolerance, ends, turn_tolerance):

@@ -79,8 +79,9 @@ def shape_steps(strip: list[Slice], centres: list[int], tolerance: float) -> Ste
         if is_square:
             break   # else a curve is too tight to go on in: the ends become square
     strip = shown
-    for s in s_all:
-        _square_steps(s)
+    for s in s_all:   # two vertices of every border nearly at one place are a step across the road: all borders have the same s there
+        for k in np.flatnonzero((np.diff(s.mean(0)) < STEP_RUN) & (np.ptp(s[:, :-1], axis=0) < 2 * STEP_RUN)):
+            s[:, k:k + 2] = s[:, k:k + 2].mean() + LEAST_STEP * np.array([-1.0, 1.0])
     z_all, lifts = (list(values) for values in zip(*(part.levels(centre) for part, centre in zip(strip, centres))))
     starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
     courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
@@ -101,10 +102,20 @@ def _guided(strip, centres):
 
 
 def _square_ends(plan, strip, shown, near):
-    """(the reference line with what makes its ends square, s and t of the vertices from it, whether they are)."""
+    """(the reference line with what makes its ends square, s and t of the vertices from it, whether they are).
+
+    near : for each slice (n,) metres along the road
+    """
     for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
-        s_all, t_all = _frame(plan, shown, near)
-        before, after = _beyond_ends(strip, s_all, plan.length)
+        s_all, t_all = [], []
+        for part, along in zip(shown, near):
+            places = np.stack(part.borders())[..., :2]
+            s, t = plan.feet(places.reshape(-1, 2), np.tile(along, len(places)))
+            s_all.append(s.reshape(places.shape[:2]))
+            t_all.append(t.reshape(places.shape[:2]))
+        # an end that meets no other road is made square, as far as borders reach beyond it
+        before = 0.0 if strip[0].beyond(False) else max(-float(s_all[0][:, 0].min()), 0.0)
+        after = 0.0 if strip[-1].beyond(True) else max(float(s_all[-1][:, -1].max()) - plan.length, 0.0)
         if max(before, after) < LEAST_STEP:
             return plan, s_all, t_all, True
         plan, near = plan.lengthened(before, after), [s + before for s in near]
@@ -124,33 +135,6 @@ def _finer(one, s):
     cells = [replace(cell, left=line(cell.left), right=line(cell.right), left_nodes=(cell.left_nodes[0], cell.left_nodes[-1]),
                      right_nodes=(cell.right_nodes[0], cell.right_nodes[-1])) for cell in one.cells]
     return replace(one, cells=cells), np.interp(indices, np.arange(len(s)), s)
-
-
-def _square_steps(s):
-    """Two vertices of every border nearly at one place are a step across the road: give all borders the same (borders, n) s there."""
-    for k in np.flatnonzero((np.diff(s.mean(0)) < STEP_RUN) & (np.ptp(s[:, :-1], axis=0) < 2 * STEP_RUN)):
-        s[:, k:k + 2] = s[:, k:k + 2].mean() + LEAST_STEP * np.array([-1.0, 1.0])
-
-
-def _frame(plan, strip, near):
-    """(s, t) of the vertices of every slice, (borders, n) metres each; near : for each slice (n,) metres along the road."""
-    frame: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
-    for part, along in zip(strip, near):
-        places = np.stack(part.borders())[..., :2]
-        for values, new in zip(frame, plan.feet(places.reshape(-1, 2), np.tile(along, len(places)))):
-            values.append(new.reshape(places.shape[:2]))
-    return frame
-
-
-def _beyond_ends(strip, s, length):
-    """Metres by which borders reach beyond the start and the end of the road, where it meets no other: an oblique end is made square."""
-    return (0.0 if _meets(strip[0], False) else max(-float(s[0][:, 0].min()), 0.0),
-            0.0 if _meets(strip[-1], True) else max(float(s[-1][:, -1].max()) - length, 0.0))
-
-
-def _meets(one, at_end):
-    """Whether a slice at an end of a road touches another road there."""
-    return any(cell.after if at_end else cell.before for cell in one.cells)
 
 
 def _cuts(strip, centres, s):
@@ -259,8 +243,8 @@ def _end_headings(strip, guide, square):
     headings, widest = [], 0.0
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     near, far = (int(np.clip(np.searchsorted(along, distance), 1, len(guide) - 1)) for distance in (END_CHORD, along[-1] - END_CHORD))
-    for part, row, way, meets in ((strip[0], 0, guide[near] - guide[0], _meets(strip[0], False)),
-                                  (strip[-1], -1, guide[-1] - guide[far - 1], _meets(strip[-1], True))):
+    for part, row, way, meets in ((strip[0], 0, guide[near] - guide[0], strip[0].beyond(False)),
+                                  (strip[-1], -1, guide[-1] - guide[far - 1], strip[-1].beyond(True))):
         across = (part.cells[0].left[row] - part.cells[-1].right[row])[:2]
         widest = max(widest, float(np.hypot(*across)))
         heading, along = float(np.arctan2(-across[0], across[1])), float(np.arctan2(way[1], way[0]))
@@ -291,7 +275,8 @@ def fit_borders(roads: Sequence[tuple[RoadShape, list[Slice], list[int]]], toler
     bundles = [bundle for shape, strip, _ in roads for bundle in _border_bundles(shape, strip, tolerance, directions)]
     centres = [centre for *_, road_centres in roads for centre in road_centres]
     fitted = fit_cubics(bundles)
-    crossing = [k for k, (functions, bundle) in enumerate(zip(fitted, bundles)) if _crossing(functions, bundle.end - bundle.start)]
+    crossing = [k for k, (functions, bundle) in enumerate(zip(fitted, bundles)) if any(
+        difference(left, right).least(bundle.end - bundle.start)[0] < -1e-9 for left, right in zip(functions[:-1], functions[1:]))]
     untangled = [LineBundle([bundle.s[0]] * len(bundle.s), _untangled(bundle.s, bundle.values, centres[k]), bundle.start, bundle.end, tolerance,
                             broken=True) for k, bundle in enumerate(bundles) if k in crossing]
     for k, functions in zip(crossing, fit_cubics(untangled)):
@@ -304,7 +289,8 @@ def _border_bundles(shape, strip, tolerance, directions):
     """The borders of every section of a road."""
     bundles = []
     for k, (courses, start, end) in enumerate(zip(shape.courses, shape.starts[:-1], shape.starts[1:])):
-        s, t = zip(*(_within(start, end, *course[:2]) for course in courses))
+        s = [np.r_[start, along[(along > start + LEAST_STEP) & (along < end - LEAST_STEP)], end] for along, _, _ in courses]
+        t = [np.interp(places, *course[:2]) for places, course in zip(s, courses)]
         slopes = [_slopes_where_met(shape, strip, directions, at_end) if k == outermost else [_slope_at(place, course) for course in courses]
                   for at_end, place, outermost in ((False, start, 0), (True, end, len(strip) - 1))]
         bundles.append(LineBundle(s, t, start, end, tolerance, list(zip(*slopes))))
@@ -391,17 +377,6 @@ def _slopes_where_met(shape, strip, directions, at_end):
     return slopes
 
 
-def _within(start, end, s, values):
-    """Places of a function from start to end."""
-    inner = s[(s > start + LEAST_STEP) & (s < end - LEAST_STEP)]
-    places = np.concatenate([[start], inner, [end]])
-    return places, np.interp(places, s, values)
-
-
-def _crossing(functions, length):
-    return any(difference(left, right).least(length)[0] < -1e-9 for left, right in zip(functions[:-1], functions[1:]))
-
-
 def _untangled(s, t, centre):
     """Offsets that never cross, from lane 0 outwards, at the places of the first border."""
     levels = np.array([np.interp(s[0], x, value) for x, value in zip(s, t)])
@@ -447,13 +422,18 @@ def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
         return
     if _superelevation(road, profiles, middle, tolerance):
         return
-    targets, missed = _targets(road, shape), np.zeros(0)
+    # s, t and height above the elevation of all vertices along the road
+    s, t, z = (np.concatenate([values.ravel() for values in parts]) for parts in (shape.s, shape.t, shape.z))
+    targets = np.c_[s, t, z - road.elevation.at(s)][(s >= 0.0) & (s <= road.length)]
+    missed = np.zeros(0)
     for _ in range(SHAPE_ROUNDS):   # cross-sections are where the lanes have vertices; where that is not enough, also where one border has some
         profiles = _profiles(shape, targets[missed > tolerance, 0] if len(missed) else missed)
         levels = road.elevation.at(np.array([profile.s for profile in profiles]))
         profiles = [profile._replace(z=profile.z - level) for profile, level in zip(profiles, levels)]
         for share in CLOSER:
-            road.shape = _rows(profiles, _telling(profiles, share * tolerance))
+            # straight from place to place of a cross-section, and beyond them
+            kept = [profiles[k] for k in _telling(profiles, share * tolerance)]
+            road.shape = np.array([[s, a, b, c, 0.0, 0.0] for s, t, z in kept for a, b, c in zip(t, z, _slopes(t, z))])
             missed = np.abs(shape_height(road.shape, targets[:, 0], targets[:, 1]) - targets[:, 2])
             if missed.max(initial=0.0) <= tolerance:
                 return
@@ -490,23 +470,14 @@ def _profiles(shape, more):
         order = np.argsort(t, axis=0, kind="stable")
         t, z = np.take_along_axis(t, order, 0), np.take_along_axis(z, order, 0)
         slice_profiles = [_Profile(float(s), t[:, k], z[:, k]) for k, s in enumerate(places)]
-        if profiles:
-            slice_profiles[0] = _joined(profiles.pop(), slice_profiles[0])
+        if profiles:   # where two slices meet
+            s, *before = profiles.pop()
+            t, z = (np.concatenate(values) for values in zip(before, slice_profiles[0][1:]))
+            order = np.argsort(t, kind="stable")
+            slice_profiles[0] = _Profile(s, t[order], z[order])
         profiles += slice_profiles
-    return [_apart(profile) for profile in profiles]
-
-
-def _joined(one, other):
-    """The cross-section where two slices meet."""
-    t, z = np.concatenate([one.t, other.t]), np.concatenate([one.z, other.z])
-    order = np.argsort(t, kind="stable")
-    return _Profile(one.s, t[order], z[order])
-
-
-def _apart(profile):
-    """A cross-section whose places lie apart from each other."""
-    keep = np.append(True, np.diff(np.maximum.accumulate(profile.t)) > SAME_T)
-    return profile._replace(t=profile.t[keep], z=profile.z[keep])
+    apart = (np.append(True, np.diff(np.maximum.accumulate(profile.t)) > SAME_T) for profile in profiles)
+    return [_Profile(s, t[keep], z[keep]) for (s, t, z), keep in zip(profiles, apart)]
 
 
 def _superelevation(road, profiles, middle, tolerance):
@@ -520,22 +491,6 @@ def _superelevation(road, profiles, middle, tolerance):
     (roll,), = fit_cubics([LineBundle([s], [np.arctan(slopes)], 0.0, road.length, tolerance / 4 / max(widest, 1.0))])
     road.superelevation = simplified(roll)
     return True
-
-
-def _targets(road, shape):
-    """(N, 3) s, t and height above the elevation of all vertices along the road."""
-    s, t, z = (np.concatenate([values.ravel() for values in parts]) for parts in (shape.s, shape.t, shape.z))
-    inside = (s >= 0.0) & (s <= road.length)
-    return np.c_[s, t, z - road.elevation.at(s)][inside]
-
-
-def _rows(profiles, kept):
-    """(N, 6) s, t, a, b, c, d of the cross-sections of these numbers: straight from place to place, and beyond them."""
-    rows = []
-    for k in kept:
-        s, t, z = profiles[k]
-        rows += [[s, a, b, c, 0.0, 0.0] for a, b, c in zip(t, z, _slopes(t, z))]
-    return np.array(rows)
 
 
 def _slopes(t, z):

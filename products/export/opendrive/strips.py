@@ -143,7 +143,13 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
     for k, names in enumerate(lanes.successors):
         for name in names:
             _link(last_of[lanes.lane_id[k]], first_of[name])
-    _link_undriven(cells)
+    # cells that nobody drives follow each other where they share their ends
+    starts = {(cell.left_nodes[0], cell.right_nodes[0]): cell for cell in cells if cell.direction == 0}
+    for cell in cells:
+        beyond = starts.get((cell.left_nodes[-1], cell.right_nodes[-1])) if cell.direction == 0 else None
+        if beyond is not None and beyond is not cell and not cell.after:
+            cell.after.append(beyond)
+            beyond.before.append(cell)
     return cells
 
 
@@ -162,16 +168,6 @@ def _link(one: Cell, following: Cell) -> None:
         side = cell.after if ahead == (cell.direction >= 0) else cell.before
         if not any(linked is neighbour for linked in side):
             side.append(neighbour)
-
-
-def _link_undriven(cells):
-    """Cells that nobody drives follow each other where they share their ends."""
-    starts = {(cell.left_nodes[0], cell.right_nodes[0]): cell for cell in cells if cell.direction == 0}
-    for cell in cells:
-        following = starts.get((cell.left_nodes[-1], cell.right_nodes[-1])) if cell.direction == 0 else None
-        if following is not None and following is not cell and not cell.after:
-            cell.after.append(following)
-            following.before.append(cell)
 
 
 def slices_of(cells: list[Cell]) -> list[Slice]:
@@ -242,9 +238,14 @@ def mark_junctions(slices: list[Slice]) -> None:
 
     Where lanes beside each other go on in lanes that are no longer beside each other, there is a junction too: a road has one successor.
     """
-    _mark_partings(slices)
+    owner = _owners(slices)
     for part in slices:
         for at_end in (False, True):
+            # (number of a slice, whether at its start) that the driven cells touch there
+            ends = {(owner[id(neighbour)], any(cell is back for back in neighbour.before)) for cell in part.driven
+                    for neighbour in cell.beyond(at_end) if id(neighbour) in owner}
+            for number, at_start in ends if len(ends) > 1 else ():
+                slices[number].mark(at_start)
             # a connector that this slice touches lies beyond its end: beside the slices beyond
             touching = {id(cell) for cell in part.beyond(at_end)}
             if any(cell.is_connector for cell in part.beyond(at_end)):
@@ -253,24 +254,9 @@ def mark_junctions(slices: list[Slice]) -> None:
                         beyond.mark(at_end)
 
 
-def _mark_partings(slices):
-    owner = _owners(slices)
-    for part in slices:
-        for at_end in (False, True):
-            ends = _ends_beyond(part, at_end, owner)
-            for number, at_start in ends if len(ends) > 1 else ():
-                slices[number].mark(at_start)
-
-
 def _owners(slices):
     """{id of a cell: number of its slice}."""
     return {id(cell): k for k, part in enumerate(slices) for cell in part.cells}
-
-
-def _ends_beyond(one, at_end, owner):
-    """{(number of a slice, whether at its start)} that the driven cells of a slice touch at one end."""
-    return {(owner[id(neighbour)], any(cell is back for back in neighbour.before)) for cell in one.driven for neighbour in cell.beyond(at_end)
-            if id(neighbour) in owner}
 
 
 def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Slice]]:
@@ -280,11 +266,6 @@ def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Sl
              if id(following) in owner and following.direction * cell.direction >= 0}
     after, before = (Counter(pair[side] for pair in pairs) for side in (0, 1))
     follows = {k: j for k, j in pairs if after[k] == before[j] == 1 and (id(slices[k]), id(slices[j])) not in breaks}
-    return _chained(slices, follows)
-
-
-def _chained(slices, follows):
-    """Slices end to end, by {number of a slice: number of the next}."""
     leads = set(follows.values())
     strips, used = [], set()
     for k in [k for k in range(len(slices)) if k not in leads] + list(range(len(slices))):

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from ....core.common.errors import RoadExtractionError
+from ....core.common.features import MARKING_LINES, ROAD_EDGES, Features
 from ....core.common.progress import Progress
 from ....core.driving.layers import Lanes
-from ..sources import LEAST_CURB, MapLayers, MapLine, plan_length, without_repeats
+from ..sources import LEAST_CURB, RoadMapSource, add_edge, add_marking_line, plan_length, without_repeats
 from ..xml_tree import XmlElement, read_xml, written, xml_text
 from .geometry import Cubics, PlanElement, PlanView
-from .model import DRIVEN_TYPES, Connection, Junction, LaneNetwork, LaneSection, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, lane_name
+from .model import DRIVEN_TYPES, LINK_NAMES, Connection, Junction, LaneNetwork, LaneSection, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark
 from .objects import FIELD_OF, left_out_of, outlines_of, signals_of
 
 # kind of a geometry -> attributes of its values
@@ -74,8 +75,9 @@ def _road_of(element, problems):
         raise RoadExtractionError(f"it is longer than {LONGEST_ROAD / 1000:g} km.")
     road = MapRoad(
         element.get("id"), element.number("length", sum(one.length for one in elements)), PlanView(tuple(elements)), element.get("name"),
-        element.get("junction", "-1"),
-        element.get("rule", "RHT"), _link(element.find("link", "predecessor")), _link(element.find("link", "successor")),
+        element.get("junction", "-1"), element.get("rule", "RHT"),
+        {end: RoadLink(child.get("elementType"), child.get("elementId"), child.get("contactPoint"))
+         for end, name in LINK_NAMES.items() if (child := element.find("link", name)) is not None},
         _cubics(element, "elevationProfile", "elevation"), _cubics(element, "lateralProfile", "superelevation"),
         np.array(_rows_of(element, SHAPE, "lateralProfile", "shape")).reshape(-1, len(SHAPE)), _cubics(element, "lanes", "laneOffset"))
     road.sections = sorted((_section_of(child) for child in element.all("lanes", "laneSection")), key=lambda section: section.s)
@@ -104,10 +106,6 @@ def _geometry(element):
     raise RoadExtractionError(f"line {element.line}: a geometry is none of line, arc, spiral, poly3 and paramPoly3.")
 
 
-def _link(element):
-    return None if element is None else RoadLink(element.get("elementType"), element.get("elementId"), element.get("contactPoint"))
-
-
 def _rows_of(element, names, *path):
     return [[child.number(name) for name in names] for child in element.all(*path)]
 
@@ -133,10 +131,8 @@ def _lane_of(element):
     if not len(lane.width) and element.find("border") is not None:
         lane.width, lane.border = _cubics(element, "border", start="sOffset"), True
     lane.marks = sorted((_mark(child) for child in element.all("roadMark")), key=lambda mark: mark.s)
-    link = element.find("link")
-    for child in link.children if link is not None else ():
-        if child.tag in ("predecessor", "successor"):
-            getattr(lane, child.tag + "s").append(int(child.number("id")))
+    for end, name in LINK_NAMES.items():
+        lane.links[end] = [int(child.number("id")) for child in element.all("link", name)]
     rows = [[child.number(name, 0.0) for name in ("sOffset", "inner", "outer")] for child in element.all("height")]
     lane.heights = np.array(sorted(rows), float).reshape(-1, 3)
     lane.speeds = sorted((child.number("sOffset", 0.0), _speed(child)) for child in element.all("speed"))
@@ -202,55 +198,57 @@ def opendrive_text(whole: OpenDriveMap, vendor: str = "Lanewright") -> str:
     x, y, z, heading = whole.offset
     header.add("offset", x=x, y=y, z=z, hdg=heading)
     for road in whole.roads:
-        root.append(_road_element(road, whole.version[1]))
+        _add_road(root, road, whole.version[1])
     for junction in whole.junctions:
         element = root.add("junction", id=junction.id, name=junction.name, type="default")
         for connection in junction.connections:
             child = element.add("connection", id=connection.id, incomingRoad=connection.incoming, connectingRoad=connection.connecting,
                                 contactPoint=connection.contact)
             for start, to in connection.lanes:
-                child.append(XmlElement("laneLink", {"from": start, "to": to}))
+                child.add("laneLink", **{"from": start, "to": to})
     return xml_text(root)
 
 
-def _road_element(road: MapRoad, minor: int) -> XmlElement:
-    element = XmlElement("road", {"name": road.name, "length": float(road.length), "id": road.id, "junction": road.junction, "rule": road.rule})
-    targets = [(name, target) for name, target in (("predecessor", road.predecessor), ("successor", road.successor)) if target is not None]
-    link = element.add("link") if targets else element
-    for name, target in targets:
-        link.add(name, elementType=target.element, elementId=target.id, contactPoint=target.contact or None)
+def _add_road(root: XmlElement, road: MapRoad, minor: int) -> None:
+    element = root.add("road", name=road.name, length=float(road.length), id=road.id, junction=road.junction, rule=road.rule)
+    link = element.add("link") if road.links else element
+    for end, name in LINK_NAMES.items():
+        if (target := road.links.get(end)) is not None:
+            link.add(name, elementType=target.element, elementId=target.id, contactPoint=target.contact or None)
     for s, speed in road.speeds:
         element.add("type", s=s, type="unknown").add("speed", max=speed, unit="km/h")
-    element.append(_plan(road.plan.elements))
+    plan = element.add("planView")
+    for piece in road.plan.elements:
+        child = plan.add("geometry", s=piece.s, x=piece.x, y=piece.y, hdg=piece.heading, length=piece.length)
+        shape = child.add(piece.kind, **dict(zip(GEOMETRIES[piece.kind], piece.values)))
+        if piece.kind == "paramPoly3":
+            shape.attributes["pRange"] = "normalized" if piece.normalized else "arcLength"
     _rows(element.add("elevationProfile"), "elevation", road.elevation)
     lateral = element.add("lateralProfile")
     if np.abs(road.superelevation.rows[:, 1:]).max(initial=0.0) > 0:
         _rows(lateral, "superelevation", road.superelevation)
     for row in road.shape:
-        lateral.append(XmlElement("shape", dict(zip(SHAPE, row))))
+        lateral.add("shape", **dict(zip(SHAPE, row)))
     lanes = element.add("lanes")
     _rows(lanes, "laneOffset", road.lane_offset)
     for section in road.sections:
-        lanes.append(_section_element(section))
+        _add_section_element(lanes, section)
     objects = element.add("objects") if road.objects else element
     for item in road.objects:
         _add_object(objects, item, minor)
     signals = element.add("signals") if road.signals else element
     for item in sorted(road.signals, key=lambda item: not item["own"]):   # references come last
         _add_signal(signals, item)
-    return _with_data(element, road.data)
-
-
-def _country(text: str) -> str | None:
-    """A country as the format has it: two letters, or one of its own names."""
-    return (text.upper() if len(text) < 4 else text if text == "OpenDRIVE" else text.title()) or None
+    _add_data(element, road.data)
 
 
 def _add_signal(signals: XmlElement, item: dict) -> None:
     place = {"s": item["s"], "t": item["t"], "id": item["id"], "orientation": item["orientation"]}
     if item["own"]:
+        code = item["country"]   # two letters, or a name of the format's own
+        country = (code.upper() if len(code) < 4 else code if code == "OpenDRIVE" else code.title()) or None
         element = signals.add("signal", **place, dynamic=item["dynamic"], zOffset=item["zOffset"], type=item["type"] or "-1", name=item["name"],
-                              subtype=item["subtype"] or "-1", country=_country(item["country"]), value=item["value"],
+                              subtype=item["subtype"] or "-1", country=country, value=item["value"],
                               unit=item["unit"] or None, height=item["height"], width=item["width"], hOffset=item["hOffset"])
     else:
         element = signals.add("signalReference", **place)
@@ -258,38 +256,26 @@ def _add_signal(signals: XmlElement, item: dict) -> None:
         element.add("validity", fromLane=first, toLane=last)
 
 
-def _plan(elements: tuple[PlanElement, ...]) -> XmlElement:
-    plan = XmlElement("planView")
-    for element in elements:
-        child = plan.add("geometry", s=element.s, x=element.x, y=element.y, hdg=element.heading, length=element.length)
-        shape = child.append(XmlElement(element.kind, dict(zip(GEOMETRIES[element.kind], element.values))))
-        if element.kind == "paramPoly3":
-            shape.attributes["pRange"] = "normalized" if element.normalized else "arcLength"
-    return plan
-
-
 def _rows(parent: XmlElement, tag: str, cubics: Cubics, start: str = "s") -> None:
     for s, a, b, c, d in cubics.rows:
-        parent.append(XmlElement(tag, {start: s, "a": a, "b": b, "c": c, "d": d}))
+        parent.add(tag, **{start: s, "a": a, "b": b, "c": c, "d": d})
 
 
-def _section_element(section: LaneSection) -> XmlElement:
-    element = XmlElement("laneSection", {"s": float(section.s)})
+def _add_section_element(lanes: XmlElement, section: LaneSection) -> None:
+    element = lanes.add("laneSection", s=float(section.s))
     for side, ids in (("left", [id for id in section.order if id > 0]), ("center", [0]), ("right", [id for id in section.order if id < 0])):
         if ids:
             group = element.add(side)
             for id in ids:
-                group.append(_lane_element(section.lanes[id]))
-    return element
+                _add_lane(group, section.lanes[id])
 
 
-def _lane_element(lane: MapLane) -> XmlElement:
-    element = XmlElement("lane", {"id": lane.id, "type": lane.type, "level": "false"})
-    if lane.predecessors or lane.successors:
-        link = element.add("link")
-        for name, ids in (("predecessor", lane.predecessors), ("successor", lane.successors)):
-            for id in ids:
-                link.add(name, id=id)
+def _add_lane(group: XmlElement, lane: MapLane) -> None:
+    element = group.add("lane", id=lane.id, type=lane.type, level="false")
+    link = element.add("link") if any(lane.links.values()) else element
+    for end, ids in lane.links.items():
+        for id in ids:
+            link.add(LINK_NAMES[end], id=id)
     _rows(element, "width", lane.width, "sOffset")
     for mark in lane.marks:
         _add_mark(element, mark)
@@ -297,13 +283,12 @@ def _lane_element(lane: MapLane) -> XmlElement:
         element.add("speed", sOffset=s, max=speed, unit="km/h")
     for s, inner, outer in lane.heights:
         element.add("height", sOffset=s, inner=inner, outer=outer)
-    return _with_data(element, lane.data)
+    _add_data(element, lane.data)
 
 
-def _with_data(element: XmlElement, data: dict[str, str]) -> XmlElement:
+def _add_data(element: XmlElement, data: dict[str, str]) -> None:
     for code, value in data.items():
         element.add("userData", code=code, value=value)
-    return element
 
 
 def _add_mark(lane: XmlElement, mark: RoadMark) -> None:
@@ -326,7 +311,7 @@ def _add_object(objects: XmlElement, item: dict, minor: int) -> None:
     outline = element.add("outlines").add("outline", id=0, fillType="paint" if minor >= FILLED_BY_PAINT else None, outer="true", closed="true")
     tag, names = ("cornerLocal", ("u", "v", "z")) if item["local"] else ("cornerRoad", ("s", "t", "dz"))
     for number, corner in enumerate(item["corners"]):
-        outline.append(XmlElement(tag, {"id": number} | dict(zip(names, corner)) | {"height": 0.0}))
+        outline.add(tag, id=number, **dict(zip(names, corner)), height=0.0)
 
 
 # The lanes and lines of an OpenDRIVE map as layers like ours.
@@ -344,7 +329,7 @@ ROADS_NAMED = 20        # roads that one sentence names
 LEAST_WIDTH = 0.05     # m: lanes that are narrower everywhere are none
 
 
-def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
+def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> RoadMapSource:
     """Lanes, painted borders and edges of a map; `crs` is the WKT of its coordinates, "" where unknown.
 
     Every section of a lane is a piece, whose lane_id is "road.lane.section"; a section in which a speed limit changes is cut there. Lanes of roads in
@@ -353,26 +338,28 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     """
     whole = replace(whole, roads=[road.cut_where_speeds_change() for road in whole.roads])
     rows: list[dict[str, Any]] = []
-    layers, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
-    numbers, faults = _road_numbers(whole), _Faults()
+    lines, edges = Features("LineStringZ", MARKING_LINES, crs=crs), Features("LineStringZ", ROAD_EDGES, crs=crs)
+    network, faults = LaneNetwork(whole), _Faults()
+    # a whole number for every road: its id where all are such, else its place
+    numbered = all(re.fullmatch(r"\d{1,9}", road.id) for road in whole.roads)
+    numbers = {road.id: int(road.id) if numbered else k for k, road in enumerate(whole.roads, start=1)}
     for count, road in enumerate(whole.roads):
         surface = road.surface
         faults.jumps += [(road.id, *jump) for jump in surface.jumps() if jump[1] > BORDER_JUMP]
         for number, section in enumerate(road.sections):
             if road.section_end(number) - section.s > SHORTEST_SECTION:
-                _add_section(rows, layers.lines, whole, network, surface, number, numbers[road.id], faults)
+                _add_section(rows, lines, edges, whole, network, surface, number, numbers[road.id], faults)
         progress.report((count + 1) / len(whole.roads))
     lane_ids = {row["lane_id"] for row in rows}
     for row in rows:   # what follows may be no lane of ours
         row["successors"] = [name for name in row["successors"] if name in lane_ids]
-    layers.lanes = Lanes.of_pieces(rows, crs)
-    layers.attributes = {row["lane_id"]: row["known"] for row in rows if row["known"]}
-    layers.outlines, layers.signals, layers.left_out = list(outlines_of(whole)), signals_of(whole, crs), left_out_of(whole)
+    notes = faults.said()
     if whole.problems:
         line, text = whole.problems[0]
-        layers.notes.append(f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
-    layers.notes += faults.said()
-    return layers
+        notes.insert(0, f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
+    return RoadMapSource.of_map(
+        Lanes.of_pieces(rows, crs), lines, edges, outlines_of(whole), notes=notes, signals=signals_of(whole, crs),
+        attributes={row["lane_id"]: row["known"] for row in rows if row["known"]}, left_out=left_out_of(whole))
 
 
 @dataclass
@@ -385,8 +372,16 @@ class _Faults:
 
     def said(self) -> list[str]:
         sentences = []
-        if self.jumps:
-            sentences.append(self._said_jumps())
+        if self.jumps:   # every road with gaps or kinks, those with the largest first
+            roads: dict[str, list[tuple[str, float, float, int]]] = {}
+            for jump in sorted(self.jumps, key=lambda jump: -jump[2]):
+                roads.setdefault(jump[0], []).append(jump)
+            named = [f"road {road}, lane {lane}, by {metres:.3f} m at s {s:.1f} m" + (f" and less at {len(less)} more" if less else "")
+                     for (road, s, metres, lane), *less in list(roads.values())[:ROADS_NAMED]]
+            if rest := list(roads.values())[ROADS_NAMED:]:
+                named.append(f"{len(rest)} more roads, by at most {rest[0][0][2]:.3f} m")
+            sentences.append(f"Gaps or kinks of the reference line, or steps of heights and widths ({len(roads)} of the roads), make borders of "
+                             f"lanes jump by more than {BORDER_JUMP:g} m: {'; '.join(named)}. Correct them where the map was made.")
         if self.folds:
             road, lane, place = self.folds[0]
             sentences.append(f"{len(self.folds)} borders of lanes fold back over themselves, as a curve is tighter there than the border is far from "
@@ -398,30 +393,15 @@ class _Faults:
                              f"{width:.2f} m at s {s:.1f} m. Correct them where the map was made.")
         return sentences
 
-    def _said_jumps(self) -> str:
-        """Every road with gaps or kinks, those with the largest first."""
-        roads: dict[str, list[tuple[str, float, float, int]]] = {}
-        for jump in sorted(self.jumps, key=lambda jump: -jump[2]):
-            roads.setdefault(jump[0], []).append(jump)
-        named = []
-        for jumps in list(roads.values())[:ROADS_NAMED]:
-            road, s, metres, lane = jumps[0]
-            named.append(f"road {road}, lane {lane}, by {metres:.3f} m at s {s:.1f} m" + (f" and less at {len(jumps) - 1} more" if jumps[1:] else ""))
-        rest = list(roads.values())[ROADS_NAMED:]
-        if rest:
-            named.append(f"{len(rest)} more roads, by at most {rest[0][0][2]:.3f} m")
-        return (f"Gaps or kinks of the reference line, or steps of heights and widths ({len(roads)} of the roads), make borders of lanes jump by "
-                f"more than {BORDER_JUMP:g} m: {'; '.join(named)}. Correct them where the map was made.")
 
-
-def _add_section(rows, lines, whole, network, surface, number, road_number, faults):
+def _add_section(rows, lines, edges, whole, network, surface, number, road_number, faults):
     """The lanes and lines of one section."""
     road, section = surface.road, surface.road.sections[number]
     s = surface.stations(number)
     offsets = surface.offsets(number, s)
     for id, lane in section.lanes.items():
         if id == 0:
-            lines += _painted(road_number, lane, section.s, s, whole.placed(surface.places(s, offsets[0])), "centre")
+            _add_painted(lines, road_number, lane, section.s, s, whole.placed(surface.places(s, offsets[0])), "centre")
             continue
         (inner, _), (outer, fold) = (surface.without_folds(s, points) for points in surface.borders(number, id, s, offsets))
         inner, outer = whole.placed(inner), whole.placed(outer)
@@ -429,33 +409,40 @@ def _add_section(rows, lines, whole, network, surface, number, road_number, faul
             faults.folds.append((road.id, id, whole.placed(fold[None])[0]))
         if not lane.border and len(lane.width) and (least := lane.width.least(float(s[-1]) - section.s))[0] < NEGATIVE_WIDTH:
             faults.negative.append((road.id, id, least[0], section.s + least[1]))
-        lines += _painted(road_number, lane, section.s, s, outer, _kind(section.lanes, id))
-        lines += _edges(surface, number, id, s, inner, outer, road_number)
+        _add_painted(lines, road_number, lane, section.s, s, outer, _kind(section.lanes, id))
+        _add_edges(edges, surface, number, id, s, inner, outer, road_number)
         if lane.type not in NO_LANES and np.abs(offsets[id] - offsets[surface.inside(number, id)]).max() >= LEAST_WIDTH:
             rows.append({**_lane(network, surface, number, id, s, inner, outer), "road": road_number})
 
 
-def _edges(surface, number, id, s, inner, outer, road_number):
-    """The edges of the road at the borders of a lane."""
-    lanes = surface.road.sections[number].lanes
+def _add_edges(edges, surface, number, id, s, inner, outer, road_number):
+    """The edges of the road at the borders of a lane: the end of its pavement, and the foot of a raised lane, with the height of the top of a curb
+    or of the near side of a sidewalk."""
+    lanes, side = surface.road.sections[number].lanes, "left" if id > 0 else "right"
+    inside = lanes.get(id - int(np.sign(id)))
     if _kind(lanes, id) == "pavement" and plan_length(outer) > LEAST_WIDTH:
-        yield MapLine(road_number, "edge", "main", "", without_repeats(outer), side="left" if id > 0 else "right", edge="pavement")
-    if _edge(lanes, id) and plan_length(inner) > LEAST_WIDTH:
-        yield _curb(surface, number, id, s, inner, road_number)
+        add_edge(edges, without_repeats(outer), road_number, "pavement", side)
+    if lanes[id].type in RAISED and (inside is None or inside.type not in RAISED) and plan_length(inner) > LEAST_WIDTH:
+        near, far = surface.lifts(number, id, s)
+        foot = surface.lifts(number, surface.inside(number, id), s)[1]
+        rise = float(np.median((far if lanes[id].type == "curb" else near) - foot))
+        inner = np.c_[inner[:, :2], inner[:, 2] - near + foot]
+        add_edge(edges, without_repeats(inner), road_number, "curb", side, rise if rise > LEAST_CURB else np.nan)
 
 
 def _lane(network, surface, number, id, s, inner, outer):
     """The values of a lane, its borders in the direction of travel."""
     road, lanes = surface.road, surface.road.sections[number].lanes
     way, driven = 1 if road.way_out(id) == "end" else -1, lanes[id].type in DRIVEN_TYPES
-    sides = [(border, _kind(lanes, lane), _pattern(lanes, lane)) for border, lane in ((inner, surface.inside(number, id)), (outer, id))]
+    sides = [(border, _kind(lanes, lane), next((PATTERN_OF_MARK.get(mark.type, "") for mark in lanes[lane].marks), "") if lane in lanes else "")
+             for border, lane in ((inner, surface.inside(number, id)), (outer, id))]
     left, right = sides[::-1] if id > 0 else sides
     if driven and way < 0:
         left, right = ((border[::-1], kind, pattern) for border, kind, pattern in (right, left))
-    return {"left": left[0], "right": right[0], "lane": id, "lane_id": lane_name(road.id, id, number), "direction": way * driven,
+    return {"left": left[0], "right": right[0], "lane": id, "lane_id": road.lane_name(id, number), "direction": way * driven,
             "type": ("connector" if road.junction != "-1" else "driving") if driven else LANE_TYPE_OF.get(lanes[id].type, "shoulder"),
             "left_kind": left[1], "right_kind": right[1], "left_pattern": left[2], "right_pattern": right[2],
-            "successors": [lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],
+            "successors": list(_following(network, (road.id, number, id))) if driven else [],
             "station": float(s[0]), "end": float(s[-1]), "known": _known(road, number, id)}
 
 
@@ -470,32 +457,14 @@ def _known(road, number, id):
 
 
 def _following(network, key, passed=()):
-    """The lanes that a lane leads to, those beyond sections that are too short to be shown."""
+    """The lane_ids of the lanes that a lane leads to, those beyond sections that are too short to be shown."""
     for following in network.following(key):
-        road = network.roads[following[0]]
-        if road.section_end(following[1]) - road.sections[following[1]].s > SHORTEST_SECTION:
-            yield following
+        name, number, id = following
+        road = network.roads[name]
+        if road.section_end(number) - road.sections[number].s > SHORTEST_SECTION:
+            yield road.lane_name(id, number)
         elif following not in passed:
             yield from _following(network, following, (*passed, following))
-
-
-def _curb(surface, number, id, s, inner, road_number):
-    """The edge where a raised lane begins: at its foot, with its height, which is that of the top of a curb or of the near side of a sidewalk."""
-    lane = surface.road.sections[number].lanes[id]
-    near, far = surface.lifts(number, id, s)
-    foot = surface.lifts(number, surface.inside(number, id), s)[1]
-    rise = float(np.median((far if lane.type == "curb" else near) - foot))
-    inner = np.c_[inner[:, :2], inner[:, 2] - near + foot]
-    return MapLine(road_number, "edge", "main", "", without_repeats(inner), side="left" if id > 0 else "right",
-                   height=rise if rise > LEAST_CURB else np.nan)
-
-
-def _road_numbers(whole: OpenDriveMap) -> dict[str, int]:
-    """A whole number for every road: its id where all are such, else its place."""
-    ids = [road.id for road in whole.roads]
-    if all(re.fullmatch(r"\d{1,9}", id) for id in ids):
-        return {id: int(id) for id in ids}
-    return {id: k for k, id in enumerate(ids, start=1)}
 
 
 def _kind(lanes: dict[int, MapLane], id: int) -> str:
@@ -512,20 +481,8 @@ def _kind(lanes: dict[int, MapLane], id: int) -> str:
     return "edge"
 
 
-def _edge(lanes, id):
-    """Whether the inner border of a lane is the edge of the road: what is raised begins here."""
-    inside = lanes.get(id - int(np.sign(id)))
-    return lanes[id].type in RAISED and (inside is None or inside.type not in RAISED)
-
-
-def _pattern(lanes, id):
-    marks = lanes[id].marks if id in lanes else []
-    return PATTERN_OF_MARK.get(marks[0].type, "") if marks else ""
-
-
-def _painted(number: int, lane: MapLane, start: float, s: np.ndarray, points: np.ndarray, kind: str) -> list[MapLine]:
+def _add_painted(lines: Features, number: int, lane: MapLane, start: float, s: np.ndarray, points: np.ndarray, kind: str) -> None:
     """The outer border of a lane, (N, 3) points at s, cut where its paint changes."""
-    lines = []
     cuts = [max(mark.s + start, s[0]) for mark in lane.marks] + [s[-1]]
     for mark, first, last in zip(lane.marks, cuts[:-1], cuts[1:]):
         if mark.type not in PATTERN_OF_MARK or last - first < LEAST_WIDTH:
@@ -533,5 +490,4 @@ def _painted(number: int, lane: MapLane, start: float, s: np.ndarray, points: np
         stations = np.concatenate([[first], s[(s > first + 1e-6) & (s < last - 1e-6)], [last]])
         piece = without_repeats(np.stack([np.interp(stations, s, values) for values in points.T], axis=1))
         if len(piece) > 1:
-            lines.append(MapLine(number, "marking", kind, PATTERN_OF_MARK[mark.type], piece, mark.width))
-    return lines
+            add_marking_line(lines, piece, number, kind, PATTERN_OF_MARK[mark.type], mark.width)

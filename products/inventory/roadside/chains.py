@@ -71,12 +71,9 @@ class Chain:
 
 def find_chains(uprights: Uprights, road: int, side: int, max_gap: float, min_length: float,
                 look: Callable[[Gaps], Gaps] | None = None) -> list[Chain]:
-    """Chains of the uprights on one side of a road.
+    """Chains, no shorter than `min_length` m, of the uprights on one side of a road, which are sorted by slice and offset.
 
-    uprights : sorted by slice and offset
-    road, side : as in Chain
-    max_gap, min_length : m along the road
-    look : gives gaps with what was seen in them; without it nothing is bridged beyond `max_gap`
+    look : gives gaps with what was seen in them; without it nothing is bridged beyond `max_gap` m
     """
     if len(uprights) < 2:
         return []
@@ -238,10 +235,8 @@ def gaps_by_window(gaps: Gaps, length: float) -> dict[int, list[int]]:
 
 
 def pulses_at(gaps: Gaps, side: int, s: np.ndarray, d: np.ndarray, h: np.ndarray, across: np.ndarray, up: np.ndarray) -> np.ndarray:
-    """Pulses that reached the places of gaps, or would have.
+    """Pulses that reached the places of gaps on one side of a road, or would have.
 
-    gaps : Gaps, of one side of a road
-    side : 1 left, -1 right
     s, d, h : (N,) m, station (rising), offset and height of points of that side, which count as those of the gaps
     across : (2, N) m from the point to the scanner, ahead and left along the road
     up : (N,) m that the scanner is higher above the road
@@ -272,10 +267,7 @@ def pulses_at(gaps: Gaps, side: int, s: np.ndarray, d: np.ndarray, h: np.ndarray
 
 
 def judged(gaps: Gaps, parts: Iterable[tuple[list[int], np.ndarray]]) -> Gaps:
-    """Gaps with what pulses tell of them.
-
-    parts : rows of some of the gaps and their pulses as `pulses_at` counts them
-    """
+    """Gaps with what pulses tell of them: `parts` are rows of some of the gaps, and their pulses as `pulses_at` counts them."""
     length = gaps.last - gaps.first + 1
     owner = np.repeat(np.arange(len(gaps)), length)
     start = np.cumsum(length) - length
@@ -378,10 +370,8 @@ THICKEST, HIGHEST = 0.5, 3.0     # m: what is thicker or higher counts as this, 
 def things_of(chain: Chain, min_length: float) -> list[tuple[str, Chain]]:
     """The things of a chain with their kinds; what is none of the kinds is left out.
 
-    The chain is halved where height, thickness and what is seen through it change most, as long as both parts are long enough and differ by more
-    than their own scatter; neighbours of one kind are one thing all the same.
-
-    min_length : m along the road of a thing
+    The chain is halved where height, thickness and what is seen through it change most, as long as both parts are `min_length` m long and
+    differ by more than their own scatter; neighbours of one kind are one thing all the same.
     """
     cuts = [0, *_cuts(_sections(chain), chain.members.slice, 0, len(chain.members), min_length), len(chain.members)]
     kinds = [kind_of(chain.part(np.arange(a, b))) for a, b in zip(cuts[:-1], cuts[1:])]

@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 import shapely
 
+from ....core.common.arrays import mask_runs
 from ....core.common.features import ROADSIDE, ROADSIDE_OBJECTS, Features
 from ....core.common.parallel import ordered_map
 from ....core.common.progress import Progress
@@ -238,10 +239,7 @@ class Roadside:
 
 
 def told_once(found: Roadside) -> tuple[list[SideLine], dict]:
-    """Lines and poles of all roads without those parts that a road nearer to them has too.
-
-    Returns lines, in the order they had, and poles by road
-    """
+    """Lines of all roads, in their order, and poles by road, without those parts that a road nearer to them has too."""
     return _lines(found), _poles(found)
 
 
@@ -264,9 +262,7 @@ def _parts(chain, free, min_length):
     """The stretches of a chain where it is free, as long as a line must be."""
     if free.all():
         return [chain]
-    cuts = np.r_[0, np.flatnonzero(np.diff(free.astype(int))) + 1, len(free)]
-    rows = [np.arange(a, b) for a, b in zip(cuts[:-1], cuts[1:]) if free[a] and chain.s[b - 1] - chain.s[a] >= min_length]
-    return [chain.part(stretch) for stretch in rows]
+    return [chain.part(np.arange(a, b)) for a, b in mask_runs(free) if chain.s[b - 1] - chain.s[a] >= min_length]
 
 
 def _poles(found):
@@ -291,10 +287,9 @@ def _away(found, road, s, d, side):
 # What is thick and loose, as a hedge, shows uprights on its face and inside it, and may be followed along either: it is told once, by its face.
 
 def _along_faces(things: list[tuple[str, Chain]]) -> list[tuple[str, Chain]]:
-    """Things of which those of one kind that run beside each other, nearer than two things stand, are one.
+    """Kinds and chains of one side of a road in order of station; those of one kind that run nearer beside each other than two things stand are one.
 
-    things : kinds and chains of one side of a road
-    Returns the same, in order of station; where two are joined, the uprights nearer to the road are kept
+    Where two are joined, the uprights nearer to the road are kept.
     """
     result: list[tuple[str, Chain]] = []
     for kind, chain in sorted(things, key=lambda thing: int(thing[1].members.slice[0])):

@@ -67,14 +67,11 @@ class Uprights(Rows):
 
 def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, slices: tuple[int, int], side: int,
                   sight: np.ndarray, min_height: float) -> Uprights:
-    """Uprights of one side of a stretch of road.
+    """Uprights of one side (1 left, -1 right) of a stretch of road whose top is higher than `min_height` m.
 
-    s, d : (N,) m, stations and offsets of points of that side beyond the carriageway's edge
-    above, ground : (N,) m, heights above the ground, and local z of it
+    s, d, above, ground : (N,) m, stations and offsets of points beyond the carriageway's edge, heights above the ground, and local z of it
     slices : (first, last + 1) numbers of the slices
-    side : 1 left, -1 right
     sight : (N,) m that the line of sight to a point rises for each m across towards the road
-    min_height : m of the top
     """
     if not len(s):
         return Uprights.none()
@@ -249,12 +246,10 @@ class Pole:
 
 
 def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, own: tuple[float, float], min_height: float) -> list[Pole]:
-    """Poles, signs and trunks of a stretch of road.
+    """Poles, signs and trunks, at least `min_height` m high, of a stretch of road, from points beside it with a margin before and after.
 
-    s, d : (N,) m, stations and offsets of points beside the carriageway, with a margin before and after the stretch
-    above, ground : (N,) m, heights above the ground, and local z of it
+    s, d, above, ground : (N,) m, stations, offsets, heights above the ground, and local z of it
     own : stations (m) between which the middle of a pole must lie: a pole belongs to one stretch
-    min_height : m
     """
     low = np.flatnonzero((above > SHAFT[0]) & (above < SHAFT[1]))
     if len(low) < MIN_POLE_POINTS:
@@ -406,11 +401,8 @@ class _LocalGround:
 
 
 def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int, offsets: tuple[float, float]) -> _LocalGround:
-    """The ground under points.
+    """The ground under points, (N,) m stations, offsets and heights above the expected road, in so many slices from a station on.
 
-    s, d, h : (N,) m, stations, offsets and heights above the expected road
-    start : m, station of the first slice
-    slices : number of slices along the road
     offsets : (right, left) m
     """
     columns = max(int(np.ceil((offsets[1] - offsets[0]) / GROUND_CELL)), 2)
@@ -524,12 +516,9 @@ STEEPEST_VIEW = 0.70       # m per m down: such heads see 0.46 (-25 degrees) or 
 
 def lines_of_sight(survey: Survey, road: int, number: int, s: np.ndarray, d: np.ndarray, h: np.ndarray,
                    time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Horizontal vectors from points of a pass to the scanner, and how much higher the scanner is.
+    """(2, N) m ahead and left along a road from points of a pass to the scanner, and (N,) m how much higher the scanner is.
 
-    road, number : of the road and of the pass
-    s, d, h : (N,) m, station, offset, and height above the road
-    time : (N,) s
-    Returns (2, N) m ahead and left along the road, and (N,) m
+    s, d, h : (N,) m, station, offset, and height above the road; time : (N,) s
     """
     driven, line = survey.frame.passes[number], survey.frame.road(road)
     x, y = line.to_map(s, d)
@@ -545,8 +534,7 @@ def level_views(survey: Survey) -> dict[int, float]:
 
     In open country nothing stands that a mirror could see above it. That its view ends is told by the ground beside the vehicle, which only a
     mirror sees; without times, which tell where the scanner was, nothing high is taken for a view that ends.
-
-    Returns {number of the pass: m above the road, height of its scanner}
+    Returns {number of the pass: m above the road, height of its scanner}.
     """
     slopes: dict[int, list[np.ndarray]] = {}
     far: dict[int, list[np.ndarray]] = {}
@@ -582,11 +570,8 @@ READ_BEYOND = 0.60                          # m beyond the edge that are read
 
 
 def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int, edge: Callable[[np.ndarray], np.ndarray]) -> Uprights:
-    """The lowest points of one side of a stretch of road, where water runs along its edge.
+    """The lowest points of one side (1 left, -1 right) of so many slices of a road from a station on, where water runs along its edge.
 
-    survey, road : where
-    start, slices : m, station of the first slice, and their number
-    side : 1 left, -1 right
     edge : function of stations that gives the offset of the edge of that side
     Returns Uprights whose `top` is how deep the gutter lies below its outer side; one for each UPRIGHT_SLICE
     """

@@ -51,16 +51,11 @@ class Photo:
     """Contrast of the photo."""
 
     contrast: np.ndarray   # (H, W) float32
-    luminance: np.ndarray   # (H, W) float32, NaN where there is none
     factor: int   # pixels of the image side by side in a pixel here
 
 
 def _read_paint(image: IntensityImage, box: tuple[float, float, float, float] | None = None) -> SurveyedPaint:
-    """The part of an intensity image within a box of map coordinates, its cells made no finer than FINEST_CELL.
-
-    box : west, south, east, north, m; None: the whole image
-    Returns SurveyedPaint; empty where the box lies outside the image
-    """
+    """The part of an intensity image within (west, south, east, north), m, or all of it; cells are no finer than FINEST_CELL."""
     cell = image.cell_size
     first, last = (0, 0), (image.width, image.height)
     if box is not None:
@@ -90,10 +85,8 @@ def _means(pixels, step):
 
 @gdal_exceptions()
 def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
-    """The luminance and contrast of an image, in pixels about as large as a cell of the intensity image or as they are.
+    """The contrast of an image of pixels of about `size` m, in pixels about as large as a `cell` (m) of the intensity image or as they are.
 
-    size : m of a pixel, roughly
-    cell : m of a cell of the intensity image
     Raises RoadExtractionError if the image cannot be read.
     """
     width, height = image.width, image.height
@@ -117,7 +110,7 @@ def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
     except RuntimeError as problem:
         raise RoadExtractionError(f"{image.path} cannot be read as an image ({problem}). Export it anew as a TIFF or JPEG.") from problem
     luminance[(mask < 128) | ~np.isfinite(luminance)] = np.nan
-    return Photo(_paint_contrast(luminance, size * factor), luminance, factor)
+    return Photo(_paint_contrast(luminance, size * factor), factor)
 
 
 # Paint against its surroundings, made comparable between a photo and an intensity image.
@@ -154,11 +147,9 @@ def _smooth(values, deviation):
 
 
 def reduced(contrast: np.ndarray, factor: int) -> np.ndarray:
-    """The contrast in pixels that are `factor` times as wide, each the mean of those it covers.
+    """(H // factor, W // factor) float32, a contrast (H, W) in pixels that are `factor` times as wide, each the mean of those it covers.
 
-    contrast : (H, W)
-    factor : at least 1; the last columns and rows that fill no pixel are left out
-    Returns (H // factor, W // factor) float32
+    The last columns and rows that fill no pixel are left out.
     """
     if factor == 1:
         return contrast
@@ -207,14 +198,11 @@ class Bounds:
 
 def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bounds, sign: int = 1,
                 progress: Progress = Progress()) -> list[Place]:
-    """The places where the paint of a photo fits that of the intensity image best, the best first.
+    """The places where the paint of a photo fits that of the intensity image best, the best first, some metres or a turn apart.
 
     photo : (H, W) contrast of the photo, in pixels of `bounds.sizes`
-    paint : (h, w) contrast of the intensity image, north up, its outer corner at local 0, 0 and y negative below it
-    cell : m, pixel of the intensity image
-    bounds : Bounds, of the pixels of `photo`
+    paint : (h, w) contrast of the intensity image in cells of `cell` m, north up, its outer corner at local 0, 0 and y negative below it
     sign : 1, or -1 where paint is darker than the road
-    Returns list of Place, each some metres or a turn away from the others
     """
     middle_size = float(np.sqrt(bounds.sizes[0] * bounds.sizes[1]))
     half = 0.5 * max(photo.shape) * middle_size
@@ -345,10 +333,9 @@ MOST_SEARCHED = 1000.0  # m, longest side of an intensity image that is searched
 
 
 def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace) -> tuple[SurveyedPaint, Bounds]:
-    """The paint where an image may lie, and what is to be tried there.
+    """The paint where an image may lie by a RoughPlace in the CRS of the intensity image, and what is to be tried there.
 
-    rough : RoughPlace in its CRS
-    Returns SurveyedPaint, Bounds in its local coordinates, for the pixels of the image itself
+    Bounds are in local coordinates of the SurveyedPaint, for the pixels of the image itself.
     Raises RoadExtractionError if the image covers too much ground, the intensity image has nothing there, or too much would have to be searched.
     """
     ground = max(image.width, image.height) * rough.size
@@ -411,44 +398,30 @@ class Placement:
         return self.polynomial.to_map(x, y)
 
     def metres(self, x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
-        """How far on the map pixels lie from those of places.
-
-        x, y, pixel, line : (N,)
-        Returns (N, 2) m, to first order
-        """
+        """(N, 2) m, how far on the map (N,) pixels lie from those of places, to first order."""
         placed = np.column_stack(self.pixels(x, y))
         slope = self.polynomial.jacobian(x, y)
         return np.linalg.solve(slope, (np.column_stack([pixel, line]) - placed)[..., None])[..., 0]
 
-    def drawn(self, values: np.ndarray, photo: Photo, cell: float, shape: tuple[int, ...], corner: tuple[int, int] = (0, 0),
-              reduction: int = 1) -> np.ndarray:
-        """The photo on cells of the map.
+    def drawn(self, photo: Photo, cell: float, shape: tuple[int, ...]) -> np.ndarray:
+        """(H, W) float32, the contrast of a photo on cells (m) of the map from local 0, 0 to the east and south: of dark paint negated, 0 outside.
 
-        values : (h, w) float32, contrast or luminance of the photo
-        photo : Photo that they belong to
-        cell : m
-        shape : rows and columns of cells
-        corner : first column and row, counted from local 0, 0 to the east and to the south
-        reduction : pixels of the photo that are averaged first, where cells are larger than they
-        Returns (H, W) float32, 0 outside the photo
+        Where a cell covers several pixels of the photo these are averaged first.
         """
         height, width = shape
         across = np.linspace(0, width, max(2, -(-width // _NODE) + 1))
         down = np.linspace(0, height, max(2, -(-height // _NODE) + 1))
-        x, y = np.meshgrid((corner[0] + across) * cell, -(corner[1] + down) * cell)
+        x, y = np.meshgrid(across * cell, -down * cell)
         pixel, line = (axis.reshape(x.shape) for axis in self.pixels(x.ravel(), y.ravel()))
+        centre = self.polynomial.centre
+        per_metre = np.sqrt(abs(np.linalg.det(self.polynomial.jacobian(centre[:1], centre[1:])[0])))
+        reduction = max(1, int(cell * per_metre / photo.factor + 0.25))
         factor = photo.factor * reduction
         nodes = [(position / factor - 0.5).astype(np.float32) for position in (pixel, line)]
         # of the middles of the cells: linear between the nodes
         grid = np.meshgrid((np.arange(width) + 0.5) * (len(across) - 1) / width, (np.arange(height) + 0.5) * (len(down) - 1) / height)
         maps = [cv2.remap(node, *(axis.astype(np.float32) for axis in grid), cv2.INTER_LINEAR) for node in nodes]
-        return cv2.remap(reduced(values, reduction), *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0.0)
-
-    def reduction(self, photo: Photo, cell: float) -> int:
-        """Pixels of a photo that a cell (m) covers side by side, at least 1."""
-        centre = self.polynomial.centre
-        per_metre = np.sqrt(abs(np.linalg.det(self.polynomial.jacobian(centre[:1], centre[1:])[0])))
-        return max(1, int(cell * per_metre / photo.factor + 0.25))
+        return self.sign * cv2.remap(reduced(photo.contrast, reduction), *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0.0)
 
 
 # A placement that most pairs of places agree on, whatever the others say (RANSAC).
@@ -460,15 +433,13 @@ _PAIRS_PER_TERM = 2   # an order is fitted to at least so many times the pairs t
 
 
 def agreeing(x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float, weights: np.ndarray) -> np.ndarray:
-    """The pairs whose displacements one affine transformation explains, as many as can be found together.
+    """(N,) bool, the pairs whose displacements one affine transformation explains, as many as can be found; none of too few places.
 
     Where the places lie on a line, as large patches of a straight road do, the transformation is a similarity.
 
-    x, y : (N,) m, places on the map
-    moved : (N, 2) m, their displacements
+    x, y, moved : (N,) and (N, 2) m, places on the map and their displacements
     tolerance : m, from the displacement that the transformation gives
     weights : (N,) what each pair counts
-    Returns (N,) bool; none where there are too few places
     """
     if len(x) < MIN_CONTROL_POINTS[1]:
         return np.zeros(len(x), dtype=bool)
@@ -497,16 +468,13 @@ def _lie_on_a_line(x, y):
     return across <= COLLINEAR_RATIO * along
 
 
-def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float, weights: np.ndarray,
-                     order: int) -> tuple[Placement, np.ndarray] | None:
-    """A new placement from places of the map that were found displaced in the photo as drawn by an old one.
+def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float,
+                     weights: np.ndarray) -> tuple[Placement, np.ndarray] | None:
+    """A new placement, of order 2 where there are pairs enough, from places of the map that were found displaced in the photo as drawn by an old one.
 
-    placement : Placement by which the photo was drawn
-    x, y : (N,) m, places on the map
-    moved : (N, 2) m, from there to where the drawn photo has them
+    x, y, moved : (N,) and (N, 2) m, places on the map, and from there to where the drawn photo has them
     tolerance : m, largest residual of a pair that is used
     weights : (N,) what each pair counts
-    order : of the polynomial, 1 or 2; lowered where there are too few pairs for it
     Returns placement, used: Placement and (N,) bool; None where no three pairs agree
     """
     pixel, line = placement.pixels(x + moved[:, 0], y + moved[:, 1])
@@ -515,7 +483,7 @@ def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: 
     for _ in range(_ROUNDS):
         if used.sum() < MIN_CONTROL_POINTS[1]:
             return None
-        degree = highest_order(x[used], y[used], order)
+        degree = highest_order(x[used], y[used])
         fitted = (Placement.fitted(x[used], y[used], pixel[used], line[used], degree, placement.sign) if degree else
                   _turned(placement, x[used], y[used], moved[used]))
         before, used = used, np.hypot(*fitted.metres(x, y, pixel, line).T) <= tolerance
@@ -535,9 +503,9 @@ def _turned(placement, x, y, moved):
     return Placement.fitted(at_x, at_y, *placement.pixels(at_x + shift.real, at_y + shift.imag), 1, placement.sign)
 
 
-def highest_order(x: np.ndarray, y: np.ndarray, most: int) -> int:
-    """The highest order up to `most` that (N,) places determine well; 0 where they lie on a line or are too few."""
-    for order in range(most, 0, -1):
+def highest_order(x: np.ndarray, y: np.ndarray) -> int:
+    """The highest order, 2 or 1, that (N,) places determine well; 0 where they lie on a line or are too few."""
+    for order in (2, 1):
         if len(x) >= _PAIRS_PER_TERM * MIN_CONTROL_POINTS[order] or (order == 1 and len(x) > MIN_CONTROL_POINTS[1]):
             if not _lie_on_a_line(x, y) and (order == 1 or inverse_condition(x, y, order) > 10 * MIN_INVERSE_CONDITION):
                 return order
@@ -545,13 +513,7 @@ def highest_order(x: np.ndarray, y: np.ndarray, most: int) -> int:
 
 
 def left_out_residuals(x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray, used: np.ndarray, order: int) -> np.ndarray:
-    """Residuals of pairs on the map against a polynomial from pixel and line to the map that was fitted without each.
-
-    x, y, pixel, line : (N,)
-    used : (N,) bool, pairs that are fitted
-    order : of the polynomial
-    Returns (N,) m
-    """
+    """(N,) m, residuals of pairs on the map against a polynomial from the image to the map, fitted to those `used` without each."""
     fit = fit_image_polynomial(pixel[used], line[used], x[used], y[used], order)
     residuals = np.column_stack([x, y]) - np.column_stack(fit.polynomial.to_map(pixel, line))
     residuals[used] = fit.left_out

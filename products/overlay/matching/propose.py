@@ -192,19 +192,23 @@ def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: P
     """Follow the photo's distortion from patches of the intensity image that are found in it, in ever smaller ones; None where they do not agree."""
     for half, search, tolerance, cell in _ALIGNING_ROUNDS:
         progress.check_cancelled()
-        factor = max(1, round(cell / paint.cell))
-        small = reduced(paint.contrast, factor)
-        cell_size = paint.cell * factor
-        drawn = placement.sign * placement.drawn(photo.contrast, photo, cell_size, small.shape, reduction=placement.reduction(photo, cell_size))
+        small, drawn, cell_size = _on_same_cells(placement, paint, photo, cell)
         height, width = (n * cell_size for n in small.shape)
         x, y = (axis.ravel() for axis in np.meshgrid(np.arange(half / 2, width, half), -np.arange(half / 2, height, half)))
         patches = _find_patches(small, drawn, cell_size, x, y, half, search)
         patches = patches.where((patches.score > _LEAST_SCORE) & (patches.second < _MOST_SECOND_OF_PATCHES))
-        fitted = robust_placement(placement, patches.x, patches.y, np.column_stack([patches.dx, patches.dy]), tolerance, patches.score, 2)
+        fitted = robust_placement(placement, patches.x, patches.y, np.column_stack([patches.dx, patches.dy]), tolerance, patches.score)
         if fitted is None:
             return None
         placement = fitted[0]
     return placement
+
+
+def _on_same_cells(placement, paint, photo, cell):
+    """The contrast of the intensity image and that of the photo on cells of about that size (m), and the size that they have."""
+    factor = max(1, round(cell / paint.cell))
+    small = reduced(paint.contrast, factor)
+    return small, placement.drawn(photo, paint.cell * factor, small.shape), paint.cell * factor
 
 
 # Corners of paint paired: found in the photo by their surroundings, and judged by what the others say.
@@ -239,20 +243,18 @@ class Pairs(NamedTuple):
 def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray, settings: ProposalSettings) -> Pairs | None:
     """Corners of paint found in a photo that lies on the map to some decimetres; None where too few agree on one placement."""
     for search, times in _ROUNDS:
-        drawn = placement.sign * placement.drawn(photo.contrast, photo, paint.cell, paint.contrast.shape,
-                                                 reduction=placement.reduction(photo, paint.cell))
-        patches = _find_patches(paint.contrast, drawn, paint.cell, x, y, _PATCH, search)
+        patches = _find_patches(*_on_same_cells(placement, paint, photo, paint.cell), x, y, _PATCH, search)
         patches = patches.where(patches.score > _LISTED_SCORE)
         alike = (patches.score >= settings.min_score) & (patches.second <= _MOST_SECOND)
         moved = np.column_stack([patches.dx, patches.dy])
-        fitted = robust_placement(placement, patches.x[alike], patches.y[alike], moved[alike], times * settings.tolerance, patches.score[alike], 2)
+        fitted = robust_placement(placement, patches.x[alike], patches.y[alike], moved[alike], times * settings.tolerance, patches.score[alike])
         if fitted is None or fitted[1].sum() < max(LEAST_PAIRS, _LEAST_SHARE * alike.sum()):
             return None
         pixel, line = placement.pixels(patches.x + patches.dx, patches.y + patches.dy)
         placement = fitted[0]
         used = np.zeros(len(patches.x), dtype=bool)
         used[np.flatnonzero(alike)[fitted[1]]] = True
-    order = highest_order(patches.x[used], patches.y[used], 2)
+    order = highest_order(patches.x[used], patches.y[used])
     if order == 0:
         return None
     residual = left_out_residuals(patches.x, patches.y, pixel, line, used, order)
@@ -355,20 +357,13 @@ class _Rival(NamedTuple):
 
 
 def _corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """How well the photo fits about corners of paint.
-
-    x, y : (N,) m, local
-    Returns (N,) correlation of the best place within some decimetres; NaN outside the photo
-    """
+    """(N,) how well the photo fits about corners of paint, (N,) m, local: correlation of the best place within decimetres; NaN outside."""
     maps = _maps(placement, paint, photo, x, y, _OFF)
     return np.array([np.nan if match is None else match.max() for match in maps])
 
 
 def _nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
-    """The shift by some metres that the corners allow best, besides none at all.
-
-    as of `_corner_scores` Returns _Rival, None where no corner lies in the photo
-    """
+    """The shift by some metres that the corners allow best, besides none at all; None where no corner lies in the photo."""
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
     maps = [cv2.dilate(match, near) for match in _maps(placement, paint, photo, x, y, _AROUND) if match is not None]
     if not maps:
@@ -396,11 +391,7 @@ def _rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, fl
 
 def _maps(placement, paint, photo, x, y, search):
     """Correlations about each corner, (2 n + 1, 2 n + 1) each, its own place in the middle; None outside the photo."""
-    factor = max(1, round(_CELL / paint.cell))
-    small = reduced(paint.contrast, factor)
-    cell = paint.cell * factor
-    drawn = placement.sign * placement.drawn(photo.contrast, photo, cell, small.shape, reduction=placement.reduction(photo, cell))
-    return _correlation_maps(small, drawn, cell, x, y, _HALF, search)
+    return _correlation_maps(*_on_same_cells(placement, paint, photo, _CELL), x, y, _HALF, search)
 
 
 # Patches of the intensity image found again in the photo, once that lies roughly on the map.
@@ -419,7 +410,6 @@ class Found(NamedTuple):
     dy: np.ndarray
     score: np.ndarray   # (N,) correlation, 0 to 1
     second: np.ndarray   # (N,) the largest correlation elsewhere in the window, as a share of the best
-    sharpness: np.ndarray   # (N,) how fast the correlation falls in the direction in which it falls slowest, per m²
 
     def where(self, kept: np.ndarray) -> Found:
         """The patches of a (N,) bool or index array."""
@@ -429,12 +419,10 @@ class Found(NamedTuple):
 def _find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float, search: float) -> Found:
     """Find patches of the intensity image in the photo drawn on the same cells.
 
-    paint : (H, W) contrast of the intensity image, 0 where unknown, its corner at local 0, 0
-    drawn : (H, W) contrast of the photo on the same cells
+    paint, drawn : (H, W) contrast of the intensity image, 0 where unknown, its corner at local 0, 0, and of the photo on the same cells
     cell : m
     x, y : (N,) middles of the patches, m, local
-    half : m, half the side of a patch
-    search : m, how far off it may be
+    half, search : m, half the side of a patch, and how far off it may be
     Returns Found, without patches that lie too near the border, hold no paint, or were found at the border of their window
     """
     margin = max(2, round(search / cell))
@@ -443,17 +431,16 @@ def _find_patches(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarr
     for at_x, at_y, match in zip(x, y, _correlation_maps(paint, drawn, cell, x, y, half, search)):
         best = None if match is None else _peak(match, exclusion)
         if best is not None:
-            right, down, score, second, sharpness = best
-            rows.append((at_x, at_y, (right - margin) * cell, -(down - margin) * cell, score, second, sharpness / cell**2))
-    return Found(*np.array(rows, float).reshape(-1, 7).T)
+            right, down, score, second = best
+            rows.append((at_x, at_y, (right - margin) * cell, -(down - margin) * cell, score, second))
+    return Found(*np.array(rows, float).reshape(-1, 6).T)
 
 
 def _correlation_maps(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.ndarray, y: np.ndarray, half: float,
                      search: float) -> Iterator[np.ndarray | None]:
-    """The correlation of each patch with the photo, for every shift by whole cells.
+    """The correlation of each patch with the photo, for every shift by whole cells; parameters as of `_find_patches`.
 
-    as of `_find_patches`
-    Returns iterator of (2 n + 1, 2 n + 1) float32, the shift by nothing in the middle; None where a patch holds no paint or the photo is empty
+    Yields (2 n + 1, 2 n + 1) float32, the shift by nothing in the middle; None where a patch holds no paint or the photo is empty.
     """
     reach, margin = max(2, round(half / cell)), max(2, round(search / cell))
     edge = reach + margin + 1
@@ -479,7 +466,7 @@ def _correlation(window, template, mask):
 
 
 def _peak(match, other):
-    """(column, row, value, second peak as a share of it, sharpness per cell²) of the largest value; None at the border."""
+    """(column, row, value, second peak as a share of it) of the largest value; None at the border, or where it is none."""
     row, column = divmod(int(match.argmax()), match.shape[1])
     if not (0 < row < match.shape[0] - 1 and 0 < column < match.shape[1] - 1):
         return None
@@ -488,10 +475,9 @@ def _peak(match, other):
     bend = np.array([[a[1, 2] - 2 * a[1, 1] + a[1, 0], (a[2, 2] - a[2, 0] - a[0, 2] + a[0, 0]) / 4],
                      [0.0, a[2, 1] - 2 * a[1, 1] + a[0, 1]]])
     bend[1, 0] = bend[0, 1]
-    flattest = -np.linalg.eigvalsh(bend).max()
-    if flattest <= 0 or a[1, 1] <= 0:
+    if np.linalg.eigvalsh(bend).max() >= 0 or a[1, 1] <= 0:
         return None
     move = np.clip(-np.linalg.solve(bend, slope), -1.0, 1.0)
     remaining = match.copy()
     remaining[max(0, row - other):row + other + 1, max(0, column - other):column + other + 1] = 0.0
-    return column + move[0], row + move[1], a[1, 1], max(float(remaining.max()), 0.0) / a[1, 1], flattest
+    return column + move[0], row + move[1], a[1, 1], max(float(remaining.max()), 0.0) / a[1, 1]

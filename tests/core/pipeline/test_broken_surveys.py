@@ -58,7 +58,7 @@ def assert_right(sample, road_map, least=0.9, right=0.95):
     found = compare_lines(road_map.layer("edges").geometries, curbs, area=area)
     assert found.completeness[0.10] > least
     assert compare_lines(road_map.layer("edges").geometries, dropped_too, area=area).correctness[0.10] > right
-    assert found.height_rmse < 0.03
+    assert found.height.rmse < 0.03
 
 
 def refusal(run):

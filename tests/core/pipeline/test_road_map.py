@@ -62,7 +62,7 @@ def test_road_edges_lie_on_the_curbs(sample, road_map):
     found = compare_lines(road_map.layer("edges").geometries, curbs, area=area_of(road_map))
     assert found.completeness[0.10] > 0.95
     assert found.correctness[0.10] > 0.95
-    assert found.height_rmse < 0.02
+    assert found.height.rmse < 0.02
 
 
 def test_markings_are_the_painted_ones(sample, road_map):

@@ -5,13 +5,16 @@ import numpy as np
 import pytest
 import shapely
 from curbed_streets import EAST, NORTH
+from lanewright.core.execution.phase import Threads
 from lanewright.core.road.common import tracking
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.curb_returns.main_curbs import KnownPlaces, SearchLimit
+from lanewright.core.road.detect_boundaries import draw_boundaries, find_curb_points
 from lanewright.core.road.edges import corner_edges, road_edges
 from lanewright.core.road.edges.road_edges import EdgePiece, joined_pieces
 from lanewright.core.road.surface import ground_grid, pavement_edge, pavement_lines
+from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.road.surface.ground_grid import MeasuredGround
 from lanewright.core.road.weights import SURFACE
 from lanewright.core.survey.frame.road_frame import build_frame
@@ -208,13 +211,44 @@ def test_where_a_pavement_edge_crosses_curbs_is_what_all_curbs_together_tell():
     assert np.isinf(pavement_lines._distance(places, np.empty(0))).all()
 
 
+class Counting(Threads):
+    """Threads that note the phases they are given."""
+
+    def __init__(self):
+        super().__init__(2)
+        self.phases = []
+
+    def run(self, phase, *others):
+        self.phases.append(phase.function.__name__)
+        return super().run(phase, *others)
+
+
+def phases_of(second):
+    """The phases of curbs and road surface, and how many roads there are."""
+    survey = streets.survey_of(streets.street(), second=second)
+    survey.executor, ground = Counting(), MeasuredGround(survey)
+    edges = draw_boundaries(find_curb_points(survey, ground=ground), survey.frame, survey=survey, ground=ground).edges
+    extract_road_surface(survey, edges, ground=ground)
+    # who drove where is looked at pass by pass, since its samples would take too much memory together
+    return [name for name in survey.executor.phases if name not in ("_windows_at", "_phasors_of_stretches")], len(survey.frame.roads)
+
+
+def test_two_roads_wait_for_their_workers_no_more_often_than_one():
+    beside = [np.array(streets.street(seed=4)), np.array(streets.driven(start=1100.0))]
+    for rows, north in zip(beside, (1, 2)):
+        rows[north] += 60.0
+    beside[0][3] += 100.0
+    alone, together = phases_of(None), phases_of([tuple(rows) for rows in beside])
+    assert (alone[1], together[1]) == (1, 2) and sorted(alone[0]) == sorted(together[0])
+
+
 def test_the_ground_is_measured_once_for_edges_and_surface(monkeypatch):
     survey = streets.survey_of(streets.street())
     count, plain = [0], ground_grid.ground_of_windows
 
-    def counted(source, windows, road):
+    def counted(source, windows):
         count[0] += len(windows)
-        return plain(source, windows, road)
+        return plain(source, windows)
 
     monkeypatch.setattr(ground_grid, "ground_of_windows", counted)
     ground, rows = MeasuredGround(survey), [SURFACE.window_rows * k for k in range(5)]

@@ -13,11 +13,23 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.execution import choice, processes
 from lanewright.core.execution import tasks as interpreter
 from lanewright.core.execution.choice import ExecutionSettings, executor_for
-from lanewright.core.execution.phase import NoSource, Phase, Threads, read_plain, write_plain
+from lanewright.core.execution.phase import Items, NoSource, Phase, Threads, read_plain, write_plain
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.markings.objects.figures import figure_of_cells
 from lanewright.core.road.surface.ground_grid import ground_of_windows
 from lanewright.core.survey.blocks import sensor_height_of
+
+
+def test_an_item_is_made_when_its_turn_comes_and_not_before():
+    made = []
+
+    def make(number):
+        made.append(number)
+        return number
+
+    results = Threads(2).run(Phase(lambda source, item: 10 * item, NoSource()), Items(100, make))
+    assert next(results) == 0 and len(made) < 10
+    assert list(results) == list(range(10, 1000, 10)) and made == list(range(100))
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +97,7 @@ def test_workers_that_forget_what_they_read_go_on_with_the_next_phase(python):
     with closing(WorkerProcesses(python, 1)) as executor:
         found, workers = [], []
         for _ in range(2):
-            found.append([part.tolist() for part, _ in executor.run_together(Phase(ground_of_windows, survey, (0,)), [(0, True, False)] * 2, 1)])
+            found.append([part.tolist() for part, _ in executor.run_together(Phase(ground_of_windows, survey), [(0, 0, True, False)] * 2, 1)])
             workers.append([worker.process.pid for worker in executor._all])
             executor.forget()
     assert str(found[0]) == str(found[1]) and found[0]

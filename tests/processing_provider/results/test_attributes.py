@@ -16,6 +16,7 @@ from qgis.core import (
     QgsProcessingContext,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QTextBrowser
 
 SCHEMAS = {"ROAD_EDGES": ("LineStringZ", ROAD_EDGES), "MARKING_LINES": ("LineStringZ", MARKING_LINES), "LANES": ("PolygonZ", LANES),
@@ -105,6 +106,13 @@ def test_numbers_are_rounded_to_what_they_mean_and_values_are_words(qgis_app):
         ["12.35", "0.012", "251.3", "along the road", "inferred"]
 
 
+@pytest.mark.parametrize("row, label", [(dict(radius_m=251.27, design_kmh=60), "R 251 · 60 km/h"), (dict(radius_m=84.31), "R 84.3")])
+def test_a_curve_is_labelled_with_its_radius_and_the_design_speed_that_it_allows(row, label):
+    layer = loaded("DRIVING_LINES", **row)
+    rule, = layer.labeling().rootRule().children()
+    assert evaluated(layer, f"[% {rule.settings().fieldName} %]") == label
+
+
 @pytest.mark.parametrize("alias, short", [
     ("Side (left/right)", "Side"), ("Station (m)", "Station (m)"), ("Offset, left positive (m)", "Offset, left positive (m)"),
     ("Heading (°, clockwise from grid north)", "Heading (°)"), ("Direction (1 along, -1 against the road)", "Direction"),
@@ -112,6 +120,14 @@ def test_numbers_are_rounded_to_what_they_mean_and_values_are_words(qgis_app):
 ])
 def test_a_name_is_short_and_keeps_its_unit(alias, short):
     assert short_alias(alias) == short
+
+
+def test_between_two_layers_of_a_run_the_window_is_drawn(qgis_app):
+    """QGIS loads and styles all layers in one go, which would keep the window still for as long."""
+    drawn = []
+    QTimer.singleShot(0, lambda: drawn.append(True))
+    loaded("DRIVING_LINES", status="measured")
+    assert drawn
 
 
 def test_the_road_plan_is_in_force_and_further_looks_stand_ready(qgis_app):

@@ -13,8 +13,8 @@ def test_a_line_7_cm_beside_is_right_at_10_cm_and_wrong_at_5():
     accuracy = compare_lines([LineString([(0, 0.07, 10.02), (100, 0.07, 10.02)])], [REFERENCE])
     assert accuracy.completeness[0.10] == 1.0 and accuracy.correctness[0.10] == 1.0
     assert accuracy.completeness[0.05] == 0.0 and accuracy.correctness[0.05] == 0.0
-    assert accuracy.rmse == pytest.approx(0.07, abs=1e-9)
-    assert accuracy.height_rmse == pytest.approx(0.02, abs=1e-9)
+    assert accuracy.lateral.rmse == pytest.approx(0.07, abs=1e-9)
+    assert accuracy.height.rmse == pytest.approx(0.02, abs=1e-9)
 
 
 def test_half_a_line_is_half_complete_and_wholly_correct():
@@ -27,7 +27,7 @@ def test_a_line_in_the_next_street_is_miscoded_and_does_not_spoil_the_rmse():
     elsewhere = LineString([(0, 30, 10), (100, 30, 10)])
     accuracy = compare_lines([REFERENCE, elsewhere], [REFERENCE])
     assert accuracy.correctness[0.20] == pytest.approx(0.5, abs=0.01)
-    assert accuracy.rmse == pytest.approx(0.0, abs=1e-9)
+    assert accuracy.lateral.rmse == pytest.approx(0.0, abs=1e-9)
 
 
 def test_no_result_is_not_complete():

@@ -93,15 +93,9 @@ def test_the_survey_may_lie_anywhere():
 
 
 def test_the_outcome_of_every_cell_is_told():
-    class Kept:
-        number = 0
-
-        def write(self, tile, values):
-            self.number = self.number + np.bincount(values.ravel(), minlength=6)
-
-    kept = Kept()
-    assess_markings([translate(LINE, 0, 3 * CELL), STOP], [LINE, STOP], outcome_raster=kept)
-    number = kept.number
+    number = np.zeros(6, int)
+    assess_markings([translate(LINE, 0, 3 * CELL), STOP], [LINE, STOP],
+                    write_tile=lambda tile, values: np.add(number, np.bincount(values.ravel(), minlength=6), out=number))
     assert (number[HIT], number[FALSE_BESIDE], number[FALSE], number[MISSED]) == (750, 250, 500, 500)
 
 

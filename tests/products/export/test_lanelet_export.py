@@ -3,23 +3,21 @@
 import numpy as np
 import pytest
 import shapely
+from exported_maps import as_lanelets
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.products.export.check.lanelets import check_lanelets
-from lanewright.products.export.lanelet_export import LaneletSettings, draft_lanelets, lanelet2_text, to_degrees
-from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
+from lanewright.products.export.lanelet_export import LaneletSettings, to_degrees
+from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places
 from lanewright.products.export.sources import RoadMapSource, checked
 from made_lanes import CRS, ORIGIN, Axis, LaneScene, crossing, kinds, roundabout, s_curve, split, street, widening
-from map_files import written
 
 SCENES = {"street": lambda: street(cut=30.0), "left-hand street": lambda: street(side="left", cut=30.0),
           "curves": lambda: s_curve(slope=0.02, crown=0.025), "widening": widening, "split": split, "crossing": crossing, "roundabout": roundabout}
 
 
 def exported(folder, lanes, local=False, settings=LaneletSettings(), **layers):
-    draft = draft_lanelets(checked(RoadMapSource(lanes, **layers)), settings)
-    path = written(folder, lanelet2_text(draft, to_degrees(draft.nodes, lanes.crs), local), "map.osm")
-    return draft, read_lanelet2(path)
+    return as_lanelets(folder, checked(RoadMapSource(lanes, **layers)), settings, local)
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -61,13 +59,13 @@ def test_from_every_arm_of_a_crossing_a_route_leads_to_every_other(tmp_path):
 def test_neighbours_share_the_way_between_them_and_a_lane_is_cut_where_another_begins_beside_it(tmp_path):
     draft, _ = exported(tmp_path, split())
     beside = [made for made in draft.lanelets if made.name in ("1.1.2", "1.2.1")]
-    assert len(beside) == 2 and beside[0].right == beside[1].left
+    assert len(beside) == 2 and beside[0].way("right") == beside[1].way("left")
     scene, line = LaneScene(), Axis(((60.0, 0.0, 0.0),))
     scene.add(line, 0.0, -3.5)
     scene.add(line, -3.5, -7.0, 20.0, 40.0, lane=2)
     draft, _ = exported(tmp_path, scene.lanes())
     assert [made.name for made in draft.lanelets] == ["1.1.1", "1.1.1", "1.1.1", "1.2.1"]
-    assert draft.lanelets[1].right == draft.lanelets[3].left
+    assert draft.lanelets[1].way("right") == draft.lanelets[3].way("left")
 
 
 def test_borders_have_the_types_and_subtypes_of_the_format(tmp_path):
@@ -105,7 +103,7 @@ def test_crossings_and_stop_lines_come_from_the_markings(tmp_path):
     draft, whole = exported(tmp_path, street(), markings=markings)
     walked = draft.lanelets[-1]
     assert walked.tags["subtype"] == "crosswalk" and not check_lanelets(whole, *node_places(whole, CRS)).found
-    left, right = (draft.nodes[list(draft.ways[number].nodes)] - ORIGIN for number in (walked.left, walked.right))
+    left, right = (draft.nodes[list(draft.ways[number].nodes)] - ORIGIN for number in (walked.way("left"), walked.way("right")))
     assert np.ptp(left[:, 1]) == pytest.approx(6.5, abs=1e-6) and np.abs(left[:, 0] - right[:, 0]).max() == pytest.approx(4.0, abs=1e-6)
     stop = next(draft.nodes[list(way.nodes)] - ORIGIN for way in draft.ways if way.tags["type"] == "stop_line")
     np.testing.assert_allclose(np.sort(stop[:, 1]), [-3.4, -0.1], atol=1e-6)

@@ -5,17 +5,17 @@ import time
 import numpy as np
 import pytest
 import shapely
+from exported_maps import as_lanelets, as_roads
 from lanewright.core.common.progress import Progress
 from lanewright.core.driving.layers import Lanes
 from lanewright.products.export.check.lanelets import check_lanelets
-from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
+from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places
 from lanewright.products.export.opendrive import geometry as fits
 from lanewright.products.export.opendrive.exporter import draft_opendrive
 from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
 from lanewright.products.export.opendrive.model import shape_height
 from lanewright.products.export.opendrive.reference_line import fit_reference
-from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
 from lanewright.products.export.shared_borders import with_inferred_ways, with_shared_borders
 from lanewright.products.export.sources import RoadMapSource, border_misses, checked
 from map_files import geometry, lane, opendrive, road, street_section, written
@@ -86,10 +86,7 @@ def taken_in(folder, text):
 def given_out(folder, lanes):
     """Lanes of the maps that are written of others: OpenDRIVE, Lanelet2."""
     source = with_shared_borders(with_inferred_ways(checked(RoadMapSource(lanes))))
-    roads = layers_of_opendrive(read_opendrive(written(folder, opendrive_text(draft_opendrive(source).map), "out.xodr"))).lanes
-    draft = draft_lanelets(source)
-    text = lanelet2_text(draft, to_degrees(draft.nodes, source.lanes.crs))
-    return roads, layers_of_lanelets(read_lanelet2(written(folder, text, "out.osm")), source.lanes.crs).lanes
+    return layers_of_opendrive(as_roads(folder, source)[1]).lanes, layers_of_lanelets(as_lanelets(folder, source)[1], source.lanes.crs).lanes
 
 
 def apart(lanes, others):
@@ -180,7 +177,7 @@ def test_a_direct_junction_leads_from_road_to_road(tmp_path):
 def test_the_heights_of_lanes_are_the_heights_of_curbs(tmp_path, kind, inner, outer, expected):
     raised = lane(-2, kind, 1.5, "none", more=f'<height sOffset="0" inner="{inner}" outer="{outer}"/>')
     found, _ = taken_in(tmp_path, road(LINE, 40, lanes=section(right=lane(-1) + raised)))
-    edges = found.road_edges()
+    edges = found.road_edges
     assert edges.rows[0]["height_m"] == (expected if expected is None else pytest.approx(expected))
     np.testing.assert_allclose(shapely.get_coordinates(edges.geometries[0], include_z=True)[:, 2], 0.0, atol=1e-12)   # its foot
 
@@ -220,12 +217,22 @@ def test_a_curb_between_lanes_keeps_its_bottom_and_its_top(tmp_path):
                     np.testing.assert_allclose(border[:, 2], level + 0.01 * x, atol=0.002)
 
 
+def test_a_kink_of_a_reference_line_makes_no_node_twice(tmp_path):
+    _, lanes = taken_in(tmp_path, road(geometry(0, 0, 0, 0, 20) + geometry(20, 20, 0, 0.0002, 20), 40))
+    assert "repeated node" not in _checked_lanelets(tmp_path, lanes)
+
+
 def test_a_curb_between_lanelets_is_no_border_twice(tmp_path):
     lanes = section(right=lane(-1) + lane(-2, "biking", 1.5, more='<height sOffset="0" inner="0.12" outer="0.12"/>'))
     _, lanes = taken_in(tmp_path, road(LINE, 40, lanes=lanes))
-    draft = draft_lanelets(with_shared_borders(checked(RoadMapSource(lanes))))
-    whole = read_lanelet2(written(tmp_path, lanelet2_text(draft, to_degrees(draft.nodes, lanes.crs)), "out.osm"))
-    assert len(whole.lanelets) == 2 and "border twice" not in check_lanelets(whole, *node_places(whole, lanes.crs)).counts()
+    assert "border twice" not in _checked_lanelets(tmp_path, lanes)
+
+
+def _checked_lanelets(folder, lanes):
+    """What the check counts in the Lanelet2 map of two lanes."""
+    _, whole = as_lanelets(folder, with_shared_borders(checked(RoadMapSource(lanes))))
+    assert len(whole.lanelets) == 2
+    return check_lanelets(whole, *node_places(whole, lanes.crs)).counts()
 
 
 def test_the_work_for_heights_and_widths_grows_with_their_length():

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+from exported_maps import as_roads
 from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.products.export.check.roads import check_opendrive
-from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
+from lanewright.products.export.opendrive.exporter import OpenDriveSettings
 from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
 from lanewright.products.export.opendrive.reference_line import fit_reference, polynomial_reference
-from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive
 from lanewright.products.export.sources import RoadMapSource, border_misses, checked, crs_of_reference, driving_line_misses, reference_of_crs
 from made_lanes import CRS, Axis, LaneScene, crossing, kinds, roundabout, s_curve, split, street, widening
-from map_files import written
 
 SCENES = {"street": lambda: street(cut=30.0), "left-hand street": lambda: street(side="left", cut=30.0),
           "crowned curves": lambda: s_curve(slope=0.02, crown=0.025), "tilted curves": lambda: s_curve(slope=0.02, crossfall=0.02),
@@ -21,8 +21,7 @@ SCENES = {"street": lambda: street(cut=30.0), "left-hand street": lambda: street
 
 
 def exported(folder, lanes, settings=OpenDriveSettings(), **layers):
-    draft = draft_opendrive(checked(RoadMapSource(lanes, **layers)), settings)
-    return draft, read_opendrive(written(folder, opendrive_text(draft.map)))
+    return as_roads(folder, checked(RoadMapSource(lanes, **layers)), settings)
 
 
 def lane_names(draft):
@@ -148,6 +147,12 @@ def test_a_line_that_no_short_element_follows_is_drawn_by_cubics():
     np.testing.assert_allclose([element.end()[:2] for element in plan.elements], points[1:], atol=2e-3)
     turns = [second.heading - first.end()[2] for first, second in zip(plan.elements[:-1], plan.elements[1:])]
     assert np.abs((np.array(turns) + np.pi) % (2 * np.pi) - np.pi).max() < 1e-3
+
+
+def test_a_curve_that_turns_at_its_end_to_meet_another_road_has_no_kink():
+    along = np.arange(0.0, 40.5)
+    plan = fit_reference(60.0 * np.c_[np.sin(along / 60.0), 1 - np.cos(along / 60.0)], 0.02, (None, 40.0 / 60.0 + 0.05))
+    assert plan.elements[-1].end()[2] == pytest.approx(40.0 / 60.0 + 0.05) and not plan.jumps(1e-9, 1e-9)
 
 
 def test_noise_of_the_survey_makes_no_more_elements_than_the_road_has():

@@ -98,6 +98,7 @@ STATED = [
     ("tilted", "record order", "a superelevation beyond the road", add(".//lateralProfile", "<superelevation " + CUBIC(9999, 0))),
     ("crowned", "record order", "shapes that go back", last_first(".//lateralProfile")),
     ("street", "value", "lane -1.5", put(".//right/lane", id="-1.5")),
+    ("crossing", "value", "a lane whose number is a word", put(".//right/lane", id="outer")),
     ("street", "record order", "the first width at 5 m", put(WIDTH, sOffset="5")),
     ("street", "value", "a lane of 200 m", put(WIDTH, a="200")),
     ("street", "two at once", "width and border", add(".//right/lane", '<border sOffset="0" a="-3" b="0" c="0" d="0"/>')),
