@@ -229,7 +229,7 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     """
     grid, work = _looked(road_points, settings, progress)
     image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, road_points.executor.folder)
-    image.pieces = {piece: digest((settings, piece, road_points.state(*_span(piece.road, piece.number, PIECE_LENGTH))))
+    image.pieces = {piece: digest((settings, piece, road_points.state(*_span(PIECE_LENGTH, piece.road, piece.number))))
                     for _, pieces in work for piece in pieces}
     image.states = {tile: digest((grid.shape_of(*tile), [image.pieces[piece] for piece in pieces])) for tile, pieces in work}
     if before is not None:
@@ -292,8 +292,8 @@ def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress
     if not len(road_points):
         raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
-    phase = Phase(windows_of_image, road_points, (settings,), lambda task: road_points.survey.stretch(*_span(*task[0], IMAGE.ranking_window)),
-                  state=lambda task: [road_points.state(*_span(*window, IMAGE.ranking_window)) for window in task])
+    phase = Phase(windows_of_image, road_points, (settings,), lambda task: road_points.survey.stretch(*_span(IMAGE.ranking_window, *task[0])),
+                  state=lambda task: [road_points.state(*_span(IMAGE.ranking_window, *window)) for window in task])
     looked = road_points.executor.run_together(phase, windows, IMAGE.looked_windows, progress.part(0.0, 0.3))
     pieces = [piece for window in looked for piece in window]
     # the grid is fixed in the map: pixel column = column of the map's lattice minus the first one
@@ -309,12 +309,12 @@ def _tiles(grid: _Grid, work: list[tuple[Tile, list[_Piece]]], road_points: Road
     """Yield every tile with data, in the order of the road."""
     tasks = [work[k:k + IMAGE.tiles_per_task] for k in range(0, len(work), IMAGE.tiles_per_task)]
     phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
-        *_span(task[0][1][0].road, task[0][1][0].number, PIECE_LENGTH)))
+        *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)))
     for tiles in executor.run(phase, tasks, progress):
         yield from (tile for tile in tiles if tile is not None)
 
 
-def _span(road, number, length):
+def _span(length, road, number):
     """A road, and the stations between which a window or a piece lies by its number."""
     return road, number * length, (number + 1) * length
 
