@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -74,7 +74,8 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
 def _followed(image, photo, paint, bounds, sign, x, y, progress):
     """The few best places of the search, aligned with the paint, the best first."""
     tried: list[_Tried] = []
-    places = find_places(photo.contrast, paint.contrast, paint.cell, bounds.of_pixels(photo.factor), sign, progress.part(0.0, 0.8))
+    of_photo = replace(bounds, sizes=(bounds.sizes[0] * photo.factor, bounds.sizes[1] * photo.factor))
+    places = find_places(photo.contrast, paint.contrast, paint.cell, of_photo, sign, progress.part(0.0, 0.8))
     for place in places[:_CANDIDATES]:
         progress.check_cancelled()
         start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, (image.width / 2, image.height / 2), place.sign)
