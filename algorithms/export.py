@@ -15,14 +15,12 @@ from .texts import languages, told, tr
 
 MAP_LAYERS = (
     ("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it, and what the map says of its road."),
-     LANES + ROAD_ATTRIBUTES, "PolygonZ", "lane_areas"),
-    ("DRIVING_LINES", tr("Driving lines"), tr("The middle of every lane that is driven, in the direction of travel."), DRIVING_LINES, "LineStringZ",
-     "driving_lines"),
-    ("MARKING_LINES", tr("Marking lines"), tr("Borders that are painted."), MARKING_LINES, "LineStringZ", "marking_lines"),
-    ("ROAD_EDGES", tr("Road edges"), tr("Curbs and borders of the road."), ROAD_EDGES, "LineStringZ", "road_edges"),
-    ("MARKINGS", tr("Markings"), tr("Crossings, stop lines, arrows and hatched areas."), MARKINGS, "PolygonZ", "markings"),
-    ("SIGNALS", tr("Signals and poles"), tr("Traffic lights and signs with the lanes that they hold for, and poles."), SIGNALS, "PointZ",
-     "signal_points"),
+     LANES + ROAD_ATTRIBUTES, "PolygonZ"),
+    ("DRIVING_LINES", tr("Driving lines"), tr("The middle of every lane that is driven, in the direction of travel."), DRIVING_LINES, "LineStringZ"),
+    ("MARKING_LINES", tr("Marking lines"), tr("Borders that are painted."), MARKING_LINES, "LineStringZ"),
+    ("ROAD_EDGES", tr("Road edges"), tr("Curbs and borders of the road."), ROAD_EDGES, "LineStringZ"),
+    ("MARKINGS", tr("Markings"), tr("Crossings, stop lines, arrows and hatched areas."), MARKINGS, "PolygonZ"),
+    ("SIGNALS", tr("Signals and poles"), tr("Traffic lights and signs with the lanes that they hold for, and poles."), SIGNALS, "PointZ"),
 )
 MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of the driven lanes (m)")))
 
@@ -30,7 +28,7 @@ MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of 
 def add_map_layers(algorithm, crs_text):
     """The layers that a map is read into, and their CRS."""
     algorithm.add_input("crs", "CRS", tr("CRS of the layers"), crs_text, optional=True)
-    for name, label, text, fields, geometry, _ in MAP_LAYERS:
+    for name, label, text, fields, geometry in MAP_LAYERS:
         algorithm.add_sink(name, label, text, fields=fields, geometry=geometry, optional=True)
 
 
@@ -62,23 +60,23 @@ def read_map(call, progress, lanelets):
 
 
 def map_layers(call, progress, lanelets):
-    """The MapLayers of the file that was given."""
+    """The file that was given as RoadMapSource, not yet checked."""
     from ..products.export.lanelet_map import layers_of_lanelets
     from ..products.export.opendrive.xodr import layers_of_opendrive
 
     whole, crs, notes = read_map(call, progress.part(0.0, 0.5), lanelets)
     layers = (layers_of_lanelets if lanelets else layers_of_opendrive)(whole, crs, progress.part(0.5, 0.95))
-    layers.notes += notes
+    layers.notes += [*notes, *layers.said_left_out()]
     return layers
 
 
 def write_map_layers(call, layers, progress):
-    """Hand on the MapLayers of a map; returns the numbers."""
-    for note in (*layers.notes, *layers.said_left_out()):
+    """Hand on the layers of a map; returns the numbers."""
+    for note in layers.notes:
         progress.warn(note)
-    for name, _, _, _, _, make in MAP_LAYERS:
+    for name, *_ in MAP_LAYERS:
         if call.wants(name):
-            call.layer(name, getattr(layers, make)())
+            call.layer(name, layers.lane_areas() if name == "LANES" else getattr(layers, name.lower()))
     lanes = layers.lanes
     driven = (lanes.type == "driving") | (lanes.type == "connector")
     length = float(lanes.length[driven].sum())
@@ -652,7 +650,7 @@ class ConvertMap(Algorithm):
             raise RoadExtractionError(tr("{path} is {kind} already, and {output} would be too. Give the result the ending {ending}.").format(
                 path=path, output=output, kind="Lanelet2" if from_lanelets else "OpenDRIVE", ending=".xodr" if from_lanelets else ".osm"))
         layers = map_layers(call, progress.part(0.0, 0.2), from_lanelets)
-        source = lanes_with_borders(checked(layers.source()))
+        source = lanes_with_borders(checked(layers))
         numbers = (write_opendrive if from_lanelets else write_lanelet2)(call, source, Path(path).name, progress.part(0.2, 1.0))
         return {"SUCCESSORS": numbers["SUCCESSORS"], "FINDINGS": numbers["FINDINGS"], "SIGNAL_COUNT": float(len(layers.signals)),
                 "LEFT_OUT": float(sum(layers.left_out.values()))}

@@ -43,7 +43,7 @@ class _DxfLine:
 
 def dxf_lines(source: RoadMapSource) -> list[_DxfLine]:
     """Lane borders, driving lines, marking lines by kind and pattern, road edges by what they are, outlines of markings by class."""
-    lanes, borders = source.lanes, {}
+    lanes, borders = source.lanes, dict[bytes, _DxfLine]()
     for k in range(len(lanes)):
         for border in lanes.borders(k):
             if np.hypot(*(border[-1] - border[0])[:2]) > 0.01:   # neighbours have one between them

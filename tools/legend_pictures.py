@@ -387,7 +387,7 @@ def road_layers(whole, crs):
     lines = {"marking": ("Road mark", line("#303030", 0.3)), "reference": ("Reference line", line("#c0392b", 0.6))}
     shift = np.array(whole.offset[:2])
     references = [("reference", polyline(road.plan.at(np.linspace(0, road.length, 40))[0] + shift)) for road in whole.roads if road.id not in inside]
-    drawn = [(one.what, polyline(one.points)) for one in layers.lines if one.what in lines]
+    drawn = [("marking", shape_of(one)) for one in layers.marking_lines.geometries]
     return with_furniture(symbol_layer("Polygon", crs, lanes, areas), symbol_layer("LineString", crs, drawn + references, lines), layers, crs,
                           [*areas.values(), *lines.values()])
 
@@ -411,7 +411,7 @@ def with_furniture(lanes, lines, layers, crs, entries):
     """(layers, legend) with the crossings, stop lines and lights of a map."""
     marks = {"crosswalk": ("Crossing", fill("#f2c14e", "solid", "#8a6d1a")), "stop_line": ("Stop line", fill("#d1495b"))}
     lights = {"traffic_light": ("Traffic light", marker("#e02020", "triangle", 3.2))}
-    outlines = symbol_layer("Polygon", crs, [(kind, polygon(corners)) for kind, corners in layers.outlines if kind in marks], marks)
+    outlines = symbol_layer("Polygon", crs, [(row["class"], shape_of(area)) for area, row in layers.markings if row["class"] in marks], marks)
     points = symbol_layer("Point", crs, [(row["kind"], shape_of(point)) for point, row in layers.signals if row["kind"] in lights], lights)
     return [lanes, outlines, lines, points], [*entries, *marks.values(), *lights.values()]
 

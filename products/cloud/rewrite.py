@@ -18,6 +18,7 @@ from ...core.survey.road_points_las import new_laz
 from .classify import PointClass, PointClassifier
 
 COPC, CRS_RECORDS = "copc", "LASF_Projection"   # user ids of records
+METRES = {"station": "Station along the road (m)", "offset": "Offset, left positive (m)", "height_above_road": "Height above the road (m)"}
 
 
 def classified_copy(file: CloudHeader, classifier: PointClassifier, path: str, unrolled: str = "", progress: Progress = Progress()) -> Counter[int]:
@@ -53,15 +54,6 @@ def classified_copy(file: CloudHeader, classifier: PointClassifier, path: str, u
     return counts
 
 
-def _road_fields():
-    """The extra fields that are added, as laspy takes them."""
-    nowhere = [np.iinfo(np.int32).min]
-    yield laspy.ExtraBytesParams("road", "uint16", "Road", no_data=[np.iinfo(np.uint16).max])
-    for name, text in (("station", "Station along the road (m)"), ("offset", "Offset, left positive (m)"),
-                       ("height_above_road", "Height above the road (m)")):
-        yield laspy.ExtraBytesParams(name, "int32", text, scales=[1e-3], offsets=[0.0], no_data=nowhere)
-
-
 def _header_of(file, crs):
     with open_cloud(file.path, known=file) as reader:
         header = deepcopy(reader.header)
@@ -74,8 +66,9 @@ def _header_of(file, crs):
         header.global_encoding.wkt = True
     header.vlrs, header.evlrs = (_without(records or [], COPC) for records in (header.vlrs, header.evlrs))
     present = {dimension.name: dimension for dimension in header.point_format.extra_dimensions}
-    added = []
-    for field in _road_fields():
+    added, nowhere = [], [np.iinfo(np.int32).min]
+    for field in (laspy.ExtraBytesParams("road", "uint16", "Road", no_data=[np.iinfo(np.uint16).max]),
+                  *(laspy.ExtraBytesParams(name, "int32", text, scales=[1e-3], offsets=[0.0], no_data=nowhere) for name, text in METRES.items())):
         known = present.get(field.name)
         if known is None:
             added.append(field)
@@ -125,7 +118,7 @@ def _described(points, places, header, counts):
     counts.update(dict(zip(*(values.tolist() for values in np.unique(classes, return_counts=True)))))
     inside = places.road >= 0
     record.array["road"] = np.where(inside, places.road, np.iinfo(np.uint16).max)
-    for name, metres in (("station", places.s), ("offset", places.d), ("height_above_road", places.h)):
+    for name, metres in zip(METRES, (places.s, places.d, places.h)):
         record.array[name] = np.where(inside, np.rint(np.nan_to_num(metres) * 1e3), np.iinfo(np.int32).min)
     return record
 

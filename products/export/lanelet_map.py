@@ -11,12 +11,12 @@ import numpy as np
 import shapely
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.features import SIGNALS, Features
+from ...core.common.features import MARKING_LINES, ROAD_EDGES, SIGNALS, Features
 from ...core.common.progress import Progress
 from ...core.driving.layers import Lanes
 from ...core.io.crs import parse_crs
 from ...core.lazy import pyproj
-from .sources import LEAST_LED, LOCAL_CRS, STOP_LINE_HALF, MapLayers, MapLine, metric_wkt, plan_length, utm_of, without_repeats
+from .sources import LEAST_LED, LOCAL_CRS, STOP_LINE_HALF, RoadMapSource, add_edge, add_marking_line, metric_wkt, plan_length, utm_of, without_repeats
 from .xml_tree import XmlElement, read_xml
 
 OURS = "lanewright:"   # of tags that the format does not have
@@ -293,7 +293,7 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
     return places, target
 
 
-def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
+def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Progress()) -> RoadMapSource:
     """Lanes, painted borders and edges of a map in a CRS, WKT or EPSG:n; "" takes the UTM zone of the map.
 
     `lane_id` of a lane is the lanelet's id; footways are left out; a way of the type of a line is a marking line, curbs and borders of the road
@@ -307,10 +307,11 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
         for id, (left, right) in _borders_abreast(network, along).items():
             rows[id] = {**_lane_row(network, id, left, right, along[id]), "lane": number_of[id]}
             progress.report(len(rows) / len(shown))
-    layers = MapLayers(Lanes.of_pieces([rows[id] for id in shown], crs), list(_lines(whole, places)),
-                       outlines=list(_outlines(whole, places, network)),
-                       signals=_signals(whole, places, crs), left_out=_left_out(whole))
-    layers.attributes = {str(id): known for id in shown if (known := _known(whole, whole.lanelets[id]))}
+    lines, edges = _lines(whole, places, crs)
+    layers = RoadMapSource.of_map(
+        Lanes.of_pieces([rows[id] for id in shown], crs), lines, edges, _outlines(whole, places, network),
+        attributes={str(id): known for id in shown if (known := _known(whole, whole.lanelets[id]))}, signals=_signals(whole, places, crs),
+        left_out=_left_out(whole))
     if not crs:
         layers.notes.append("The map has local coordinates: its place on the earth is not known, and the layers have no CRS.")
     left_out = len(whole.lanelets) - len(network.left)
@@ -321,14 +322,17 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
     return layers
 
 
-def _lines(whole, places):
-    """The painted borders and edges among the ways of a map."""
+def _lines(whole, places, crs):
+    """(MARKING_LINES, ROAD_EDGES) of the painted borders and edges among the ways of a map."""
+    lines, edges = Features("LineStringZ", MARKING_LINES, crs=crs), Features("LineStringZ", ROAD_EDGES, crs=crs)
     for way in whole.ways.values():
         kind = way.tags.get("type", "")
         points = without_repeats(places[whole.rows(way)]) if kind in (*PAINTED_WAYS, *EDGE_WAYS) and len(whole.rows(way)) > 1 else ()
-        if len(points) > 1:
-            pattern = PATTERN_OF_WAY.get(way.tags.get("subtype", ""), "")
-            yield MapLine(1, "edge" if kind in EDGE_WAYS else "marking", "lane", pattern, points, edge="curb" if kind == "curbstone" else "pavement")
+        if len(points) > 1 and kind in EDGE_WAYS:
+            add_edge(edges, points, 1, "curb" if kind == "curbstone" else "pavement")
+        elif len(points) > 1:
+            add_marking_line(lines, points, 1, "lane", PATTERN_OF_WAY.get(way.tags.get("subtype", ""), ""))
+    return lines, edges
 
 
 def _outlines(whole, places, network):

@@ -328,7 +328,12 @@ def with_inferred_ways(source: RoadMapSource) -> RoadMapSource:
 
 def _junctions(lanes):
     """Lists of _Way whose areas touch."""
-    ways = _ways(lanes)
+    row_of = {name: k for k, name in enumerate(lanes.lane_id)}
+    before = {name: k for k, names in enumerate(lanes.successors) if lanes.type[k] == "driving" for name in names}
+    # every connector between two lanes that are driven
+    ways = [_Way(k, before[lanes.lane_id[k]], row_of[lanes.successors[k][0]]) for k in range(len(lanes))
+            if lanes.type[k] == "connector" and lanes.lane_id[k] in before and len(lanes.successors[k]) == 1]
+    ways = [way for way in ways if lanes.type[way.exit] == "driving"]
     borders = [lanes.borders(way.row) for way in ways]
     areas = np.array([shapely.make_valid(shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders], object)
     height = np.array([left[:, 2].mean() for left, _ in borders])
@@ -336,15 +341,6 @@ def _junctions(lanes):
     level = np.abs(height[first] - height[second]) < SAME_LEVEL
     group = linked_groups(first[level], second[level], len(ways))
     return [[ways[k] for k in rows] for _, rows in members_of(group) if len(rows) > 1]
-
-
-def _ways(lanes):
-    """Every connector between two lanes that are driven."""
-    row_of = {name: k for k, name in enumerate(lanes.lane_id)}
-    before = {name: k for k, names in enumerate(lanes.successors) if lanes.type[k] == "driving" for name in names}
-    ways = [_Way(k, before[lanes.lane_id[k]], row_of[lanes.successors[k][0]]) for k in range(len(lanes))
-            if lanes.type[k] == "connector" and lanes.lane_id[k] in before and len(lanes.successors[k]) == 1]
-    return [way for way in ways if lanes.type[way.exit] == "driving"]
 
 
 def _missing_way(lanes, group, entry, exit):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -12,7 +13,7 @@ import shapely
 from scipy.spatial import cKDTree
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_ATTRIBUTES, ROAD_EDGES, SIGNALS, Features
+from ...core.common.features import DRIVING_LINES, MARKINGS, ROAD_ATTRIBUTES, Features
 from ...core.driving.layers import Lanes
 from ...core.io.crs import check_metric, horizontal_part, parse_crs, plane_wkt, same_crs
 from ...core.survey.store.road_points import RoadPoints
@@ -27,7 +28,7 @@ FARTHEST_LAYER = 50.0    # m from the lanes: a layer that lies farther away is o
 
 @dataclass
 class RoadMapSource:
-    """Lanes with the other layers of their road map.
+    """Lanes with the other layers of their road map, of a survey or of a map from elsewhere.
 
     middles : (V, 3) of the lanes between their own stripes, vertex by vertex; None where they are the middles of the lanes
     attributes : lane_id -> what is known of ROAD_ATTRIBUTES
@@ -38,11 +39,41 @@ class RoadMapSource:
     marking_lines: Features | None = None
     road_edges: Features | None = None
     markings: Features | None = None
-    notes: list[str] = field(default_factory=list)   # sentences for the user, filled by `checked`
+    notes: list[str] = field(default_factory=list)   # sentences for the user
     gaps: np.ndarray | None = None   # (P, 2) metres between the two stripes at the left and right border of each lane, None or 0 where there is one
     middles: np.ndarray | None = None
     signals: Features | None = None
     attributes: dict[str, dict[str, Any]] = field(default_factory=dict)
+    left_out: Counter[str] = field(default_factory=Counter)   # what the file of a map has beside all this, and how often
+
+    @classmethod
+    def of_map(cls, lanes: Lanes, marking_lines: Features, road_edges: Features, outlines: Iterable[tuple[str, np.ndarray]],
+               **others: Any) -> RoadMapSource:
+        """A map from elsewhere, not yet checked: driving lines are the middles of driven lanes, markings of (class, (N, 3) corners)."""
+        middles, widths, areas = Features("LineStringZ", DRIVING_LINES, crs=lanes.crs), lanes.width, Features("PolygonZ", MARKINGS, crs=lanes.crs)
+        for k in np.flatnonzero(np.isin(lanes.type.astype(str), ("driving", "connector"))):
+            middle = without_repeats(sum(lanes.borders(k)) / 2)
+            if len(middle) > 1:
+                middles.add(shapely.linestrings(middle), road=lanes.road[k], lane=lanes.lane[k], kind="lane", direction=lanes.direction[k],
+                            pattern=f"{lanes.left_pattern[k] or 'none'}|{lanes.right_pattern[k] or 'none'}", source="pair", status=lanes.status[k],
+                            station_m=lanes.station[k], end_m=lanes.end[k], length_m=plan_length(middle), width_m=widths[k])
+        for kind, corners in outlines:
+            area = shapely.Polygon(corners)
+            areas.add(area, **{"road": 1, "class": kind, "use": "keep", "area_m2": area.area})
+        return cls(lanes, middles, marking_lines, road_edges, areas, **others)
+
+    def said_left_out(self) -> list[str]:
+        """A sentence on what the layers do not hold, none where they hold all."""
+        named = ", ".join(f"{count} {what}" for what, count in sorted(self.left_out.items()))
+        return [f"Not carried over: {named}."] if named else []
+
+    def lane_areas(self) -> Features:
+        """The layer LANES, with the fields of the roads."""
+        layer = self.lanes.to_features()
+        layer.schema += ROAD_ATTRIBUTES
+        for name, row in zip(self.lanes.lane_id, layer.rows):
+            row.update(self.attributes.get(name, {}))
+        return layer
 
     def led_to_middles(self) -> np.ndarray:
         """(N, 2) places in the middle of lanes where a border was led along the middle of a double line, away from the lane's own stripe."""
@@ -351,100 +382,24 @@ def _long_side(shape):
     return side * (1 if side[0] > 0 or side[0] == 0 and side[1] > 0 else -1)
 
 
-# What was read of a map, as layers like ours, with its CRS, and how far they lie from those that it was made from.
+# What was read of a map from elsewhere, as layers like ours.
 
 STATUS_OF_MAPS = "measured"
 
 
-@dataclass
-class MapLine:
-    """A border or a line between borders in the file: a painted line, an edge, or neither."""
-
-    road: int   # number
-    what: str   # marking or edge
-    kind: str   # edge, lane, centre, curb, dropped or pavement
-    pattern: str   # as in MARKING_LINES
-    points: np.ndarray   # (N, 3) map coordinates
-    width: float = np.nan   # metres, NaN where unknown
-    side: str = ""   # left, right or ""
-    edge: str = "curb"   # what an edge is, curb or pavement
-    height: float = np.nan   # metres of a curb, NaN where unknown
+def add_marking_line(layer: Features, points: np.ndarray, road: int, kind: str, pattern: str, width: float = np.nan) -> None:
+    """Add a painted border, (N, 3) map coordinates, to the layer MARKING_LINES."""
+    _add_line(layer, points, road=road, line=len(layer) + 1, kind=kind, pattern=pattern, width_m=width)
 
 
-@dataclass
-class MapLayers:
-    """Lanes and lines of a map in one CRS."""
+def add_edge(layer: Features, points: np.ndarray, road: int, edge: str = "curb", side: str | None = None, height: float = np.nan) -> None:
+    """Add a curb or the end of a pavement, as `edge` says, to the layer ROAD_EDGES."""
+    _add_line(layer, points, road=road, side=side, part="bottom", kind="main", edge=edge, chain=len(layer) + 1, height_m=height)
 
-    lanes: Lanes   # Lanes in map coordinates
-    lines: list[MapLine] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)   # sentences for the user
-    outlines: list[tuple[str, np.ndarray]] = field(default_factory=list)   # (class as in MARKINGS, (N, 3) corners)
-    signals: Features = field(default_factory=lambda: Features("PointZ", SIGNALS))
-    attributes: dict[str, dict[str, Any]] = field(default_factory=dict)   # lane_id -> what is known of ROAD_ATTRIBUTES
-    left_out: Counter[str] = field(default_factory=Counter)   # what the file has beside all this, and how often
 
-    def source(self) -> RoadMapSource:
-        """The map as an export takes it, not yet checked."""
-        return RoadMapSource(self.lanes, self.driving_lines(), self.marking_lines(), self.road_edges(), self.markings(), signals=self.signals,
-                             attributes=self.attributes, notes=[*self.notes, *self.said_left_out()])
-
-    def said_left_out(self) -> list[str]:
-        """A sentence on what the layers do not hold, none where they hold all."""
-        named = ", ".join(f"{count} {what}" for what, count in sorted(self.left_out.items()))
-        return [f"Not carried over: {named}."] if named else []
-
-    def lane_areas(self) -> Features:
-        """The layer LANES, with the fields of the roads."""
-        layer = self.lanes.to_features()
-        layer.schema += ROAD_ATTRIBUTES
-        for name, row in zip(self.lanes.lane_id, layer.rows):
-            row.update(self.attributes.get(name, {}))
-        return layer
-
-    def signal_points(self) -> Features:
-        """The layer SIGNALS."""
-        return self.signals
-
-    def markings(self) -> Features:
-        """Crossings, stop lines and other painted areas, as MARKINGS."""
-        layer = Features("PolygonZ", MARKINGS, crs=self.lanes.crs)
-        for kind, corners in self.outlines:
-            area = shapely.Polygon(corners)
-            layer.add(area, **{"road": 1, "class": kind, "use": "keep", "area_m2": area.area})
-        return layer
-
-    def driving_lines(self) -> Features:
-        """The middles of driven lanes, as DRIVING_LINES."""
-        layer, lanes, widths = Features("LineStringZ", DRIVING_LINES, crs=self.lanes.crs), self.lanes, self.lanes.width
-        for k in range(len(lanes)):
-            if lanes.type[k] not in ("driving", "connector"):
-                continue
-            left, right = lanes.borders(k)
-            middle = without_repeats((left + right) / 2)
-            if len(middle) < 2:
-                continue
-            layer.add(shapely.linestrings(middle), road=lanes.road[k], lane=lanes.lane[k], kind="lane", direction=lanes.direction[k],
-                      pattern=f"{lanes.left_pattern[k] or 'none'}|{lanes.right_pattern[k] or 'none'}", source="pair", status=lanes.status[k],
-                      station_m=lanes.station[k], end_m=lanes.end[k], length_m=plan_length(middle), width_m=widths[k])
-        return layer
-
-    def marking_lines(self) -> Features:
-        """Painted borders, as MARKING_LINES."""
-        return self._layer_of_lines("marking", MARKING_LINES, lambda number, line: {
-            "line": number, "kind": line.kind, "pattern": line.pattern, "width_m": line.width})
-
-    def road_edges(self) -> Features:
-        """Curbs and the outer borders of what is driven on, as ROAD_EDGES."""
-        return self._layer_of_lines("edge", ROAD_EDGES, lambda number, line: {
-            "side": line.side or None, "part": "bottom", "kind": "main", "edge": line.edge, "chain": number, "height_m": line.height})
-
-    def _layer_of_lines(self, what, schema, values):
-        layer = Features("LineStringZ", schema, crs=self.lanes.crs)
-        for number, line in enumerate((line for line in self.lines if line.what == what), start=1):
-            length = plan_length(line.points)
-            layer.add(shapely.linestrings(line.points), road=line.road, status=STATUS_OF_MAPS, station_m=0.0, end_m=length, length_m=length,
-                      **values(number, line))
-        return layer
+def _add_line(layer, points, **values):
+    length = plan_length(points)
+    layer.add(shapely.linestrings(points), status=STATUS_OF_MAPS, station_m=0.0, end_m=length, length_m=length, **values)
 
 
 def plan_length(points: np.ndarray) -> float:

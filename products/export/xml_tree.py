@@ -41,7 +41,7 @@ class XmlElement:
         self.attributes: dict[str, str] = {name: written(value) for name, value in attributes.items() if value is not None} if attributes else {}
         self.children: Sequence[XmlElement] = ()   # most have none: a list is made for the first
 
-    def add(self, tag: str, /, text: str = "", **attributes: Any) -> XmlElement:
+    def add(self, tag: str, text: str = "", /, **attributes: Any) -> XmlElement:
         """A new child; attributes that are None are left out."""
         return self.append(XmlElement(tag, attributes, text))
 

@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
 
 from ...core.common.texts import told, tr, word
 from ..export.check.findings import FAULTS, Findings, SameFindings
-from ..export.sources import MapLayers
+from ..export.sources import RoadMapSource
 from .page import html_page
 
 COLOUR_OF_LANE = {"driving": "#8a9299", "connector": "#c9b27c", "shoulder": "#b7bfc5", "bicycle": "#c47f6a", "parking": "#9fb4c9"}
@@ -20,7 +21,7 @@ Table = tuple[str, Sequence[str], Sequence[Sequence[Any]]]
 
 
 def map_export_report(title: str, subtitle: str, facts: Iterable[tuple[str, Any]], tables: Sequence[Table] = (), notes: Sequence[str] = (),
-                      shown: MapLayers | None = None) -> str:
+                      shown: RoadMapSource | None = None) -> str:
     """An HTML page with (name, value) facts, and tables of (heading, names of the columns, rows).
 
     `shown`: what the file holds as our own reader sees it, for a picture; None for none.
@@ -31,7 +32,7 @@ def map_export_report(title: str, subtitle: str, facts: Iterable[tuple[str, Any]
                   colours=[(COLOUR_OF_LANE[kind], word(kind)) for kind in COLOUR_OF_LANE if kind in types])
 
 
-def _lanes_and_lines(shown: MapLayers) -> str:
+def _lanes_and_lines(shown: RoadMapSource) -> str:
     """An SVG of lanes and lines."""
     lanes = shown.lanes
     vertices = np.concatenate([lanes.left, lanes.right])[:, :2]
@@ -49,10 +50,10 @@ def _lanes_and_lines(shown: MapLayers) -> str:
         colour = COLOUR_OF_LANE.get(lanes.type[k], "#d5d9dc")
         parts.append(f'<polygon points="{path(np.concatenate([left, right[::-1]]))}" fill="{colour}" fill-opacity="0.8" stroke="#ffffff" '
                      'stroke-width="0.4"/>')
-    for line in shown.lines:
-        dash = ' stroke-dasharray="4 4"' if "dashed" in line.pattern else ""
-        colour = "#5a4632" if line.what == "edge" else "#1f2a33"
-        parts.append(f'<polyline points="{path(line.points)}" fill="none" stroke="{colour}" stroke-width="0.8"{dash}/>')
+    for layer, colour in ((shown.road_edges, "#5a4632"), (shown.marking_lines, "#1f2a33")):
+        for shape, row in layer or ():
+            dash = ' stroke-dasharray="4 4"' if "dashed" in str(row.get("pattern")) else ""
+            parts.append(f'<polyline points="{path(shapely.get_coordinates(shape))}" fill="none" stroke="{colour}" stroke-width="0.8"{dash}/>')
     return "".join(parts) + "</svg>"
 
 

@@ -46,7 +46,13 @@ class Breakline:
 
 def lines_to_follow(layers: BorderLayers, frame: RoadFrame) -> tuple[FrameLines, FrameLines]:
     """Edges, and borders of lanes or else marking lines, with vertices about a slice apart."""
-    return _even(_parts_of(layers.edges), frame), _even(_lane_borders(layers), frame)
+    if layers.lanes is None:
+        return _even(_parts_of(layers.edges), frame), _even(_parts_of(layers.marking_lines), frame)
+    lanes = Lanes.from_features(layers.lanes)
+    # borders of lanes, each once
+    borders = {min(border.tobytes(), border[::-1].tobytes()): (shapely.linestrings(border), lanes.road[k]) for k in range(len(lanes))
+               if lanes.type[k] != "connector" for border in lanes.borders(k)}
+    return _even(_parts_of(layers.edges), frame), _even(list(zip(*borders.values())) or ([], []), frame)
 
 
 def road_breaklines(survey: Survey, ground: RoadGround, edges: FrameLines, borders: FrameLines,
@@ -71,18 +77,9 @@ def road_breaklines(survey: Survey, ground: RoadGround, edges: FrameLines, borde
     return result
 
 
-def _lane_borders(layers):
-    """(lines in map coordinates, road of each): borders of lanes, each once, else marking lines."""
-    if layers.lanes is not None:
-        lanes = Lanes.from_features(layers.lanes)
-        once = {min(border.tobytes(), border[::-1].tobytes()): (border, lanes.road[k]) for k in range(len(lanes)) if lanes.type[k] != "connector"
-                for border in lanes.borders(k)}
-        return [shapely.linestrings(border) for border, _ in once.values()], [road for _, road in once.values()]
-    return _parts_of(layers.marking_lines)
-
-
 def _parts_of(layer):
-    """The same of a layer of lines, each once, as neighbouring surveys may both have one; tops of curbs are measured, not taken from it."""
+    """(lines in map coordinates, road of each) of a layer of lines, each once, as neighbouring surveys may both have one; tops of curbs are
+    measured, not taken from it."""
     if layer is None:
         return [], []
     members = [(part, layer.rows[row]) for part, row in zip(*line_parts(layer.geometries)) if layer.rows[row].get("part") != "top"]

@@ -68,10 +68,14 @@ class Findings:
         same: dict[tuple[str, str], list[int]] = {}
         for k, finding in enumerate(self.found):
             same.setdefault((finding.fault, VARYING.sub("#", finding.text)), []).append(k)
+        def size(finding: Finding) -> float:
+            digits = NUMBER.search(finding.text)
+            return float(digits[0]) if digits else 0.0
+
         groups, row_of = [], [0] * len(self.found)
         for number, rows in enumerate(sorted(same.values(), key=len)):
             members = [self.found[k] for k in rows]
-            groups.append(SameFindings(max(members, key=_first_number), tuple(dict.fromkeys(member.element for member in members)), len(members)))
+            groups.append(SameFindings(max(members, key=size), tuple(dict.fromkeys(member.element for member in members)), len(members)))
             for k in rows:
                 row_of[k] = number
         return groups, row_of
@@ -84,11 +88,6 @@ class Findings:
             layer.add(shapely.Point(finding.place), fault=finding.fault, element=finding.element, text=finding.text, row=row + 1,
                       places=groups[row].count)
         return layer
-
-
-def _first_number(finding):
-    digits = NUMBER.search(finding.text)
-    return float(digits[0]) if digits else 0.0
 
 
 def metres(value: float) -> str:

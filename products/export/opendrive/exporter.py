@@ -180,10 +180,9 @@ class _Drafting:
 
     def _about(self, cell: Cell, left: bool) -> tuple[str, str, str]:
         """(kind, pattern, line) of the border on one side along the road."""
-        lanes, k = self.lanes, cell.piece
-        side = left if cell.direction >= 0 else not left
-        columns = (lanes.left_kind, lanes.left_pattern, lanes.left_line) if side else (lanes.right_kind, lanes.right_pattern, lanes.right_line)
-        return columns[0][k], columns[1][k], columns[2][k]
+        side = "left" if left == (cell.direction >= 0) else "right"
+        kind, pattern, line = (getattr(self.lanes, f"{side}_{name}")[cell.piece] for name in ("kind", "pattern", "line"))
+        return kind, pattern, line
 
     def _mark(self, cell: Cell, left: bool) -> RoadMark:
         kind, pattern, line = self._about(cell, left)
@@ -205,18 +204,13 @@ class _Drafting:
         if not painted:
             return next(filter(None, (lane_mark, neighbour_mark)), RoadMark(0.0, "none"))
         mark = next((mark for mark in painted if " " in mark.type), painted[0])
-        if len(painted) == 2 and (gap := self._gap(one.cells[number - 1], False)):
+        if len(painted) == 2 and self.source.gaps is not None and (
+                gap := float(self.source.gaps[one.cells[number - 1].piece, int(one.cells[number - 1].direction >= 0)])):
             lines = self._about(one.cells[number - 1], False)[2], self._about(one.cells[number], True)[2]
             if lines[0] != lines[1]:
                 _make_double(mark, left, right, lane)
             mark.apart = round(gap, 3) * (" " in mark.type)
         return mark
-
-    def _gap(self, cell: Cell, left: bool) -> float:
-        """Metres between the two stripes of the border on one side along the road."""
-        if self.source.gaps is None:
-            return 0.0
-        return float(self.source.gaps[cell.piece, 0 if left == (cell.direction >= 0) else 1])
 
     def _add_curbs(self, lanes: dict[int, MapLane], one: Slice, ids: list[int]) -> None:
         for cell, id, border, left in ((one.cells[0], ids[0], one.cells[0].left, True), (one.cells[-1], ids[-1], one.cells[-1].right, False)):

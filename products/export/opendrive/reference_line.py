@@ -71,7 +71,7 @@ def reference_steps(points: np.ndarray, tolerance: float, ends: tuple[float | No
             return None
         reached, _, pose = last
         if reached < back.last:
-            goal = _Pose(*points[-1], ends[1])
+            goal = _Pose(points[-1, 0], points[-1, 1], ends[1])
             points = np.concatenate([points[:back.last - reached], [pose[:2]]])
             fit = yield from _fit_of(points, tolerance, (ends[0], pose.heading + np.pi), turn_tolerance)
     elements = yield from fit.run()

@@ -431,7 +431,9 @@ def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
         levels = road.elevation.at(np.array([profile.s for profile in profiles]))
         profiles = [profile._replace(z=profile.z - level) for profile, level in zip(profiles, levels)]
         for share in CLOSER:
-            road.shape = _rows(profiles, _telling(profiles, share * tolerance))
+            # straight from place to place of a cross-section, and beyond them
+            kept = [profiles[k] for k in _telling(profiles, share * tolerance)]
+            road.shape = np.array([[s, a, b, c, 0.0, 0.0] for s, t, z in kept for a, b, c in zip(t, z, _slopes(t, z))])
             missed = np.abs(shape_height(road.shape, targets[:, 0], targets[:, 1]) - targets[:, 2])
             if missed.max(initial=0.0) <= tolerance:
                 return
@@ -489,15 +491,6 @@ def _superelevation(road, profiles, middle, tolerance):
     (roll,), = fit_cubics([LineBundle([s], [np.arctan(slopes)], 0.0, road.length, tolerance / 4 / max(widest, 1.0))])
     road.superelevation = simplified(roll)
     return True
-
-
-def _rows(profiles, kept):
-    """(N, 6) s, t, a, b, c, d of the cross-sections of these numbers: straight from place to place, and beyond them."""
-    rows = []
-    for k in kept:
-        s, t, z = profiles[k]
-        rows += [[s, a, b, c, 0.0, 0.0] for a, b, c in zip(t, z, _slopes(t, z))]
-    return np.array(rows)
 
 
 def _slopes(t, z):

@@ -146,10 +146,10 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
     # cells that nobody drives follow each other where they share their ends
     starts = {(cell.left_nodes[0], cell.right_nodes[0]): cell for cell in cells if cell.direction == 0}
     for cell in cells:
-        following = starts.get((cell.left_nodes[-1], cell.right_nodes[-1])) if cell.direction == 0 else None
-        if following is not None and following is not cell and not cell.after:
-            cell.after.append(following)
-            following.before.append(cell)
+        beyond = starts.get((cell.left_nodes[-1], cell.right_nodes[-1])) if cell.direction == 0 else None
+        if beyond is not None and beyond is not cell and not cell.after:
+            cell.after.append(beyond)
+            beyond.before.append(cell)
     return cells
 
 

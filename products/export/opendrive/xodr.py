@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from ....core.common.errors import RoadExtractionError
+from ....core.common.features import MARKING_LINES, ROAD_EDGES, Features
 from ....core.common.progress import Progress
 from ....core.driving.layers import Lanes
-from ..sources import LEAST_CURB, MapLayers, MapLine, plan_length, without_repeats
+from ..sources import LEAST_CURB, RoadMapSource, add_edge, add_marking_line, plan_length, without_repeats
 from ..xml_tree import XmlElement, read_xml, written, xml_text
 from .geometry import Cubics, PlanElement, PlanView
 from .model import DRIVEN_TYPES, LINK_NAMES, Connection, Junction, LaneNetwork, LaneSection, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark
@@ -328,7 +329,7 @@ ROADS_NAMED = 20        # roads that one sentence names
 LEAST_WIDTH = 0.05     # m: lanes that are narrower everywhere are none
 
 
-def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
+def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> RoadMapSource:
     """Lanes, painted borders and edges of a map; `crs` is the WKT of its coordinates, "" where unknown.
 
     Every section of a lane is a piece, whose lane_id is "road.lane.section"; a section in which a speed limit changes is cut there. Lanes of roads in
@@ -337,26 +338,25 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     """
     whole = replace(whole, roads=[road.cut_where_speeds_change() for road in whole.roads])
     rows: list[dict[str, Any]] = []
-    layers, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
-    numbers, faults = _road_numbers(whole), _Faults()
+    lines, edges = Features("LineStringZ", MARKING_LINES, crs=crs), Features("LineStringZ", ROAD_EDGES, crs=crs)
+    network, numbers, faults = LaneNetwork(whole), _road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):
         surface = road.surface
         faults.jumps += [(road.id, *jump) for jump in surface.jumps() if jump[1] > BORDER_JUMP]
         for number, section in enumerate(road.sections):
             if road.section_end(number) - section.s > SHORTEST_SECTION:
-                _add_section(rows, layers.lines, whole, network, surface, number, numbers[road.id], faults)
+                _add_section(rows, lines, edges, whole, network, surface, number, numbers[road.id], faults)
         progress.report((count + 1) / len(whole.roads))
     lane_ids = {row["lane_id"] for row in rows}
     for row in rows:   # what follows may be no lane of ours
         row["successors"] = [name for name in row["successors"] if name in lane_ids]
-    layers.lanes = Lanes.of_pieces(rows, crs)
-    layers.attributes = {row["lane_id"]: row["known"] for row in rows if row["known"]}
-    layers.outlines, layers.signals, layers.left_out = list(outlines_of(whole)), signals_of(whole, crs), left_out_of(whole)
+    notes = faults.said()
     if whole.problems:
         line, text = whole.problems[0]
-        layers.notes.append(f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
-    layers.notes += faults.said()
-    return layers
+        notes.insert(0, f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
+    return RoadMapSource.of_map(
+        Lanes.of_pieces(rows, crs), lines, edges, outlines_of(whole), notes=notes, signals=signals_of(whole, crs),
+        attributes={row["lane_id"]: row["known"] for row in rows if row["known"]}, left_out=left_out_of(whole))
 
 
 @dataclass
@@ -391,14 +391,14 @@ class _Faults:
         return sentences
 
 
-def _add_section(rows, lines, whole, network, surface, number, road_number, faults):
+def _add_section(rows, lines, edges, whole, network, surface, number, road_number, faults):
     """The lanes and lines of one section."""
     road, section = surface.road, surface.road.sections[number]
     s = surface.stations(number)
     offsets = surface.offsets(number, s)
     for id, lane in section.lanes.items():
         if id == 0:
-            lines += _painted(road_number, lane, section.s, s, whole.placed(surface.places(s, offsets[0])), "centre")
+            _add_painted(lines, road_number, lane, section.s, s, whole.placed(surface.places(s, offsets[0])), "centre")
             continue
         (inner, _), (outer, fold) = (surface.without_folds(s, points) for points in surface.borders(number, id, s, offsets))
         inner, outer = whole.placed(inner), whole.placed(outer)
@@ -406,25 +406,25 @@ def _add_section(rows, lines, whole, network, surface, number, road_number, faul
             faults.folds.append((road.id, id, whole.placed(fold[None])[0]))
         if not lane.border and len(lane.width) and (least := lane.width.least(float(s[-1]) - section.s))[0] < NEGATIVE_WIDTH:
             faults.negative.append((road.id, id, least[0], section.s + least[1]))
-        lines += _painted(road_number, lane, section.s, s, outer, _kind(section.lanes, id))
-        lines += _edges(surface, number, id, s, inner, outer, road_number)
+        _add_painted(lines, road_number, lane, section.s, s, outer, _kind(section.lanes, id))
+        _add_edges(edges, surface, number, id, s, inner, outer, road_number)
         if lane.type not in NO_LANES and np.abs(offsets[id] - offsets[surface.inside(number, id)]).max() >= LEAST_WIDTH:
             rows.append({**_lane(network, surface, number, id, s, inner, outer), "road": road_number})
 
 
-def _edges(surface, number, id, s, inner, outer, road_number):
+def _add_edges(edges, surface, number, id, s, inner, outer, road_number):
     """The edges of the road at the borders of a lane: the end of its pavement, and the foot of a raised lane, with the height of the top of a curb
     or of the near side of a sidewalk."""
     lanes, side = surface.road.sections[number].lanes, "left" if id > 0 else "right"
     inside = lanes.get(id - int(np.sign(id)))
     if _kind(lanes, id) == "pavement" and plan_length(outer) > LEAST_WIDTH:
-        yield MapLine(road_number, "edge", "main", "", without_repeats(outer), side=side, edge="pavement")
+        add_edge(edges, without_repeats(outer), road_number, "pavement", side)
     if lanes[id].type in RAISED and (inside is None or inside.type not in RAISED) and plan_length(inner) > LEAST_WIDTH:
         near, far = surface.lifts(number, id, s)
         foot = surface.lifts(number, surface.inside(number, id), s)[1]
         rise = float(np.median((far if lanes[id].type == "curb" else near) - foot))
         inner = np.c_[inner[:, :2], inner[:, 2] - near + foot]
-        yield MapLine(road_number, "edge", "main", "", without_repeats(inner), side=side, height=rise if rise > LEAST_CURB else np.nan)
+        add_edge(edges, without_repeats(inner), road_number, "curb", side, rise if rise > LEAST_CURB else np.nan)
 
 
 def _lane(network, surface, number, id, s, inner, outer):
@@ -486,9 +486,8 @@ def _kind(lanes: dict[int, MapLane], id: int) -> str:
     return "edge"
 
 
-def _painted(number: int, lane: MapLane, start: float, s: np.ndarray, points: np.ndarray, kind: str) -> list[MapLine]:
+def _add_painted(lines: Features, number: int, lane: MapLane, start: float, s: np.ndarray, points: np.ndarray, kind: str) -> None:
     """The outer border of a lane, (N, 3) points at s, cut where its paint changes."""
-    lines = []
     cuts = [max(mark.s + start, s[0]) for mark in lane.marks] + [s[-1]]
     for mark, first, last in zip(lane.marks, cuts[:-1], cuts[1:]):
         if mark.type not in PATTERN_OF_MARK or last - first < LEAST_WIDTH:
@@ -496,5 +495,4 @@ def _painted(number: int, lane: MapLane, start: float, s: np.ndarray, points: np
         stations = np.concatenate([[first], s[(s > first + 1e-6) & (s < last - 1e-6)], [last]])
         piece = without_repeats(np.stack([np.interp(stations, s, values) for values in points.T], axis=1))
         if len(piece) > 1:
-            lines.append(MapLine(number, "marking", kind, PATTERN_OF_MARK[mark.type], piece, mark.width))
-    return lines
+            add_marking_line(lines, piece, number, kind, PATTERN_OF_MARK[mark.type], mark.width)

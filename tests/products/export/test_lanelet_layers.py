@@ -30,8 +30,8 @@ def test_lanelets_that_share_their_end_nodes_follow_each_other(tmp_path):
 
 def test_lines_and_edges_become_layers_of_their_own(tmp_path):
     found = layers_of_lanelets(read(tmp_path, lanelet_street()))
-    assert sorted(found.marking_lines().column("pattern")) == ["dashed", "dashed", "solid", "solid"]
-    assert len(found.road_edges()) == 2 and len(found.driving_lines()) == 4
+    assert sorted(found.marking_lines.column("pattern")) == ["dashed", "dashed", "solid", "solid"]
+    assert len(found.road_edges) == 2 and len(found.driving_lines) == 4
     assert all(shapely.is_valid(area) for area in found.lane_areas().geometries)
     assert "326" in found.lanes.crs or "UTM zone 32N" in found.lanes.crs
 

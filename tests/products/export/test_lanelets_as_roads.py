@@ -28,7 +28,7 @@ def lanelets_of(folder, lanes, strip=""):
 
 def roads_of(folder, layers):
     """(map that is written, its lanes)."""
-    draft = draft_opendrive(with_shared_borders(checked(layers.source())))
+    draft = draft_opendrive(with_shared_borders(checked(layers)))
     whole = read_opendrive(written(folder, opendrive_text(draft.map), "out.xodr"))
     return whole, layers_of_opendrive(whole, CRS).lanes
 

@@ -180,7 +180,7 @@ def test_a_direct_junction_leads_from_road_to_road(tmp_path):
 def test_the_heights_of_lanes_are_the_heights_of_curbs(tmp_path, kind, inner, outer, expected):
     raised = lane(-2, kind, 1.5, "none", more=f'<height sOffset="0" inner="{inner}" outer="{outer}"/>')
     found, _ = taken_in(tmp_path, road(LINE, 40, lanes=section(right=lane(-1) + raised)))
-    edges = found.road_edges()
+    edges = found.road_edges
     assert edges.rows[0]["height_m"] == (expected if expected is None else pytest.approx(expected))
     np.testing.assert_allclose(shapely.get_coordinates(edges.geometries[0], include_z=True)[:, 2], 0.0, atol=1e-12)   # its foot
 

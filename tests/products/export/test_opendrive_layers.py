@@ -85,7 +85,7 @@ def test_widths_grow_as_their_polynomial_and_lines_end_where_their_paint_does(tm
     found = layers(tmp_path, road(geometry(0, 0, 0, 0, 40), 40, lanes=section))
     _, right = named(found.lanes, "1.-1.0")
     np.testing.assert_allclose(np.interp([5, 20, 35], right[:, 0], -right[:, 1]), [3, 5, 7], atol=1e-9)
-    painted = found.marking_lines()
+    painted = found.marking_lines
     assert [(row["pattern"], round(line.bounds[0], 6), round(line.bounds[2], 6)) for line, row in painted] == [("solid", 0, 25), ("dashed", 25, 40)]
     assert painted.rows[1]["width_m"] == 0.2
 
@@ -109,7 +109,7 @@ def test_lanes_lead_on_through_sections_roads_and_junctions(tmp_path):
 
 
 def test_a_curb_is_a_road_edge_at_its_foot(tmp_path):
-    edges = layers(tmp_path, road(geometry(0, 0, 0, 0, 40), 40)).road_edges()
+    edges = layers(tmp_path, road(geometry(0, 0, 0, 0, 40), 40)).road_edges
     assert len(edges) == 1 and edges.rows[0]["side"] == "right"
     np.testing.assert_allclose(shapely.get_coordinates(edges.geometries[0], include_z=True)[:, 1:], np.tile([-3.5, 0], (41, 1)), atol=1e-9)
 

@@ -39,7 +39,7 @@ def test_an_edge_of_the_pavement_is_no_curb_in_the_file_and_when_it_is_read_agai
         types = [way.tags["type"] for way in draft.ways]
         assert types.count("curbstone") == types.count("road_border") == 1
         found = layers_of_lanelets(read_lanelet2(written(tmp_path, lanelet2_text(draft, to_degrees(draft.nodes, CRS)))), CRS)
-    offsets = {row["edge"]: np.array(geometry.coords)[:, 1].mean() - 5792000.0 for geometry, row in found.road_edges()}
+    offsets = {row["edge"]: np.array(geometry.coords)[:, 1].mean() - 5792000.0 for geometry, row in found.road_edges}
     assert offsets == {"curb": pytest.approx(-3.5, abs=0.02), "pavement": pytest.approx(5.0, abs=0.02)}
 
 

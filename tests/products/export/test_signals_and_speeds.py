@@ -44,19 +44,25 @@ def read_in(folder, text):
 
 
 def as_lanelets(folder, layers):
-    source = with_shared_borders(checked(layers.source()))
+    source = with_shared_borders(checked(layers))
     draft = draft_lanelets(source)
     return read_lanelet2(written(folder, lanelet2_text(draft, to_degrees(draft.nodes, CRS)), "out.osm"))
 
 
 def as_roads(folder, layers):
-    return read_opendrive(written(folder, opendrive_text(draft_opendrive(with_shared_borders(checked(layers.source()))).map), "out.xodr"))
+    return read_opendrive(written(folder, opendrive_text(draft_opendrive(with_shared_borders(checked(layers))).map), "out.xodr"))
 
 
 def there_and_back(folder, layers):
     """Layers of the map as lanelets, and of these as roads."""
     lanelets = layers_of_lanelets(as_lanelets(folder, layers), CRS)
     return lanelets, layers_of_opendrive(as_roads(folder, lanelets), CRS)
+
+
+def test_a_sign_that_holds_for_no_lane_is_no_rule_of_the_crossings(tmp_path):
+    sign = '<signal id="1" s="30" t="5" zOffset="2" orientation="+" dynamic="no" type="274" height="1" width="1"><validity fromLane="5" toLane="6"/>'
+    whole = as_lanelets(tmp_path, read_in(tmp_path, street(f"{sign}</signal>")))
+    assert any(one.tags.get("subtype") == "crosswalk" for one in whole.lanelets.values()) and not whole.others
 
 
 def by_kind(layers):
@@ -130,7 +136,7 @@ def test_every_crossing_and_the_stop_line_lie_where_they_lay(tmp_path):
     layers = read_in(tmp_path, street())
     expected = {(round(x, 1), round(y, 1)) for x, y in ((6, 0), (18, 0), (24, 0), (34, 0), (37, -1.8))}
     for others in (layers, *there_and_back(tmp_path, layers)):
-        middles = {(round(area.centroid.x - 600000, 1), round(area.centroid.y - 5800000, 1)): row["class"] for area, row in others.markings()}
+        middles = {(round(area.centroid.x - 600000, 1), round(area.centroid.y - 5800000, 1)): row["class"] for area, row in others.markings}
         assert {(x, y + 0.0) for x, y in middles} == expected
         assert sorted(middles.values()) == ["crosswalk"] * 4 + ["stop_line"]
 
@@ -170,7 +176,7 @@ def test_signals_without_an_id_hold_for_the_lanes_of_their_own_road_alone(tmp_pa
 def test_two_roads_of_one_id_are_not_converted(tmp_path):
     layers = read_in(tmp_path, opendrive([road(geometry(0, x, 0, 0, 40), 40, "1") for x in (0, 50)]))
     with pytest.raises(RoadExtractionError, match=r"is there 2 times: two roads of the map have one id"):
-        checked(layers.source())
+        checked(layers)
 
 
 def test_the_name_of_a_road_is_carried_and_its_number_is_none(tmp_path):
