@@ -244,7 +244,8 @@ class Pairs(NamedTuple):
 def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray, settings: ProposalSettings) -> Pairs | None:
     """Corners of paint found in a photo that lies on the map to some decimetres; None where too few agree on one placement."""
     for search, times in _ROUNDS:
-        patches = _find_patches(*_on_same_cells(placement, paint, photo, paint.cell), x, y, _PATCH, search)
+        small, drawn, cell = _on_same_cells(placement, paint, photo, paint.cell)
+        patches = _find_patches(small, drawn, cell, x, y, _PATCH, search)
         patches = patches.where(patches.score > _LISTED_SCORE)
         alike = (patches.score >= settings.min_score) & (patches.second <= _MOST_SECOND)
         moved = np.column_stack([patches.dx, patches.dy])
