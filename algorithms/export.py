@@ -5,31 +5,33 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import DRIVING_LINES, LANES, MAP_FINDINGS, MARKING_LINES, MARKINGS, ROAD_ATTRIBUTES, ROAD_EDGES, SIGNALS
+from ..core.common.features import LANES, MAP_FINDINGS, ROAD_ATTRIBUTES
 from ..core.common.setting import Limited, setting
 from ..core.lazy import shapely
 from .algorithm import Algorithm, SettingSpec
 from .call import existing_file
+from .map_layers import MAP_LAYERS
 from .survey_input import road_points_of
 from .texts import languages, told, tr
 
-MAP_LAYERS = (
-    ("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it, and what the map says of its road."),
-     LANES + ROAD_ATTRIBUTES, "PolygonZ"),
-    ("DRIVING_LINES", tr("Driving lines"), tr("The middle of every lane that is driven, in the direction of travel."), DRIVING_LINES, "LineStringZ"),
-    ("MARKING_LINES", tr("Marking lines"), tr("Borders that are painted."), MARKING_LINES, "LineStringZ"),
-    ("ROAD_EDGES", tr("Road edges"), tr("Curbs and borders of the road."), ROAD_EDGES, "LineStringZ"),
-    ("MARKINGS", tr("Markings"), tr("Crossings, stop lines, arrows and hatched areas."), MARKINGS, "PolygonZ"),
-    ("SIGNALS", tr("Signals and poles"), tr("Traffic lights and signs with the lanes that they hold for, and poles."), SIGNALS, "PointZ"),
-)
+# Layers that a map is read into beside the lanes
+READ_LAYERS = {
+    "DRIVING_LINES": tr("The middle of every lane that is driven, in the direction of travel."),
+    "MARKING_LINES": tr("Borders that are painted."),
+    "ROAD_EDGES": tr("Curbs and borders of the road."),
+    "MARKINGS": tr("Crossings, stop lines, arrows and hatched areas."),
+    "SIGNALS": tr("Traffic lights and signs with the lanes that they hold for, and poles."),
+}
 MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of the driven lanes (m)")))
 
 
 def add_map_layers(algorithm, crs_text):
     """The layers that a map is read into, and their CRS."""
     algorithm.add_input("crs", "CRS", tr("CRS of the layers"), crs_text, optional=True)
-    for name, label, text, fields, geometry in MAP_LAYERS:
-        algorithm.add_sink(name, label, text, fields=fields, geometry=geometry, optional=True)
+    algorithm.add_sink("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it, and what the map says of its road."),
+                       fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", optional=True)
+    for name, text in READ_LAYERS.items():
+        algorithm.add_map_sink(name, text, optional=True)
 
 
 def add_any_map(algorithm, crs_label):
@@ -74,9 +76,10 @@ def write_map_layers(call, layers, progress):
     """Hand on the layers of a map; returns the numbers."""
     for note in layers.notes:
         progress.warn(note)
-    for name, *_ in MAP_LAYERS:
-        if call.wants(name):
-            call.layer(name, layers.lane_areas() if name == "LANES" else getattr(layers, name.lower()))
+    if call.wants("LANES"):
+        call.layer("LANES", layers.lane_areas())
+    for name in filter(call.wants, READ_LAYERS):
+        call.layer(name, getattr(layers, name.lower()))
     lanes = layers.lanes
     driven = (lanes.type == "driving") | (lanes.type == "connector")
     length = float(lanes.length[driven].sum())
@@ -84,29 +87,28 @@ def write_map_layers(call, layers, progress):
     return {"LANE_COUNT": float(len(lanes)), "LENGTH": length}
 
 
-# layers that an export takes beside the lanes -> label, help, geometry, fields and which of them are read
-ROAD_MAP_LAYERS = {
-    "DRIVING_LINES": (tr("Driving lines"), tr("Held against the middles of the lanes: the report says how far apart they are. The uncertainty of "
-                                              "every lane comes from them."),
-                      "LineStringZ", DRIVING_LINES, "road lane status station_m end_m sigma_m"),
-    "MARKING_LINES": (tr("Marking lines"), tr("The widths of the painted borders."), "LineStringZ", MARKING_LINES, "road line kind pattern width_m"),
-    "ROAD_EDGES": (tr("Road edges"), tr("The heights of curbs."), "LineStringZ", ROAD_EDGES, "road height_m edge"),
-    "MARKINGS": (tr("Markings"), tr("Zebra crossings, stop lines, arrows and hatched areas."), "PolygonZ", MARKINGS, "road class"),
+# Layers that an export takes beside the lanes -> the fields that are read, help
+EXPORTED_LAYERS = {
+    "DRIVING_LINES": ("road lane status station_m end_m sigma_m", tr(
+        "Held against the middles of the lanes: the report says how far apart they are. The uncertainty of every lane comes from them.")),
+    "MARKING_LINES": ("road line kind pattern width_m", tr("The widths of the painted borders.")),
+    "ROAD_EDGES": ("road height_m edge", tr("The heights of curbs.")),
+    "MARKINGS": ("road class", tr("Zebra crossings, stop lines, arrows and hatched areas.")),
 }
 
 
 def add_road_map_layers(algorithm):
     """The layers of the road map that an export takes."""
-    algorithm.add_input("layer", "LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
-    for name, (label, text, geometry, _, _) in ROAD_MAP_LAYERS.items():
-        algorithm.add_input("layer", name, label, text, geometry, optional=True)
+    algorithm.add_map_layer("LANES", tr("Made by Driving lines or Road map, with its fields and heights."))
+    for name, (_, text) in EXPORTED_LAYERS.items():
+        algorithm.add_map_layer(name, text, optional=True)
     algorithm.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it the borders have the heights of the road's surface."), optional=True)
 
 
 def add_signals(algorithm):
-    algorithm.add_input("layer", "SIGNALS", tr("Signals and poles"), tr(
+    algorithm.add_map_layer("SIGNALS", tr(
         "Traffic lights, signs and poles: of an imported map, or the poles and signs of Roadside. The field lanes names the lanes that obey."),
-        "PointZ", optional=True)
+        optional=True)
 
 
 def road_map_source(call, progress):
@@ -115,11 +117,9 @@ def road_map_source(call, progress):
     from ..products.export.sources import RoadMapSource, checked, known_of_roads
 
     areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
-    layers = {name.lower(): call.features(name, [field for field in schema if field.name in read.split()], geometry)
-              for name, (_, _, geometry, schema, read) in ROAD_MAP_LAYERS.items()}
-    if call.algorithm.parameter("SIGNALS") is not None:
-        layers["signals"] = call.features("SIGNALS", SIGNALS, "PointZ")
-    source = checked(RoadMapSource(Lanes.from_features(areas), **layers, attributes=known_of_roads(areas)))
+    layers = {name.lower(): call.features(name, [field for field in MAP_LAYERS[name].schema if field.name in read.split()], MAP_LAYERS[name].geometry)
+              for name, (read, _) in EXPORTED_LAYERS.items()}
+    source = checked(RoadMapSource(Lanes.from_features(areas), **layers, signals=call.map_layer("SIGNALS"), attributes=known_of_roads(areas)))
     if call.cloud("ROAD_POINTS"):
         from ..products.export.sources import with_surface_heights
 
@@ -173,7 +173,7 @@ class RoadAttributes(Algorithm):
                ("SPEEDS", tr("Lanes with a speed limit")), ("NAMES", tr("Lanes with a name")))
 
     def declare(self):
-        self.add_input("layer", "LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
+        self.add_map_layer("LANES", tr("Made by Driving lines or Road map, with its fields and heights."))
         self.add_input("file", "OSM_FILE", tr("OpenStreetMap file"), tr("An extract in XML with the ending .osm, that holds the roads."),
                        optional=True, file_filter="OpenStreetMap (*.osm *.OSM *.xml);;All files (*.*)")
         self.add_input("layer", "WAYS", tr("Ways"), tr("Instead of the file: lines with the fields name, ref, maxspeed, lanes, oneway, surface, "
@@ -412,11 +412,9 @@ def write_lanelet2(call, source, name, progress):
     return numbers
 
 
-ALIGNMENTS = "products.export.opendrive.exporter:OpenDriveSettings"
-FORMATS = ("dxf", "landxml")
-SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}
+SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}   # format -> endings
 CAD_SETTINGS = (
-    SettingSpec("TOLERANCE", ALIGNMENTS, "tolerance", tr("Tolerance (m)"),
+    SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
                 tr("LandXML: how far a line may be missed by its elements, in plan and in height. DXF has every vertex.")),
 )
 
@@ -435,7 +433,7 @@ class ExportCad(Algorithm):
     def declare(self):
         add_road_map_layers(self)
         self.add_input("choice", "FORMAT", tr("Format"), tr("dxf is drawn by every CAD program, landxml is taken over by programs for road design."),
-                       default=FORMATS[0], choices=FORMATS)
+                       default="dxf", choices=tuple(SUFFIXES))
         self.add_settings(CAD_SETTINGS)
         self.add_output("file", "OUTPUT", tr("CAD file"), tr("With the ending .dxf, or .xml for LandXML."),
                         suffixes=(".dxf", ".xml", ".landxml"), file_filter="DXF (*.dxf);;LandXML (*.xml *.landxml)")
@@ -494,10 +492,7 @@ SETTINGS = "algorithms.export:SheetSettings"
 PAPERS = ("A4", "A3", "A2", "A1", "A0")
 SCALES = ("1:100", "1:200", "1:250", "1:500", "1:1000", "1:2000", "1:2500", "1:5000")
 # Results that are drawn, from above
-DRAWN = (("DRIVING_LINES", tr("Driving lines"), "LineStringZ"), ("ROAD_EDGES", tr("Road edges"), "LineStringZ"),
-         ("MARKING_LINES", tr("Marking lines"), "LineStringZ"), ("CROSS_SECTIONS", tr("Cross-sections"), "LineStringZ"),
-         ("MARKINGS", tr("Markings"), "PolygonZ"), ("LANES", tr("Lanes"), "PolygonZ"),
-         ("ROAD_SURFACE", tr("Road surface"), "PolygonZ"))
+DRAWN = ("DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES", "CROSS_SECTIONS", "MARKINGS", "LANES", "ROAD_SURFACE")
 
 
 @dataclass(frozen=True)
@@ -558,11 +553,12 @@ class PrintSheets(Algorithm):
     def declare(self):
         # what is printed on every sheet comes first: the layers are chosen already
         self.add_settings(SHEET_SETTINGS)
-        for name, label, geometry in DRAWN:
-            text = tr("Drawn on the sheets, if given.") if geometry == "PolygonZ" else tr("Drawn on the sheets, and leads the axis if given.")
+        for name in DRAWN:
+            area = MAP_LAYERS[name].geometry == "PolygonZ"
+            text = tr("Drawn on the sheets, if given.") if area else tr("Drawn on the sheets, and leads the axis if given.")
             if name == "CROSS_SECTIONS":
                 text = tr("Of the algorithm Cross-sections: drawn on the sheets, and the pages of sections show them with the limits not kept.")
-            self.add_input("layer", name, label, text, geometry, optional=True)
+            self.add_map_layer(name, text, optional=True)
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr(
             "With it cross-sections show the ground as it was measured; without it straight lines between edges, paint and driving lines."),
             optional=True)

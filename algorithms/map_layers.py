@@ -28,4 +28,5 @@ MAP_LAYERS = {name: MapLayer(label, getattr(features, name), geometry) for name,
     ("ROADSIDE", tr("Roadside"), "LineStringZ"),
     ("ROADSIDE_OBJECTS", tr("Poles, signs and trunks"), "PointZ"),
     ("CROSS_SECTIONS", tr("Cross-sections"), "LineStringZ"),
+    ("SIGNALS", tr("Signals and poles"), "PointZ"),
 )}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -30,8 +30,7 @@ LETTER = 0.25         # source: m of a text in a drawing of sections, 2.5 mm at 
 SECTIONS_IN_COLUMN = 10   # cost: a column of sections more or less
 
 
-@dataclass(frozen=True)
-class _DxfLine:
+class _DxfLine(NamedTuple):
     """layer : name; places : (N, 3); closed : whether the last place is joined with the first; text : written at the place, `turned` by degrees."""
 
     layer: str
@@ -239,10 +238,12 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
         element = group.add("Alignment", name=alignment.name, length=alignment.length, staStart=0.0, desc=alignment.description)
         geometry = element.add("CoordGeom")
         if alignment.plan is None:
-            _irregular(geometry, alignment.places)
-        else:
-            for piece in elements_without_reversal(alignment.plan):
-                _element(geometry, piece)
+            line = geometry.add("IrregularLine", length=alignment.length)
+            line.add("Start", _place(alignment.places[0]))
+            line.add("End", _place(alignment.places[-1]))
+            line.add("PntList2D", " ".join(map(_place, alignment.places)))
+        for piece in elements_without_reversal(alignment.plan) if alignment.plan is not None else ():
+            _element(geometry, piece)
         if len(alignment.profile):
             profile = element.add("Profile", name=alignment.name).add("ProfAlign", name=alignment.name)
             for station, height in alignment.profile:
@@ -279,13 +280,6 @@ def _place3d(place: np.ndarray) -> str:
 
 def _place(point: np.ndarray) -> str:
     return f"{point[1]:.5f} {point[0]:.5f}"
-
-
-def _irregular(geometry, places):
-    line = geometry.add("IrregularLine", length=float(np.hypot(*np.diff(places[:, :2], axis=0).T).sum()))
-    line.add("Start", _place(places[0]))
-    line.add("End", _place(places[-1]))
-    line.add("PntList2D", " ".join(_place(place) for place in places))
 
 
 def _element(geometry: XmlElement, piece: PlanElement) -> None:

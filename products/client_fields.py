@@ -426,7 +426,7 @@ def write_client_layers(layers: Mapping[str, Features], path: str | Database, of
     with _used(path, _unwritable):
         if office:
             # what a program that has it open keeps in a journal beside it is copied too
-            with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(path)) as copy:
+            with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(str(path))) as copy:
                 database.backup(copy)
         dataset = _opened(path, gdal.OF_UPDATE) if office or isinstance(path, Database) \
             else gdal.GetDriverByName("GPKG").Create(path, 0, 0, 0, gdal.GDT_Unknown)

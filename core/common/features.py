@@ -108,7 +108,8 @@ MARKING_LINES = [ROAD, Field("line", int, "Line"), Field("kind", str, "Kind (edg
 DRIVING_LINES = [ROAD, Field("lane", int, "Lane"), Field("kind", str, "Kind"), Field("pattern", str, "Lines to its left|right"),
                  Field("direction", int, "Direction (1 along, -1 against the road)"),
                  Field("source", str, "Source (pair/offset)"), STATUS, CONFIDENCE, OTHER, Field("curve", str, "Curve"), RADIUS, RMSE, SIGMA,
-                 STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]
+                 STATION, END, OFFSET, LENGTH, WIDTH, Field("design_kmh", int, "Highest design speed that its curve allows (km/h)", needed=False),
+                 Field("params", str, "Fitted function (JSON)")]
 # left and right as seen in the direction of travel; along the road where nobody drives
 LANES = [ROAD, Field("lane", int, "Lane"), Field("lane_id", str, "Lane and piece (road.lane.piece)"),
          Field("type", str, "Type (driving/shoulder/parking/bicycle/hatched/median/connector)"),

@@ -41,7 +41,7 @@ class _DrivingLines(LineKind):
         places = places if _way(self.frame, correction, places) == way else places[::-1]
         fit = fit_curve(places[:, 0], places[:, 1])
         piece = dict(blank if like is None else like, source="drawn", status=DRAWN, confidence=SURE, other="", curve=fit.curve, rmse=np.nan,
-                     sigma=np.nan, offset=correction.offset, places=places)
+                     sigma=np.nan, offset=correction.offset, places=places, design_speed=None)
         return self.with_stations(dict(piece, drawn_by=correction), places)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt, gaussian_filter1d, uniform_filter1d
 
 from ..common.progress import Progress
-from ..countries.catalogue import country
+from ..countries.catalogue import Country, country
 from ..execution.phase import THREADS
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads, usual_side
@@ -22,7 +22,7 @@ from ..road.edges.road_edges import RoadEdges
 from ..survey.frame.road_frame import Road, RoadFrame
 from ..survey.frame.row_table import cuts_where_it_changes
 from ..survey.store.road_points import RoadPoints
-from .alignment import Course, Element, LanesOfRoad, element_of, fitted_lanes, is_curve, track_pieces
+from .alignment import Course, Element, LanesOfRoad, design_check, element_of, fitted_lanes, is_curve, track_pieces
 from .heights import lane_heights
 from .lane_areas import RoadLanes, connectors_between_roads, lane_areas, make_lanes
 from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
@@ -85,7 +85,8 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         spacing = None if road_points is None else point_spacing(road_points, number, s)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
             sigma = lane_sigma(track, course, road.road, estimated, paint, passes[track.first:track.last + 1], spacing)
-            rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, estimated.lines, z, sigma)]
+            rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(
+                track, track.direction, course, elements, estimated.lines, z, sigma, country(settings.country))]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
             part.report(0.7 + 0.2 * lane / len(tracks))
         tracks = [track.without_jumps(s) for track in tracks]
@@ -109,7 +110,7 @@ def _road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: floa
 
 
 def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Element], road_lines: CrossSections,
-                 z: np.ndarray, sigma: np.ndarray) -> Iterator[dict[str, Any]]:
+                 z: np.ndarray, sigma: np.ndarray, national: Country) -> Iterator[dict[str, Any]]:
     """The pieces of one lane by status and uncertainty, in order of station."""
     s = road_lines.s
     grid = s[track.first:track.last + 1]
@@ -120,10 +121,11 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
             continue
         vertices = np.c_[x, y, np.interp(stations, grid, z)]
         element = element_of(elements, start, end)
+        speed = None if element is None or not is_curve(arc := element.arc) else design_check(arc.radius, arc.length, element.complete, national)[0]
         yield dict(
             pattern=_patterns(track, rows, way, road_lines), direction=way, source="offset" if track.offset[rows].mean() > 0.5 else "pair",
             status=LANE_STATUS[code], **track.said(rows),
-            curve=element.arc if element is not None else course.curve, rmse=course.rmse,
+            curve=element.arc if element is not None else course.curve, rmse=course.rmse, design_speed=speed,
             sigma=sigma[rows].mean(), station=start, end=end,
             offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=vertices[::-1] if way < 0 else vertices)
 

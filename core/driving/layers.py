@@ -166,6 +166,7 @@ class DrivingLines(LayerRows):
     width: np.ndarray = field(metadata=column("width_m"))
     sigma: np.ndarray = field(metadata=column("sigma_m"))   # (P,) metres, uncertainty of the place across the line, one sigma, see `driving_lines.py`
     other: np.ndarray = field(metadata=column())   # (P,) str objects, the second reading as JSON, see `LaneTrack.said`; "" where there is none
+    design_speed: np.ndarray = field(metadata=column("design_kmh"))   # (P,) int km/h that the curve it is on allows, -1 where it is on none
     vertices: np.ndarray   # (V, 3) local metres in the direction of travel, one piece after the other
     start: np.ndarray   # (P + 1,) int, first vertex of each piece, and V
     crs: str = ""   # WKT, "" where unknown

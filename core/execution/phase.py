@@ -146,6 +146,7 @@ class Executor:
         """End what was started and remove what was written."""
 
 
+@cache
 def name_of(function: Any) -> str:
     """"module:name" of a function or class of the package.
 
@@ -170,7 +171,7 @@ def named(name: str) -> Any:
 # A file: FORMAT, the CRC-32 of all that follows, the length of a JSON text, that text (how the arrays belong together; kind, shape and order
 # of each), the bytes of the arrays. An .npz, whose arrays have headers and checksums of their own, takes nine times as long to write
 # and read
-FORMAT = b"LWplain2"
+FORMAT = b"LWplain3"
 CHECKSUM, TEXT_LENGTH = struct.Struct("<I"), struct.Struct("<q")
 CHECKED_AT_ONCE = 1 << 20   # cost: bytes, which fit the processor's cache
 
@@ -279,17 +280,21 @@ def digest(value: Any, without: str = "") -> str:
     return sha.hexdigest()[:32]
 
 
+PLAIN = frozenset({type(None), bool, str, int, float})   # what JSON holds as it is
+
+
 def _tree(value, arrays):
     """The value as JSON, in which numbers of arrays stand for these."""
-    if isinstance(value, (type(None), bool, str)) or type(value) in (int, float):
+    kind = type(value)
+    if kind in PLAIN:
         return value
+    if kind is list or kind is tuple:
+        return {kind.__name__: [item if type(item) in PLAIN else _tree(item, arrays) for item in value]}
     if isinstance(value, (np.ndarray, np.generic)):
         return _tree_of_array(value, arrays)
-    if isinstance(value, dict):
+    if kind is dict:
         return {"dict": [[_tree(key, arrays), _tree(item, arrays)] for key, item in value.items()]}
-    if type(value) in (list, tuple):
-        return {type(value).__name__: [_tree(item, arrays) for item in value]}
-    return {"object": name_of(type(value)), "state": [[name, _tree(item, arrays)] for name, item in _state(value).items()]}
+    return {"object": name_of(kind), "state": {name: item if type(item) in PLAIN else _tree(item, arrays) for name, item in _state(value).items()}}
 
 
 def _tree_of_array(value, arrays):
@@ -308,13 +313,23 @@ def _state(value):
     getstate = type(value).__dict__.get("__getstate__")
     if getstate is not None:
         return getstate(value)
-    return {attribute.name: getattr(value, attribute.name) for attribute in fields(value)} if is_dataclass(value) else vars(value)
+    return {name: getattr(value, name) for name in _field_names(type(value))} if is_dataclass(value) else vars(value)
+
+
+@cache
+def _field_names(kind):
+    return [attribute.name for attribute in fields(kind)]
 
 
 def _value(tree, arrays):
-    if not isinstance(tree, dict):
+    if type(tree) is not dict:
         return tree
     kind, content = next(iter(tree.items()))
+    if kind in ("list", "tuple"):
+        items = [_value(item, arrays) if type(item) is dict else item for item in content]
+        return items if kind == "list" else tuple(items)
+    if kind == "object":
+        return _object(named(content), {name: _value(item, arrays) for name, item in tree["state"].items()})
     if kind == "number":
         return np.dtype(content[0]).type(content[1])
     if kind == "texts":
@@ -323,12 +338,7 @@ def _value(tree, arrays):
         return arrays[content]
     if kind == "scalar":
         return arrays[content][()]
-    if kind == "dict":
-        return {_value(key, arrays): _value(item, arrays) for key, item in content}
-    if kind in ("list", "tuple"):
-        items = [_value(item, arrays) for item in content]
-        return items if kind == "list" else tuple(items)
-    return _object(named(content), {name: _value(item, arrays) for name, item in tree["state"]})
+    return {_value(key, arrays): _value(item, arrays) for key, item in content}
 
 
 def _object(kind, state):

@@ -18,7 +18,7 @@ from ..common.parallel import ScratchBuffers, check_cancelled
 from ..common.progress import Progress
 from ..common.setting import Limited, setting
 from ..execution.phase import THREADS, Executor, Phase, digest
-from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage, new_geotiff
+from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
 from ..lazy import cv2
 from ..survey.consistency import sample_road_points
 from ..survey.frame.road_frame import RoadFrame
@@ -234,15 +234,14 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     if before is not None:
         image.take_over(before)
     new = [(tile, pieces) for tile, pieces in work if before is None or before.states.get(tile) != image.states[tile]]
-    with new_geotiff(path, grid.width, grid.height, grid.geotransform, road_points.crs) if path else nullcontext() as file:
-        if file is not None:
-            image.write_tiles(file)
+    with image.new_file(path, before) if path else nullcontext() as file:
         # a few are made before workers would have started
         executor = THREADS if 2 * len(new) < len(work) else road_points.executor
         for column, row, values in _tiles(grid, new, road_points, settings, progress.part(0.3, 1.0), executor):
             image.put(column, row, values)
             if file is not None:
                 file.write(column, row, values)
+                # compressed by another thread while the next tiles are made
                 file.flush()
     progress.info(grid.summary)
     return image
@@ -276,13 +275,7 @@ def write_intensity_image(road_points: RoadPoints, path: str | PathLike, setting
     ----------
     .. [1] Guan et al. (2014), ISPRS J. Photogramm. Remote Sens. 87, 93-107: the two rules.
     """
-    grid, work = _looked(road_points, settings, progress)
-    with new_geotiff(path, grid.width, grid.height, grid.geotransform, road_points.crs) as file:
-        for column, row, values in _tiles(grid, work, road_points, settings, progress.part(0.3, 1.0), road_points.executor):
-            file.write(column, row, values)
-            # compressed by another thread while the next tiles are made
-            file.flush()
-    progress.info(grid.summary)
+    make_intensity_image(road_points, settings, progress, path).close()
 
 
 def check_fits(width: float, height: float, settings: ImageSettings) -> None:

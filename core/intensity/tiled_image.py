@@ -5,6 +5,9 @@ The chain reads the image through this object; the GeoTIFF is written for the us
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -45,11 +48,39 @@ class TiledImage(IntensityImage):
         self._file: ArrayFile | Path | None = None
         self.pieces: dict[Any, str] = {}
         self.states: dict[tuple[int, int], str] = {}
+        self.lost: list[tuple[int, int]] = []   # first pixels of tiles that another image did not take over
+        self._written: tuple[Path, list[int]] | None = None   # the GeoTIFF of this image, and its size and time then
+
+    @contextmanager
+    def new_file(self, path: str | PathLike, before: TiledImage | None = None) -> Iterator[Any]:
+        """A GeoTIFF of `new_geotiff` at a path, to be written on, with the tiles that are here already.
+
+        before : an image that these were taken over from; of its own file, if that is as it was written, only the other tiles change
+        """
+        shown = self if before is None else before
+        alike = all(getattr(shown, name) == getattr(self, name) for name in ("geotransform", "width", "height"))
+        like = shown._file_as_written() if alike else None
+        with new_geotiff(path, self.width, self.height, self.geotransform, self.crs, like=like) as file:
+            for column, row in self.tiles() if like is None else shown.lost:
+                values = self.read_pixels(column, row, min(GEOTIFF_TILE, self.width - column), min(GEOTIFF_TILE, self.height - row))
+                file.write(column, row, np.where(np.isnan(values), np.float32(NODATA), values))
+                file.flush()
+            yield file
+        self._written = Path(path), _state_of(path)
+
+    def _file_as_written(self):
+        """The GeoTIFF of this image; None where there is none any more."""
+        try:
+            return self._written[0] if self._written is not None and _state_of(self._written[0]) == self._written[1] else None
+        except OSError:
+            return None
 
     def take_over(self, before: TiledImage) -> None:
-        """Take the tiles of another image that are the same, with its file."""
+        """Take the tiles of another image that are the same, with its file; the others are `lost` to that one."""
         if before.geotransform == self.geotransform:
             self._file, before._file = before._file, None
+            before.lost = [(column * GEOTIFF_TILE, row * GEOTIFF_TILE) for column, row in before._tiles
+                           if before.states[column, row] != self.states.get((column, row))]
             self._tiles = {tile: stored for tile, stored in before._tiles.items() if before.states[tile] == self.states.get(tile)}
         else:
             before.states = {}
@@ -104,15 +135,9 @@ class TiledImage(IntensityImage):
 
     def write(self, path: str | PathLike) -> None:
         """Write the image to a GeoTIFF."""
-        with new_geotiff(path, self.width, self.height, self.geotransform, self.crs) as file:
-            self.write_tiles(file)
-
-    def write_tiles(self, file: Any) -> None:
-        """Write the tiles to a GeoTIFF of `new_geotiff`."""
-        for column, row in self.tiles():
-            values = self.read_pixels(column, row, min(GEOTIFF_TILE, self.width - column), min(GEOTIFF_TILE, self.height - row))
-            file.write(column, row, np.where(np.isnan(values), np.float32(NODATA), values))
-            file.flush()
+        if self._file_as_written() != Path(path):
+            with self.new_file(path):
+                pass
 
     def close(self) -> None:
         self._tiles = {}
@@ -121,6 +146,11 @@ class TiledImage(IntensityImage):
             if self._file.path is not None:
                 self._file.path.unlink(missing_ok=True)
         self._file = None
+
+
+def _state_of(path):
+    found = os.stat(path)
+    return [found.st_size, found.st_mtime_ns]
 
 
 def _shared_image(file: str, tiles: np.ndarray, geotransform: list[float], width: int, height: int, crs: str) -> TiledImage:

@@ -58,7 +58,7 @@ class _ImageWeights:
     ranking_window: float = 20.0   # m of station over which intensities are ranked for the brightness rule
     pieces_per_window: int = 4   # pieces of a window, each interpolated at once: 5 m of road
     looked_windows: int = 8   # windows of 20 m that a worker process looks at together: a tenth of a second of its time
-    tiles_per_task: int = 24   # tiles that a worker process is given together: what lies beside them is interpolated again for others
+    tiles_per_task: int = 12   # tiles of 20 m that a worker process is given together: what lies beside them is interpolated again for others
     far_points_per_cell: int = 3   # with twice as many, an evenly spread share of the points weighs on cells farther than the next
     width_sample_step: int = 16   # the width of a piece is taken from every 16th point
     max_ranked_points: int = 50_000   # points of a piece whose intensities are ranked; of twice as many an evenly spread share

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -171,17 +172,24 @@ def filled_tiles(dataset: Any) -> list[tuple[int, int]]:
 
 
 class _NewGeoTiff:
-    """The single band of a GeoTIFF that is being written, of uint8 where `byte` says so, otherwise float32; `nodata` marks pixels without data."""
+    """The single band of a GeoTIFF that is being written, of uint8 where `byte` says so, otherwise float32; `nodata` marks pixels without data.
+
+    copied : whether it is there already, as the copy of one like it of which some pixels will change
+    """
 
     @gdal_exceptions()
     def __init__(self, path: str | os.PathLike[str], width: int, height: int, geotransform: Any, crs: str, byte: bool, nodata: float,
-                 description: str):
+                 description: str, copied: bool):
         options = [f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
                    "BIGTIFF=IF_SAFER", f"NUM_THREADS={IO.compression_threads}"]
         # Intensities are too noisy to be predicted from their neighbours: a predictor costs more time than it saves.
         options += ["PREDICTOR=2"] if byte else ["ZLEVEL=1"]
         self._type = gdal.GDT_Byte if byte else gdal.GDT_Float32
         self._dtype = np.dtype(np.uint8 if byte else np.float32)
+        if copied:
+            self._dataset = gdal.OpenEx(str(path), gdal.OF_RASTER | gdal.OF_UPDATE | gdal.OF_VERBOSE_ERROR, allowed_drivers=["GTiff"],
+                                        open_options=[f"NUM_THREADS={IO.compression_threads}"])
+            return
         self._dataset = gdal.GetDriverByName("GTiff").Create(str(path), width, height, 1, self._type, options)
         place_raster(self._dataset, geotransform, crs)
         self._dataset.GetRasterBand(1).SetNoDataValue(nodata)
@@ -218,19 +226,30 @@ class _NewGeoTiff:
         self._dataset = None
 
 
+def _copy(path, target):
+    """Copy a file; RuntimeError, as of GDAL, where that fails."""
+    try:
+        shutil.copyfile(path, target)
+    except OSError as error:
+        raise RuntimeError(str(error)) from error
+
+
 @contextmanager
 def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransform: Any, crs: str, byte: bool = False,
-                nodata: float = NODATA, description: str = "") -> Iterator[_NewGeoTiff]:
+                nodata: float = NODATA, description: str = "", like: Path | None = None) -> Iterator[_NewGeoTiff]:
     """A new GeoTIFF with one band: tiled, DEFLATE, without empty tiles. It appears at its path only when all is written.
 
     Of several runs that write the same file each ends well, and the last to end is kept. RoadExtractionError if the file cannot be written.
     geotransform : (6,) of GDAL; crs : WKT, "" for none; byte, nodata : as of _NewGeoTiff; description : what its values are
+    like : another one of all this, of which only the pixels that change are written
     """
     target = Path(path)
     unfinished = unfinished_path(target, ".tif")
     image = None
     try:
-        image = _NewGeoTiff(unfinished, width, height, geotransform, crs, byte, nodata, description)
+        if like is not None:
+            _copy(like, unfinished)
+        image = _NewGeoTiff(unfinished, width, height, geotransform, crs, byte, nodata, description, like is not None)
         yield image
         image.close()
         os.replace(unfinished, target)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,17 +14,16 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..execution.phase import THREADS, Executor, Items, NoSource, Phase
+from ..execution.phase import THREADS, Executor, Phase, Recipe
 from ..lazy import cv2
-from ..survey.store.columns import Columns
 from ..survey.store.records import COORDINATE_SCALE, take_rows
 from ..survey.store.road_points import RoadPoints
+from ..survey.store.section_store import SectionStore, StoreIndex, Stretch
 from .weights import OUTLIERS
 
 OUTLIER_SCOPES = ("all", "windows")
 NEIGHBOUR_HALO = 2.0      # cost: m of station beyond a window where neighbours are still looked for
 MAX_LIMIT_SAMPLE = 1500   # cost: points of a band from which its limit is taken; where there are twice as many, of an evenly spaced sample
-COLUMNS = "s", "d", "x", "y", "z"   # that outliers are told by
 TASK_WINDOWS = 5       # cost: windows of 20 m that are looked at together
 TREE_LEAF_POINTS = 20      # cost: points in a leaf of the tree
 MAX_FLOAT32_UNITS = 1 << 24       # derived: units (1.6 km): up to here float32 holds every integer
@@ -72,14 +71,22 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
     ----------
     .. [1] PCL 1.13, filters/impl/statistical_outlier_removal.hpp.
     """
-    kept = RoadPoints.empty_like(points)
+    executor = points.store.readers(executor)
+    source = _PaintStores(points.store, executor.folder)
+    kept = replace(RoadPoints.empty_like(points), store=source.kept)
     if settings.scope == "all":
         _put(kept, points, _kept_of_all(points, settings))
     else:
-        windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
-        phase = Phase(kept_of_windows, NoSource(), (settings,), lambda item: f"markings {item[0][0] * OUTLIERS.window:.0f} m along a road")
-        items = Items(len(windows), lambda k: _columns_of(points, *windows[k]))
-        _put(kept, points, np.concatenate([np.empty(0, bool), *executor.run_together(phase, items, TASK_WINDOWS, progress)]))
+        size, length = max(int(TASK_WINDOWS * OUTLIERS.window / points.store.section_length), 1), points.store.section_length
+        items = [(road, size * k, size * (k + 1)) for road in points.roads() for k in sorted({number // size for number in points.sections(road)})]
+
+        def state(item):
+            windows = _windows(item[1] * length, item[2] * length)
+            return points.state(item[0], windows[0] * OUTLIERS.window - NEIGHBOUR_HALO, (windows[-1] + 1) * OUTLIERS.window + NEIGHBOUR_HALO)
+
+        phase = Phase(kept_of_windows, source, (settings,), lambda item: f"markings {item[1] * length:.0f} m along road {item[0]}", state=state)
+        for index in executor.run(phase, items, progress):
+            kept.store.adopt(index, executor.folder)
     progress.info(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept
 
@@ -97,25 +104,33 @@ def _put(kept, points, keep):
         first += len(records)
 
 
-def _columns_of(points, road, number):
-    """Number of a window, and the columns s, d, x, y, z of its points and those about it."""
-    records = points.window(road, number * OUTLIERS.window - NEIGHBOUR_HALO, (number + 1) * OUTLIERS.window + NEIGHBOUR_HALO).records
-    return number, [np.asarray(records[name]) for name in COLUMNS]
+class _PaintStores:
+    """The points of paint, and where those go that stay: a SectionStore in a folder, None for a temporary file."""
+
+    def __init__(self, points: SectionStore, folder: str | Path | None):
+        self.points, self.kept = points, SectionStore(points.dtype, points.section_length, Path(folder) if folder else None)
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes open both."""
+        return Recipe("core.markings.outliers:_PaintStores", dict(points=self.points.recipe(folder), folder=str(folder)))
 
 
-def kept_of_windows(source: NoSource, windows: Sequence[tuple[int, Sequence[np.ndarray]]], settings: OutlierSettings) -> list[np.ndarray]:
-    """The phase that finds outliers.
+def kept_of_windows(source: _PaintStores, item: Stretch, settings: OutlierSettings) -> StoreIndex:
+    """The phase that finds outliers, window by window; returns where the points of the sections of a stretch lie that stay."""
+    store, (road, *ends) = source.points, item
+    windows = _windows(*(end * store.section_length for end in ends))
+    keep = np.concatenate([_kept_of_window(store, road, number, settings) for number in windows])
+    s = store.window(road, windows[0] * OUTLIERS.window, (windows[-1] + 1) * OUTLIERS.window).records["s"]
+    with source.kept.part() as part:
+        for key in store.in_stretch(item):
+            first, end = np.searchsorted(s, [store.first_unit(key[1]), store.first_unit(key[1] + 1)])
+            part.put(*key, take_rows(store.section(*key), keep[first:end]))
+    return part.index()
 
-    windows : number of each and the columns s, d, x, y, z (0.1 mm) of its points and those about it
 
-    Returns (N,) bool of each window, its own points that are kept
-    """
-    return [_kept_of_window(number, Columns(dict(zip(COLUMNS, columns)), [(name, column.dtype) for name, column in zip(COLUMNS, columns)]), settings)
-            for number, columns in windows]
-
-
-def _kept_of_window(number, records, settings):
+def _kept_of_window(store, road, number, settings):
     """(N,) bool of the points of a window, without those about it."""
+    records = store.window(road, number * OUTLIERS.window - NEIGHBOUR_HALO, (number + 1) * OUTLIERS.window + NEIGHBOUR_HALO).records
     s = records["s"] * COORDINATE_SCALE
     inner = np.flatnonzero((s >= number * OUTLIERS.window) & (s < (number + 1) * OUTLIERS.window))
     neighbours = Neighbours(_units(records), settings.neighbours)

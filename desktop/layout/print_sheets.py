@@ -20,6 +20,7 @@ from qgis.PyQt.QtCore import QMarginsF
 from qgis.PyQt.QtGui import QPageLayout, QPageSize, QPainter, QPdfWriter
 
 from ...algorithms.export import DRAWN, SheetSettings
+from ...algorithms.map_layers import MAP_LAYERS
 from ...algorithms.survey_files import survey_name
 from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
@@ -49,7 +50,7 @@ def print_sheets(call, settings: SheetSettings, progress: Progress) -> dict[str,
 def _print(call, settings, progress):
     project = call.context.project() or QgsProject()
     call.at_end(lambda: project)   # a project of our own lives as long as its layout
-    layers = {name: layer for name, _, _ in DRAWN if (layer := _layer(call, name, project)) is not None}
+    layers = {name: layer for name in DRAWN if (layer := _layer(call, name, project)) is not None}
     if not layers:
         raise RoadExtractionError(tr("No layer was given. Choose the layers of a road map that the sheets are to show."))
     cloud = call.cloud("ROAD_POINTS")
@@ -80,7 +81,7 @@ def _layer(call, name, project) -> QgsMapLayer | None:
             label=call.label(name), value=value))
     if project.mapLayer(layer.id()) is None and name in LOOKS:
         apply_style(layer, STYLES / f"{LOOKS[name][0]}.qml", (), name)
-        layer.setName(tr(next(label for drawn, label, _ in DRAWN if drawn == name)))
+        layer.setName(tr(MAP_LAYERS[name].label))
     return layer
 
 

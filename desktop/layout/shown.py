@@ -37,5 +37,5 @@ def sheet_values(road_map: RoadMap, maps: list[RoadMap], project: QgsProject) ->
     values: dict[str, Any] = {output: layer.id() if layer in shown else None for output, layer in zip(road_map.outputs, road_map.layers)}
     visible = project.layerTreeRoot().checkedLayers()
     below = next((layer for layer in layers_below(project, maps) if layer in visible), None)
-    return {**{name: values.get(name) for name, _, _ in DRAWN}, "TITLE": road_map.title,
+    return {**{name: values.get(name) for name in DRAWN}, "TITLE": road_map.title,
             **({} if below is None else {"BELOW": below.id(), "CREDIT": credit_of(below)})}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from html import escape
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -274,8 +275,7 @@ NO_VERTICAL = "not stated by the survey; heights are written as they are"
 SQUARE = 100_000.0     # m: local coordinates of Autoware are those within a square of this size
 
 
-@dataclass(frozen=True)
-class Degrees:
+class Degrees(NamedTuple):
     """How the map's places became latitude and longitude."""
 
     lonlat: np.ndarray   # (N, 2) degrees of WGS 84

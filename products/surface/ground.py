@@ -164,7 +164,8 @@ def edge_profiles(survey: Survey, ground: RoadGround, lines: FrameLines,
     cells = int(round(PROFILE_REACH / CROSS_CELL))
     u = (np.arange(-cells, cells) + 0.5) * CROSS_CELL
     places = np.stack([lines.x, lines.y], axis=1)
-    normal = np.concatenate([np.empty((0, 2)), *(_normals(places[lines.line(k)]) for k in range(len(lines)))])
+    along = np.concatenate([np.empty((0, 2)), *(np.gradient(places[lines.line(k)], axis=0) for k in range(len(lines)))])
+    normal = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.maximum(np.hypot(*along.T), 1e-9)[:, None]
     tree = cKDTree(places)
     span = survey.store.span(ground.road)
 
@@ -196,9 +197,3 @@ def edge_profiles(survey: Survey, ground: RoadGround, lines: FrameLines,
     heights = np.full(len(places) * 2 * cells, np.nan)
     heights[key[first]] = 0.5 * (z[first + (count - 1) // 2] + z[first + count // 2])
     return u, heights.reshape(-1, 2 * cells), normal
-
-
-def _normals(places):
-    """(n, 2) unit vectors to the left of a line at its (n, 2) vertices."""
-    along = np.gradient(places, axis=0)
-    return np.stack([-along[:, 1], along[:, 0]], axis=1) / np.maximum(np.hypot(*along.T), 1e-9)[:, None]

@@ -40,7 +40,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(section_store, "STRETCH_POINTS", 40_000)
         patch.setattr(ground_grid, "SURFACE", replace(ground_grid.SURFACE, measured_windows=2))
         patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, looked_windows=1))
-        patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, tiles_per_task=3))
+        patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, tiles_per_task=1))
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
         patch.setattr(outliers, "TASK_WINDOWS", 1)

@@ -429,7 +429,8 @@ class ApartWork:
             a, b = cuts[k:k + 2]
             return *columns(a, b), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
 
-        return [result for chunk in self.executor.run(phase, Items(len(cuts) - 1, item), progress) for result in read(chunk)]
+        chunks = self.executor.run(phase, Items(len(cuts) - 1, item), progress) if len(bounds) > 1 else []
+        return [result for chunk in chunks for result in read(chunk)]
 
 
 def _lasting_cuts(bounds, points):

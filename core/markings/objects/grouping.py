@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.arrays import linked_groups
 from ...common.progress import Progress
-from ...execution.phase import THREADS, Executor, Items, NoSource, Phase
+from ...execution.phase import THREADS, Executor, Phase
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints, columns_of_roads
+from ...survey.store.section_store import SectionStore
 from ..road_grid import CELL_UNITS, components, occupied, track_reach
 from ..weights import GROUPS
 
@@ -56,35 +56,37 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
 
 def _linked_windows(marking_points, road, distance, progress, executor):
     """What `links_of_windows` finds in each window of a road, in their order."""
-    phase = Phase(links_of_windows, NoSource(), (distance,), lambda item: f"markings of road {road}")
+    store, length, beyond = marking_points.store, LINKING_WINDOW_CELLS * CELL_UNITS * COORDINATE_SCALE, 1.0 + distance * GROUPS.reach_along_factor
+    phase = Phase(links_of_windows, store, (road, distance, LINKING_WINDOW_CELLS), lambda item: f"markings of road {road}",
+                  state=lambda item: marking_points.state(road, item[0] * length - beyond, item[1] * length + beyond))
     first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in marking_points.store.span(road))
     points = sum(marking_points.store.size(road, number) for number in marking_points.sections(road))
     # a power of two, so that windows stay together where others change
     together = 2 ** max(int(np.log2(LINKED_POINTS * (last + 1 - first) / max(points, 1))), 0)
     begins = [first, *range((first // together + 1) * together, last + 1, together), last + 1]
-    items = Items(len(begins) - 1, lambda k: [_points_to_link(marking_points, road, distance, number) for number in range(*begins[k:k + 2])])
-    for links in executor.run(phase, items, progress):
+    for links in store.readers(executor).run(phase, list(zip(begins, begins[1:])), progress):
         yield from links
 
 
-def _points_to_link(marking_points, road, distance, number):
-    """LINKING_COLUMNS of the points of a window and of those beyond its end that they may reach, and the cell along the road at which it ends."""
+def _points_to_link(store, road, distance, first, end):
+    """LINKING_COLUMNS of the points between two cells along the road, and of those beyond that they may reach."""
     reach = int(np.ceil(distance * GROUPS.reach_along_factor / (CELL_UNITS * COORDINATE_SCALE))) + 1
-    first, end = number * LINKING_WINDOW_CELLS, (number + 1) * LINKING_WINDOW_CELLS
-    records = marking_points.window(road, *(row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, end + reach + 1))).records
+    records = store.window(road, *(row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, end + reach + 1))).records
     column = records["s"] // CELL_UNITS
     records = records[(column >= first) & (column < end + reach)]
-    return *(records[name] for name in LINKING_COLUMNS), end
+    return [records[name] for name in LINKING_COLUMNS]
 
 
-def links_of_windows(source: NoSource, item: list[tuple[Any, ...]], distance: float) -> list[tuple[np.ndarray, ...]]:
-    """The phase that links the points of windows, by `distance`, m.
+def links_of_windows(store: SectionStore, item: tuple[int, int], road: int, distance: float, size: int) -> list[tuple[np.ndarray, ...]]:
+    """The phase that links the points of windows of so many cells, (first, last + 1) of their numbers, by `distance`, m.
 
-    `item` : of each window LINKING_COLUMNS of its N points, one after the other, and the cell along the road at which it ends. Returns of each
-    (K, 2) int occupied cells, (K,) int their component, (K,) bool whether they lie beyond the end, and (M,) int the cell of each point that does not.
+    Returns of each (K, 2) int occupied cells, (K,) int their component, (K,) bool whether they lie beyond the end, and (M,) int the cell of each
+    point that does not.
     """
     links: list[tuple[np.ndarray, ...]] = []
-    for *columns, end in item:
+    for number in range(*item):
+        end = (number + 1) * size
+        columns = _points_to_link(store, road, distance, number * size, end)
         cells, member, component = _components_of_points(dict(zip(LINKING_COLUMNS, columns)), distance)
         links.append((cells, component, cells[:, 0] >= end, member[columns[0] // CELL_UNITS < end]))
     return links

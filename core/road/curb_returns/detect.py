@@ -129,42 +129,37 @@ class _PlanSearch:
                    FollowedEnds.of(lines, np.full(len(lines), np.nan)), behind)
 
 
-@dataclass(frozen=True)
-class _StepsInPlan:
-    """What `_steps_in_plan` finds on one road: `measured` as of `plan_steps_of_section`, None for nothing."""
-
-    search: _PlanSearch
-    sections: list[tuple[int, int]]   # (first, last + 1) profile numbers
-    measured: tuple[PlanSteps, np.ndarray, np.ndarray] | None
-
-
-def _steps_in_plan(decimation: PointDecimation, searches: dict[int, _PlanSearch], settings: CurbSettings,
-                  progress: Progress = Progress()) -> dict[int, _StepsInPlan]:
-    """{number of a road: _StepsInPlan}; `searches` : {number of a road: _PlanSearch}"""
-    sections = {road: work_sections(decimation.survey, road, settings.profile_width) for road in searches}
+def _steps_in_plan(decimation, searches, settings, progress=Progress()):
+    """{number of a road: its _PlanSearch, and what `plan_steps_of_section` finds on it}; `searches` : {number of a road: _PlanSearch}"""
+    sections = [(road, *section) for road in searches for section in work_sections(decimation.survey, road, settings.profile_width)]
     phase = phase_along(plan_steps_of_section, decimation, (searches, settings), settings.profile_width, _join_parts)
-    found = decimation.executor.run(phase, [(road, *section) for road, of_road in sections.items() for section in of_road], progress)
-    return {road: _StepsInPlan(searches[road], of_road, _join_parts([next(found) for _ in of_road])) for road, of_road in sections.items()}
+    found: dict[int, list] = {road: [] for road in searches}
+    for of_section, (road, *_) in zip(decimation.executor.run(phase, sections, progress), sections):
+        found[road].append(of_section)
+    return {road: (searches[road], _join_parts(of_road)) for road, of_road in found.items()}
 
 
-def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray], seen: _StepsInPlan, settings: CurbSettings,
+def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray],
+                      seen: tuple[_PlanSearch, tuple[PlanSteps, np.ndarray, np.ndarray] | None], settings: CurbSettings,
                       progress: Progress = Progress(), elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (),
                       look: RoadLook | None = None) -> list[CurbReturn]:
     """Corners, side streets and islands of one road.
 
     main : side -> (N, 4) points of the main curb, by station: station, offset, height above the expected road in m,
         1 where it was measured and 0 where it is hidden
+    seen : as of `_steps_in_plan`
     elsewhere : (x, y) of the main curbs of other roads, local m
     look : RoadLook of the road; without, a curb may lie anywhere
     """
-    if seen.measured is None:
+    search, measured = seen
+    if measured is None:
         return []
-    line, limits, known_places = decimation.survey.frame.road(road), seen.search.limits, seen.search.known
-    runs, (steps, falls, scanner_noise) = main_runs(main, line), seen.measured
+    line, limits, known_places = decimation.survey.frame.road(road), search.limits, search.known
+    runs, (steps, falls, scanner_noise) = main_runs(main, line), measured
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)
               and has_road_before(steps[c.steps], line, look)]
     curbs = classify_curbs(chains, steps, falls, runs, line, limits, decimation.survey.frame.passes_of(road), elsewhere)
-    noisy = _noisy_sections(seen.sections, line, steps, scanner_noise, settings)
+    noisy = _noisy_sections(work_sections(decimation.survey, road, settings.profile_width), line, steps, scanner_noise, settings)
     curbs = with_led_on(curbs, runs, decimation, road, noisy, known_places, limits, settings, progress)
     return with_curbs_beyond(curbs, decimation, road, known_places)
 

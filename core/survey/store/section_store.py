@@ -15,6 +15,7 @@ import numpy as np
 
 from ...common.arrays import RADIX_BITS, above_least, bucket_argsort, order_by
 from ...common.parallel import ScratchBuffers, check_cancelled, column_buffers
+from ...execution.phase import THREADS, Executor, Recipe
 from ...execution.weights import EXECUTION
 from ..weights import STORE
 from .array_file import ArrayFile, close_files, new_file, opened
@@ -322,6 +323,14 @@ class SectionStore:
         """What another process needs to open this store by `opened_store`, whose points lie in its folder; plain values."""
         return dict(columns=[list(column) for column in self.dtype.descr], section_length=self.section_length, points=self.index(),
                     constants=self.constants, own=self._own, base=self.base and dict(self.base.contents(), folder=str(self.base.folder)))
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes open this store, whose points lie in its folder."""
+        return Recipe("core.survey.store.section_store:opened_store", dict(folder=str(self.folder), **self.contents()))
+
+    def readers(self, executor: Executor) -> Executor:
+        """Those of an executor, if they can read the points; else threads of this process."""
+        return executor if executor.folder is None or self.folder is not None else THREADS
 
     def adopt(self, index: StoreIndex, folder: Path | None = None) -> None:
         """Add the points that others wrote, to files of a folder where these have names."""

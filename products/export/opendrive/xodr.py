@@ -339,7 +339,10 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     whole = replace(whole, roads=[road.cut_where_speeds_change() for road in whole.roads])
     rows: list[dict[str, Any]] = []
     lines, edges = Features("LineStringZ", MARKING_LINES, crs=crs), Features("LineStringZ", ROAD_EDGES, crs=crs)
-    network, numbers, faults = LaneNetwork(whole), _road_numbers(whole), _Faults()
+    network, faults = LaneNetwork(whole), _Faults()
+    # a whole number for every road: its id where all are such, else its place
+    numbered = all(re.fullmatch(r"\d{1,9}", road.id) for road in whole.roads)
+    numbers = {road.id: int(road.id) if numbered else k for k, road in enumerate(whole.roads, start=1)}
     for count, road in enumerate(whole.roads):
         surface = road.surface
         faults.jumps += [(road.id, *jump) for jump in surface.jumps() if jump[1] > BORDER_JUMP]
@@ -462,14 +465,6 @@ def _following(network, key, passed=()):
             yield road.lane_name(id, number)
         elif following not in passed:
             yield from _following(network, following, (*passed, following))
-
-
-def _road_numbers(whole: OpenDriveMap) -> dict[str, int]:
-    """A whole number for every road: its id where all are such, else its place."""
-    ids = [road.id for road in whole.roads]
-    if all(re.fullmatch(r"\d{1,9}", id) for id in ids):
-        return {id: int(id) for id in ids}
-    return {id: k for k, id in enumerate(ids, start=1)}
 
 
 def _kind(lanes: dict[int, MapLane], id: int) -> str:

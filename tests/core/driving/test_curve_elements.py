@@ -52,14 +52,16 @@ def test_an_arc_cut_by_the_end_of_the_line_is_judged_by_its_radius_alone():
 
 
 def test_a_straight_street_has_no_circular_curve_elements():
-    _, elements = Street().paint(0.0).paint(-3.5).lanes()
-    assert len(elements) == 0
+    lines, elements = Street().paint(0.0).paint(-3.5).lanes()
+    assert len(elements) == 0 and {row["design_kmh"] for row in lines.rows} == {None}
 
 
 def test_the_table_of_a_bend_has_a_row_per_lane_with_its_own_radius_in_the_direction_of_travel():
     street = Street(length=90.0, radius=100.0, vehicle=-1.75).paint(3.5).paint(0.0, pattern="dashed").paint(-3.5)
-    _, elements = street.lanes()
+    lines, elements = street.lanes()
     outer, inner = elements.rows
+    assert {(row["lane"], row["design_kmh"]) for row in lines.rows} == {(1, 30), (2, 30)}
+    assert {(row["lane"], row["speed_kmh"]) for row in elements.rows} == {(1, 30), (2, 30)}
     assert outer["radius_m"] == pytest.approx(101.75, rel=2e-3) and inner["radius_m"] == pytest.approx(98.25, rel=2e-3)
     assert (outer["turn"], inner["turn"]) == ("left", "right")
     assert outer["delta_deg"] == pytest.approx(np.degrees(80.0 / 100.0), rel=0.015)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity.image import ImageSettings, _kernels, check_image_shows, make_intensity_image, write_intensity_image
-from lanewright.core.io.geotiff import IntensityImage, write_display_image
+from lanewright.core.intensity.tiled_image import TiledImage
+from lanewright.core.io.geotiff import IntensityImage, _NewGeoTiff, write_display_image
 from lanewright.core.markings.paint.windows import marking_mask
 from lanewright.core.survey.store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -236,6 +237,39 @@ def test_an_image_without_a_file_has_the_pixels_of_one_with_a_file(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.tif"]
     image.close()
     assert np.isnan(all_pixels(image)).all() and not image.tiles()
+
+
+def image_of_levels(path, levels, before=None):
+    """An image of a row of tiles, each of one value, None without data, in a file too; what did not change is taken over from the one before."""
+    image = TiledImage((0.0, 0.04, 0.0, 100.0, 0.0, -0.04), 512 * len(levels), 512, "")
+    image.states = {(k, 0): str(level) for k, level in enumerate(levels)}
+    if before is not None:
+        image.take_over(before)
+    with image.new_file(path, before) as file:
+        for k, level in enumerate(levels):
+            if level is not None and (before is None or before.states[k, 0] != str(level)):
+                values = np.full((512, 512), level, np.float32)
+                image.put(512 * k, 0, values)
+                file.write(512 * k, 0, values)
+    return image
+
+
+def test_of_a_changed_image_the_changed_tiles_alone_are_written_where_its_file_is_still_there(tmp_path, monkeypatch):
+    written, write = [], _NewGeoTiff.write
+    monkeypatch.setattr(_NewGeoTiff, "write", lambda self, *tile: written.append(tile[0] // 512) or write(self, *tile))
+    image = image_of_levels(tmp_path / "a.tif", [1.0, 2.0, 3.0, None])
+    assert written == [0, 1, 2]
+    for name, levels, changed in (("b.tif", [1.0, 5.0, None, 4.0], {1, 2, 3}), ("b.tif", [1.0, 5.0, None, 6.0], {3})):
+        written.clear()
+        image = image_of_levels(tmp_path / name, levels, image)
+        assert set(written) == changed
+        np.testing.assert_array_equal(all_pixels(IntensityImage.open(tmp_path / name)), all_pixels(image))
+        assert [float(pixel) for pixel in all_pixels(image)[0, ::512]] == pytest.approx([np.nan if v is None else v for v in levels], nan_ok=True)
+    (tmp_path / "b.tif").write_bytes(b"of somebody else")
+    written.clear()
+    image = image_of_levels(tmp_path / "c.tif", [1.0, 5.0, None, 7.0], image)
+    assert set(written) == {0, 1, 3}
+    np.testing.assert_array_equal(all_pixels(IntensityImage.open(tmp_path / "c.tif")), all_pixels(image))
 
 
 def test_where_no_point_lies_within_two_cells_there_is_no_data(tmp_path):

@@ -106,6 +106,13 @@ def test_numbers_are_rounded_to_what_they_mean_and_values_are_words(qgis_app):
         ["12.35", "0.012", "251.3", "along the road", "inferred"]
 
 
+@pytest.mark.parametrize("row, label", [(dict(radius_m=251.27, design_kmh=60), "R 251 · 60 km/h"), (dict(radius_m=84.31), "R 84.3")])
+def test_a_curve_is_labelled_with_its_radius_and_the_design_speed_that_it_allows(row, label):
+    layer = loaded("DRIVING_LINES", **row)
+    rule, = layer.labeling().rootRule().children()
+    assert evaluated(layer, f"[% {rule.settings().fieldName} %]") == label
+
+
 @pytest.mark.parametrize("alias, short", [
     ("Side (left/right)", "Side"), ("Station (m)", "Station (m)"), ("Offset, left positive (m)", "Offset, left positive (m)"),
     ("Heading (°, clockwise from grid north)", "Heading (°)"), ("Direction (1 along, -1 against the road)", "Direction"),

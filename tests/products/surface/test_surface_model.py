@@ -1,5 +1,7 @@
 """Surfaces of roads whose shape is known: breaklines where the ground bends, and triangles that keep to a tolerance."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 import shapely
@@ -26,6 +28,12 @@ def model_of(tolerance=0.005, lanes=False, reach=2.0, edges=None, **road):
     survey = measured_road(density=road.pop("density", 900.0), grade=GRADE, **road)
     layers = BorderLayers(edges_of() if edges is None else edges, lanes=lanes_of() if lanes else None)
     return make_surface_model(survey, layers, SurfaceSettings(tolerance=tolerance, reach=reach))
+
+
+@cache
+def plain_model():
+    """The model of the road as it is by default, made once."""
+    return model_of()
 
 
 def on_road(model, places):
@@ -208,7 +216,7 @@ def test_tops_of_curbs_and_edges_without_length_or_twice_change_nothing():
         edges.add(shapely.transform(shape, lambda places, outward=outward: places + [0.0, outward, 0.12], include_z=True), **{**row, "part": "top"})
         edges.add(shapely.linestrings(shapely.get_coordinates(shape, include_z=True)[[0, 0]]), **row)
         edges.add(shapely.line_merge(shapely.segmentize(shape, 7.0)), **row)
-    one, other = model_of(), model_of(edges=edges)
+    one, other = plain_model(), model_of(edges=edges)
     assert [line.kind for line in one.lines] == [line.kind for line in other.lines]
     assert len(one.surface.faces) == len(other.surface.faces)
 
@@ -245,7 +253,7 @@ def test_a_segment_through_other_vertices_changes_nothing(segments, made):
 # Files.
 
 def test_a_landxml_surface_has_the_triangles_and_breaklines_of_the_model(tmp_path):
-    model = model_of()
+    model = plain_model()
     root = read_xml(written(tmp_path, landxml_text((), surface=model), "surface.xml"), "LandXML", "a LandXML file")
     assert [child.tag for child in root.children] == ["Units", "Project", "Application", "Surfaces"]
     element = root.find("Surfaces", "Surface")
@@ -264,7 +272,7 @@ def test_a_landxml_surface_has_the_triangles_and_breaklines_of_the_model(tmp_pat
 
 
 def test_a_dxf_surface_has_faces_and_lines_in_their_layers(tmp_path):
-    model, path = model_of(), str(tmp_path / "surface.dxf")
+    model, path = plain_model(), str(tmp_path / "surface.dxf")
     write_dxf(surface_lines(model), path, faces=model.places[model.surface.faces])
     found = {}
     dataset = gdal.OpenEx(path)
@@ -290,7 +298,7 @@ def test_the_raster_has_the_heights_of_the_road_and_none_beside_it(tmp_path):
 
 
 def test_the_layers_say_what_every_line_and_triangle_is():
-    lines, faces = surface_to_features(model_of())
+    lines, faces = surface_to_features(plain_model())
     assert {row["kind"] for row in lines.rows} == {"edge_bottom", "edge_top", "gutter_flow_line", "crown"}
     assert all(0 < row["sigma_z_m"] < 0.01 and row["length_m"] > 5 for row in lines.rows)
     assert {row["status"] for row in faces.rows} == {"measured"}
