@@ -399,18 +399,14 @@ def _joined(pieces):
     """Pieces that go on end to end as one; rows of one lane may come in any order."""
     waiting = list(pieces)
     while waiting:
-        line = waiting.pop(0)
-        grown = True
-        while grown:
-            grown = False
-            for k, piece in enumerate(waiting):
-                if np.hypot(*(piece[0] - line[-1])[:2]) < JOINT:
-                    line, grown = np.concatenate([line, piece[1:]]), True
-                elif np.hypot(*(piece[-1] - line[0])[:2]) < JOINT:
-                    line, grown = np.concatenate([piece, line[1:]]), True
-                if grown:
-                    waiting.pop(k)
-                    break
+        line, k = waiting.pop(0), 0
+        while k < len(waiting):
+            ahead, behind = (np.hypot(*(waiting[k][end] - line[-1 - end])[:2]) < JOINT for end in (0, -1))
+            if ahead or behind:
+                piece = waiting.pop(k)
+                line, k = np.concatenate([line, piece[1:]] if ahead else [piece, line[1:]]), 0
+            else:
+                k += 1
         yield line
 
 

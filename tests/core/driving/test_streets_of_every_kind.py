@@ -49,12 +49,13 @@ def painted(street, *areas):
 
 
 def curbs(street, *offsets):
-    """The layer of road edges with curbs along the street."""
+    """The layer of road edges with curbs along the street, each at an offset or a function of station."""
     edges = Features("LineStringZ", list(ROAD_EDGES))
     along = np.arange(5.0, 115.0, 0.5)
-    for chain, offset in enumerate(offsets):
+    for chain, where in enumerate(offsets):
+        offset = where(along) if callable(where) else np.full(len(along), where)
         edges.add(LineString(np.c_[street.places(along, offset), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
-                  part="bottom", chain=chain, side="left" if offset > 0 else "right")
+                  part="bottom", chain=chain, side="left" if offset[0] > 0 else "right")
     return edges
 
 
@@ -220,6 +221,17 @@ def test_a_street_that_was_driven_between_two_curbs_has_lanes_without_any_paint(
     assert lanes_of(street, edges=curbs(street, half, -half)) == lanes
     rows = street.lanes(edges=curbs(street, half, -half))[0].rows
     assert all(row["confidence"] <= 0.6 for row in rows) == (half > 2.2), "where two lanes have no room it is one for sure"
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_without_paint_lanes_lie_where_they_were_driven_and_not_where_a_street_that_widens_would_share_its_room_evenly(way):
+    street = Street(vehicle=-1.75, again=(1.75,))
+    edges = curbs(street, *(lambda s, side=side: side * (3.5 + (side == way) * 2.0 * np.clip((s - 40.0) / 30.0, 0.0, 1.0)) for side in (1, -1)))
+    lines = list(street.lanes(edges=edges)[0])
+    for side in (1, -1):
+        parts = [line for line, row in lines if row["direction"] == -side]
+        assert sum(line.length for line in parts) == pytest.approx(110.0, abs=2.0)
+        assert max(np.abs(street.offsets(line) - 1.75 * side).max() for line in parts) < 0.15
 
 
 def test_lanes_go_on_between_the_curbs_where_the_paint_stops():
