@@ -412,11 +412,9 @@ def write_lanelet2(call, source, name, progress):
     return numbers
 
 
-ALIGNMENTS = "products.export.opendrive.exporter:OpenDriveSettings"
-FORMATS = ("dxf", "landxml")
-SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}
+SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}   # format -> endings
 CAD_SETTINGS = (
-    SettingSpec("TOLERANCE", ALIGNMENTS, "tolerance", tr("Tolerance (m)"),
+    SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
                 tr("LandXML: how far a line may be missed by its elements, in plan and in height. DXF has every vertex.")),
 )
 
@@ -435,7 +433,7 @@ class ExportCad(Algorithm):
     def declare(self):
         add_road_map_layers(self)
         self.add_input("choice", "FORMAT", tr("Format"), tr("dxf is drawn by every CAD program, landxml is taken over by programs for road design."),
-                       default=FORMATS[0], choices=FORMATS)
+                       default="dxf", choices=tuple(SUFFIXES))
         self.add_settings(CAD_SETTINGS)
         self.add_output("file", "OUTPUT", tr("CAD file"), tr("With the ending .dxf, or .xml for LandXML."),
                         suffixes=(".dxf", ".xml", ".landxml"), file_filter="DXF (*.dxf);;LandXML (*.xml *.landxml)")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -30,8 +30,7 @@ LETTER = 0.25         # source: m of a text in a drawing of sections, 2.5 mm at 
 SECTIONS_IN_COLUMN = 10   # cost: a column of sections more or less
 
 
-@dataclass(frozen=True)
-class _DxfLine:
+class _DxfLine(NamedTuple):
     """layer : name; places : (N, 3); closed : whether the last place is joined with the first; text : written at the place, `turned` by degrees."""
 
     layer: str
@@ -400,18 +399,14 @@ def _joined(pieces):
     """Pieces that go on end to end as one; rows of one lane may come in any order."""
     waiting = list(pieces)
     while waiting:
-        line = waiting.pop(0)
-        grown = True
-        while grown:
-            grown = False
-            for k, piece in enumerate(waiting):
-                if np.hypot(*(piece[0] - line[-1])[:2]) < JOINT:
-                    line, grown = np.concatenate([line, piece[1:]]), True
-                elif np.hypot(*(piece[-1] - line[0])[:2]) < JOINT:
-                    line, grown = np.concatenate([piece, line[1:]]), True
-                if grown:
-                    waiting.pop(k)
-                    break
+        line, k = waiting.pop(0), 0
+        while k < len(waiting):
+            ahead, behind = (np.hypot(*(waiting[k][end] - line[-1 - end])[:2]) < JOINT for end in (0, -1))
+            if ahead or behind:
+                piece = waiting.pop(k)
+                line, k = np.concatenate([line, piece[1:]] if ahead else [piece, line[1:]]), 0
+            else:
+                k += 1
         yield line
 
 

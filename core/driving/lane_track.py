@@ -33,7 +33,7 @@ class LaneTrack:
     d: np.ndarray   # (N,) metres
     width: np.ndarray
     status: np.ndarray   # (N,) of MEASURED, INFERRED, BRIDGED
-    offset: np.ndarray   # (N,) True where the place comes from one line only
+    offset: np.ndarray   # (N,) True where the place comes from one line only, or from the drive
     left: np.ndarray   # (N,) rows of Boundaries that it lies between, -1 where nothing is painted
     right: np.ndarray
     left_use: np.ndarray   # (N,) what these separate, LANE_LINE ... OTHER_LINE, -1 where unknown

@@ -13,6 +13,7 @@ from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.sequence import beside_surface_end, lane_places
+from ..markings.cross_section.weights import UNPAINTED
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
 from .weights import TRACKS
 
@@ -76,7 +77,7 @@ def _without_steps(parts):
     """
     track = LaneTrack.joined(parts)
     seen, strip = track.status == MEASURED, ~track.offset & ((track.left < 0) | (track.right < 0))
-    sigma, reach = np.where(seen, *TRACKS.place_sigma), np.where(strip & ~seen, *TRACKS.place_reach)
+    sigma, reach = np.select([seen, track.offset], TRACKS.place_sigma[:2], TRACKS.place_sigma[2]), np.where(strip & ~seen, *TRACKS.place_reach)
     variance = (sigma * STATION_STEP / reach) ** 2   # of what two neighbours are moved by
     weight = 2 / (variance[1:] + variance[:-1])
     joints = np.cumsum([len(part) for part in parts[:-1]])
@@ -101,7 +102,30 @@ def _parts(boundaries, estimate, lane_width, line_distance):
     places = lane_places(np.concatenate(left), np.concatenate(right), *np.array(made_of).T[:, of], number[of], lane_width, beside[of])
     bounds = np.flatnonzero(np.diff(of)) + 1
     for span, of_span, drawn, begin, width in zip(spans, rows, made_of, *(np.split(values, bounds) for values in places)):
-        yield span.interval, _part(boundaries, span, of_span, drawn, begin, width, line_distance)
+        part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
+        if UNPAINTED[list(drawn)].all():
+            part = _where_driven(part, boundaries.s, estimate, span, lane_width)
+        yield span.interval, part
+
+
+def _where_driven(part, s, estimate, span, lane_width):
+    """The LaneTrack of a lane of a strip without any paint, moved from its even share of the strip to where it was driven, as far as that is surer.
+
+    Lanes of the usual width leave room in the strip and may lie anywhere in it, and vehicles keep to their middle with some scatter: both are errors
+    about the middle.
+    """
+    c, evidence = estimate.candidates, estimate.evidence
+    passes = np.flatnonzero((evidence.directions == span.direction) & np.isfinite(evidence.driven[:, span.interval]))
+    middle, places = (s[c.first] + s[c.last]) / 2, s[part.first:part.last + 1]
+    driven = np.array([np.interp(places, middle[there], evidence.driven[p, there]) for p in passes for there in [np.isfinite(evidence.driven[p])]])
+    beside = driven.reshape(-1, len(part)) - part.d
+    inside = np.abs(beside) < part.width / 2
+    count = inside.sum(axis=0)
+    room = np.where(count > 0, np.maximum(part.width - lane_width, 0.0), 0.0)
+    variance = (span.count * room) ** 2 / 12   # of an even distribution
+    share = variance / (variance + estimate.weights.track_sigma**2 / np.maximum(count, 1))
+    return replace(part, d=part.d + share * (inside * beside).sum(axis=0) / np.maximum(count, 1), width=part.width - share * room,
+                   offset=share > 0.5)
 
 
 def _with_borders(boundaries, candidates, span):

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass, field, replace
 from html import escape
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -44,7 +45,7 @@ class _LaneletDraft:
     ways: list[Way] = field(default_factory=list)
     lanelets: list[Lanelet] = field(default_factory=list)
     rules: list[Lanelet] = field(default_factory=list)   # what lanelets obey, numbered after them
-    skipped: dict[str, int] = field(default_factory=dict)   # type of lane -> pieces that are no lanelets
+    skipped: Counter[str] = field(default_factory=Counter)   # type of lane -> pieces that are no lanelets
     unmet: int = 0   # links of lanes whose ends lie too far apart to be one
     added: int = 0   # links of lanes that meet though the map does not say that they do
 
@@ -126,9 +127,7 @@ class _Drafting:
     def run(self) -> _LaneletDraft:
         lanes = self.lanes
         used = [k for k in range(len(lanes)) if lanes.type[k] in SUBTYPE_OF_LANE]
-        for k in range(len(lanes)):
-            if lanes.type[k] not in SUBTYPE_OF_LANE:
-                self.draft.skipped[lanes.type[k]] = self.draft.skipped.get(lanes.type[k], 0) + 1
+        self.draft.skipped = Counter(kind for kind in lanes.type if kind not in SUBTYPE_OF_LANE)
         among = np.repeat(np.isin(np.arange(len(lanes)), used), np.diff(lanes.start)) & ~self.was_end
         cuts = cuts_beside(lanes, self.left, self.right, among)
         for k in used:
@@ -274,8 +273,7 @@ NO_VERTICAL = "not stated by the survey; heights are written as they are"
 SQUARE = 100_000.0     # m: local coordinates of Autoware are those within a square of this size
 
 
-@dataclass(frozen=True)
-class Degrees:
+class Degrees(NamedTuple):
     """How the map's places became latitude and longitude."""
 
     lonlat: np.ndarray   # (N, 2) degrees of WGS 84

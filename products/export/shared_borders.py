@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -372,16 +371,11 @@ def _arm(lanes, row, end):
 
 def _is_led_to(lanes, starts, goals):
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
-    waiting, visited = deque(starts), set(starts)
-    while waiting:
-        row = waiting.popleft()
-        if row in goals:
-            return True
-        for name in lanes.successors[row]:
-            if row_of[name] not in visited:
-                visited.add(row_of[name])
-                waiting.append(row_of[name])
-    return False
+    reached, new = set(), set(starts)
+    while new:
+        reached |= new
+        new = {row_of[name] for row in new for name in lanes.successors[row]} - reached
+    return not reached.isdisjoint(goals)
 
 
 def _joined(first, last):

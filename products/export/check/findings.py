@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -15,8 +16,7 @@ from ....core.common.features import MAP_FINDINGS, Features
 FAULTS: dict[str, str] = dict(re.findall("(.+?): (.+)", Path(__file__).with_name("faults.txt").read_text(encoding="utf-8")))   # name: meaning
 
 
-@dataclass(frozen=True)
-class Finding:
+class Finding(NamedTuple):
     """fault : key of FAULTS; element : what it is about, such as "road 12, lane -1"; text : what was seen; place : (3,) map coordinates."""
 
     fault: str

@@ -41,7 +41,6 @@ class OpenDriveSettings(Limited):
     tolerance: float = setting(0.02, 0.002, 0.5, "Tolerance", "m")
     version: str = "1.7"
     traffic_side: str = "automatic"
-    dash: tuple[float, float] = USUAL_DASH
 
 
 class _OpenDriveDraft(NamedTuple):
@@ -106,28 +105,21 @@ class _Drafting:
     def strips(self) -> list[tuple[list[Slice], bool]]:
         """(slices of a road, whether it is a way through a junction), ordinary roads first."""
         mark_junctions(self.slices)
-        ordinary, inside, beside = self._parted()
-        inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if cell.is_connector}
-        ordinary, between = _between_junctions(ordinary, inside_ids)
-        return (_ordinary_roads(ordinary) + [(strip, False) for strip in strips_of(beside, set())]
-                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors, is_stated(self.lanes)))
-
-    def _parted(self) -> tuple[list[Slice], list[Slice], list[Slice]]:
-        """(slices of ordinary roads, slices within junctions, slices that nobody drives and that touch a junction).
-
-        Ways through a junction are cut off from the slices in which they begin or end.
-        """
+        # slices of ordinary roads, those within junctions, and those that nobody drives and that touch a junction
         ordinary, inside, beside = [], [], []
         for part in self.slices:
             if (part.at_start or part.at_end) and not part.driven:
                 beside.append(part)
             elif part.at_start and part.at_end and part.length < LONGEST_JUNCTION:
                 inside.append(part)
-            else:
+            else:   # ways through a junction are cut off from the slices in which they begin or end
                 ways, rest = _ways_cut_off(part)
                 inside += ways
                 ordinary += rest
-        return ordinary, inside, beside
+        inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if cell.is_connector}
+        ordinary, between = _between_junctions(ordinary, inside_ids)
+        return (_ordinary_roads(ordinary) + [(strip, False) for strip in strips_of(beside, set())]
+                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors, is_stated(self.lanes)))
 
     def shaped(self, strips: list[list[Slice]], progress: Progress) -> list[tuple[RoadShape, list[Slice], list[int]]]:
         """For each road its shape, its slices, and the number of the border in each at which lane 0 lies."""
@@ -192,7 +184,7 @@ class _Drafting:
         width = self.source.paint_width(line)
         mark = RoadMark(0.0, name, "white" if name not in ("none", "edge") else "standard", RoadMark.width if np.isnan(width) else round(width, 3))
         if "broken" in name:
-            mark.dash, mark.gap = self.settings.dash
+            mark.dash, mark.gap = USUAL_DASH
         return mark
 
     def _mark_between(self, one: Slice, number: int, lane: int) -> RoadMark:
@@ -313,8 +305,7 @@ def _cut_row(one: Slice, at_end: bool) -> int:
 
 # Links between the roads of an export: lanes of sections, ends of roads, junctions with their connections.
 
-@dataclass
-class _DraftRoad:
+class _DraftRoad(NamedTuple):
     """A road with the cells that its lanes come from."""
 
     road: MapRoad

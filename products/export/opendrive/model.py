@@ -6,7 +6,7 @@ import re
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -68,8 +68,7 @@ class LaneSection:
     order: list[int] = field(default_factory=list)   # of the numbers in the file
 
 
-@dataclass
-class RoadLink:
+class RoadLink(NamedTuple):
     """What a road's end touches: road or junction, its id, and which end of that road."""
 
     element: str
@@ -150,15 +149,14 @@ def _part(lane, first, last, length):
         links={"start": [lane.id] if first > 0 else lane.links["start"], "end": [lane.id] if last < length else lane.links["end"]})
 
 
-@dataclass
-class Connection:
+class Connection(NamedTuple):
     """A way through a junction. `lanes` : (from, to) numbers."""
 
     id: str
     incoming: str
     connecting: str
     contact: str
-    lanes: list[tuple[int, int]] = field(default_factory=list)
+    lanes: list[tuple[int, int]]
 
 
 @dataclass

@@ -49,12 +49,13 @@ def painted(street, *areas):
 
 
 def curbs(street, *offsets):
-    """The layer of road edges with curbs along the street."""
+    """The layer of road edges with curbs along the street, each at an offset or a function of station."""
     edges = Features("LineStringZ", list(ROAD_EDGES))
     along = np.arange(5.0, 115.0, 0.5)
-    for chain, offset in enumerate(offsets):
+    for chain, where in enumerate(offsets):
+        offset = where(along) if callable(where) else np.full(len(along), where)
         edges.add(LineString(np.c_[street.places(along, offset), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
-                  part="bottom", chain=chain, side="left" if offset > 0 else "right")
+                  part="bottom", chain=chain, side="left" if offset[0] > 0 else "right")
     return edges
 
 
@@ -222,6 +223,17 @@ def test_a_street_that_was_driven_between_two_curbs_has_lanes_without_any_paint(
     assert all(row["confidence"] <= 0.6 for row in rows) == (half > 2.2), "where two lanes have no room it is one for sure"
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_without_paint_lanes_lie_where_they_were_driven_and_not_where_a_street_that_widens_would_share_its_room_evenly(way):
+    street = Street(vehicle=-1.75, again=(1.75,))
+    edges = curbs(street, *(lambda s, side=side: side * (3.5 + (side == way) * 2.0 * np.clip((s - 40.0) / 30.0, 0.0, 1.0)) for side in (1, -1)))
+    lines = list(street.lanes(edges=edges)[0])
+    for side in (1, -1):
+        parts = [line for line, row in lines if row["direction"] == -side]
+        assert sum(line.length for line in parts) == pytest.approx(110.0, abs=2.0)
+        assert max(np.abs(street.offsets(line) - 1.75 * side).max() for line in parts) < 0.15
+
+
 def test_lanes_go_on_between_the_curbs_where_the_paint_stops():
     street = Street(vehicle=-1.75).paint(0.0, 5.0, 60.0, pattern="dashed")
     lines, _ = street.lanes(edges=curbs(street, 3.5, -3.5))
@@ -258,3 +270,16 @@ def test_two_double_lines_with_room_between_them_are_a_painted_median_and_no_lan
     for offset in (1.77, 1.53, -1.53, -1.77):
         street.paint(offset, kind="", pattern="double-solid")
     assert lanes_of(street) == {-3.46: 1, 3.46: -1}
+
+
+def test_between_dashes_and_a_curb_that_is_a_lane_away_there_may_be_one_though_nobody_drove_there():
+    street = Street(length=80.0, vehicle=0.0, again=(3.6,)).paint(1.85, kind="", pattern="dashed").paint(-1.9, kind="", pattern="dashed")
+    found = {round(float(np.median(street.offsets(line)))): row["confidence"] for line, row in street.lanes(edges=curbs(street, 5.6, -5.6))[0]}
+    assert sorted(found) == [-4, 0, 4] and found[-4] <= 0.6
+
+
+def test_two_arrows_show_a_turning_lane_beyond_a_solid_line_beside_the_curb():
+    street = Street(length=80.0, vehicle=0.0, again=(7.3,)).paint(5.3, kind="").paint(1.85, kind="").paint(-1.9, kind="")
+    arrows = [(straight_arrow(station, -3.75, 1), "arrow") for station in (20.0, 65.0)]
+    lines, _ = street.lanes(edges=curbs(street, 9.2, -5.6), markings=outlined(street, *arrows))
+    assert max(line.length for line, row in lines if row["direction"] == 1 and np.median(street.offsets(line)) < -3.0) > 50.0

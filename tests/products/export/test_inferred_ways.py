@@ -4,16 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from exported_maps import as_lanelets, as_roads
 from lanewright.products.export.check.lanelets import check_lanelets
 from lanewright.products.export.check.roads import check_opendrive
-from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-from lanewright.products.export.lanelet_map import node_places, read_lanelet2
-from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.xodr import opendrive_text, read_opendrive
+from lanewright.products.export.lanelet_map import node_places
 from lanewright.products.export.shared_borders import UNDRIVEN_CONFIDENCE, with_inferred_ways, with_shared_borders
 from lanewright.products.export.sources import RoadMapSource, checked
 from made_lanes import CRS, Axis, LaneScene, crossing, hermite, kinds
-from map_files import written
 
 
 def without(lanes, rows):
@@ -52,13 +49,10 @@ def test_every_arm_that_was_driven_in_leads_to_every_one_that_was_driven_out(tmp
     assert led_to(found.lanes, "1.1.1") == {3, 4} and led_to(found.lanes, "2.1.1") == {3, 4}
     new = slice(len(source.lanes), None)
     assert set(found.lanes.status[new]) == {"inferred"} and (found.lanes.confidence[new] <= UNDRIVEN_CONFIDENCE).all()
-    whole = read_opendrive(written(tmp_path, opendrive_text(draft_opendrive(with_shared_borders(found)).map)))
+    _, whole = as_roads(tmp_path, with_shared_borders(found))
     assert not check_opendrive(whole).found
     assert sum("lanewright:status" in lane.data for road in whole.roads for lane in road.sections[0].lanes.values() if road.junction != "-1") >= 2
-    lanelets = draft_lanelets(with_shared_borders(found))
-    path = tmp_path / "map.osm"
-    path.write_text(lanelet2_text(lanelets, to_degrees(lanelets.nodes, CRS)), encoding="utf-8")
-    read = read_lanelet2(str(path))
+    _, read = as_lanelets(tmp_path, with_shared_borders(found))
     assert not check_lanelets(read, *node_places(read, CRS)).found
 
 

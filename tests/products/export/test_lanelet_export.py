@@ -3,23 +3,21 @@
 import numpy as np
 import pytest
 import shapely
+from exported_maps import as_lanelets
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.products.export.check.lanelets import check_lanelets
-from lanewright.products.export.lanelet_export import LaneletSettings, draft_lanelets, lanelet2_text, to_degrees
-from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
+from lanewright.products.export.lanelet_export import LaneletSettings, to_degrees
+from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places
 from lanewright.products.export.sources import RoadMapSource, checked
 from made_lanes import CRS, ORIGIN, Axis, LaneScene, crossing, kinds, roundabout, s_curve, split, street, widening
-from map_files import written
 
 SCENES = {"street": lambda: street(cut=30.0), "left-hand street": lambda: street(side="left", cut=30.0),
           "curves": lambda: s_curve(slope=0.02, crown=0.025), "widening": widening, "split": split, "crossing": crossing, "roundabout": roundabout}
 
 
 def exported(folder, lanes, local=False, settings=LaneletSettings(), **layers):
-    draft = draft_lanelets(checked(RoadMapSource(lanes, **layers)), settings)
-    path = written(folder, lanelet2_text(draft, to_degrees(draft.nodes, lanes.crs), local), "map.osm")
-    return draft, read_lanelet2(path)
+    return as_lanelets(folder, checked(RoadMapSource(lanes, **layers)), settings, local)
 
 
 @pytest.mark.parametrize("scene", SCENES)

@@ -3,10 +3,9 @@
 import made_lanes
 import numpy as np
 import pytest
-from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+from exported_maps import as_lanelets, as_roads
 from lanewright.products.export.lanelet_map import layers_of_lanelets, read_lanelet2
-from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
 from lanewright.products.export.shared_borders import with_shared_borders
 from lanewright.products.export.sources import RoadMapSource, border_misses, checked
 from map_files import geometry, lane, lanelet_street, opendrive, road, written
@@ -21,15 +20,14 @@ def section(right, left=""):
 
 def lanelets_of(folder, lanes, strip=""):
     """(draft, layers that are read of its file without the tag `strip`)."""
-    draft = draft_lanelets(with_shared_borders(checked(RoadMapSource(lanes))))
-    text = lanelet2_text(draft, to_degrees(draft.nodes, CRS))
-    return draft, layers_of_lanelets(read_lanelet2(written(folder, text.replace(strip, "note") if strip else text, "map.osm")), CRS)
+    source = with_shared_borders(checked(RoadMapSource(lanes)))
+    draft, whole = as_lanelets(folder, source, changed=lambda text: text.replace(strip, "note") if strip else text)
+    return draft, layers_of_lanelets(whole, CRS)
 
 
 def roads_of(folder, layers):
     """(map that is written, its lanes)."""
-    draft = draft_opendrive(with_shared_borders(checked(layers)))
-    whole = read_opendrive(written(folder, opendrive_text(draft.map), "out.xodr"))
+    _, whole = as_roads(folder, with_shared_borders(checked(layers)))
     return whole, layers_of_opendrive(whole, CRS).lanes
 
 

@@ -5,17 +5,17 @@ import time
 import numpy as np
 import pytest
 import shapely
+from exported_maps import as_lanelets, as_roads
 from lanewright.core.common.progress import Progress
 from lanewright.core.driving.layers import Lanes
 from lanewright.products.export.check.lanelets import check_lanelets
-from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
+from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places
 from lanewright.products.export.opendrive import geometry as fits
 from lanewright.products.export.opendrive.exporter import draft_opendrive
 from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
 from lanewright.products.export.opendrive.model import shape_height
 from lanewright.products.export.opendrive.reference_line import fit_reference
-from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
 from lanewright.products.export.shared_borders import with_inferred_ways, with_shared_borders
 from lanewright.products.export.sources import RoadMapSource, border_misses, checked
 from map_files import geometry, lane, opendrive, road, street_section, written
@@ -86,10 +86,7 @@ def taken_in(folder, text):
 def given_out(folder, lanes):
     """Lanes of the maps that are written of others: OpenDRIVE, Lanelet2."""
     source = with_shared_borders(with_inferred_ways(checked(RoadMapSource(lanes))))
-    roads = layers_of_opendrive(read_opendrive(written(folder, opendrive_text(draft_opendrive(source).map), "out.xodr"))).lanes
-    draft = draft_lanelets(source)
-    text = lanelet2_text(draft, to_degrees(draft.nodes, source.lanes.crs))
-    return roads, layers_of_lanelets(read_lanelet2(written(folder, text, "out.osm")), source.lanes.crs).lanes
+    return layers_of_opendrive(as_roads(folder, source)[1]).lanes, layers_of_lanelets(as_lanelets(folder, source)[1], source.lanes.crs).lanes
 
 
 def apart(lanes, others):
@@ -233,8 +230,7 @@ def test_a_curb_between_lanelets_is_no_border_twice(tmp_path):
 
 def _checked_lanelets(folder, lanes):
     """What the check counts in the Lanelet2 map of two lanes."""
-    draft = draft_lanelets(with_shared_borders(checked(RoadMapSource(lanes))))
-    whole = read_lanelet2(written(folder, lanelet2_text(draft, to_degrees(draft.nodes, lanes.crs)), "out.osm"))
+    _, whole = as_lanelets(folder, with_shared_borders(checked(RoadMapSource(lanes))))
     assert len(whole.lanelets) == 2
     return check_lanelets(whole, *node_places(whole, lanes.crs)).counts()
 

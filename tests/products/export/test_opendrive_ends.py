@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
+from exported_maps import as_roads
 from lanewright.products.export.check.roads import check_opendrive
-from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive
 from lanewright.products.export.sources import RoadMapSource, border_misses, checked
 from made_lanes import CRS, Axis, LaneScene, kinds, parting
-from map_files import written
 
 TOLERANCE = 0.02   # m
 
@@ -19,7 +18,7 @@ def oblique(scene, line, left, right, first, last, shift, step=1.0, **values):
 
 
 def missed(folder, lanes):
-    whole = read_opendrive(written(folder, opendrive_text(draft_opendrive(checked(RoadMapSource(lanes))).map)))
+    _, whole = as_roads(folder, checked(RoadMapSource(lanes)))
     across, rise = border_misses(lanes, layers_of_opendrive(whole, CRS).lanes)
     assert across.places > 2 * len(lanes.left)   # and those that were read back
     return whole, across.largest, rise.largest

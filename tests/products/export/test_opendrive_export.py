@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+from exported_maps import as_roads
 from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.products.export.check.roads import check_opendrive
-from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
+from lanewright.products.export.opendrive.exporter import OpenDriveSettings
 from lanewright.products.export.opendrive.geometry import LineBundle, fit_cubics
 from lanewright.products.export.opendrive.reference_line import fit_reference, polynomial_reference
-from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive
 from lanewright.products.export.sources import RoadMapSource, border_misses, checked, crs_of_reference, driving_line_misses, reference_of_crs
 from made_lanes import CRS, Axis, LaneScene, crossing, kinds, roundabout, s_curve, split, street, widening
-from map_files import written
 
 SCENES = {"street": lambda: street(cut=30.0), "left-hand street": lambda: street(side="left", cut=30.0),
           "crowned curves": lambda: s_curve(slope=0.02, crown=0.025), "tilted curves": lambda: s_curve(slope=0.02, crossfall=0.02),
@@ -21,8 +21,7 @@ SCENES = {"street": lambda: street(cut=30.0), "left-hand street": lambda: street
 
 
 def exported(folder, lanes, settings=OpenDriveSettings(), **layers):
-    draft = draft_opendrive(checked(RoadMapSource(lanes, **layers)), settings)
-    return draft, read_opendrive(written(folder, opendrive_text(draft.map)))
+    return as_roads(folder, checked(RoadMapSource(lanes, **layers)), settings)
 
 
 def lane_names(draft):

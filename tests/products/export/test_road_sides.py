@@ -3,16 +3,15 @@
 import numpy as np
 import pytest
 import shapely
+from exported_maps import as_lanelets, as_roads
 from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.products.cad import dxf_lines
-from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-from lanewright.products.export.lanelet_map import layers_of_lanelets, read_lanelet2
-from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.lanelet_export import draft_lanelets
+from lanewright.products.export.lanelet_map import layers_of_lanelets
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive
 from lanewright.products.export.shared_borders import with_shared_borders
 from lanewright.products.export.sources import RoadMapSource, checked
 from made_lanes import CRS, Axis, LaneScene, double_line, kinds
-from map_files import written
 
 
 def one_side_of_each():
@@ -29,16 +28,16 @@ def one_side_of_each():
 def test_an_edge_of_the_pavement_is_no_curb_in_the_file_and_when_it_is_read_again(tmp_path, form):
     source = checked(RoadMapSource(one_side_of_each()))
     if form == "OpenDRIVE":
-        draft = draft_opendrive(source)
+        draft, whole = as_roads(tmp_path, source)
         lanes = draft.map.roads[0].sections[0].lanes
         assert {id: lane.type for id, lane in lanes.items() if id} == {1: "driving", 2: "shoulder", -1: "driving", -2: "curb"}
         assert (lanes[2].marks[0].type, lanes[1].marks[0].type) == ("edge", "solid")
-        found = layers_of_opendrive(read_opendrive(written(tmp_path, opendrive_text(draft.map))), CRS)
+        found = layers_of_opendrive(whole, CRS)
     else:
-        draft = draft_lanelets(source)
+        draft, whole = as_lanelets(tmp_path, source)
         types = [way.tags["type"] for way in draft.ways]
         assert types.count("curbstone") == types.count("road_border") == 1
-        found = layers_of_lanelets(read_lanelet2(written(tmp_path, lanelet2_text(draft, to_degrees(draft.nodes, CRS)))), CRS)
+        found = layers_of_lanelets(whole, CRS)
     offsets = {row["edge"]: np.array(geometry.coords)[:, 1].mean() - 5792000.0 for geometry, row in found.road_edges}
     assert offsets == {"curb": pytest.approx(-3.5, abs=0.02), "pavement": pytest.approx(5.0, abs=0.02)}
 

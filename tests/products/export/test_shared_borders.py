@@ -5,20 +5,18 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from exported_maps import as_roads
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.products.export.check.roads import check_opendrive
-from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text
 from lanewright.products.export.shared_borders import SHARED_FADE, meet_lanes, share_borders, with_shared_borders
 from lanewright.products.export.sources import RoadMapSource, border_misses, checked, with_surface_heights
 from made_lanes import CRS, Axis, LaneScene, crossing, double_line, kinds, parting, street
-from map_files import written
 
 
 def exported(folder, lanes):
     source = with_shared_borders(checked(RoadMapSource(lanes)))
-    draft = draft_opendrive(source)
-    return source, draft, read_opendrive(written(folder, opendrive_text(draft.map)))
+    return source, *as_roads(folder, source)
 
 
 def test_facing_borders_of_a_double_line_meet_in_its_middle():
@@ -112,7 +110,7 @@ def test_a_connector_begins_and_ends_where_its_lanes_do(tmp_path, off):
     np.testing.assert_allclose(met.left[lanes.start[:-1]], lanes.left[lanes.start[:-1]], atol=1e-9)
     np.testing.assert_allclose(met.right[lanes.start[1:] - 1], lanes.right[lanes.start[1:] - 1], atol=1e-9)
     _, _, whole = exported(tmp_path, missed)
-    assert "gap at a link" in check_opendrive(read_opendrive(written(tmp_path, opendrive_text(draft_opendrive(RoadMapSource(missed)).map)))).counts()
+    assert "gap at a link" in check_opendrive(as_roads(tmp_path, RoadMapSource(missed))[1]).counts()
     assert "gap at a link" not in check_opendrive(whole).counts()
 
 

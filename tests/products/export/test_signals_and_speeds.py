@@ -5,12 +5,11 @@ from collections import defaultdict
 import numpy as np
 import pytest
 import shapely
+from exported_maps import as_lanelets, as_roads
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.products.export.check.lanelets import check_lanelets
-from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
-from lanewright.products.export.opendrive.exporter import draft_opendrive
-from lanewright.products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
+from lanewright.products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
 from lanewright.products.export.shared_borders import with_shared_borders
 from lanewright.products.export.sources import checked
 from map_files import geometry, lane, lanelet_street, opendrive, road, written
@@ -43,25 +42,23 @@ def read_in(folder, text):
     return layers_of_opendrive(read_opendrive(written(folder, text)), CRS)
 
 
-def as_lanelets(folder, layers):
-    source = with_shared_borders(checked(layers))
-    draft = draft_lanelets(source)
-    return read_lanelet2(written(folder, lanelet2_text(draft, to_degrees(draft.nodes, CRS)), "out.osm"))
+def lanelets_of(folder, layers):
+    return as_lanelets(folder, with_shared_borders(checked(layers)))[1]
 
 
-def as_roads(folder, layers):
-    return read_opendrive(written(folder, opendrive_text(draft_opendrive(with_shared_borders(checked(layers))).map), "out.xodr"))
+def roads_of(folder, layers):
+    return as_roads(folder, with_shared_borders(checked(layers)))[1]
 
 
 def there_and_back(folder, layers):
     """Layers of the map as lanelets, and of these as roads."""
-    lanelets = layers_of_lanelets(as_lanelets(folder, layers), CRS)
-    return lanelets, layers_of_opendrive(as_roads(folder, lanelets), CRS)
+    lanelets = layers_of_lanelets(lanelets_of(folder, layers), CRS)
+    return lanelets, layers_of_opendrive(roads_of(folder, lanelets), CRS)
 
 
 def test_a_sign_that_holds_for_no_lane_is_no_rule_of_the_crossings(tmp_path):
     sign = '<signal id="1" s="30" t="5" zOffset="2" orientation="+" dynamic="no" type="274" height="1" width="1"><validity fromLane="5" toLane="6"/>'
-    whole = as_lanelets(tmp_path, read_in(tmp_path, street(f"{sign}</signal>")))
+    whole = lanelets_of(tmp_path, read_in(tmp_path, street(f"{sign}</signal>")))
     assert any(one.tags.get("subtype") == "crosswalk" for one in whole.lanelets.values()) and not whole.others
 
 
@@ -87,7 +84,7 @@ def test_lights_signs_and_poles_stand_where_they_stood_and_say_what_they_said(tm
 def test_a_trunk_among_the_poles_of_the_roadside_is_no_sign_of_the_map(tmp_path):
     layers = read_in(tmp_path, street())
     layers.signals.add(shapely.Point(600030, 5799995, 60.6), kind="trunk", height_m=3.0)
-    written_out = layers_of_opendrive(as_roads(tmp_path, layers), CRS).signals
+    written_out = layers_of_opendrive(roads_of(tmp_path, layers), CRS).signals
     assert sorted(row["kind"] for _, row in written_out) == ["pole", "sign", "traffic_light"]
 
 
@@ -102,7 +99,7 @@ def test_lights_and_signs_hold_for_the_lanes_that_see_them(tmp_path):
 
 
 def test_lanelets_obey_rules_that_are_whole(tmp_path):
-    whole = as_lanelets(tmp_path, read_in(tmp_path, street()))
+    whole = lanelets_of(tmp_path, read_in(tmp_path, street()))
     assert sorted(rule.tags["subtype"] for rule in whole.others.values()) == ["traffic_light", "traffic_sign"]
     assert not check_lanelets(whole, *node_places(whole, CRS)).found
     signs = [way.tags for way in whole.ways.values() if way.tags.get("type") == "traffic_sign"]
@@ -118,7 +115,7 @@ def test_a_reference_names_lanes_of_another_road_and_a_validity_some_of_a_road(t
              for id, x, length, more in (("1", 0, 40, signal), ("2", 50, 20, reference))]
     layers = read_in(tmp_path, opendrive(roads))
     assert by_kind(layers)["traffic_light"][1]["lanes"] == "2.-1.0"
-    assert by_kind(layers_of_opendrive(as_roads(tmp_path, layers), CRS))["traffic_light"][1]["lanes"] == "2.-1.0"
+    assert by_kind(layers_of_opendrive(roads_of(tmp_path, layers), CRS))["traffic_light"][1]["lanes"] == "2.-1.0"
 
 
 def test_roads_state_signals_before_references_and_countries_in_capitals(tmp_path):
@@ -126,7 +123,7 @@ def test_roads_state_signals_before_references_and_countries_in_capitals(tmp_pat
     reference = '<signals><signalReference id="2" s="1" t="-4" orientation="+"/>'
     roads = [road(geometry(0, x, 0, 0, 40), 40, str(id)).replace("</road>", before + sign.format(id, country))
              for id, x, before, country in ((1, 0, reference, "se"), (2, 50, "<signals>", "GERMANY"))]
-    whole = as_roads(tmp_path, read_in(tmp_path, opendrive(roads)))
+    whole = roads_of(tmp_path, read_in(tmp_path, opendrive(roads)))
     order = [[one.tag for one in element.find("signals").children] for element in whole.tree.all("road")]
     assert order == [["signal", "signalReference"], ["signal"]]
     assert [item["country"] for item in whole.roads[0].signals + whole.roads[1].signals if item["own"]] == ["SE", "Germany"]
