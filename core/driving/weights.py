@@ -104,7 +104,7 @@ class _TrackWeights:
     # Lanes followed from interval to interval.
     # m, one sigma of the place of a lane between lines that are seen, beside one border, and of others; and m along the lane over which it is off by
     # as much, where nothing is painted between two lanes, and of others: fitted on four simulated streets, checked on others; the one of lanes beside
-    # one border on two roundabouts, checked on 21 other streets
+    # one border chosen of three on two surveys of a roundabout, on 22 other streets it changes at most 0.3 % of the lanes
     place_sigma: tuple[float, float, float] = 0.002, 0.05, 0.2
     place_reach: tuple[float, float] = 100.0, 2.0
     # Lanes that open or close beside another one.
