@@ -24,7 +24,16 @@ from ..weights import ROADS
 from .beside import lanes_beside
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimates_of_roads
-from .evidence import between_ends, borders_of_hatching, driven_offsets, evidence_of, hatched_places, offsets_of_others, other_carriageway, surface_coverage
+from .evidence import (
+    between_ends,
+    borders_of_hatching,
+    driven_offsets,
+    evidence_of,
+    hatched_places,
+    offsets_of_others,
+    other_carriageway,
+    surface_coverage,
+)
 from .sections import STATION_STEP, CrossSections, no_lines
 from .sequence import lane_strips
 from .weights import PAVEMENT, EstimateWeights, TakenReading
