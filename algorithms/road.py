@@ -18,12 +18,11 @@ SCANLINE_SETTINGS = (
                 tr("The data know it well. Give it where they are said to show no regular scan lines although the scanner has a rotating mirror; the "
                    "direction of rotation is found anyway."), advanced=True),
 )
+LAYER = "products.scanline_layer:ScanlineLayerSettings"
 LAYER_SETTINGS = (
-    SettingSpec("SIMPLIFY", "products.scanline_layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
+    SettingSpec("SIMPLIFY", LAYER, "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
                 tr("Larger draws and writes faster and shows less of the surface; 0 keeps every vertex.")),
-)
-POINT_SETTINGS = (
-    SettingSpec("RESAMPLED_SPACING", "products.scanline_layer:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
+    SettingSpec("RESAMPLED_SPACING", LAYER, "spacing", tr("Spacing of resampled points along a scanline (m)"),
                 tr("Smaller gives more points, without more being known of the surface."), advanced=True),
 )
 
@@ -40,7 +39,6 @@ class NormalizedScanlines(Algorithm):
         self.add_survey()
         self.add_settings(SCANLINE_SETTINGS)
         self.add_settings(LAYER_SETTINGS)
-        self.add_settings(POINT_SETTINGS)
         self.add_settings(SURVEY_SETTINGS, only=("SCANNER_FIELD", "TIME", "INTENSITY_FROM", "FIT_PASSES", "TRAJECTORY_SIGMA"))
         add_execution(self)
         self.add_map_sink("SCANLINES", tr("Lines with height (Z) and intensity (M)."), optional=True)
@@ -54,7 +52,7 @@ class NormalizedScanlines(Algorithm):
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         points = nullcontext()
         if call.wants("RESAMPLED_POINTS"):
-            points = ResampledPoints(call.new_file("RESAMPLED_POINTS"), survey.frame.origin, survey.crs, call.settings(POINT_SETTINGS),
+            points = ResampledPoints(call.new_file("RESAMPLED_POINTS"), survey.frame.origin, survey.crs, call.settings(LAYER_SETTINGS),
                                      survey.frame.farthest)
         layer = call.settings(LAYER_SETTINGS) if call.wants("SCANLINES") else None
         with points as opened:
@@ -186,7 +184,7 @@ EDGES = "core.road.edges.fit:EdgeSettings"
 EDGE_SETTINGS = (
     SettingSpec("MAX_GAP", EDGES, "max_gap", tr("Longest gap bridged (m)"),
                 tr("Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there. Where both parts of the curb lie "
-                   "in one line, gaps up to twice as long are bridged.")),
+                   "in one line, gaps up to twice as long are bridged. A curb that is lowered in sight is drawn as dropped across up to 12 m.")),
     SettingSpec("FALLBACK_WIDTH", EDGES, "fallback_width", tr("Assumed road width where no curb is seen, 0 = none (m)"),
                 tr("0 draws no edge where none was found. A width draws one at half of it either side of the road's reference line, flagged as "
                    "inferred."), advanced=True),

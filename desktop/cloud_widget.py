@@ -9,14 +9,14 @@ from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsMimeDataUtils, QgsP
 from qgis.gui import QgsProcessingGui
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QDragEnterEvent, QDropEvent
-from qgis.PyQt.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QMenu, QToolButton, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QMenu, QToolButton, QWidget
 
 from ..algorithms.survey_files import SUFFIXES, VIRTUAL, cloud_files
 from ..core.common.errors import RoadExtractionError
 from ..processing_provider.parameters import CLOUD_FILTER
 from ..processing_provider.texts import tr
 from .dialog_wrapper import DialogWrapper
-from .widgets import LAST_INPUT, wrapped
+from .widgets import LAST_INPUT, column, wrapped
 
 SEPARATOR = ";"
 MEGABYTE = 1e6
@@ -50,16 +50,11 @@ class PointCloudsWidget(QWidget):
             policy = self.told.sizePolicy()
             policy.setRetainSizeWhenHidden(True)
             self.told.setSizePolicy(policy)
-        row = QHBoxLayout()
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(self.names, 1)
-        row.addWidget(self.button)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(2)
-        column.addLayout(row)
-        if self.told is not None:
-            column.addWidget(self.told)
+        names = QHBoxLayout()
+        names.setContentsMargins(0, 0, 0, 0)
+        names.addWidget(self.names, 1)
+        names.addWidget(self.button)
+        column(self, names, *([self.told] if told else []), rim=0).layout().setSpacing(2)
         self._tell()
 
     # -- the value ------------------------------------------------------------------------------

@@ -6,13 +6,13 @@ import math
 
 from qgis.gui import QgsProcessingGui
 from qgis.PyQt.QtCore import QSignalBlocker, pyqtSignal
-from qgis.PyQt.QtWidgets import QComboBox, QHeaderView, QLineEdit, QTableWidget, QTableWidgetItem, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QComboBox, QHeaderView, QLineEdit, QTableWidget, QTableWidgetItem, QWidget
 
 from ..algorithms.survey_files import trajectory_path
 from ..core.common.errors import RoadExtractionError
 from ..processing_provider.texts import told, tr
 from .dialog_wrapper import DialogWrapper
-from .widgets import choices, wrapped
+from .widgets import choices, column, wrapped
 
 ROWS = 4            # of the file that are shown
 SKIPPED = "-"
@@ -41,10 +41,7 @@ class ColumnsWidget(QWidget):
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         self.told = wrapped()
         self.boxes: list[QComboBox] = []
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.line, self.table, self.told):
-            column.addWidget(widget)
+        column(self, self.line, self.table, self.told, rim=0)
         self._show_nothing()
 
     def value(self) -> str:

@@ -7,10 +7,11 @@ from pathlib import Path
 from qgis.core import QgsProcessingUtils
 from qgis.PyQt.QtCore import Qt, QUrl
 from qgis.PyQt.QtGui import QDesktopServices
-from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QTableWidget, QTableWidgetItem, QTabWidget, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QTableWidget, QTableWidgetItem, QTabWidget, QWidget
 
 from ..processing_provider.results.runs import run_table, run_tables
 from ..processing_provider.texts import tr
+from .widgets import column
 
 SIZE = (1000, 420)  # px
 
@@ -27,9 +28,7 @@ class RunsWindow(QDialog):
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         buttons.addButton(tr("Open in the browser"), QDialogButtonBox.ButtonRole.ActionRole).clicked.connect(lambda checked=False: _in_browser())
         buttons.rejected.connect(self.reject)
-        column = QVBoxLayout(self)
-        column.addWidget(self.tabs)
-        column.addWidget(buttons)
+        column(self, self.tabs, buttons)
         self.resize(*SIZE)
 
 
@@ -38,10 +37,10 @@ def _table(head, rows):
     table.setHorizontalHeaderLabels(head)
     table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
     for row, values in enumerate(rows):
-        for column, value in enumerate(values):
+        for number, value in enumerate(values):
             item = QTableWidgetItem()
             item.setData(Qt.ItemDataRole.DisplayRole, value)  # numbers stay numbers, by which they are sorted
-            table.setItem(row, column, item)
+            table.setItem(row, number, item)
     table.setSortingEnabled(True)
     table.resizeColumnsToContents()
     return table

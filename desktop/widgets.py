@@ -18,7 +18,18 @@ from qgis.core import (
 )
 from qgis.gui import QgsMapCanvas, QgsMapTool, QgsMessageViewer
 from qgis.PyQt import sip
-from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFileDialog, QHBoxLayout, QLabel, QPushButton, QWidget
+from qgis.PyQt.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QHBoxLayout,
+    QLabel,
+    QLayout,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from ..processing_provider.dependencies import how_to_install, install_command, missing_in_short
 from ..processing_provider.texts import tr
@@ -61,6 +72,17 @@ def row(*widgets: QWidget | None) -> QHBoxLayout:
         else:
             layout.addWidget(widget, 0 if None in widgets or isinstance(widget, QPushButton) else 1)
     return layout
+
+
+def column(whole: QWidget, *things: QWidget | QLayout | tuple[QWidget, int], rim: int | None = None) -> QWidget:
+    """A widget filled with things one below the other; one that is given as (thing, 1) takes the height that is left. rim : px about them"""
+    layout = QVBoxLayout(whole)
+    if rim is not None:
+        layout.setContentsMargins(rim, rim, rim, rim)
+    for thing in things:
+        part, share = thing if isinstance(thing, tuple) else (thing, 0)
+        layout.addWidget(part, share) if isinstance(part, QWidget) else layout.addLayout(part, share)
+    return whole
 
 
 def answers(dialog: QDialog, *others: QPushButton) -> QDialogButtonBox:

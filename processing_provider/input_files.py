@@ -38,30 +38,22 @@ def written_over(destination, path, inputs):
 
 def layer_file(value, context):
     """The file of a point cloud that a value names: a path, or a layer, its name or its id in the project; else the value as text."""
-    if isinstance(value, QgsMapLayer):
-        return value.source()
-    text = str(value)
-    if os.path.exists(text):
-        return text
-    layer = QgsProcessingUtils.mapLayerFromString(text, context, False)
-    return text if layer is None else layer.source()
+    return next(iter(_sources(value, context)), str(value))
 
 
 def check_files(algorithm, parameters, context):
     """Raise RoadExtractionError where an input names a file that describes data elsewhere, which QGIS would fetch."""
     for definition in algorithm.parameterDefinitions():
         if definition.type() in OPENED_BY_QGIS and not definition.isDestination():
-            path = _named_file(parameters.get(definition.name()), context)
-            if path:
-                check_local(path)
+            value = _static(parameters.get(definition.name()), context)
+            file = value.partition("|")[0] if isinstance(value, str) else ""
+            if file and os.path.isfile(file):
+                check_local(file)
 
 
-def _named_file(value, context):
-    """The file that a value names as text; "" where it names a layer, or nothing that is there."""
-    if isinstance(value, QgsProcessingFeatureSourceDefinition):
-        value = value.source.valueAsString(context.expressionContext())[0]
-    file = value.partition("|")[0] if isinstance(value, str) else ""
-    return file if file and os.path.isfile(file) else ""
+def _static(value, context):
+    """A value without what QGIS may put about it: whether the selected features alone are meant, for example."""
+    return value.source.valueAsString(context.expressionContext())[0] if isinstance(value, QgsProcessingFeatureSourceDefinition) else value
 
 
 def asks_servers(algorithm, parameters, context):
@@ -90,8 +82,7 @@ def _sources(value, context):
     """The sources of the layers and files that a parameter's value names."""
     if isinstance(value, (list, tuple)):
         return [source for item in value for source in _sources(item, context)]
-    if isinstance(value, QgsProcessingFeatureSourceDefinition):
-        value = value.source.valueAsString(context.expressionContext())[0]
+    value = _static(value, context)
     if isinstance(value, QgsMapLayer):
         return [value.source()]
     if not isinstance(value, str) or not value:

@@ -34,9 +34,10 @@ WKB_HEADER = np.dtype([("order", "u1"), ("type", "<u4"), ("count", "<u4")])
 
 @dataclass(frozen=True)
 class ScanlineLayerSettings(Limited):
-    """How scanlines are written."""
+    """How scanlines, and points along them, are written."""
 
     simplify: float = setting(0.002, 0.0, 1.0, "The simplification", "m")   # from the measured line; 0 = none
+    spacing: float = setting(0.05, 0.005, 5.0, "The point spacing", "m")   # between points along a scanline
 
 
 def write_scanlines(survey: Survey, settings: ScanlineSettings = ScanlineSettings(), layer: ScanlineLayerSettings | None = None,
@@ -201,13 +202,6 @@ SCANLINE_DIMENSIONS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pas
          ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE)]
 
 
-@dataclass(frozen=True)
-class ResamplingSettings(Limited):
-    """Points along scanlines."""
-
-    spacing: float = setting(0.05, 0.005, 5.0, "The point spacing", "m")   # m between points along a scanline
-
-
 def resample_scanlines(lines: Scanlines, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Points at equal steps of `spacing` m along every scanline, from its first vertex: (N,) number of the line, offset and local height, m,
     and raw intensity.
@@ -235,7 +229,7 @@ class ResampledPoints:
     farthest : m in x or y from the origin, of the farthest point; beyond 214 km coordinates are rounded to 1 mm
     """
 
-    def __init__(self, path: str, origin: np.ndarray, crs: str, settings: ResamplingSettings = ResamplingSettings(), farthest: float = 0.0):
+    def __init__(self, path: str, origin: np.ndarray, crs: str, settings: ScanlineLayerSettings = ScanlineLayerSettings(), farthest: float = 0.0):
         self.path, self.settings = str(path), settings
         self._header = laspy.LasHeader(point_format=6, version="1.4")
         self._header.generating_software = "Lanewright"

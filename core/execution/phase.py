@@ -87,15 +87,15 @@ class Items(Sequence[Any]):
     """The `count` items of a phase, each of which is made by its number when it is given to a worker: together they would take much memory."""
 
     def __init__(self, count: int, make: Callable[[int], Any]):
-        self.count, self.make = count, make
+        self._count, self._make = count, make
 
     def __len__(self) -> int:
-        return self.count
+        return self._count
 
     def __getitem__(self, number: Any) -> Any:
-        if number >= self.count:
+        if number >= self._count:
             raise IndexError
-        return self.make(number)
+        return self._make(number)
 
 
 class Executor:

@@ -206,6 +206,7 @@ MAX_TILES = 2**24       # source: of an image, most of them empty: GDAL keeps 16
 PIECE_LENGTH = IMAGE.ranking_window / IMAGE.pieces_per_window
 Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice
 Tile = tuple[int, int]   # column and row of tiles
+FilledTile = tuple[int, int, np.ndarray]   # column and row of the first of the (H, W) float32 pixels of a tile about those with data, and these
 
 
 @dataclass(frozen=True)
@@ -228,7 +229,7 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     """
     grid, work = _looked(road_points, settings, progress)
     image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, road_points.executor.folder)
-    image.pieces = {piece: digest((settings, piece, road_points.state(*_span(piece.road, piece.number, PIECE_LENGTH))))
+    image.pieces = {piece: digest((settings, piece, road_points.state(*_span(PIECE_LENGTH, piece.road, piece.number))))
                     for _, pieces in work for piece in pieces}
     image.states = {tile: digest((grid.shape_of(*tile), [image.pieces[piece] for piece in pieces])) for tile, pieces in work}
     if before is not None:
@@ -291,8 +292,8 @@ def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress
     if not len(road_points):
         raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
-    phase = Phase(windows_of_image, road_points, (settings,), lambda task: road_points.survey.stretch(*_span(*task[0], IMAGE.ranking_window)),
-                  state=lambda task: [road_points.state(*_span(*window, IMAGE.ranking_window)) for window in task])
+    phase = Phase(windows_of_image, road_points, (settings,), lambda task: road_points.survey.stretch(*_span(IMAGE.ranking_window, *task[0])),
+                  state=lambda task: [road_points.state(*_span(IMAGE.ranking_window, *window)) for window in task])
     looked = road_points.executor.run_together(phase, windows, IMAGE.looked_windows, progress.part(0.0, 0.3))
     pieces = [piece for window in looked for piece in window]
     # the grid is fixed in the map: pixel column = column of the map's lattice minus the first one
@@ -304,18 +305,16 @@ def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress
 
 
 def _tiles(grid: _Grid, work: list[tuple[Tile, list[_Piece]]], road_points: RoadPoints, settings: ImageSettings,
-           progress: Progress, executor: Executor) -> Iterator[tuple[int, int, np.ndarray]]:
-    """Yield (column, row, (H, W) float32) of every tile with data, in the order of the road."""
+           progress: Progress, executor: Executor) -> Iterator[FilledTile]:
+    """Yield every tile with data, in the order of the road."""
     tasks = [work[k:k + IMAGE.tiles_per_task] for k in range(0, len(work), IMAGE.tiles_per_task)]
     phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
-        *_span(task[0][1][0].road, task[0][1][0].number, PIECE_LENGTH)))
-    for tiles, task in zip(executor.run(phase, tasks, progress), tasks):
-        for ((column, row), _), values in zip(task, tiles):
-            if values is not None:
-                yield column * GEOTIFF_TILE, row * GEOTIFF_TILE, values
+        *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)))
+    for tiles in executor.run(phase, tasks, progress):
+        yield from (tile for tile in tiles if tile is not None)
 
 
-def _span(road, number, length):
+def _span(length, road, number):
     """A road, and the stations between which a window or a piece lies by its number."""
     return road, number * length, (number + 1) * length
 
@@ -370,8 +369,8 @@ def _sampling_step(points: Points, settings: ImageSettings) -> int:
     return max(int(len(points) * settings.cell_size**2 / (PIECE_LENGTH * width) / IMAGE.far_points_per_cell), 1)
 
 
-def tiles_of_image(road_points: RoadPoints, tiles: list[tuple[Tile, list[_Piece]]], settings: ImageSettings, grid: _Grid) -> list[np.ndarray | None]:
-    """The phase that makes tiles, (height, width) float32 each or None where it has no data; a piece that some of them share is interpolated once."""
+def tiles_of_image(road_points: RoadPoints, tiles: list[tuple[Tile, list[_Piece]]], settings: ImageSettings, grid: _Grid) -> list[FilledTile | None]:
+    """The phase that makes tiles, None where one has no data; a piece that some of them share is interpolated once."""
     sums: dict[_Piece, _WeightedSums] = {}
     result = []
     for tile, pieces in tiles:
@@ -421,14 +420,19 @@ class _Grid:
         """Height and width of one tile."""
         return min(GEOTIFF_TILE, self.height - row * GEOTIFF_TILE), min(GEOTIFF_TILE, self.width - column * GEOTIFF_TILE)
 
-    def tile(self, column: int, row: int, parts: Iterable[_WeightedSums]) -> np.ndarray | None:
-        """(height, width) float32 of one tile, from the sums that touch it; None where it has no data."""
+    def tile(self, column: int, row: int, parts: Iterable[_WeightedSums]) -> FilledTile | None:
+        """What is filled of one tile, from the sums that touch it; None where it has no data."""
         shape = self.shape_of(column, row)
         whole = _WeightedSums(self.column + column * GEOTIFF_TILE, self.row - row * GEOTIFF_TILE, *np.zeros((2, *shape), np.float32))
         for part in parts:
             part.add_to(whole)
         filled = whole.weights > 0
-        return np.divide(whole.total, whole.weights, out=np.full(shape, np.float32(NODATA)), where=filled) if filled.any() else None
+        rows, columns = (np.flatnonzero(filled.any(axis=axis)) for axis in (1, 0))
+        if not len(rows):
+            return None
+        box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+        values = np.divide(whole.total[box], whole.weights[box], out=np.full(filled[box].shape, np.float32(NODATA)), where=filled[box])
+        return column * GEOTIFF_TILE + int(columns[0]), row * GEOTIFF_TILE + int(rows[0]), values
 
 
 def state_about(image: TiledImage, frame: RoadFrame, road: int, start: float, end: float) -> list[Any]:

@@ -93,7 +93,7 @@ class TiledImage(IntensityImage):
             geotransform=[float(number) for number in self.geotransform], width=int(self.width), height=int(self.height), crs=self.crs))
 
     def put(self, column: int, row: int, values: np.ndarray) -> None:
-        """Put a tile of (H, W) float32, NODATA or NaN where there is none; column and row of its first pixel are multiples of its side."""
+        """Put a tile or the filled part of one, (H, W) float32, NODATA or NaN where there is none; column and row are those of the first pixel."""
         filled = np.isfinite(values) & (values != np.float32(NODATA))
         rows, columns = np.flatnonzero(filled.any(axis=1)), np.flatnonzero(filled.any(axis=0))
         if not len(rows):

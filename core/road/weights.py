@@ -507,7 +507,9 @@ class _EdgeWeights:
     smoothing_half_length: float = 0.5   # m along a curb within which its points give its course
     same_place_distance: float = 0.02   # m within which two places are one
     # dropped corners
-    max_dropped_gap: float = 8.0   # m of dropped curb around a corner
+    max_dropped_gap: float = 8.0   # m of dropped curb around a corner, and
+    max_sunk_gap: float = 12.0   # m in a line where the curb is seen to sink at an end,
+    sunk_share: float = 0.5   # to this share of its height: it was 0.2 to 0.5 before drives, 0.64 and more where the curb is cut
     min_dropped_gap: float = 0.3   # m
     min_arc_turn: float = np.radians(12.0)   # radians from end to end, least, and
     max_arc_turn: float = np.radians(100.0)   # most

@@ -69,7 +69,7 @@ class SurveyReader:
                     done += len(points)
                     progress.report(done / total)
         self._settle()
-        source = _PartsOfFiles(files, self.store, self._blocks, self._ground, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
+        source = _PartsOfFiles(files, self.store, self._blocks, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
         phase = Phase(_read_part, source, (), source.place, _join_parts)
         points = block if self.store.folder is None else READING.part_points   # threads read block by block
         for part in executor.run(phase, source.items(points), progress.part(done / total, 1.0)):
@@ -137,13 +137,12 @@ class _PartOfFiles:
 class _PartsOfFiles:
     """Files whose points are read part by part into the folder of a store; several threads may do so.
 
-    store : of which dtype, section length and folder count; ground : of `reader` and `drop`, m from the trajectory down to the road, about
+    store : of which dtype, section length and folder count; drop : m from the trajectory down to the road, about
     ranges : (B, 3) number of a file, index of the first point and points of every block, which has about `block` points
     """
 
-    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: BlockReader, ground: HeightFilter, drop: float,
-                 ranges: np.ndarray, block: int):
-        self.files, self.store, self.reader, self.ground = files, store, reader, ground
+    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: BlockReader, drop: float, ranges: np.ndarray, block: int):
+        self.files, self.store, self.reader, self.ground = files, store, reader, reader.ground(drop)
         self.drop, self.ranges, self.block = drop, ranges, block
         self.clouds = ParallelCloudReader(reader.choice.layers)
 
@@ -176,7 +175,7 @@ def _parts_of_files(columns: list[list[str]], section_length: float, folder: str
     """What `_PartsOfFiles.recipe` describes."""
     store = SectionStore([tuple(column) for column in columns], section_length, Path(folder))
     reader = BlockReader(frame, choice, slots)
-    return _PartsOfFiles(store=store, reader=reader, ground=reader.ground(drop), drop=drop, **others)
+    return _PartsOfFiles(store=store, reader=reader, drop=drop, **others)
 
 
 def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:

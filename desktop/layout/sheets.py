@@ -355,6 +355,7 @@ class _Pages:
 
     def _add_title_block(self, paper, page, frame, contents, number, scale, band=None):
         """Who made what, when, where and how well; captions are drawn, what was chosen stands in labels that can be changed."""
+        self._report()
         block, choice = frame.title_block(band or frame.band), self.choice
         heights = choice.heights or (self.crs.verticalCrs().userFriendlyIdentifier() if self.crs.verticalCrs().isValid()
                                      else tr("as in the point clouds"))

@@ -34,7 +34,6 @@ from qgis.PyQt.QtWidgets import (
     QListWidgetItem,
     QProgressBar,
     QSplitter,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -47,7 +46,7 @@ from ...products.overlay.matching.places import highest_order, left_out_residual
 from ...products.overlay.matching.propose import AMBIGUOUS, AWAY, REPEATS, WEAK
 from ...products.overlay.rough_place import pair_cutouts
 from ..background import BackgroundRun
-from ..widgets import answers, button, row, show_extent, wrapped
+from ..widgets import answers, button, column, row, show_extent, wrapped
 
 IMAGES = "*.tif *.tiff *.jpg *.jpeg *.png *.TIF *.TIFF *.JPG *.JPEG *.PNG"
 NEAR = 6.0      # m of ground about a pair that the map zooms to
@@ -90,14 +89,8 @@ class PairsDialog(QDialog):
         form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapAllRows)
         form.addRow(tr("Intensity image"), self.intensity)
         form.addRow(tr("Pixel size of the image on the ground"), self.size)
-        left = QWidget()
-        column = QVBoxLayout(left)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(QLabel(tr("Images")))
-        column.addWidget(self.list, 1)
-        column.addLayout(row(button(tr("Add images…"), lambda: self.add(self.ask_for_images())), button(tr("Remove"), self._remove)))
-        column.addLayout(form)
-        column.addLayout(row(self.rough_button, self.propose_button))
+        files = row(button(tr("Add images…"), lambda: self.add(self.ask_for_images())), button(tr("Remove"), self._remove))
+        left = column(QWidget(), QLabel(tr("Images")), (self.list, 1), files, form, row(self.rough_button, self.propose_button), rim=0)
         self.pairs = QListWidget()
         self.pairs.setViewMode(QListView.ViewMode.IconMode)
         self.pairs.setResizeMode(QListView.ResizeMode.Adjust)
@@ -113,19 +106,13 @@ class PairsDialog(QDialog):
         self.place_button = button(tr("Georeference the images"), self.place)
         self.bar = QProgressBar()
         self.bar.hide()
-        right = QWidget()
-        column = QVBoxLayout(right)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(QLabel(tr("Left the image, right the intensity image. A tick accepts a pair, a double click shows it on the map.")))
-        column.addWidget(self.pairs, 1)
-        column.addWidget(self.told)
-        column.addWidget(self.bar)
-        column.addLayout(row(accept, refuse, None, self.place_button))
+        seen = QLabel(tr("Left the image, right the intensity image. A tick accepts a pair, a double click shows it on the map."))
+        right = column(QWidget(), seen, (self.pairs, 1), self.told, self.bar, row(accept, refuse, None, self.place_button), rim=0)
         parts = QSplitter()
         parts.addWidget(left)
         parts.addWidget(right)
         parts.setSizes([270, 890])
-        QVBoxLayout(self).addWidget(parts)
+        column(self, parts)
         self.intensity.layerChanged.connect(lambda layer: self._show_pairs())  # the list of pairs is there now
         self._enable()
 
@@ -327,10 +314,7 @@ class TwoPointsDialog(QDialog):
         self.tools = []  # a canvas keeps no reference
         self.views = [self._canvas(layer) for layer in (self.photo, intensity)]
         self.buttons = answers(self, button(tr("Begin again"), self.begin))
-        column = QVBoxLayout(self)
-        column.addWidget(self.told)
-        column.addLayout(row(*self.views), 1)
-        column.addWidget(self.buttons)
+        column(self, self.told, (row(*self.views), 1), self.buttons)
         self.resize(1100, 620)
         self.begin()
 

@@ -22,7 +22,6 @@ from qgis.PyQt.QtWidgets import (
     QListWidgetItem,
     QMenu,
     QTabWidget,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -31,7 +30,7 @@ from ...core.corrections.corrections import taken_reading
 from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
 from ...processing_provider.texts import tr
-from ..widgets import button, choices, give_map_back, row, say, show_extent, take_map, wrapped
+from ..widgets import button, choices, column, give_map_back, row, say, show_extent, take_map, wrapped
 from .corrections_layer import add_correction, corrections_of, corrections_of_survey, lay_above, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .photos import PhotoButton, photo_of
@@ -130,19 +129,9 @@ class DoubtDock(QDockWidget):
         self.undo_button = self._button(tr("Take back the last"), tr("Removes the correction that was made last"), self.undo)
         self.run_button = self._button(tr("Make the map again…"), tr("Opens Road map with these corrections"),
                                        lambda: self.run_wanted.emit(self.road_map, self.layer))
-        body = QWidget()
-        column = QVBoxLayout(body)
-        column.addLayout(row(back, ahead, self.where))
-        column.addLayout(row(self.kinds, self.order))
-        column.addWidget(self.undecided)
-        column.addWidget(self.list, 1)
-        column.addWidget(self.photo)
-        column.addLayout(row(self.accept_button, self.delete_button, self.move_button, self.other_button))
-        column.addLayout(row(self.pick_button, self.draw_button, self.snap))
-        column.addWidget(self.note)
-        column.addWidget(self.hint)
-        column.addWidget(self.kept)
-        column.addLayout(row(self.undo_button, self.run_button))
+        body = column(QWidget(), row(back, ahead, self.where), row(self.kinds, self.order), self.undecided, (self.list, 1), self.photo,
+                      row(self.accept_button, self.delete_button, self.move_button, self.other_button),
+                      row(self.pick_button, self.draw_button, self.snap), self.note, self.hint, self.kept, row(self.undo_button, self.run_button))
         self.steps = StepsPanel()
         self.steps.run_wanted.connect(lambda: self.run_wanted.emit(self.road_map, self.layer))
         self.steps.stage_wanted.connect(self.stage_wanted)

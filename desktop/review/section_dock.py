@@ -9,13 +9,13 @@ from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsCoordinateTransform
 from qgis.gui import QgsMapToolEmitPoint, QgsRubberBand
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor
-from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QFileDialog, QLabel, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QFileDialog, QLabel, QWidget
 
 from ...core.road.scanlines.section_planes import slice_lines
 from ...core.survey.frame.placement import PlaceIndex
 from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clouds_of, road_maps
 from ...processing_provider.texts import tr
-from ..widgets import button, give_map_back, row, take_map
+from ..widgets import button, column, give_map_back, row, take_map
 from .points_task import with_points
 from .section import HALF_WIDTH, Section, corners, crossings, middle_of, section_at
 from .section_view import SectionView
@@ -52,12 +52,7 @@ class SectionDock(QDockWidget):
         self.thickness.setSuffix(" m")
         self.thickness.setToolTip(tr("Length of road from which points are shown"))
         self.thickness.valueChanged.connect(lambda value: self._draw())
-        body = QWidget()
-        column = QVBoxLayout(body)
-        column.setContentsMargins(4, 4, 4, 4)
-        column.addLayout(row(self.pick, back, ahead, QLabel(tr("Thickness")), self.thickness, None))
-        column.addWidget(self.view, 1)
-        self.setWidget(body)
+        self.setWidget(column(QWidget(), row(self.pick, back, ahead, QLabel(tr("Thickness")), self.thickness, None), (self.view, 1), rim=4))
         iface.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)
         iface.mainWindow().resizeDocks([self], [int(SHARE * iface.mainWindow().height())], Qt.Orientation.Vertical)
         self.visibilityChanged.connect(self._hide_line)

@@ -10,7 +10,7 @@ from pathlib import Path
 from qgis.core import QgsMapLayer, QgsProcessingUtils, QgsProject, QgsProviderRegistry, QgsVectorLayer
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QColor
-from qgis.PyQt.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem, QWidget
 
 from ...algorithms.algorithm import SettingSpec
 from ...algorithms.catalogue import ALGORITHMS
@@ -21,7 +21,7 @@ from ...processing_provider.results.road_maps import CLOUDS, RoadMap
 from ...processing_provider.texts import tr
 from ..dialogs.database_dialog import PROVIDER, table_of_database
 from ..dialogs.stage_inputs import STAGES, TRAJECTORY, stage_again
-from ..widgets import button, row, wrapped
+from ..widgets import button, column, row, wrapped
 from .corrections_layer import NAME, changed_at
 
 FRESH, STALE, CORRECTED = "#1a9850", "#d73027", "#2166ac"   # colours of the states
@@ -130,11 +130,7 @@ class StepsPanel(QWidget):
         self.again = button(tr("Run again from here…"), self.run_wanted.emit, tr(
             "Opens Road map with the settings of this run and the corrections; what is kept of the steps before is not made again"))
         self.alone = button(tr("This step alone…"), self._run_alone, tr("Opens the algorithm of this step with what its run was given"))
-        column = QVBoxLayout(self)
-        column.addWidget(self.of)
-        column.addWidget(self.tree, 1)
-        column.addWidget(self.why)
-        column.addLayout(row(self.again, self.alone))
+        column(self, self.of, (self.tree, 1), self.why, row(self.again, self.alone))
 
     def show_map(self, road_map: RoadMap | None, corrections: QgsVectorLayer | None) -> None:
         """List the steps of a road map; None for none."""

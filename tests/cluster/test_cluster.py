@@ -134,14 +134,8 @@ def test_where_the_scheduler_is_killed_one_sentence_says_so_and_the_next_run_goe
     done = len(list(work.path.glob("phase-*/*.plain")))
     heard = Heard()
     work = WorkFolder(str(tmp_path / "work"))
-    assert numbers_of(boundaries(KeptResults(Threads(1), moved(work)), progress=heard)) == by_threads
+    assert numbers_of(boundaries(KeptResults(Threads(1), work), progress=heard)) == by_threads
     assert done >= 1
-
-
-def moved(work):
-    """A survey that tests make is not known by its files; another run puts it elsewhere."""
-    (work.path / "survey").rename(work.path / "earlier")
-    return work
 
 
 def test_what_a_worker_cannot_write_is_named(new_cluster):

@@ -10,7 +10,6 @@ from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_
 from lanewright.products.scanline_layer import (
     LineSpool,
     ResampledPoints,
-    ResamplingSettings,
     ScanlineLayerSettings,
     coordinates_of,
     line_lengths,
@@ -77,7 +76,7 @@ def test_points_along_a_scanline_are_evenly_spaced_around_corners_too():
 
 def test_resampled_points_lie_on_the_street_at_every_plane(survey, tmp_path):
     path = tmp_path / "even.laz"
-    with ResampledPoints(path, survey.frame.origin, "", ResamplingSettings(spacing=0.10)) as points:
+    with ResampledPoints(path, survey.frame.origin, "", ScanlineLayerSettings(spacing=0.10)) as points:
         write_scanlines(survey, ScanlineSettings(interval=0.05), None, points)
     cloud = laspy.read(path)
     assert len(cloud.points) == points.count

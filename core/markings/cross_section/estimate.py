@@ -16,7 +16,6 @@ from .candidates import Candidates
 from .evidence import Evidence
 from .sequence import (
     FIRST,
-    INTERVALS_AT_ONCE,
     SECOND,
     Sections,
     behind_best,
@@ -42,7 +41,7 @@ LENGTH_OF_STRETCH = 1000   # derived: stations that are looked at together, 500 
 class RoadEstimate:
     """The cross-sections of one road for one side of traffic.
 
-    sureness : (I, K) the same as far as it was seen here, where what is laid out alike along the road counts once, and so do the same lanes
+    sureness : (I, K) the same as far as it was seen here, where what is laid out alike along the road counts once
     once : (I, K) nats of the most probable sequence through each as far as it was seen here, as `sureness` counts that; inf where nothing is known
     second : (I, K) by how many nats the most probable sequence through each is behind the best one, without names, see `behind_best`; inf where
         nothing is known
@@ -125,7 +124,8 @@ def estimate_of_road(source: NoSource, item: tuple[Candidates, Evidence, int, Se
         posterior[lined] = probabilities(sections.cost[lined], transition)
         unnamed_total = best_sequence(cost[lined], transition)[1]
         second[lined] = behind_best(cost[lined], transition, candidates.length[lined], weights.repeats)
-        seen_once = _seen_once(candidates, sections, cost, weights)[lined]
+        # what is laid out alike along the road was seen once
+        seen_once = cost[lined] * weights.correlation / np.clip(candidates.length.sum(), weights.correlation, weights.laid_out)
         sureness[lined], once[lined] = probabilities(seen_once, transition), best_through(seen_once, transition)
     return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, weights, unnamed_total, once,
                         second)
@@ -154,29 +154,6 @@ def _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, 
         for d, _, way in wanted:
             fits &= np.isin(numbers, lanes.section[(np.abs(lanes.d - d) < 2 * SAME_LANE) & (lanes.way == way)])
         sections.cost[interval] += np.where(fits, 0.0, weights.not_taken)
-
-
-def _seen_once(c, sections, cost, weights):
-    """(I, K) nats that tell how sure a cross-section is, from the costs without names: what is laid out alike along the road was seen once."""
-    cost = cost / (np.clip(c.length.sum(), weights.correlation, weights.laid_out) / weights.correlation)
-    return np.where(_by_stretch(lambda part: _told_before(sections.take(part), cost[part]), c), np.inf, cost)
-
-
-def _told_before(sections, cost):
-    """(I, K) bool, whether a cheaper cross-section of the interval has the same lanes: what bounds strips where nobody drives is no other reading."""
-    check_cancelled()
-    lane = (sections.strip >= FIRST) & (sections.strip <= SECOND)
-    lanes = np.where(lane, sections.strip.astype(np.int16) * lane.shape[2] + sections.right, -1)
-    order = np.arange(cost.shape[1])
-    before, result = order < order[:, None], np.empty(cost.shape, bool)
-    # every cross-section is compared with every other one
-    for first in range(0, len(cost), INTERVALS_AT_ONCE):
-        window = slice(first, first + INTERVALS_AT_ONCE)
-        costs, strips = cost[window], lanes[window]
-        equal = (strips[:, :, None] == strips[:, None]).all(-1)
-        cheaper = (costs[:, None] < costs[:, :, None]) | (costs[:, None] == costs[:, :, None]) & before
-        result[window] = (equal & cheaper & np.isfinite(costs)[:, None]).any(2)
-    return result
 
 
 def _roads_of_many_lanes(c, sections, divided, weights):

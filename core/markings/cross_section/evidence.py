@@ -8,7 +8,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 import shapely
-from scipy.ndimage import binary_closing, grey_closing, median_filter
+from scipy.ndimage import grey_closing, median_filter
 
 from ...execution.phase import Phase
 from ...survey.frame.placement import located
@@ -37,7 +37,7 @@ class Evidence:
     taken : what an analyst took: interval, offset of the lane that it is taken for, and offset, width and direction of each lane instead
     """
 
-    driven: np.ndarray   # (P, I) m, offset of each pass, NaN where it was not
+    driven: np.ndarray   # (P, I) m, offset of each pass, NaN where it was not; the road's own first
     directions: np.ndarray   # (P,) 1 along, -1 against the road, 0 unknown
     asphalt: np.ndarray | None   # (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
     hatched: np.ndarray | None
@@ -45,6 +45,7 @@ class Evidence:
     stops: np.ndarray   # (S, 3) interval, least and greatest offset
     divided: np.ndarray   # (I,) bool, whether the road is one carriageway of two
     bare: np.ndarray   # (I,) bool, where it was driven between two borders without any paint
+    own: int | None = None   # how many of the passes are the road's own; None for all
     taken: tuple[tuple[int, float, tuple[tuple[float, float, int], ...]], ...] = ()
 
     def part(self, first: int, end: int) -> Evidence:
@@ -54,7 +55,7 @@ class Evidence:
 
         asphalt, hatched = (None if share is None else share[first:end] for share in (self.asphalt, self.hatched))
         return Evidence(self.driven[:, first:end], self.directions, asphalt, hatched, of(self.arrows), of(self.stops), self.divided[first:end],
-                        self.bare[first:end])
+                        self.bare[first:end], self.own)
 
 
 def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -71,24 +72,35 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
     return d, np.array([p.direction if frame.way_known else 0 for p in passes], int)
 
 
-def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
-    """(K,) bool, whether another road of the survey was driven the other way beside this one, at (K,) stations: both are carriageways of one road."""
-    result = np.zeros(len(s), bool)
-    ways = {p.direction for p in frame.passes_of(road)}
-    if len(ways) != 1 or not frame.way_known:
-        return result
-    of_road = frame.road(road)
-    for p in frame.passes:
+def offsets_of_others(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same of the passes of other roads, each as far as it was driven along this road, one way: (Q, K) m and (Q,)."""
+    of_road, offsets, directions = frame.road(road), [], []
+    for p in frame.passes if frame.way_known and len(s) else ():
         if p.road == road or _apart(p, of_road) > EVIDENCE.carriageway_distance:
             continue
         station, d = of_road.locate(p.x, p.y, corridor=EVIDENCE.carriageway_distance)
-        against = np.gradient(np.nan_to_num(station)) * next(iter(ways)) < 0
-        alongside = np.isfinite(station) & against & (np.abs(d) > EVIDENCE.own_road)
-        indices = np.rint((station[alongside] - s[0]) / STATION_STEP)
-        indices = indices[(indices >= 0) & (indices < len(s))].astype(int)
-        result[indices] = True
-    # the places of a pass are sparser than the stations
-    return binary_closing(result, np.ones(2 * EVIDENCE.pass_spacing + 1, bool)) if len(result) else result
+        ahead, aside = (np.gradient(np.nan_to_num(values)) for values in (station, d))
+        for way in (1, -1):
+            along = np.flatnonzero(np.isfinite(station) & (ahead * way > np.abs(aside) / EVIDENCE.along))
+            if len(along) < 2:
+                continue
+            at = along[np.argsort(station[along])]
+            near = np.searchsorted(station[at], s).clip(1, len(at) - 1)
+            known = np.minimum(np.abs(station[at][near] - s), np.abs(station[at][near - 1] - s)) <= EVIDENCE.pass_spacing * STATION_STEP
+            offsets.append(np.where(known, np.interp(s, station[at], d[at]), np.nan))
+            directions.append(way)
+    return np.array(offsets).reshape(-1, len(s)), np.array(directions, int)
+
+
+def other_carriageway(frame: RoadFrame, road: int, others: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    """(K,) bool, whether another road of the survey was driven the other way beside this one: both are carriageways of one road.
+
+    others : as `offsets_of_others` gives them
+    """
+    ways = {p.direction for p in frame.passes_of(road)}
+    with np.errstate(invalid="ignore"):
+        beside = np.abs(others[0][~np.isin(others[1], list(ways))]) > EVIDENCE.own_road
+    return beside.any(axis=0) & (len(ways) == 1)
 
 
 def _apart(p, road):

@@ -24,7 +24,16 @@ from ..weights import ROADS
 from .beside import lanes_beside
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimates_of_roads
-from .evidence import between_ends, borders_of_hatching, driven_offsets, evidence_of, hatched_places, other_carriageway, surface_coverage
+from .evidence import (
+    between_ends,
+    borders_of_hatching,
+    driven_offsets,
+    evidence_of,
+    hatched_places,
+    offsets_of_others,
+    other_carriageway,
+    surface_coverage,
+)
 from .sections import STATION_STEP, CrossSections, no_lines
 from .sequence import lane_strips
 from .weights import PAVEMENT, EstimateWeights, TakenReading
@@ -146,8 +155,10 @@ def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, d
     hatched, borders = (None if markings is None else of_areas(markings, frame, number, s) for of_areas in (hatched_places, borders_of_hatching))
     boundaries = gather_boundaries(of_road, curbs, ends, open_ends, borders, pavement)
     candidates = boundary_candidates(boundaries, weights)
-    evidence = evidence_of(candidates, s, *driven, covered, hatched, arrows, markings, number, other_carriageway(frame, number, s), bare)
-    return boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, s))
+    others = offsets_of_others(frame, number, s)
+    seen = [np.concatenate(parts) for parts in zip(driven, others)]
+    evidence = evidence_of(candidates, s, *seen, covered, hatched, arrows, markings, number, other_carriageway(frame, number, others), bare)
+    return boundaries, candidates, replace(evidence, own=len(driven[1]), taken=_taken_on(taken, number, candidates, s))
 
 
 def usual_side(frame: RoadFrame) -> str:

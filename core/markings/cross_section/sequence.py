@@ -109,7 +109,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     width = d_left - d_right
     ordered = c.valid[:, :, None] & c.valid[:, None, :] & (np.arange(size)[:, None] < np.arange(size))
     outside = (c.made_of == OUTSIDE)[:, :, None] | (c.made_of == OUTSIDE)[:, None, :]
-    through, rest_cost = _passed_over(c, w)
+    through = _passed_over(c, w)
     hatched = _share_between(evidence.hatched, c, width) > LANES.hatched_share if evidence.hatched is not None else np.zeros(width.shape, bool)
     paint = c.painted | (c.made_of == HATCHING)
     both_paint, any_paint = paint[:, :, None] & paint[:, None, :], paint[:, :, None] | paint[:, None, :]
@@ -124,8 +124,10 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     double = c.made_of == DOUBLE
     unused = np.where(double[:, :, None] & double[:, None, :], 2 * (w.double[CENTRE_LINE] - w.double[EDGE_LINE]), unused)
     inside = _inside(evidence.driven, c)
-    idle = scale * (np.where(hatched, 0.0, unused) + rest_cost) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
-    cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)
+    idle = scale * (np.where(hatched, 0.0, unused) + w.driven_rest * inside[:evidence.own].sum(0)) + arrows_in * w.arrow_outside
+    # each boundary in what nobody drives on ends a strip of it, so that the same lanes are the same cross-section
+    number = np.cumsum(c.valid, axis=1)
+    cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered & (number[:, None, :] - number[:, :, None] == 1), idle, np.inf)
 
     made_left, made_right = c.made_of[:, :, None], c.made_of[:, None, :]
     # strips with paint on one side only, and of those the ones whose other side may be hidden
@@ -134,7 +136,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     uncovered = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
     # a street that was driven between two borders has a lane without any paint
     border = np.isin(c.made_of, (CURB, PAVEMENT)) & evidence.bare[:, None]
-    bare = border[:, :, None] & border[:, None, :] & inside.any(0)
+    bare = border[:, :, None] & border[:, None, :] & inside[:evidence.own].any(0)
     possible = ordered & ~outside & (any_paint | bare) & (width < LANES.max_lanes * NEUTRAL.widest_lane)
     base = scale * (through + hatched * w.hatched_lane + uncovered * w.off_asphalt)
     driven_there = inside.any(0)
@@ -179,19 +181,18 @@ def _width_cost(width: np.ndarray, usual: float, w: EstimateWeights) -> np.ndarr
 
 
 def _passed_over(c, w):
-    """(I, M, M) costs of the boundaries that lie between two others, inside a lane and where nobody drives; per observation."""
-    paint = c.painted
-    counted = c.valid & (c.made_of != OUTSIDE)
-    shown = 0.5 + 0.5 * c.seen
-    lane = np.where(paint, w.lane_through_paint * c.trust * shown,
+    """(I, M, M) costs of the boundaries that lie between two others inside a lane; per observation."""
+    lane = np.where(c.painted, w.lane_through_paint * _told(c),
                     np.select([np.isin(c.made_of, (CURB, ISLAND)), np.isin(c.made_of, (SURFACE, PAVEMENT)), c.made_of == HATCHING],
-                              [w.lane_through_curb * c.seen, w.lane_through_surface, w.lane_through_hatching], 0.0)) * counted
-    rest_cost = np.where(paint, w.paint_in_rest * c.trust * shown, 0.0) * counted
-    costs = []
-    for values in (lane, rest_cost):
-        total = np.cumsum(values, axis=1)
-        costs.append(np.maximum(total[:, None, :] - values[:, None, :] - total[:, :, None], 0.0))
-    return costs
+                              [w.lane_through_curb * c.seen, w.lane_through_surface, w.lane_through_hatching], 0.0))
+    lane = lane * (c.valid & (c.made_of != OUTSIDE))
+    total = np.cumsum(lane, axis=1)
+    return np.maximum(total[:, None, :] - lane[:, None, :] - total[:, :, None], 0.0)
+
+
+def _told(c):
+    """(I, M) how surely boundaries are painted lines."""
+    return c.trust * (0.5 + 0.5 * c.seen)
 
 
 def _share_between(shares, c, width):
@@ -389,6 +390,9 @@ def _boundary_costs(c, stops, w):
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
                 cost[:, :, left, right] = scale * (table[:, :, use] + wrong + misnamed) \
                     + w.split_stop * stopped * (use == CENTRE_LINE)
+    # other lines may be none, and what else lies where nobody drives bounds nothing
+    cost[:, :, REST_FIRST, REST_FIRST] = cost[:, :, REST_SECOND, REST_SECOND] = scale * np.where(
+        c.painted, np.minimum(table[:, :, OTHER_LINE], w.paint_in_rest * _told(c)), 0.0)
     return cost
 
 

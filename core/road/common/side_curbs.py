@@ -63,7 +63,7 @@ def steps_of_roads(function: Callable, source: Any, settings: tuple[Any, ...], s
     parts: dict[tuple[str, int, str], list[CurbSteps]] = {}
     grids: dict[tuple[str, int, str], list[OcclusionGrid]] = {}
     survey = getattr(source, "survey", None)
-    phase = Phase(function, source, settings, lambda section: _place_of(survey, *section[1:], searches[section[0]].width), join_sections,
+    phase = Phase(function, source, settings, lambda section: _place_of(survey, searches[section[0]].width, *section[1:]), join_sections,
                   CURBS.sections_together * len(searches))
     for (steps_by_side, beside), (method, road, *_) in zip(source.executor.run(phase, sections, progress), sections):
         for found, values in ((parts, steps_by_side), (grids, beside)):
@@ -77,7 +77,7 @@ def steps_of_roads(function: Callable, source: Any, settings: tuple[Any, ...], s
     return result
 
 
-def _place_of(survey, road, first, last, width):
+def _place_of(survey, width, road, first, last):
     """What messages call profiles or planes of a road."""
     start, end = first * width, last * width
     return f"road {road}, {start:.0f} to {end:.0f} m" if survey is None else survey.stretch(road, start, end)
@@ -85,7 +85,7 @@ def _place_of(survey, road, first, last, width):
 
 def phase_along(function: Callable, source: Any, arguments: tuple[Any, ...], width: float, join: Callable) -> Phase:
     """A phase over sections of profiles: (number of a road, first, last + 1); `width` : m from one profile to the next."""
-    return Phase(function, source, arguments, lambda section: _place_of(source.survey, *section, width), join, CURBS.sections_together)
+    return Phase(function, source, arguments, lambda section: _place_of(source.survey, width, *section), join, CURBS.sections_together)
 
 
 def merged_passes(found: Sequence[AnySteps]) -> AnySteps:
@@ -142,23 +142,22 @@ def curbs_along(source: Any, found: Mapping[str, Mapping[tuple[int, str], SideSt
     found : method -> (number of the road, side) -> SideSteps; the method with the stricter model of a curb comes first
     look_at : gives the RoadLook of a road; None where nothing but the steps is known of the ground
     """
-    items = []
-    for road in sorted({road for road, _ in next(iter(found.values()))}):
-        look = look_at(road) if look_at else None
-        items += [(road, side, {method: steps[road, side] for method, steps in found.items()}, look and look.side(sign))
-                  for side, sign in SIDE_SIGNS.items()]
-    phase = Phase(_curbs_of_side, source, (), lambda item: f"the {item[1]} side of road {item[0]}")
+    roads = sorted({road for road, _ in next(iter(found.values()))})
+    items = [(road, side, {method: steps[road, side] for method, steps in found.items()}) for road in roads for side in SIDE_SIGNS]
+    looks = {road: look_at(road) for road in roads} if look_at else {}
+    phase = Phase(_curbs_of_side, source, (looks,), lambda item: f"the {item[1]} side of road {item[0]}")
     parts = list(source.executor.run(phase, items))
     methods, crs = [*found, "both"] if len(found) > 1 else [*found], getattr(source, "survey", source).crs
     return {method: CurbPoints.join([part[method] for part in parts if method in part], crs) for method in methods}
 
 
-def _curbs_of_side(source: Any, item: tuple[int, str, Mapping[str, SideSteps], SideLook | None]) -> dict[str, CurbPoints]:
+def _curbs_of_side(source: Any, item: tuple[int, str, Mapping[str, SideSteps]], looks: dict[int, RoadLook]) -> dict[str, CurbPoints]:
     """The phase that follows the curb: {method: CurbPoints} on one side of a road, as of `curbs_along`.
 
-    item : number of the road, the side, what each method saw there, and SideLook
+    item : number of the road, the side, and what each method saw there
     """
-    (road, side, methods, beside), survey = item, getattr(source, "survey", source)
+    (road, side, methods), survey = item, getattr(source, "survey", source)
+    beside = looks[road].side(SIDE_SIGNS[side]) if road in looks else None
     chains = {method: SideChains.of(seen.steps, seen, beside) for method, seen in methods.items() if seen.steps is not None and len(seen.steps)}
     # scanlines may have been told how high the scanner is
     points = {method: points_of_side(source if method == "scanlines" else survey, road, side, [of_method], methods[method].occlusion)

@@ -21,6 +21,7 @@ from ..weights import CURBS, EDGE
 from .corner_edges import curb_return_lines, draw_curb_returns, dropped_corners
 from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 
+_JOINED, _HIDDEN, _DROPPED = range(3)   # what lies between two curb points of an edge: nothing, something that hides the curb, or a lowered curb
 IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by more across shorter gaps
 
 
@@ -96,7 +97,7 @@ def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:
 
 
 def _pieces(rows, max_gap):
-    """Curb points of one side divided into edges: list of (points, is each gap to the next bridged?)."""
+    """Curb points of one side divided into edges: list of (points, what each gap to the next is: _JOINED, _HIDDEN or _DROPPED)."""
     hidden = rows["s"][~rows["measured"]]
     points = without_outliers(rows[rows["measured"]])
     if len(points) < 2:
@@ -112,12 +113,22 @@ def _pieces(rows, max_gap):
     s = np.ascontiguousarray(points["s"])
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
              if _line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
-    breaks = np.flatnonzero(~(joined | bridged)) + 1
+    # a curb that sinks in sight and goes on in the same line some metres farther is lowered there
+    dropped = (gap > CURBS.max_joined_gap) & (gap <= min(EDGE.max_sunk_gap, max_gap)) & (across <= EDGE.max_edge_jump) & ~bridged
+    dropped[[k for k in np.flatnonzero(dropped) if not _sinks(points, s, k) or _line_across(points, s, k)[0] > IN_LINE_TURN]] = False
+    breaks = np.flatnonzero(~(joined | bridged | dropped)) + 1
+    kinds = np.append(_HIDDEN * bridged + _DROPPED * dropped, _JOINED)
     pieces = []
-    for part, flags in zip(np.split(points, breaks), np.split(np.r_[bridged, False], breaks)):
+    for part, flags in zip(np.split(points, breaks), np.split(kinds, breaks)):
         if len(part) >= 2 and part["s"][-1] - part["s"][0] >= EDGE.min_edge_length:
             pieces.append((part, flags[:-1]))
     return pieces
+
+
+def _sinks(points, s, k):
+    """Is the curb lower at either end of a gap, which begins at point k, than it is around it?"""
+    around = points["height"][stretch_of(s, s[k] - CURBS.line_fit_length, s[k + 1] + CURBS.line_fit_length)]
+    return points["height"][k:k + 2].min() <= EDGE.sunk_share * np.median(around)
 
 
 def _line_across(points, s, k):
@@ -246,7 +257,7 @@ def _draw(found, frame, road, side, piece, number):
     with_bridges, measured, longest = _with_bridges(points, bridged, frame, road)
     curve = EdgeCurve(with_bridges, longest, measured)
     t, residual = curve.t[measured], curve.residual[measured]
-    changes = np.flatnonzero(np.diff(bridged.astype(int))) + 1
+    changes = np.flatnonzero(np.diff(bridged)) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
         check_cancelled()
@@ -258,7 +269,7 @@ def _draw(found, frame, road, side, piece, number):
         found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), height=float(np.median(rows["height"])), rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
                                # a bridge is one guess
-                               sigma=float(sigma.mean()) if bridged[i] else sigma))
+                               what="dropped" if bridged[i] == _DROPPED else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
     return float(points["s"][0]), float(points["s"][-1])
 
 

@@ -76,7 +76,8 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
         steps : side -> CurbSteps, passes merged
         occlusion : side -> OcclusionGrid of these profiles
     """
-    (_, road, *section), width = item, decimation.width
+    (_, road, *ends), width = item, decimation.width
+    section = ends[0], ends[1]
     around = max(CURBS.spread_profiles, int(np.ceil(PROFILE.averaging_length / width)))
     tracks = {side: OutermostTrack(decimation.survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
     occlusion = {side: OcclusionGrid(width, section[0], section[1] - section[0], CURBS.max_curb_offset) for side in SIDE_SIGNS}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from ...common.arrays import best_within
 from ..common.corners import MIN_BED_SLOPE, CurbSteps, RunningSums, measure_corners
@@ -98,14 +99,7 @@ def _road_before(low, heights, offsets, spacing, rows, columns):
 
 def _max_ahead(values, span):
     """Largest value in this and the following cells, NaN taken as none."""
-    best, width = np.fmax(values, -np.inf), 1
-    # windows of twice the width, and one that overlaps
-    while width <= span:
-        by = min(width, span + 1 - width, values.shape[1])
-        wider = best.copy()
-        np.maximum(best[:, :values.shape[1] - by], best[:, by:], out=wider[:, :values.shape[1] - by])
-        best, width = wider, width + by
-    return best
+    return maximum_filter1d(np.fmax(values, -np.inf), span + 1, axis=1, mode="constant", cval=-np.inf, origin=-((span + 1) // 2))
 
 
 # Steps where the scanner's noise hides a curb in a single profile: measured in the average of several profiles.
@@ -258,15 +252,11 @@ def _median(rows, count, min_count):
     return middle
 
 
-def _moved(values, k, empty=np.nan):
+def _moved(values, k):
     """values[:, c + k] at every cell c."""
-    out = np.full(values.shape, empty, values.dtype)
-    if abs(k) >= values.shape[1]:
-        return out
-    if k >= 0:
-        out[:, :values.shape[1] - k] = values[:, k:]
-    else:
-        out[:, -k:] = values[:, :k]
+    out = np.full(values.shape, np.nan)
+    target, source = _overlap(values.shape[1], k)
+    out[:, target] = values[:, source]
     return out
 
 
@@ -286,8 +276,4 @@ def _overlap(size, by):
 
 def _largest_near(values, span):
     """Largest value within `span` cells either side."""
-    best = values.copy()
-    for k in range(1, span + 1):
-        np.maximum(best, _moved(values, k, -np.inf), out=best)
-        np.maximum(best, _moved(values, -k, -np.inf), out=best)
-    return best
+    return maximum_filter1d(values, 2 * span + 1, axis=1, mode="constant", cval=-np.inf)

@@ -267,8 +267,7 @@ def _running_median(values, reach):
     rows = np.arange(len(values))
     finite = np.isfinite(values)
     filled = np.interp(rows, rows[finite], values[finite])
-    padded = np.pad(filled, reach, mode="edge")
-    return np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1), axis=1)
+    return median_filter(filled, 2 * reach + 1, mode="nearest")
 
 
 def _starting_tilt(height, base, offsets):

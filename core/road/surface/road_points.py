@@ -88,7 +88,7 @@ def surface_points(road_points: RoadPoints, item: tuple[Stretch, Carriageway],
             of_scanners.append(points_of_scanners(records))
             if counted:
                 cubes.append((counted_cubes(road_points.survey.section(*key)), counted_cubes(Points(records))))
-    return part.index(), carriageway.cells.first_row, per_row, sum(of_scanners), cubes
+    return part.index(), carriageway.cells.first_row, per_row, sum(of_scanners, np.zeros(256, np.int64)), cubes
 
 
 def _points_of_section(survey, key, carriageway):

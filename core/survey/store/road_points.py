@@ -93,7 +93,8 @@ class RoadPoints:
 
     def points_of_scanners(self) -> np.ndarray:
         """(256,) how many points each scanner has."""
-        return sum(points_of_scanners(self.section(*key).records) for key in self.all_sections()) if self.of_scanners is None else self.of_scanners
+        sections = (points_of_scanners(self.section(*key).records) for key in self.all_sections())
+        return sum(sections, np.zeros(256, np.int64)) if self.of_scanners is None else self.of_scanners
 
     def all_sections(self) -> list[tuple[int, int]]:
         """(road, section number) of every section that has points, in order."""

@@ -419,7 +419,9 @@ def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slic
     least.flat[cell[first]] = h[first + np.minimum(count, MIN_GROUND_POINTS) - 1]
     face = np.zeros((slices, columns), bool)
     face.flat[cell[first]] = h[first + count - 1] - h[first] > RIM_STEP
-    low = _feet_in_shadow(_feet_beside(low, face), least)
+    # the foot of a face is no higher than the ground beside it
+    feet = np.where(face, np.fmin(low, _continued(np.where(face, np.nan, low), FOOT_REACH)), low)
+    low = _feet_in_shadow(feet, least)
     filled = _filled(low)
     low = _let_down(filled, _rims(low) | _rims(filled))
     finite = np.isfinite(low)
@@ -443,11 +445,6 @@ def _supported(place, height, count, shape):
     for neighbour in (slice(None, -2), slice(2, None)):
         support += np.where(np.abs(lowest[neighbour] - lowest[1:-1]) < GROUND_JUMP, number[neighbour], 0.0)
     return support.flat[place] >= MIN_GROUND_POINTS
-
-
-def _feet_beside(low, face):
-    """Heights where the foot of a face is no higher than the ground beside it."""
-    return np.where(face, np.fmin(low, _continued(np.where(face, np.nan, low), FOOT_REACH)), low)
 
 
 def _feet_in_shadow(low, least):

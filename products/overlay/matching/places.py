@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -190,10 +190,6 @@ class Bounds:
     reach: float   # m, how far off that may be; infinite where nothing is known
     turns: tuple[float, float]   # (from, to) radians
     sizes: tuple[float, float]   # (from, to) m of a pixel
-
-    def of_pixels(self, factor: int) -> Bounds:
-        """The same for a photo whose pixels are `factor` times as wide."""
-        return replace(self, sizes=(self.sizes[0] * factor, self.sizes[1] * factor))
 
 
 def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bounds, sign: int = 1,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -74,7 +74,8 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
 def _followed(image, photo, paint, bounds, sign, x, y, progress):
     """The few best places of the search, aligned with the paint, the best first."""
     tried: list[_Tried] = []
-    places = find_places(photo.contrast, paint.contrast, paint.cell, bounds.of_pixels(photo.factor), sign, progress.part(0.0, 0.8))
+    of_photo = replace(bounds, sizes=(bounds.sizes[0] * photo.factor, bounds.sizes[1] * photo.factor))
+    places = find_places(photo.contrast, paint.contrast, paint.cell, of_photo, sign, progress.part(0.0, 0.8))
     for place in places[:_CANDIDATES]:
         progress.check_cancelled()
         start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, (image.width / 2, image.height / 2), place.sign)
@@ -243,7 +244,8 @@ class Pairs(NamedTuple):
 def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray, settings: ProposalSettings) -> Pairs | None:
     """Corners of paint found in a photo that lies on the map to some decimetres; None where too few agree on one placement."""
     for search, times in _ROUNDS:
-        patches = _find_patches(*_on_same_cells(placement, paint, photo, paint.cell), x, y, _PATCH, search)
+        small, drawn, cell = _on_same_cells(placement, paint, photo, paint.cell)
+        patches = _find_patches(small, drawn, cell, x, y, _PATCH, search)
         patches = patches.where(patches.score > _LISTED_SCORE)
         alike = (patches.score >= settings.min_score) & (patches.second <= _MOST_SECOND)
         moved = np.column_stack([patches.dx, patches.dy])

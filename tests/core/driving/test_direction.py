@@ -36,6 +36,14 @@ def test_a_driven_lane_leads_the_way_it_was_driven_whatever_side_of_traffic_is_n
     assert right == {-1.75: 1, 1.75: -1} and left[-1.75] == 1
 
 
+def test_lanes_that_were_driven_the_other_way_from_another_road_lead_the_other_way():
+    """Six lanes with a solid line in the middle; each direction was driven in its outer lane, 17 m apart, so that they are two roads."""
+    street = Street(vehicle=-1.75, again=(15.75,)).paint(-3.5, kind="edge").paint(0.0, pattern="dashed").paint(3.5, pattern="dashed").paint(7.0)
+    street.paint(10.5, pattern="dashed").paint(14.0, pattern="dashed").paint(17.5, kind="edge")
+    assert len(street.frame.roads) == 2
+    assert ways(street) == {-1.75: 1, 1.75: 1, 5.25: 1, 8.75: -1, 12.25: -1, 15.75: -1}
+
+
 @pytest.mark.parametrize("crs, beside, side", [("EPSG:32632", 1, "right"), ("", 1, ""), ("EPSG:32755", -1, "left")])
 def test_two_lanes_driven_in_the_one_of_overtaking_lead_the_same_way_in_the_country_whose_side_that_is(crs, beside, side):
     """A carriageway of a motorway in town, driven in its left lane in Bavaria, and in its right lane in Tasmania."""

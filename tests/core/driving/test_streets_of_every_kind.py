@@ -270,3 +270,16 @@ def test_two_double_lines_with_room_between_them_are_a_painted_median_and_no_lan
     for offset in (1.77, 1.53, -1.53, -1.77):
         street.paint(offset, kind="", pattern="double-solid")
     assert lanes_of(street) == {-3.46: 1, 3.46: -1}
+
+
+def test_between_dashes_and_a_curb_that_is_a_lane_away_there_may_be_one_though_nobody_drove_there():
+    street = Street(length=80.0, vehicle=0.0, again=(3.6,)).paint(1.85, kind="", pattern="dashed").paint(-1.9, kind="", pattern="dashed")
+    found = {round(float(np.median(street.offsets(line)))): row["confidence"] for line, row in street.lanes(edges=curbs(street, 5.6, -5.6))[0]}
+    assert sorted(found) == [-4, 0, 4] and found[-4] <= 0.6
+
+
+def test_two_arrows_show_a_turning_lane_beyond_a_solid_line_beside_the_curb():
+    street = Street(length=80.0, vehicle=0.0, again=(7.3,)).paint(5.3, kind="").paint(1.85, kind="").paint(-1.9, kind="")
+    arrows = [(straight_arrow(station, -3.75, 1), "arrow") for station in (20.0, 65.0)]
+    lines, _ = street.lanes(edges=curbs(street, 9.2, -5.6), markings=outlined(street, *arrows))
+    assert max(line.length for line, row in lines if row["direction"] == 1 and np.median(street.offsets(line)) < -3.0) > 50.0

@@ -101,6 +101,20 @@ def test_an_opening_and_a_gap_that_is_too_long_break_the_edge(hidden, gap):
     assert edges.rows[0]["end_m"] == pytest.approx(19) and edges.rows[1]["station_m"] == pytest.approx(19 + gap)
 
 
+@pytest.mark.parametrize(("gap", "sunk", "aside", "kinds"), [
+    (6.0, 0.05, 0.0, ["curb", "dropped", "curb"]), (10.0, 0.05, 0.0, ["curb", "dropped", "curb"]), (6.0, 0.12, 0.0, ["curb", "curb"]),
+    (13.0, 0.05, 0.0, ["curb", "curb"]), (6.0, 0.05, 0.3, ["curb", "curb"])],
+    ids=["drive", "wide drive", "a curb that is cut", "mouth of a street", "two curbs"])
+def test_a_curb_that_is_lowered_in_sight_goes_on_as_a_dropped_one(gap, sunk, aside, kinds):
+    stations = np.r_[np.arange(0, 20, 1.0), np.arange(19 + gap, 60, 1.0)]
+    points = curb_points(stations, lambda s: 3.5 + aside * (s > 20))
+    points.rows[19]["height_m"] = sunk
+    edges = fit_road_edges(points, straight_frame())
+    assert [r["edge"] for r in edges.rows] == kinds
+    assert {r["status"] for r in edges.rows if r["edge"] == "dropped"} <= {"bridged"}
+    np.testing.assert_allclose(places(edges)[:, 1], 3.5, atol=aside + 0.01)
+
+
 @pytest.mark.parametrize(("aside", "bridged"), [(0.0, 1), (0.6, 0)], ids=["in line", "aside"])
 def test_a_gap_longer_than_usual_is_bridged_where_both_parts_lie_in_one_line(aside, bridged):
     stations = np.r_[np.arange(0, 20, 1.0), np.arange(42, 60, 1.0)]
