@@ -235,8 +235,6 @@ class _StrandWeights:
     place_step_units: int = 2500   # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
     run_gap_units: int = 600   # 6 cm across without paint separate two runs ...
     max_worn_line_width_units: int = 3300   # ... unless together they are no wider than one worn line
-    double_reach: int = 4   # bins before and after one: a gap at the same place in more than this share of them lies between two lines
-    double_share: float = 0.6
     max_line_width_units: int = 3600   # 36 cm: wider is no line
     max_mixed_width_units: int = 6000   # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
     min_mixed_strand: float = 2.0   # m of paint in a strand of a mixed marking

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ...common.arrays import linked_groups, order_by
 from ...common.parallel import check_cancelled
@@ -199,7 +198,6 @@ def _runs(bins, across):
             break
         last = np.r_[starts[1:], len(bins)] - 1
         joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= STRANDS.max_worn_line_width_units)
-        joins[joins] = ~_between_two_lines(bins[starts[1:]][joins], across[last[:-1]][joins], across[starts[1:]][joins])
         # one join at a time per neighbourhood: the first of a row of joins
         joins &= ~np.r_[False, joins[:-1]]
         if not joins.any():
@@ -208,12 +206,6 @@ def _runs(bins, across):
     run = np.zeros(len(bins), np.int32)
     run[starts[1:]] = 1
     return np.cumsum(run, out=run)
-
-
-def _between_two_lines(bins, low, high):
-    """(J,) bool, whether gaps across, each in a bin from `low` to `high`, lie between the two lines of a double line: wear leaves no gap that goes on."""
-    places = np.column_stack([bins / STRANDS.double_reach, (low + high) / STRANDS.run_gap_units])
-    return cKDTree(places).query_ball_point(places, 1.0, p=np.inf, return_length=True) > STRANDS.double_share * (2 * STRANDS.double_reach + 1)
 
 
 def _middle_and_width(across, starts):

@@ -79,16 +79,6 @@ def test_a_double_line_is_two_lines():
         assert street.distance(geometry, offset).max() < 0.01
 
 
-def test_two_lines_of_a_hand_s_breadth_with_as_much_between_them_are_a_double_line_and_a_broad_worn_line_is_one():
-    lines = ClusteredStreet().paint(0, 120, 0.1, kind="centre", width=0.1).paint(0, 120, -0.1, kind="centre", width=0.1).lines()
-    assert told(lines, "kind", "pattern") == [("centre", "double-solid")] * 2
-    worn, rng = ClusteredStreet(), np.random.default_rng(3)
-    for first, offset in zip(range(0, 120, 2), rng.uniform(-0.08, 0.08, 60)):
-        for near, far in ((-0.15, offset - 0.04), (offset + 0.04, 0.15)):
-            worn.paint(first, first + 2.0, near, kind="edge", across=far)
-    assert {line for line, in told(worn.lines(), "line")} == {1}, "a broad line with a hole of 8 cm, elsewhere every 2 m"
-
-
 @pytest.mark.parametrize("worn_from", [19, 15.6])
 def test_between_two_junctions_a_short_double_line_keeps_both_its_lines_though_only_one_is_linked_with_what_follows(worn_from):
     street = ClusteredStreet().paint(0, 120, 4.0, kind="edge").paint(10, 19, 0.0, kind="centre").paint(45, 110, 0.0, kind="centre")
