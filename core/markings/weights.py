@@ -235,6 +235,8 @@ class _StrandWeights:
     place_step_units: int = 2500   # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
     run_gap_units: int = 600   # 6 cm across without paint separate two runs ...
     max_worn_line_width_units: int = 3300   # ... unless together they are no wider than one worn line
+    gap_bins: int = 6   # bins before and after a gap: where it is seen in more than half of all these, two lines run side by side
+    gap_drift_units: int = 100   # units across that it may move per bin: as lines drift against the road
     max_line_width_units: int = 3600   # 36 cm: wider is no line
     max_mixed_width_units: int = 6000   # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
     min_mixed_strand: float = 2.0   # m of paint in a strand of a mixed marking

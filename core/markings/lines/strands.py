@@ -18,6 +18,7 @@ from ..cross_section.sections import EdgeSections
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..objects.shape import middle_line
+from ..road_grid import track_reach
 from ..weights import STRANDS
 
 
@@ -165,7 +166,7 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
         return []
     d, bins = records["d"], records["s"] // STRANDS.run_bin_units
     order = order_by(d, bins)
-    run = _runs(bins[order], d[order])
+    run = _runs(bins[order], d[order], records["spacing"][order])
     run = np.where((np.bincount(run) >= STRANDS.min_points_per_run)[run], run, np.int32(-1))   # runs of too few points are none
     inside = np.flatnonzero(run >= 0)
     check_cancelled()
@@ -189,23 +190,42 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     return _strands(step, [rank[order], *(records[name][order] for name in ("s", "d", "z"))], of_point)
 
 
-def _runs(bins, across):
-    """(N,) int32, number of the run of paint each point belongs to; points sorted by bin, then across."""
+def _runs(bins, across, spacing):
+    """(N,) int32, number of the run of paint each point belongs to; points sorted by bin, then across; `spacing` : mm between tracks of the scan."""
     cut = np.r_[True, (np.diff(bins) != 0) | (np.diff(across) > STRANDS.run_gap_units)]
     starts = np.flatnonzero(cut)
+    before, after = starts[1:] - 1, starts[1:]
+    unseen = track_reach(np.maximum(spacing[before], spacing[after])) / COORDINATE_SCALE
+    lasting = _lasting(bins[after], (across[after] + across[before]) / 2, (bins[after] == bins[before]) & (across[after] - across[before] > unseen))
     for _ in range(8):
         if len(starts) < 2:
             break
         last = np.r_[starts[1:], len(bins)] - 1
-        joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= STRANDS.max_worn_line_width_units)
+        joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= STRANDS.max_worn_line_width_units) & ~lasting
         # one join at a time per neighbourhood: the first of a row of joins
         joins &= ~np.r_[False, joins[:-1]]
         if not joins.any():
             break
-        starts = np.delete(starts, np.flatnonzero(joins) + 1)
+        starts, lasting = np.delete(starts, np.flatnonzero(joins) + 1), lasting[~joins]
     run = np.zeros(len(bins), np.int32)
     run[starts[1:]] = 1
     return np.cumsum(run, out=run)
+
+
+def _lasting(bins, middle, inside):
+    """(G,) bool, whether a gap in paint goes on along the road at the same offset, as between the two lines of a double line and not where one is worn.
+
+    `bins`, `middle` : of the gaps, in order; `inside` : whether paint of the same bin lies on either side, with a track of the scan between them
+    """
+    gaps = np.flatnonzero(inside)
+    span = float(np.ptp(middle)) + 10 * STRANDS.run_bin_units if len(gaps) else 1.0
+    key, count = bins[gaps] * span + middle[gaps], np.zeros(len(gaps), int)
+    for step in range(-STRANDS.gap_bins, STRANDS.gap_bins + 1):
+        reach = STRANDS.run_gap_units / 2 + abs(step) * STRANDS.gap_drift_units
+        count += np.searchsorted(key, key + step * span + reach) > np.searchsorted(key, key + step * span - reach)
+    result = np.zeros(len(inside), bool)
+    result[gaps] = count > STRANDS.gap_bins
+    return result
 
 
 def _middle_and_width(across, starts):

@@ -97,6 +97,25 @@ def test_a_double_line_clustered_as_one_stays_two():
     assert told(street.lines(), "kind", "pattern") == [("centre", "double-solid")] * 2
 
 
+def one_marking(*strips):
+    """Strips along a street, (first, last, offset), of 10 cm each, taken for one marking."""
+    street = ClusteredStreet()
+    for strip in strips:
+        street.paint(*strip, width=0.10)
+    del street.rows[1:]
+    street.points = [(np.ones_like(points[0]), *points[1:]) for points in street.points]
+    return street
+
+
+def test_two_lines_of_10_cm_with_10_cm_between_them_are_a_double_line_though_no_broader_than_one_worn_line():
+    assert told(one_marking((0, 120, 0.1), (0, 120, -0.1)).lines(), "kind", "pattern") == [("centre", "double-solid")] * 2
+
+
+def test_a_broad_line_with_its_middle_worn_off_here_and_there_is_one_line():
+    middles = [(first, first + 8, 0.0) for first in range(0, 120, 10)]
+    assert len(one_marking((0, 120, 0.1), (0, 120, -0.1), *middles).lines().rows) == 1
+
+
 def zebra(street, s):
     for offset in np.arange(-4.0, 4.1, 1.0):
         street.paint(s, s + 4.0, offset, width=0.5, kind="zebra", use="other")
