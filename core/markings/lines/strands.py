@@ -191,17 +191,19 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
 
 
 def _runs(bins, across, spacing):
-    """(N,) int32, number of the run of paint each point belongs to; points sorted by bin, then across; `spacing` : mm between tracks of the scan."""
+    """(N,) int32, number of the run of paint of each point; points sorted by bin, then across; `spacing` : mm between tracks of the scan."""
     cut = np.r_[True, (np.diff(bins) != 0) | (np.diff(across) > STRANDS.run_gap_units)]
     starts = np.flatnonzero(cut)
     before, after = starts[1:] - 1, starts[1:]
     unseen = track_reach(np.maximum(spacing[before], spacing[after])) / COORDINATE_SCALE
-    lasting = _lasting(bins[after], (across[after] + across[before]) / 2, (bins[after] == bins[before]) & (across[after] - across[before] > unseen))
+    seen = (bins[after] == bins[before]) & (across[after] - across[before] > unseen)
+    lasting = _lasting(bins[after], (across[after] + across[before]) / 2, seen)
     for _ in range(8):
         if len(starts) < 2:
             break
         last = np.r_[starts[1:], len(bins)] - 1
-        joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= STRANDS.max_worn_line_width_units) & ~lasting
+        joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= STRANDS.max_worn_line_width_units)
+        joins &= ~lasting
         # one join at a time per neighbourhood: the first of a row of joins
         joins &= ~np.r_[False, joins[:-1]]
         if not joins.any():
@@ -213,9 +215,9 @@ def _runs(bins, across, spacing):
 
 
 def _lasting(bins, middle, inside):
-    """(G,) bool, whether a gap in paint goes on along the road at the same offset, as between the two lines of a double line and not where one is worn.
+    """(G,) bool, whether a gap in paint goes on along the road at one offset: so it does between two lines, and not where one line is worn.
 
-    `bins`, `middle` : of the gaps, in order; `inside` : whether paint of the same bin lies on either side, with a track of the scan between them
+    `bins`, `middle` : of the gaps, in order; `inside` : whether paint of one bin lies on either side, farther apart than tracks of the scan
     """
     gaps = np.flatnonzero(inside)
     span = float(np.ptp(middle)) + 10 * STRANDS.run_bin_units if len(gaps) else 1.0
