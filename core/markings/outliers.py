@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -78,7 +79,8 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
         _put(kept, points, _kept_of_all(points, settings))
     else:
         size, length = max(int(TASK_WINDOWS * OUTLIERS.window / points.store.section_length), 1), points.store.section_length
-        items = [(road, size * k, size * (k + 1)) for road in points.roads() for k in sorted({number // size for number in points.sections(road)})]
+        items = [(road, min(numbers), max(numbers) + 1) for road in points.roads()
+                 for _, numbers in groupby(sorted(points.sections(road)), lambda number: number // size) for numbers in [list(numbers)]]
 
         def state(item):
             windows = _windows(item[1] * length, item[2] * length)

@@ -29,19 +29,24 @@ class KilledWorker(Exception):
 
 
 def is_section(item):
-    """Whether an item is the first and last profile or plane of a section; a window of ground has three numbers, a place of the lattice a station."""
-    return len(item) == 2 and isinstance(item[1], int)
+    """Whether an item ends with the first and last profile or plane of a section, alone or behind its method and road."""
+    return len(item) == 2 and isinstance(item[1], int) or len(item) == 4 and isinstance(item[0], str)
+
+
+def is_half(section, items):
+    """Whether a section is half of an item that was sent."""
+    return any(item[:-2] == section[:-2] and (item[-2] == section[-2]) != (item[-1] == section[-1]) for item in items)
 
 
 class StandIn(ThreadPoolExecutor):
-    """Does in threads what a distributed.Client and its executor have done; `deadly(first, last)` says at which items a worker would end.
+    """Does in threads what a distributed.Client and its executor have done; `deadly(section)` says at which items a worker would end.
 
     tasks : the items of each task that was sent, in this order
     """
 
     status = "running"
 
-    def __init__(self, deadly=lambda first, last: False):
+    def __init__(self, deadly=lambda section: False):
         super().__init__(2)
         self.deadly, self.tasks = deadly, []
 
@@ -59,9 +64,11 @@ class StandIn(ThreadPoolExecutor):
     def _do(self, function, phase, items, results):
         some = read_plain(Path(items))
         for k, section in enumerate(some):
-            if is_section(section) and self.deadly(*section):
-                write_plain(Path(items), some[:k])
-                function(phase, items, results[:k])
+            if is_section(section) and self.deadly(tuple(section)):
+                before = Path(items).with_suffix(".before")
+                write_plain(before, some[:k])
+                function(phase, str(before), results[:k])
+                before.unlink()
                 raise KilledWorker
         return function(phase, items, results)
 
@@ -93,10 +100,10 @@ def test_what_is_sent_as_files_gives_what_threads_give_and_leaves_nothing(by_thr
 def test_a_section_at_which_workers_end_is_halved_once_and_gives_the_same(by_threads):
     halves = []
 
-    def deadly(first, last):
-        half = any((a == first) != (b == last) for a, b in client.items)
-        halves.extend([(first, last)] * half)
-        return first <= 100 < last and not half
+    def deadly(section):
+        half = is_half(section, client.items)
+        halves.extend([section] * half)
+        return section[-2] <= 100 < section[-1] and not half
 
     client = StandIn(deadly)
     executor = Cluster(client)
@@ -105,14 +112,14 @@ def test_a_section_at_which_workers_end_is_halved_once_and_gives_the_same(by_thr
 
 
 def test_where_workers_end_at_a_half_the_road_is_named():
-    executor = Cluster(StandIn(deadly=lambda first, last: first <= 100 < last))
+    executor = Cluster(StandIn(deadly=lambda section: section[-2] <= 100 < section[-1]))
     with pytest.raises(RoadExtractionError, match=r"Workers of the cluster ended.*road 0, -?\d+ to -?\d+ m.*memory-limit"):
         boundaries(executor)
     assert not executor.folder.exists()
 
 
 def test_a_phase_that_cannot_be_halved_is_named_at_once():
-    client = StandIn(deadly=lambda first, last: True)
+    client = StandIn(deadly=lambda section: True)
     executor = Cluster(client)
     with pytest.raises(RoadExtractionError, match="Workers of the cluster ended"):
         list(executor.run(Phase(lengths_of, survey_of(street())), [(0, 8)]))
@@ -144,8 +151,8 @@ def test_successive_sections_go_to_a_worker_together_and_every_worker_has_rounds
     client = StandIn()
     assert numbers_of(boundaries(Cluster(client))) == by_threads
     together = [some for some in client.tasks if is_section(some[0])]
-    assert {len(some) for some in together} == {3}, "all sections of a street of 51 m"
-    assert all(a[1] == b[0] for some in together for a, b in zip(some, some[1:]))
+    assert {len(some) for some in together} == {6}, "all sections of a street of 51 m, by both methods"
+    assert all(a[-1] == b[-2] for some in together for a, b in zip(some, some[1:]) if a[:-2] == b[:-2])
     shared = StandIn()
     assert numbers_of(boundaries(Cluster(shared, threads=100))) == by_threads
     assert max(map(len, shared.tasks)) == 1 and sorted(set(shared.items)) == sorted(set(client.items))
@@ -159,7 +166,7 @@ def test_where_workers_end_only_the_section_that_they_end_at_is_computed_again(b
         write(path, *others)
 
     monkeypatch.setattr(tasks, "write_plain", counted)
-    client = StandIn(lambda first, last: first <= 100 < last and not any((a == first) != (b == last) for a, b in client.items))
+    client = StandIn(lambda section: section[-2] <= 100 < section[-1] and not is_half(section, client.items))
     assert numbers_of(boundaries(Cluster(client))) == by_threads
     assert len(computed) == len(set(computed)), "what was finished before a worker ended stays"
 

@@ -221,7 +221,7 @@ def test_two_passes_three_centimetres_apart_are_one_curb(sample, whole, cloud, m
                              for name, shift in (("time", span), ("x", 0.02), ("y", 0.0), ("z", 0.03))},
                    **{name: np.r_[getattr(first, name), getattr(first, name)] for name in ("roll", "pitch", "heading")})
     found = mapped([whole, cloud], both)
-    curbs = [g for g, row in sample.truth_boundaries if row["part"] != "top" and row["edge"] == "curb"]
+    curbs = [g for g, row in sample.truth_boundaries if row["part"] != "top" and row["edge"] in ("curb", "dropped")]
     area = shapely.union_all([shapely.force_2d(g).buffer(0.5) for g in found.layer("surface").geometries])
     accuracy = compare_lines(found.layer("edges").geometries, curbs, area=area)
     assert accuracy.completeness[0.10] > 0.9

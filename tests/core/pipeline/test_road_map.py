@@ -58,10 +58,12 @@ def area_of(road_map):
 
 
 def test_road_edges_lie_on_the_curbs(sample, road_map):
-    curbs = [g for g, row in sample.truth_boundaries if row["part"] != "top" and row["edge"] == "curb"]
-    found = compare_lines(road_map.layer("edges").geometries, curbs, area=area_of(road_map))
+    """Every curb has its edge, and every edge is that of a curb, which may be dropped."""
+    curbs, dropped = ([g for g, row in sample.truth_boundaries if row["part"] != "top" and row["edge"] == edge] for edge in ("curb", "dropped"))
+    edges, area = road_map.layer("edges").geometries, area_of(road_map)
+    found = compare_lines(edges, curbs, area=area)
     assert found.completeness[0.10] > 0.95
-    assert found.correctness[0.10] > 0.95
+    assert compare_lines(edges, curbs + dropped, area=area).correctness[0.10] > 0.95
     assert found.height.rmse < 0.02
 
 
@@ -102,7 +104,13 @@ def test_the_same_street_again_a_thousand_kilometres_on_gives_the_same_map(sampl
         for first, shift in ((0, 0.0), (1, east)):
             town = [shapely.get_coordinates(g, include_z=True) for g in geometries if (g.centroid.x > sample.settings.origin[0] + east / 2) == first]
             assert len(town) == len(expected) > 0, name
-            np.testing.assert_allclose(np.concatenate(town) - [shift, 0.0, 0.0], np.concatenate(expected), rtol=0, atol=1e-3, err_msg=name)
+            town = [vertices - [shift, 0.0, 0.0] for vertices in town]
+            if name == "driving_lines":
+                # where a line is cut into measured and bridged depends on the usual width of lanes, which two towns show better than one
+                there, alone = (shapely.MultiLineString([shapely.LineString(vertices[:, :2]) for vertices in lines]) for lines in (town, expected))
+                assert shapely.hausdorff_distance(there, alone, densify=0.1) < 1e-3
+            else:
+                np.testing.assert_allclose(np.concatenate(town), np.concatenate(expected), rtol=0, atol=1e-3, err_msg=name)
     assert (tmp_path / "image.tif").stat().st_size < 20e6
 
 
@@ -180,8 +188,8 @@ def road_map_of(street, folder, there, backwards):
     return make_road_map([folder / "cloud.las"], trajectory, folder / "intensity.tif")
 
 
-def on_the_map_before(layer, back):
-    return [shapely.transform(shapely.force_2d(g), back) for g in layer.geometries]
+def on_the_map_before(lines, back):
+    return [shapely.transform(shapely.force_2d(line), back) for line in lines]
 
 
 def metres_by_side(layer):
@@ -198,11 +206,11 @@ def test_the_map_does_not_depend_on_how_the_street_lies_or_is_driven(street, roa
     """Its sides are as they then are: both ways swap them."""
     found = road_map_of(street, tmp_path, there, backwards)
     for name in ("edges", "marking_lines", "driving_lines"):
-        lines, before = on_the_map_before(found.layer(name), back), road_map.layer(name).geometries
-        same = compare_lines(lines, before)
-        # a low curb that is just seen may end a few metres earlier
+        # a low curb that is just seen may end a few metres earlier, and a dropped one that is just seen to sink go on or not
+        after, before = ([line for line, row in one.layer(name) if row.get("edge") != "dropped"] for one in (found, road_map))
+        same = compare_lines(on_the_map_before(after, back), before)
         assert same.completeness[0.10] > 0.94 and same.correctness[0.10] > 0.94, name
-    same = assess_markings(on_the_map_before(found.markings, back), road_map.markings.geometries).tolerant
+    same = assess_markings(on_the_map_before(found.markings.geometries, back), road_map.markings.geometries).tolerant
     assert same.precision > 0.98 and same.recall > 0.98
     assert sorted(found.markings.column("class")) == sorted(road_map.markings.column("class"))
     before, after = metres_by_side(road_map.layer("edges")), metres_by_side(found.layer("edges"))
