@@ -195,7 +195,7 @@ def on_the_map_before(lines, back):
 def metres_by_side(layer):
     found = {"left": 0.0, "right": 0.0}
     for line, row in layer:
-        found[row["side"]] += line.length
+        found[row["side"]] += line.length * (row["edge"] != "dropped")
     return found
 
 
