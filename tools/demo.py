@@ -114,9 +114,9 @@ def accuracy():
 
 
 def _curbs():
-    """True curb bottoms, without the dropped ones that are level with the road."""
+    """True curb bottoms, those of dropped curbs too."""
     found, rows = geometries(TRUTH, "boundaries")
-    return [g for g, row in zip(found, rows) if row.get("part") != "top" and row.get("edge") == "curb"]
+    return [g for g, row in zip(found, rows) if row.get("part") != "top" and row.get("edge") in ("curb", "dropped")]
 
 
 def over_the_uav_image():
