@@ -288,9 +288,9 @@ class CommonTrend:
     def __init__(self, strands: list[Strand]) -> None:
         self.s, self.value = np.zeros(1), np.zeros(1)
         long = [strand for strand in strands if strand.length >= 1.5]
-        if not long:
+        s, slope, weight, strand = _slopes(long) if long else [np.empty(0)] * 4
+        if not len(s):
             return
-        s, slope, weight, strand = _slopes(long)
         bins = np.floor(s / TREND.trend_step).astype(np.int64)
         order = np.lexsort((slope, bins))
         starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) != 0])

@@ -116,6 +116,14 @@ def test_a_broad_line_with_its_middle_worn_off_here_and_there_is_one_line():
     assert len(one_marking((0, 120, 0.1), (0, 120, -0.1), *middles).lines().rows) == 1
 
 
+def test_a_road_whose_only_paint_runs_obliquely_across_it_has_no_line_that_others_follow():
+    """0.19 m across for each metre along: more than any line that bounds lanes."""
+    street = ClusteredStreet(radius=None)
+    for first in np.arange(50.0, 56.0, 0.25):
+        street.paint(first, first + 0.25, 0.19 * (first - 53.0))
+    assert set(told(street.lines(), "status")) <= {("measured",)}
+
+
 def zebra(street, s):
     for offset in np.arange(-4.0, 4.1, 1.0):
         street.paint(s, s + 4.0, offset, width=0.5, kind="zebra", use="other")
