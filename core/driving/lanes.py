@@ -103,7 +103,7 @@ def _parts(boundaries, estimate, lane_width, line_distance):
     bounds = np.flatnonzero(np.diff(of)) + 1
     for span, of_span, drawn, begin, width in zip(spans, rows, made_of, *(np.split(values, bounds) for values in places)):
         part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
-        if UNPAINTED[list(drawn)].all():
+        if UNPAINTED[list(drawn)].all() and span.count > 1:
             part = _where_driven(part, boundaries.s, estimate, span, lane_width)
         yield span.interval, part
 
@@ -111,8 +111,8 @@ def _parts(boundaries, estimate, lane_width, line_distance):
 def _where_driven(part, s, estimate, span, lane_width):
     """The LaneTrack of a lane of a strip without any paint, moved from its even share of the strip to where it was driven, as far as that is surer.
 
-    Lanes of the usual width leave room in the strip and may lie anywhere in it, and vehicles keep to their middle with some scatter: both are errors
-    about the middle.
+    One lane has all the room between its borders. Where several share it nothing shows what parts them: lanes of the usual width may lie anywhere in
+    it, and vehicles keep to their middle with some scatter. Both are errors about the middle.
     """
     c, evidence = estimate.candidates, estimate.evidence
     passes = np.flatnonzero((evidence.directions == span.direction) & np.isfinite(evidence.driven[:, span.interval]))

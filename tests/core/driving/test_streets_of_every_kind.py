@@ -234,6 +234,12 @@ def test_without_paint_lanes_lie_where_they_were_driven_and_not_where_a_street_t
         assert max(np.abs(street.offsets(line) - 1.75 * side).max() for line in parts) < 0.15
 
 
+def test_one_lane_between_two_curbs_lies_in_their_middle_though_the_drive_was_not_quite_there():
+    street = Street(vehicle=0.12)
+    lines = list(street.lanes(edges=curbs(street, 2.2, -2.2))[0])
+    assert lines and max(np.abs(street.offsets(line)).max() for line, _ in lines) < 0.02
+
+
 def test_lanes_go_on_between_the_curbs_where_the_paint_stops():
     street = Street(vehicle=-1.75).paint(0.0, 5.0, 60.0, pattern="dashed")
     lines, _ = street.lanes(edges=curbs(street, 3.5, -3.5))
