@@ -77,7 +77,7 @@ def _without_steps(parts):
     """
     track = LaneTrack.joined(parts)
     seen, strip = track.status == MEASURED, ~track.offset & ((track.left < 0) | (track.right < 0))
-    sigma, reach = np.select([seen, track.offset], TRACKS.place_sigma[:2], TRACKS.place_sigma[2]), np.where(strip & ~seen, *TRACKS.place_reach)
+    sigma, reach = np.where(seen, *TRACKS.place_sigma), np.where(strip & ~seen, *TRACKS.place_reach)
     variance = (sigma * STATION_STEP / reach) ** 2   # of what two neighbours are moved by
     weight = 2 / (variance[1:] + variance[:-1])
     joints = np.cumsum([len(part) for part in parts[:-1]])

@@ -98,12 +98,3 @@ def test_a_short_piece_between_two_doubtful_stretches_is_in_doubt_and_has_no_sec
     doubtful.aside[:10] = doubtful.aside[12:] = 0.5
     assert doubtful.in_doubt.all()
     assert doubtful.said(slice(10, 12))["other"] == "" and doubtful.said(slice(0, 10))["other"]
-
-
-def test_a_lane_beside_one_border_hardly_moves_to_meet_one_over_a_gap():
-    beside, over_gap = lane([0.3] * 40, INFERRED, True, 1), lane([0.0] * 40, INFERRED, False, 1)
-    for parts, at_gap in (([beside, over_gap], slice(40, 80)), ([over_gap, beside], slice(0, 40))):
-        moved = np.abs(_without_steps(parts).d - np.concatenate([part.d for part in parts]))
-        assert moved[at_gap].max() > 0.2
-        moved[at_gap] = 0.0
-        assert moved.max() < 0.05
