@@ -79,8 +79,8 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
         _put(kept, points, _kept_of_all(points, settings))
     else:
         size, length = max(int(TASK_WINDOWS * OUTLIERS.window / points.store.section_length), 1), points.store.section_length
-        items = [(road, min(numbers), max(numbers) + 1) for road in points.roads()
-                 for _, numbers in groupby(sorted(points.sections(road)), lambda number: number // size) for numbers in [list(numbers)]]
+        stretches = [(road, list(numbers)) for road in points.roads() for _, numbers in groupby(sorted(points.sections(road)), lambda n: n // size)]
+        items = [(road, numbers[0], numbers[-1] + 1) for road, numbers in stretches]
 
         def state(item):
             windows = _windows(item[1] * length, item[2] * length)
