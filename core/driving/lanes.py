@@ -117,7 +117,8 @@ def _where_driven(part, s, estimate, span, lane_width):
     c, evidence = estimate.candidates, estimate.evidence
     passes = np.flatnonzero((evidence.directions == span.direction) & np.isfinite(evidence.driven[:, span.interval]))
     middle, places = (s[c.first] + s[c.last]) / 2, s[part.first:part.last + 1]
-    driven = np.array([np.interp(places, middle[there], evidence.driven[p, there]) for p in passes for there in [np.isfinite(evidence.driven[p])]])
+    seen = np.isfinite(evidence.driven)
+    driven = np.array([np.interp(places, middle[seen[p]], evidence.driven[p, seen[p]]) for p in passes])
     beside = driven.reshape(-1, len(part)) - part.d
     inside = np.abs(beside) < part.width / 2
     count = inside.sum(axis=0)
