@@ -110,3 +110,22 @@ def project(qgis_app):
     project.clear()
     yield project
     project.clear()
+
+
+@pytest.fixture
+def kept_connection(qgis_app):
+    """`kept_connection(name, uri, **options)` keeps a connection to PostGIS in QGIS, and takes it away after the test.
+
+    QGIS remembers the connections that it has once listed: removed from its settings alone they would be listed in later tests.
+    """
+    from qgis.core import QgsProviderRegistry
+
+    postgres, names = QgsProviderRegistry.instance().providerMetadata("postgres"), []
+
+    def keep(name, uri, **options):
+        postgres.saveConnection(postgres.createConnection(uri, options), name)
+        names.append(name)
+        return name
+    yield keep
+    for name in names:
+        postgres.deleteConnection(name)

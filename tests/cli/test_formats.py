@@ -149,24 +149,17 @@ def test_who_opens_a_table_of_postgis_sees_the_style_and_learns_which_result_of_
 
 
 @pytest.fixture
-def kept_connection(database):
+def connection(database, kept_connection):
     """The database as a connection that QGIS keeps, with its password; what it is called."""
-    from qgis.core import QgsDataSourceUri, QgsSettings
-
-    uri, settings = QgsDataSourceUri(database[0]), QgsSettings()
-    for name, value in {"host": uri.host(), "port": PORT, "database": "postgres", "username": "lane", "saveUsername": "true",
-                        "password": "secret", "savePassword": "true"}.items():  # pragma: allowlist secret
-        settings.setValue(f"PostgreSQL/connections/B12/{name}", value)
-    yield "B12"
-    settings.remove("PostgreSQL/connections/B12")
+    return kept_connection("B12", f"{database[0]} password='secret'", saveUsername=True, savePassword=True)  # pragma: allowlist secret
 
 
-def test_the_tables_of_a_client_take_all_of_a_map_or_nothing(survey, tmp_path, database, kept_connection):
+def test_the_tables_of_a_client_take_all_of_a_map_or_nothing(survey, tmp_path, database, connection):
     sql = database[1]
     sql('CREATE SCHEMA client; CREATE TABLE client."Achsen" ("CODE" text, road text NOT NULL, geom geometry(LineString, 32650))')
     boundaries(survey, tmp_path, "edges.gpkg")
 
-    def delivered(*rows, schema="client", connection=kept_connection):
+    def delivered(*rows, schema="client", connection=connection):
         (tmp_path / "office.csv").write_text("\n".join(["from;where;layer;CODE;NO:int", *rows]))
         return call("run", "lanewright:exporttemplate", "--TEMPLATE=office.csv", "--ROAD_EDGES=edges.gpkg", f"--CONNECTION={connection}",
                     f"--SCHEMA={schema}", folder=tmp_path)

@@ -3,7 +3,7 @@
 import pytest
 from lanewright.algorithms.catalogue import ALGORITHMS
 from lanewright.desktop.dialogs.algorithm_dialog import LanewrightDialog, destinations, presets_of
-from qgis.core import QgsApplication, QgsSettings, QgsVectorLayer
+from qgis.core import QgsApplication, QgsVectorLayer
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QTextBrowser
 
 
@@ -69,14 +69,9 @@ def test_it_says_where_everything_goes_and_that_an_earlier_run_is_replaced(dialo
 
 
 @pytest.fixture
-def connection():
+def connection(kept_connection):
     """A connection to PostGIS that QGIS keeps, to a server that need not run."""
-    kept = {"host": "/nowhere", "port": "5432", "database": "roads", "username": "lane"}
-    settings = QgsSettings()
-    for name, value in kept.items():
-        settings.setValue(f"PostgreSQL/connections/B12/{name}", value)
-    yield "B12"
-    settings.remove("PostgreSQL/connections/B12")
+    return kept_connection("B12", "dbname='roads' host=/nowhere port=5432 user='lane'", saveUsername=True)
 
 
 def test_all_layers_go_to_tables_of_one_schema(dialog, connection):
