@@ -162,7 +162,7 @@ def _parts(boundaries, estimate, lane_width, line_distance):
     bounds = np.flatnonzero(np.diff(of)) + 1
     for span, of_span, drawn, begin, width in zip(spans, rows, made_of, *(np.split(values, bounds) for values in places)):
         part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
-        if UNPAINTED[list(drawn)].all() and span.count > 1:
+        if UNPAINTED[list(drawn)].any() and span.count > 1:
             part = _where_driven(part, boundaries.s, estimate, span, lane_width)
         elif span.count == 1 and span.beside[BEYOND] >= 0 and SURFACE_END[list(drawn)].any():
             drives = _drives(part, boundaries.s, estimate, np.arange(estimate.evidence.own))
@@ -171,21 +171,24 @@ def _parts(boundaries, estimate, lane_width, line_distance):
 
 
 def _where_driven(part, s, estimate, span, lane_width):
-    """The LaneTrack of a lane of a strip without any paint, moved from its even share of the strip to where it was driven, as far as that is surer.
+    """The LaneTrack of a lane of a strip whose lanes nothing parts, moved from its even share of the strip to where it was driven, as far as surer.
 
-    One lane has all the room between its borders. Where several share it nothing shows what parts them: lanes of the usual width may lie anywhere in
-    it, and vehicles keep to their middle with some scatter. Both are errors about the middle.
+    One lane has all the room between its borders. Where several share it, lanes of the usual width may lie anywhere in it; and either they share it
+    evenly, or they are as unlike as lanes of a road are, both as probable. Vehicles keep to their middle with some scatter. All these are normal
+    errors about the middle: where one drove far from an even share it is not even.
     """
-    evidence = estimate.evidence
+    evidence, weights = estimate.evidence, estimate.weights
     passes = np.flatnonzero((evidence.directions == span.direction) & np.isfinite(evidence.driven[:, span.interval]))
     beside = _drives(part, s, estimate, passes) - part.d
     inside = np.abs(beside) < part.width / 2
     count = inside.sum(axis=0)
+    beside = (inside * beside).sum(axis=0) / np.maximum(count, 1)
     room = np.where(count > 0, np.maximum(part.width - lane_width, 0.0), 0.0)
-    variance = (span.count * room) ** 2 / 12   # of an even distribution
-    share = variance / (variance + estimate.weights.track_sigma**2 / np.maximum(count, 1))
-    return replace(part, d=part.d + share * (inside * beside).sum(axis=0) / np.maximum(count, 1), width=part.width - share * room,
-                   offset=share > 0.5)
+    of_place = (span.count * room) ** 2 / 12 + np.array([[0.0], [weights.width_sigma**2]])   # that of an even distribution, and of widths
+    variance = of_place + weights.track_sigma**2 / np.maximum(count, 1)
+    probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance)
+    share = np.where(count > 0, (probable * of_place / variance).sum(axis=0) / probable.sum(axis=0), 0.0)
+    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=share > 0.5)
 
 
 def _drives(part, s, estimate, passes):

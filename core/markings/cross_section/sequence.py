@@ -143,10 +143,8 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     beside = np.where(UNPAINTED[made_left][..., None], c.beside[:, None, :, 0], c.beside[:, :, None, 1])
     for number in range(1, LANES.max_lanes + 1):
         begin, width_each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, beside)
-        # beside a curb, or between two lanes that nothing parts, room may be left over
-        roomy = loose | bare & (number > 1)
-        fits = _width_cost(np.where(roomy, np.minimum(width_each, lane_width), width_each), lane_width, w) \
-            + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * roomy
+        fits = _width_cost(np.where(loose, np.minimum(width_each, lane_width), width_each), lane_width, w) \
+            + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
         if number == 1:
             fits += w.driven_astride * (loose & (beside[..., BEYOND] >= 0))
         # what lies beyond the end of the surface

@@ -234,6 +234,14 @@ def test_without_paint_lanes_lie_where_they_were_driven_and_not_where_a_street_t
         assert max(np.abs(street.offsets(line) - 1.75 * side).max() for line in parts) < 0.15
 
 
+@pytest.mark.parametrize("left", [0.75, 1.65])
+def test_without_paint_a_street_is_shared_evenly_unless_it_was_driven_far_from_that(left):
+    street = Street(vehicle=-1.65, again=(left,))
+    places = [(row["direction"], np.abs(street.offsets(line) - (left if row["direction"] < 0 else -1.65)).max())
+              for line, row in street.lanes(edges=curbs(street, 3.3, -3.3))[0]]
+    assert {way for way, _ in places} == {1, -1} and max(off for _, off in places) < 0.1
+
+
 def test_one_lane_between_two_curbs_lies_in_their_middle_though_the_drive_was_not_quite_there():
     street = Street(vehicle=0.12)
     lines = list(street.lanes(edges=curbs(street, 2.2, -2.2))[0])
