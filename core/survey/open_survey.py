@@ -288,6 +288,8 @@ def _say_left_out(files, frame, reader, settings, progress):
         progress.info(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if left.without_time:
         progress.warn(f"{left.without_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the trajectory's.")
+    for warning in reader.not_covered:
+        progress.warn(warning)
     if reader.uneven:
         progress.warn("The trajectory does not keep to one height above the road: half of the points under the vehicle lie more than "
                       f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
