@@ -34,7 +34,7 @@ from .store.section_store import SectionStore
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
-from .trajectory.time_systems import align_time, wrapped_week
+from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
 from .weights import FRAME, READING, STORE, VEHICLE
 
@@ -287,7 +287,8 @@ def _say_left_out(files, frame, reader, settings, progress):
     if left.excluded:
         progress.info(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if left.without_time:
-        progress.warn(f"{left.without_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the trajectory's.")
+        progress.warn(f"{left.without_time:,} of {total:,} points were left out: the trajectory, which runs {_said_of_times(frame)}, has no position "
+                      "at their gps_time. If they are part of this survey, give its whole trajectory, and points with their time.")
     for warning in reader.not_covered:
         progress.warn(warning)
     if reader.uneven:
@@ -375,12 +376,47 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
         return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
     if not all(file.has_time for file in files):
         return trajectory, "The point cloud has no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
-    span = _time_span(files)
-    if span is None:
+    sampled = _sampled_times(files)
+    times = np.concatenate([time for _, time in sampled])
+    if not len(times) or times.max() <= times.min():
         return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False
-    span, week_ends = span
+    week_ends = wrapped_week((times.min(), times.max()))
+    if week_ends:
+        sampled = [(path, unwrap_week(time)) for path, time in sampled]
+    spans = [(path, float(time.min()), float(time.max())) for path, time in sampled if len(time)]
+    span = min(first for _, first, _ in spans), max(last for *_, last in spans)
     offset, note = align_time(trajectory.time, span, settings.time, files[0].adjusted_time)
-    return trajectory.shifted(offset), note, True, week_ends
+    shifted = trajectory.shifted(offset)
+    _refuse_other_clocks(spans, trajectory.time, offset, settings.time)
+    return shifted, note, True, week_ends
+
+
+def _refuse_other_clocks(spans, time, offset, system):
+    """Refuse files, (path, first and last gps_time), that a trajectory covers only by another shift of its (N,) times than the offset of the others.
+
+    Of files whose times are less than a week apart one may well be of another day.
+    """
+    start, end = np.nanmin(time) + offset - FRAME.clock_slack, np.nanmax(time) + offset + FRAME.clock_slack
+    path, *ends = next((span for span in spans if span[1] <= end and span[2] >= start), spans[0])
+    for other, first, last in spans:
+        if first <= end and last >= start or first == last or abs(first - ends[0]) < SECONDS_PER_WEEK:
+            continue
+        try:
+            align_time(time, (first, last), system)
+        except RoadExtractionError:
+            continue   # of a drive that the trajectory does not hold
+        raise RoadExtractionError(f"The point clouds count time in two ways: {path} runs from {ends[0]:.1f} s to {ends[1]:.1f} s, and {other}, of "
+                                  f"the same drive, from {first:.1f} s to {last:.1f} s. Export all of them with one kind of gps_time, such as "
+                                  "adjusted standard GPS time, and run again.")
+
+
+def _said_of_times(frame):
+    """From when to when a trajectory runs, and the longest of its gaps."""
+    spans = sorted((p.time[0], p.time[-1]) for p in frame.passes)
+    gaps = [(last, first) for (_, last), (first, _) in zip(spans[:-1], spans[1:]) if first - last > FRAME.clock_slack]
+    gaps.sort(key=lambda gap: gap[0] - gap[1])
+    named = "".join(f", not from {last:.1f} s to {first:.1f} s" for last, first in gaps[:READING.told_stretches])
+    return f"from {spans[0][0]:.1f} s to {spans[-1][1]:.1f} s{named}{', …' if len(gaps) > READING.told_stretches else ''}"
 
 
 def _without_time(files, trajectory):
@@ -392,16 +428,10 @@ def _without_time(files, trajectory):
     return "all points have the same gps_time"
 
 
-def _time_span(files):
-    """((first, last) gps_time, whether the week ends in between), of samples of every file, its last points among them; None if all are equal."""
+def _sampled_times(files):
+    """[(path, (N,) gps_time)] of a few points of every file that has any, its last ones among them."""
     with ParallelCloudReader(("gps_time",)) as readers:
-        samples = [time[np.isfinite(time)] for file in files if file.count for time in readers.times(file)]
-    times = np.concatenate(samples)
-    if not len(times) or times.max() <= times.min():
-        return None
-    week_ends = wrapped_week((times.min(), times.max()))
-    times = unwrap_week(times) if week_ends else times
-    return (float(times.min()), float(times.max())), week_ends
+        return [(file.path, np.concatenate([time[np.isfinite(time)] for time in readers.times(file)])) for file in files if file.count]
 
 
 def _check_extent(files, frame, crs, trajectory_crs):
