@@ -22,6 +22,7 @@ from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import fitted_trajectory
 from .blocks import PointChoice, unwrap_week
+from .frame.passes import decimate_by_distance
 from .frame.road_frame import RoadFrame, build_frame
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
@@ -275,7 +276,7 @@ def _frame_of(files, trajectory, crs, has_time, progress):
         progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
                       "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
                       "the files of each drive with its own part of the trajectory.")
-    _check_extent(files, frame, crs, trajectory.crs)
+    _check_extent(files, frame, crs, trajectory.crs, progress)
     return frame
 
 
@@ -434,16 +435,25 @@ def _sampled_times(files):
         return [(file.path, np.concatenate([time[np.isfinite(time)] for time in readers.times(file)])) for file in files if file.count]
 
 
-def _check_extent(files, frame, crs, trajectory_crs):
-    low = np.min([file.minimum for file in files if file.count], axis=0)
-    high = np.max([file.maximum for file in files if file.count], axis=0)
-    x = np.concatenate([p.x for p in frame.passes]) + frame.origin[0]
-    y = np.concatenate([p.y for p in frame.passes]) + frame.origin[1]
+def _check_extent(files, frame, crs, trajectory_crs, progress):
+    """Refuse clouds, or a file of them, with coordinates of another kind than those of the trajectory, and tell of files beside it."""
+    filled = [file for file in files if file.count]
+    low, high = np.min([file.minimum for file in filled], axis=0), np.max([file.maximum for file in filled], axis=0)
+    ways = [np.c_[p.x, p.y][decimate_by_distance(p.x, p.y, FRAME.track_step)] for p in frame.passes]
+    x, y = (np.concatenate(ways) + frame.origin[:2]).T
     reach = FRAME.corridor
-    if not _runs_through(low, high, x, y, reach):
+    away = [file for file in filled if not _runs_through(file.minimum, file.maximum, x, y, reach)]
+    if len(away) == len(filled):
         raise RoadExtractionError(f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, y "
                                   f"{low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to "
                                   f"{y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
+    for file in away:
+        ends = np.array(file.minimum), np.array(file.maximum)
+        if _runs_through(*ends, y, x, reach) or _advice_on_units(*ends, x, y, crs, reach):
+            raise RoadExtractionError(f"The coordinates of {file.path} are of another kind than those of the other point clouds, through which the "
+                                      f"trajectory runs. {_what_to_try(*ends, x, y, crs, trajectory_crs, reach)}")
+    if away:
+        progress.info(f"{len(away)} of {len(filled)} files lie beside the trajectory and give no points, such as {away[0].path}.")
 
 
 def _runs_through(low, high, x, y, reach):

@@ -426,3 +426,23 @@ def test_a_gap_in_the_trajectory_is_told_with_its_times(street):
     listener = RememberedMessages()
     open_survey([path], Trajectory(*(getattr(trajectory, name)[~away] for name in ("time", "x", "y", "z"))), progress=listener)
     assert any("not from 1006.0 s to 1012.0 s" in warning for warning in listener.warnings)
+
+
+@pytest.mark.parametrize("kind, says", [("feet", "in feet"), ("exchanged", "x and y are exchanged"), ("degrees", "look like degrees")])
+def test_a_file_with_coordinates_of_another_kind_than_the_others_is_refused_by_name(tmp_path, kind, says):
+    trajectory = drive(PATH)
+    x, y, z, time = surveyed_points(trajectory)
+    late = time > 1010
+    first = write_cloud(tmp_path / "early.laz", *(c[~late] for c in (x, y, z, time)), crs=CRS)
+    places = {"feet": (x / 0.3048, y / 0.3048, z / 0.3048), "exchanged": (y, x, z), "degrees": (9 + x * 1e-9, 48 + y * 1e-9, z)}[kind]
+    second = write_cloud(tmp_path / "late.laz", *(c[late] for c in (*places, time)))
+    with pytest.raises(RoadExtractionError, match=f"late.laz are of another kind.*{says}"):
+        open_survey([first, second], trajectory)
+
+
+def test_a_file_beside_the_drive_is_no_mistake(street, surveyed, tmp_path):
+    trajectory, (x, y, z, time), path = street
+    listener = RememberedMessages()
+    beside = write_cloud(tmp_path / "beside.laz", x + 3000.0, y, z, time, crs=CRS)
+    np.testing.assert_array_equal(contents(open_survey([path, beside], trajectory, progress=listener)), surveyed)
+    assert listener.warnings == [] and any("1 of 2 files lie beside" in text for _, text in listener.messages)
