@@ -120,7 +120,7 @@ def _apart(records: Columns, labels: np.ndarray, road: Road, settings: ClusterSe
     spots, windows = spots_by_place(places)
     crossings = crossings_of(spots, windows, (yield combs_asked(places, windows, 0.35)))
     del spots, windows
-    stripes = stripes_apart(places, way, crossings, (yield stripes_asked(places, way, crossings, 0.45)))
+    stripes = stripes_apart(places, way, crossings, (yield _stripes_asked(places, way, crossings, 0.45)))
     stripe_of = np.full(len(places), -1, np.int32)
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
@@ -244,7 +244,7 @@ def _markings(stripes: list[_Marking], pieces: _Pieces, blocks: np.ndarray, numb
             shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
             markings.append(_Marking(records[of_it], pieces.order[of_it], shape, kind, use))
     markings = sorted(markings, key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-    outlines = iter((yield outlines_asked(pieces.paint, [marking for marking in markings if marking.outline is None], number, roads)))
+    outlines = iter((yield _outlines_asked(pieces.paint, [marking for marking in markings if marking.outline is None], number, roads)))
     drawn = [next(outlines) if marking.outline is None
              else [lifted(marking.outline, np.stack([marking.records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)] for marking in markings]
     return markings, drawn, sum(kind == NOT_PAINT for members, kind, _ in classes if members)
@@ -416,7 +416,7 @@ def combs_asked(places: np.ndarray, windows: Sequence[np.ndarray], until: float)
                   read=lambda combs: [None if comb is None else Comb(*comb) for comb in combs])
 
 
-def stripes_asked(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], until: float) -> Asked:
+def _stripes_asked(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], until: float) -> Asked:
     """Asks for the stripes of each crossing, their spots by number among those of the crossing; (N,) radians `way` : of the road at each place."""
     rows = np.concatenate([np.empty(0, np.intp), *(spots for spots, _ in crossings)])
     return _asked(_zebra_stripes, lambda a, b: (places[rows[a:b]], way[rows[a:b]]), np.cumsum([0, *(len(spots) for spots, _ in crossings)]), until,
@@ -434,7 +434,7 @@ def shapes_asked(records: Columns, rows: Sequence[np.ndarray], until: float) -> 
     return _asked(shapes_of_clusters, lambda a, b: _columns_at(records, together[a:b], MEASURED), np.cumsum([0, *map(len, rows)]), until)
 
 
-def outlines_asked(paint: Columns, markings: Sequence[_Marking], number: int, roads: Sequence[Road]) -> Asked:
+def _outlines_asked(paint: Columns, markings: Sequence[_Marking], number: int, roads: Sequence[Road]) -> Asked:
     """Asks for [Polygon] of each marking, of `drawn_outline`, on the road of that number among all."""
     together = np.concatenate([np.empty(0, np.intp), *(marking.rows for marking in markings)])
     return _asked(outlines_of_markings, lambda a, b: (number, *_columns_at(paint, together[a:b], DRAWN)),
