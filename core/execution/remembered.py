@@ -40,7 +40,8 @@ class RememberedResults(Executor):
 
     def _completed(self, phase, items, state, compute, progress):
         """Yield the results of all items, of which `compute` has an executor give those that are not remembered."""
-        names = [digest((name_of(phase.function), phase.arguments, item, state and state(item))) for item in items]
+        shared = digest((name_of(phase.function), phase.arguments))
+        names = [digest((shared, item, state and state(item))) for item in items]
         missing = {name: k for k, name in enumerate(names) if name not in self._results}
         rows = list(missing.values())
         results = iter(compute(THREADS if 2 * len(missing) < len(names) else self.executor, Items(len(rows), lambda k: items[rows[k]])))
