@@ -7,10 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from .frame.road_frame import RoadFrame
-from .store.records import COORDINATE_SCALE
+from .store.records import COORDINATE_SCALE, to_units
 from .weights import READING
-
-CELL = COORDINATE_SCALE * 2**READING.coverage_cell_bits   # derived: m of station
 
 
 class Coverage:
@@ -21,8 +19,9 @@ class Coverage:
     """
 
     def __init__(self, frame: RoadFrame):
-        self._first = {p.number: int(np.floor(p.span[0] / CELL)) for p in frame.passes}
-        self.counts = {p.number: np.zeros((3, int(np.floor(p.span[1] / CELL)) - self._first[p.number] + 1), np.int64) for p in frame.passes}
+        ends = {p.number: to_units(np.array(p.span)) >> READING.coverage_cell_bits for p in frame.passes}
+        self._first = {number: int(first) for number, (first, _) in ends.items()}
+        self.counts = {number: np.zeros((3, int(last - first) + 1), np.int64) for number, (first, last) in ends.items()}
 
     def add(self, number: int, s: np.ndarray, drops: np.ndarray, near: bool) -> None:
         """Count points of a pass, near the height of the road or not: (N,) int32 stations and depths below the trajectory, units of 0.1 mm."""
@@ -72,7 +71,8 @@ class Coverage:
 def _runs(chosen: np.ndarray, first: int) -> Iterator[tuple[float, float]]:
     """(start, end) m of the runs of (C,) chosen cells, of which the first has a number."""
     ends = np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(np.int8)))
-    return ((CELL * (first + a), CELL * (first + b)) for a, b in ends.reshape(-1, 2).tolist())
+    stations = COORDINATE_SCALE * (first + ends << READING.coverage_cell_bits)
+    return ((start, end) for start, end in stations.reshape(-1, 2).tolist())
 
 
 def _named(stretches):
