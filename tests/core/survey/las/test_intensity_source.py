@@ -15,14 +15,14 @@ RNG.shuffle(REFLECTANCE)
 DECIBELS = 10 * np.log10(REFLECTANCE)
 
 
-def cloud(path, intensity=0, x=None, y=None, scale=0.001, **fields):
+def cloud(path, intensity=0, x=None, y=None, z=None, scale=0.001, **fields):
     header = laspy.LasHeader(version="1.4", point_format=6)
     header.scales, header.offsets = [scale] * 3, [500_000.0, 5_800_000.0, 0.0]
     header.add_extra_dims([laspy.ExtraBytesParams(name, values.dtype.str[1:]) for name, values in fields.items()])
     las = laspy.LasData(header)
     las.x = 500_000 + RNG.uniform(0, 200, COUNT) if x is None else x
     las.y = 5_800_000 + RNG.uniform(0, 20, COUNT) if y is None else y
-    las.z = 60 + RNG.uniform(0, 3, COUNT)
+    las.z = 60 + RNG.uniform(0, 3, COUNT) if z is None else z
     las.intensity = np.broadcast_to(intensity, COUNT)
     for name, values in fields.items():
         las[name] = values
@@ -118,7 +118,18 @@ def test_coordinates_through_numbers_of_32_bits_are_told_with_their_step(tmp_pat
 def test_points_on_a_raster_are_not_taken_for_numbers_of_32_bits(tmp_path):
     """Steps of 0.5 m in y are those of 32-bit numbers there, steps of 0.2 m in x are not: the points were thinned to a raster."""
     x, y = 500_000 + 0.2 * RNG.integers(0, 1000, COUNT), 5_800_000 + 0.5 * RNG.integers(0, 400, COUNT)
-    assert coarse(cloud(tmp_path / "raster.laz", x=x, y=y)) == ""
+    said = coarse(cloud(tmp_path / "raster.laz", x=x, y=y))
+    assert "0.2 m in x, 0.5 m in y: they were rounded, or points were thinned" in said
+
+
+def test_heights_that_were_rounded_to_decimetres_are_told(tmp_path):
+    said = coarse(cloud(tmp_path / "rounded.laz", z=np.round(60 + RNG.uniform(0, 30, COUNT), 1)))
+    assert "0.1 m in z: they were rounded" in said
+
+
+def test_few_points_in_a_wide_field_lie_in_no_steps(tmp_path):
+    """Neighbouring values of 5,000 points looked at over 200 km lie metres apart, by chance."""
+    assert coarse(cloud(tmp_path / "wide.laz", x=400_000 + RNG.uniform(0, 200_000, COUNT), y=5_700_000 + RNG.uniform(0, 200_000, COUNT))) == ""
 
 
 @pytest.mark.parametrize("scale, says", [(0.1, "0.1 m in x, 0.1 m in y, 0.1 m in z"), (0.01, "")])
