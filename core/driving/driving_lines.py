@@ -23,7 +23,7 @@ from ..survey.frame.road_frame import Road, RoadFrame
 from ..survey.frame.row_table import cuts_where_it_changes
 from ..survey.store.road_points import RoadPoints
 from .alignment import Course, Element, LanesOfRoad, design_check, element_of, fitted_lanes, is_curve, track_pieces
-from .heights import lane_heights
+from .heights import lane_heights, road_heights
 from .lane_areas import RoadLanes, connectors_between_roads, follow_over_roads, lane_areas, make_lanes
 from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
 from .lanes import estimated_lanes, laid_out
@@ -74,12 +74,14 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
                         for number, estimated in estimates.roads.items()], frame, settings.shortest)
     progress.report(0.5)
     fitted = fitted_lanes(roads, THREADS if road_points is None else road_points.executor, progress.part(0.5, 0.7))
-    for count, ((number, estimated), road, (courses, alignment)) in enumerate(zip(estimates.roads.items(), roads, fitted)):
-        part = progress.part(0.7 + 0.3 * count / len(roads), 0.7 + 0.3 * (count + 1) / len(roads))
+    measured = [None] * len(roads) if road_points is None else road_heights(
+        road_points, [(number, road.s, road.tracks) for number, road in zip(estimates.roads, roads)], progress.part(0.7, 0.9))
+    for count, ((number, estimated), road, z_of_road, (courses, alignment)) in enumerate(zip(estimates.roads.items(), roads, measured, fitted)):
+        part = progress.part(0.9 + 0.1 * count / len(roads), 0.9 + 0.1 * (count + 1) / len(roads))
         s = road.s
         passes = frame.passes_sigma(number, s)
         tracks = [replace(track, confidence=track.confidence * share_within(passes[track.first:track.last + 1])) for track in road.tracks]
-        heights = lane_heights(estimated.lines, road_points, number, tracks, part.part(0.0, 0.7))
+        heights = lane_heights(estimated.lines, tracks, z_of_road)
         if any(np.isnan(z).any() for z in heights):
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
@@ -89,7 +91,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(
                 track, track.direction, course, elements, estimated.lines, z, sigma, country(settings.country))]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
-            part.report(0.7 + 0.2 * lane / len(tracks))
+            part.report(0.9 * lane / len(tracks))
         tracks = [track.without_jumps(s) for track in tracks]
         areas += lane_areas(estimated, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number), road.of_others)
         lanes[number] = RoadLanes(s, tracks, heights)
