@@ -75,7 +75,7 @@ def beyond_paint(tracks: list[LaneTrack], boundaries: Boundaries) -> list[LaneTr
     """The same lanes, each on from where its paint ends, as at a stop line, up to where what bounds the road beside it begins to move aside.
 
     That is the mouth of a junction. On the way a lane keeps its share of the room between the nearest borders that go on, which may change by the
-    double of SAME_LANE: half of that is what its middle is off by then.
+    double of SAME_LANE: half of that is what its middle is off by then. Where anything begins between these, such as an island, it shares it no more.
     """
     spans, result = spans_of(tracks), list(tracks)
     least, reach = (int(length / STATION_STEP) for length in (ALIGNMENT.min_status_length, ROADS.shortest_bare))
@@ -122,8 +122,9 @@ def _beside_borders(boundaries, ahead, d, width, least):
     if boundaries.bounding[rows[[left, right]]].all() and room[0] < width + NEUTRAL.narrowest_lane:
         return np.array([d])
     course = offset[right] + room * (d - offset[right, 0]) / room[0]
+    begins = offset[np.isnan(beside)]
     with np.errstate(invalid="ignore"):   # NaN where a border has ended
-        alike = (np.abs(room - room[0]) < 2 * SAME_LANE) & ~(np.abs(offset - course) < width / 2 - SAME_LANE).any(axis=0)
+        alike = (np.abs(room - room[0]) < 2 * SAME_LANE) & ~((begins < offset[left]) & (begins > offset[right])).any(axis=0)
     return course[:len(alike) if alike.all() else int(np.argmin(alike))]
 
 
