@@ -211,7 +211,7 @@ class PointCloudsWrapper(DialogWrapper):
     """The widget in QGIS's dialogs and batches."""
 
     def createWidget(self, **more):
-        widget = PointCloudsWidget(told=self.dialogType == QgsProcessingGui.WidgetType.Standard)
+        widget = PointCloudsWidget(describes=self.dialogType == QgsProcessingGui.WidgetType.Standard)
         widget.changed.connect(self.announce)
         return widget
 
