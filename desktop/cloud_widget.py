@@ -25,7 +25,7 @@ GPS_EPOCH, ADJUSTED = datetime(1980, 1, 6), 1e9  # s, what adjusted GPS time lea
 
 
 class PointCloudsWidget(QWidget):
-    """A line of names with a button to add more; with `told`, a second line says how many files they are."""
+    """A line of names with a button to add more; with `describes`, a second line says how many files they are."""
 
     changed = pyqtSignal()
 
