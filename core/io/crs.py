@@ -96,7 +96,7 @@ def check_same_crs(layer_crs: str, other: str, place: tuple[float, float], label
 
     Two that give the place of the layer the same coordinates, such as UTM zone 32 of ETRS89 and of WGS 84, are no others.
 
-    own, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
+    layer_crs, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
     place : (x, y) in the layer
     label : name of the layer, as at the beginning of a sentence
     """
