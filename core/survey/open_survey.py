@@ -287,7 +287,8 @@ def _say_left_out(files, frame, reader, settings, progress):
     if not reader.store.count:
         raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
     if left.excluded:
-        progress.info(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
+        tell = progress.warn if left.excluded > READING.much_excluded * total else progress.info
+        tell(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if left.without_time:
         progress.warn(f"{left.without_time:,} of {total:,} points were left out: the trajectory, which runs {_said_of_times(frame)}, has no position "
                       "at their gps_time. If they are part of this survey, give its whole trajectory, and points with their time.")

@@ -254,6 +254,7 @@ class _ReadingWeights:
     section_points: int = 250_000   # points of a section, about
     longer_sections: tuple[float, float] = 10.0, 25.0   # m that a section may be long beside the usual length
     parts_progress: float = 0.85   # share of reading, where the points are put in order afterwards
+    much_excluded: float = 0.25   # of the points: noise and what a second drive shows again are less
     highest_sensor: float = 5.0   # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
     clock_track_half_width: float = 2.0   # m either side of the own track where clocks are compared
     max_look_ahead: float = 6.5   # m along the road: every scanner measures road nearer than this in each rotation
