@@ -91,16 +91,16 @@ def moved_by(a: Any, b: Any, place: tuple[float, float]) -> float:
     return float(np.hypot(x - place[0], y - place[1]))
 
 
-def check_same_crs(own: str, other: str, place: tuple[float, float], label: str) -> None:
+def check_same_crs(layer_crs: str, other: str, place: tuple[float, float], label: str) -> None:
     """Raise RoadExtractionError for a layer in another CRS than the point clouds; one whose CRS is not known is taken to be in theirs.
 
     Two that give the place of the layer the same coordinates, such as UTM zone 32 of ETRS89 and of WGS 84, are no others.
 
-    own, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
+    layer_crs, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
     place : (x, y) in the layer
     label : name of the layer, as at the beginning of a sentence
     """
-    layer, clouds = horizontal_part(parse_crs(own)), horizontal_part(parse_crs(other))
+    layer, clouds = horizontal_part(parse_crs(layer_crs)), horizontal_part(parse_crs(other))
     if layer is not None and clouds is not None and not moved_by(layer, clouds, place) < IO.same_coordinates:
         raise RoadExtractionError(f"{label} is in {layer.name}, the point clouds are in {clouds.name}. "
                                   "Reproject the layer to their CRS and run again.")

@@ -148,18 +148,18 @@ class BlockReader:
             if near.any():
                 yield self._partition(road, points, near, chosen, store)
 
-    def _partition(self, road, points, own, chosen, store):
+    def _partition(self, road, points, mask, chosen, store):
         if road < 0:
-            return store.partition(road, points, own)
-        for number, s, drops in self.tracks.drops(road, points, own):
+            return store.partition(road, points, mask)
+        for number, s, drops in self.tracks.drops(road, points, mask):
             chosen.histogram.add(number, drops)
             chosen.coverage.add(number, s, drops, near=True)
         if self.choice.has_time:
             kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
-            rows = np.flatnonzero(kept if own is None else kept & own)
+            rows = np.flatnonzero(kept if mask is None else kept & mask)
             if len(rows):
                 chosen.sampled.append((points["time"][rows], np.stack([points[name][rows] for name in "xyz"], axis=1)))
-        return store.partition(road, points, own)
+        return store.partition(road, points, mask)
 
     def _count_far(self, road, points, far, chosen):
         """Count the points of a road on the vehicle's own track, (N,) bool of all, that do not lie near its height."""
@@ -338,10 +338,10 @@ class VehicleTracks:
             offsets, heights = p.at_station(middles)
             self._tracks[p.number] = first, to_units(offsets), to_units(heights)
 
-    def drops(self, road: int, points: Columns, own: np.ndarray | None = None) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
+    def drops(self, road: int, points: Columns, mask: np.ndarray | None = None) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
         """Yield pass number, (M,) int32 stations and depths below the trajectory, units of 0.1 mm, of the points of a road on the pass's own track.
 
-        own : (N,) bool, points to use; all by default
+        mask : (N,) bool, points to use; all by default
         """
         if not len(points):
             return
@@ -356,8 +356,8 @@ class VehicleTracks:
             track = offsets[low:high + 1]
             # most points lie beside the whole track
             near_track = _between(across, int(track.min()) - OWN_TRACK_HALF_WIDTH_UNITS, int(track.max()) + OWN_TRACK_HALF_WIDTH_UNITS)
-            if own is not None:
-                near_track &= own
+            if mask is not None:
+                near_track &= mask
             if not only:
                 near_track &= number == p.number
             rows = np.flatnonzero(near_track)

@@ -26,7 +26,7 @@ from .frame.passes import decimate_by_distance
 from .frame.road_frame import RoadFrame, build_frame
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
-from .las.point_fields import check_coloured, intensity_source_of, without_intensity
+from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
 from .las.reader import CloudHeader, read_headers
 from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .store.array_file import files_are_whole
@@ -170,7 +170,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
     frame = _frame_of(files, fitted.trajectory, crs, has_time, progress)
     samples = sample_files(files)
-    intensity, rounding = _intensity_source(samples, settings, progress)
+    files, one_scale = in_one_scale(files, samples, settings.intensity_from)
+    intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
                          None if shared is None else shared.points)
     reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
@@ -196,11 +197,11 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     return survey
 
 
-def _intensity_source(samples, settings, progress):
+def _intensity_source(samples, settings, one_scale, progress):
     """How intensities are read, and m that coarse coordinates leave open across."""
     intensity, intensity_note = intensity_source_of(samples, settings.intensity_from)
     coarse_note, rounding = coarse_coordinates(samples)
-    for note in filter(None, (coarse_note, intensity_note)):
+    for note in filter(None, (coarse_note, one_scale, intensity_note)):
         progress.warn(note)
     return intensity, rounding
 

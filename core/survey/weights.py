@@ -208,6 +208,9 @@ class _LasWeights:
     max_spread: float = 60.0   # dB that no survey exceeds
     brightest: int = 30_000   # intensity that the brightest points get
     brightest_step: float = 5.0   # dB to which the brightest points are rounded, so that samples agree
+    sensor_bits: tuple[int, ...] = (8, 10, 11, 12)   # of intensities as sensors give them
+    other_scale: float = 6.0   # times the usual intensity of another file: asphalt, grass and trees differ by less
+    same_scale: float = 3.0   # times, that files with one scale may differ by
     farthest_height: float = 2e4   # m above or below the frame's origin: points beyond are outliers, and would overflow the integers of a record
 
 
