@@ -124,7 +124,7 @@ class BlockReader:
 
     def chosen(self, drop: float) -> ChosenPoints:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
-        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame))
+        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))
 
     def unfiltered(self, block: Any, summary: BlockSummary) -> list[tuple[int, Columns]]:
         """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
@@ -153,7 +153,7 @@ class BlockReader:
             return store.partition(road, points, mask)
         for number, s, drops in self.tracks.drops(road, points, mask):
             chosen.histogram.add(number, drops)
-            chosen.coverage.add(number, s, drops, near=True)
+            chosen.coverage.add(number, s, drops)
         if self.choice.has_time:
             kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
             rows = np.flatnonzero(kept if mask is None else kept & mask)
@@ -166,7 +166,7 @@ class BlockReader:
         rows = np.flatnonzero(far)
         if len(rows):
             for number, s, drops in self.tracks.drops(road, points.take(rows)):
-                chosen.coverage.add(number, s, drops, near=False)
+                chosen.coverage.add(number, s, drops)
 
     def _near_roads(self, block, summary, ground=None, chosen=None):
         """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
@@ -421,26 +421,6 @@ class HeightHistogram:
         measured = [height for height in heights.values() if height is not None]
         usual = float(np.median(measured)) if measured else READING.default_sensor_height
         return {number: usual if height is None else height for number, height in heights.items()}
-
-    def uneven(self) -> tuple[float, float] | None:
-        """(median absolute deviation, height) of the trajectory above the road in metres, where it varies by more than a vehicle can cause.
-
-        Points and trajectory share the errors of navigation, so half of the points on the own track lie within a few centimetres of one height
-        below it, whatever is parked or grows on the rest. The pass with the largest deviation counts; None if none exceeds `max_suspension_travel`.
-        """
-        heights = self.heights()
-        deviations = [(_half_within(counts, self.origin, heights[number]), heights[number])
-                      for number, counts in self.counts.items() if counts.sum() > READING.min_track_points]
-        off, height = max(deviations, default=(0.0, 0.0))
-        return (off, height) if off > READING.max_suspension_travel else None
-
-
-def _half_within(counts, origin, height):
-    """Metres from `height` within which half of the counts of a histogram per millimetre lie."""
-    off = np.abs(origin + np.arange(len(counts)) * READING.height_resolution - height)
-    order = np.argsort(off, kind="stable")
-    near = np.cumsum(counts[order])
-    return float(off[order[np.searchsorted(near, (near[-1] + 1) // 2)]])
 
 
 def sensor_height_of(drops: np.ndarray) -> float | None:
