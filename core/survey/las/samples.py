@@ -69,7 +69,7 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
         coarse = steps > LAS.coarse_coordinates
         clear = coarse & (short | np.isclose(steps, scales, rtol=0.01))
         is_raster = bool((coarse & ~clear).any())   # neither explains its steps, as after thinning by voxels
-        if not coarse.any() or is_raster and not all(_even(sample.raw[:, axis], steps[axis] / scales[axis]) for axis in np.flatnonzero(coarse)):
+        if not coarse.any() or is_raster and not (coarse[2] and _even(sample.raw[:, 2], steps[2] / scales[2])):
             continue
         k = int(np.argmax(np.where(coarse, steps, 0.0)))
         listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if coarse[axis])
