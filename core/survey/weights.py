@@ -208,6 +208,8 @@ class _LasWeights:
     max_spread: float = 60.0   # dB that no survey exceeds
     brightest: int = 30_000   # intensity that the brightest points get
     brightest_step: float = 5.0   # dB to which the brightest points are rounded, so that samples agree
+    least_doubled: float = 0.02   # share of the points that share their time with one other, at least, where files were exported twice
+    most_of_pairs: float = 0.5   # of these pairs, that lie apart alike
     sensor_bits: tuple[int, ...] = (8, 10, 11, 12)   # of intensities as sensors give them
     other_scale: float = 6.0   # times the usual intensity of another file: asphalt, grass and trees differ by less
     same_scale: float = 3.0   # times, that files with one scale may differ by
