@@ -67,7 +67,6 @@ class _CurbWeights:
     stretch_length: float = 5.0   # m of road that are read together
     decimation_block_points: int = 256_000   # points that are decided together
     joined_points: int = 60_000   # points below which those of one stretch and the next are yielded together
-    min_dense_share: float = 0.5   # share of points in dense cells, below which the heights of the others are not looked at
     decimation_locks: int = 16   # locks that stretches share while they are decided; the last one is the file's
     min_level_points: int = 4   # points that a cell needs for a statement whether it is level
     # occlusion

@@ -190,43 +190,19 @@ class _PointCells:
 
     def select(self) -> dict[int, Any]:
         """For every one of LEVEL_CELL_LIMITS (N,) bool, the points that are used, or True for all."""
-        dense = np.flatnonzero(self.count > min(LEVEL_CELL_LIMITS))
-        count = self.count.take(dense)
-        in_dense = count.sum()
-        if not in_dense:
+        if self.count.max(initial=0) <= min(LEVEL_CELL_LIMITS):
             return dict.fromkeys(LEVEL_CELL_LIMITS, True)
-        if in_dense < CURBS.min_dense_share * len(self.s):
-            # of the other cells all points are used
-            number = np.full(len(self.count), -1)
-            number[dense] = np.arange(len(dense))
-            cell = number.take(self.cell)
-            rows = np.flatnonzero(cell >= 0)
-            s, d, cell = self.s.take(rows), self.d.take(rows), cell.take(rows)
-            level = _is_level(cell, self.z.take(rows), count)
-        else:
-            rows, s, d, cell, count, level = None, self.s, self.d, self.cell, self.count, self.is_level()
-        rank, per_point = _hash_of_place(s, np.abs(d)), 65536.0 / np.maximum(count, 1)
-        result = {}
-        for limit in LEVEL_CELL_LIMITS:
-            used = rank <= np.minimum(np.where(level, limit, CURBS.points_per_uneven_cell) * per_point, 65535.0).astype(np.uint16).take(cell)
-            if rows is not None:
-                used_of_dense, used = used, np.ones(len(self.s), bool)
-                used[rows] = used_of_dense
-            result[limit] = used
-        return result
+        rank, per_point, level = _hash_of_place(self.s, np.abs(self.d)), 65536.0 / np.maximum(self.count, 1), self.is_level()
+        return {limit: rank <= np.minimum(np.where(level, limit, CURBS.points_per_uneven_cell) * per_point, 65535.0).astype(np.uint16).take(self.cell)
+                for limit in LEVEL_CELL_LIMITS}
 
     def is_level(self) -> np.ndarray:
-        """(C,) bool: is the ground of each cell level?"""
-        return _is_level(self.cell, self.z, self.count)
-
-
-def _is_level(cell, z, count):
-    """Of every cell, with (C,) count points, whether their heights deviate little from the mean."""
-    z = z.astype(float)
-    total = np.bincount(cell, z, len(count))
-    z *= z
-    squares = np.bincount(cell, z, len(count)) - total * total / np.maximum(count, 1)
-    return squares <= count * (CURBS.level_cell_std / COORDINATE_SCALE) ** 2
+        """(C,) bool: do the heights of each cell deviate little from their mean?"""
+        z = self.z.astype(float)
+        total = np.bincount(self.cell, z, len(self.count))
+        z *= z
+        squares = np.bincount(self.cell, z, len(self.count)) - total * total / np.maximum(self.count, 1)
+        return squares <= self.count * (CURBS.level_cell_std / COORDINATE_SCALE) ** 2
 
 
 def _mostly_uneven(records, width, spacing):
