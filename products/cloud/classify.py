@@ -118,17 +118,18 @@ class PointClassifier:
         self._edges, self._lines, self._objects = (_Near(layer, frame, settings.spacing) for layer in (
             _curbs_of(layers.road_edges), layers.roadside, layers.roadside_objects))
 
-    def places(self, points: Any) -> _RoadPlaces:
-        """Places and classes of a block of N laspy points, whose coordinates are in metres."""
+    def places(self, points: Any, brightness: int = 1) -> _RoadPlaces:
+        """Places and classes of a block of N laspy points, whose coordinates are in metres; brightness : as of its `CloudHeader`."""
         origin = self.survey.frame.origin
         x, y, z = (np.asarray(points[name], float) - start for name, start in zip("xyz", origin))
         road, s, d, (x, y, z) = self._placed(points, x, y, z)
-        classes, h, brightness = np.zeros(len(x), np.uint8), np.full(len(x), np.nan), _steps_of(self.intensity.of(points))
+        classes, h = np.zeros(len(x), np.uint8), np.full(len(x), np.nan)
+        steps = _steps_of(self.intensity.of(points) * np.float32(brightness))
         for number in np.unique(road[road >= 0]).tolist():
             rows = np.flatnonzero(road == number)
             ground, level = self._ground.at(number, s[rows], d[rows])
             h[rows] = z[rows] - level
-            classes[rows] = self._classes(x[rows], y[rows], z[rows], z[rows] - ground, brightness[rows])
+            classes[rows] = self._classes(x[rows], y[rows], z[rows], z[rows] - ground, steps[rows])
         return _RoadPlaces(classes, road, s, d, h)
 
     def _placed(self, points, x, y, z):

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from pyproj import CRS
 
 CLOUD_SUFFIXES = (".las", ".laz")
+MAX_INTENSITY = 2**16 - 1   # derived: of 16 bits
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
 ReadResult = TypeVar("ReadResult")
@@ -48,6 +49,7 @@ class CloudHeader:
     notes: tuple[str, ...] = ()   # sentences about what the header states otherwise than the file shows
     units: FileUnits = METRES   # of the coordinates in the file; all others here are in metres
     crs_problem: str = ""   # why what the file says about its coordinates is not used, "" for nothing
+    brightness: int = 1   # by which intensities are multiplied, so that they have the scale of other files, see `in_one_scale`
 
 
 def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None, sparse: bool = False,
@@ -244,9 +246,9 @@ def read_points(reader: Any, path: str | os.PathLike[str], first: int, count: in
     return points
 
 
-def truncated_file_error(path: str | os.PathLike[str], promised: int, found: int) -> RoadExtractionError:
+def truncated_file_error(path: str | os.PathLike[str], promised: int, present: int) -> RoadExtractionError:
     """The error for a file that ends before its last point."""
-    return RoadExtractionError(f"{path} is cut off: its header promises {promised} points, {found} are there. Copy or export the file again.")
+    return RoadExtractionError(f"{path} is cut off: its header promises {promised} points, {present} are there. Copy or export the file again.")
 
 
 def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str], promised: int, first: int) -> ReadResult:
