@@ -28,7 +28,7 @@ from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
 from .las.reader import CloudHeader, read_headers
-from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
+from .las.samples import check_measured_once, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .store.array_file import files_are_whole
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
@@ -356,6 +356,8 @@ def _tell_scanners_apart(survey, reader, progress):
     if not survey.has_time:
         return
     time, place = _sampled(survey, reader, progress)
+    if len(survey.files) > 1:
+        check_measured_once(time, place * COORDINATE_SCALE)
     if len(survey.scanners) > 1 or not len(time) or time.min() == time.max():
         return
     samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), reader.slots.stride)
