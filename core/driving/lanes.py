@@ -107,7 +107,7 @@ def _inferred(track):
 
 
 def _beside_borders(boundaries, ahead, d, width, least):
-    """(N,) m, offsets of a lane at `d` at the stations `ahead`, from the first of them on, as far as what bounds it goes on alike, `least` at least."""
+    """(N,) m, offsets of a lane at `d` at the stations `ahead`, from the first of them on, as far as what bounds it goes on alike."""
     rows = boundaries.d.spans.near(*sorted((int(ahead[0]), int(ahead[-1]))))
     rows = rows[~SURFACE_END[boundaries.made_of[rows]]]
     offset = boundaries.d[rows[:, None], ahead]
