@@ -240,10 +240,11 @@ def _mean_square_of_borders(track, known, paint, spacing):
     line_error = SIGMA.border_sigma**2 + (SIGMA.spacing_share * spacing) ** 2 + SIGMA.border_share**2 * scatter
     error = np.where(hatched, SIGMA.hatching_sigma**2, line_error + (SIGMA.gap_share * distance) ** 2)
     share = np.where(bounding.sum(axis=0) == 1, np.where(bounding, SIGMA.own_border, SIGMA.far_border), SIGMA.between_borders)
-    share = np.where(track.offset & bounding.any(axis=0), bounding / np.maximum(bounding.sum(axis=0), 1), share)
+    beside_curb = (track.left >= 0) & (track.right >= 0) & (bounding.sum(axis=0) == 1)
+    share = np.where((track.offset | beside_curb) & bounding.any(axis=0), bounding / np.maximum(bounding.sum(axis=0), 1), share)
     measured = track.status == MEASURED
     unbounded = np.where(bounding.any(axis=0), 0.0, SIGMA.gap_share * _distance_to(measured))
-    by_width = np.where(~measured & track.offset, SIGMA.width_sigma, 0.0)
+    by_width = np.where(~measured & (track.offset | beside_curb), SIGMA.width_sigma, 0.0)
     square = (share**2 * error).sum(axis=0)
     if bounding.any():   # beyond all borders it is no surer than at the last place that has one
         square = np.maximum(square, square[distance_transform_edt(~bounding.any(axis=0), return_distances=False, return_indices=True)[0]])

@@ -222,7 +222,10 @@ def _part(boundaries, span, rows, made_of, begin, width, line_distance):
     d = begin - width * (span.count - span.place - 0.5)
     shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 and any(painted) else INFERRED])
-    return _track_of(span, int(rows.start), d, width, status, beside_one)
+    # a curb that a lane reaches to shows its place too
+    room = boundaries.d[span.left, rows] - boundaries.d[span.right, rows]
+    reaches = not beside_surface_end(*made_of) and np.nanmedian(np.abs(room - width * span.count)) < SAME_LANE
+    return _track_of(span, int(rows.start), d, width, status, beside_one and not reaches)
 
 
 def _track_of(span, first, d, width, status, beside_one):

@@ -325,3 +325,9 @@ def test_two_arrows_show_a_turning_lane_beyond_a_solid_line_beside_the_curb():
     arrows = [(straight_arrow(station, -3.75, 1), "arrow") for station in (20.0, 65.0)]
     lines, _ = street.lanes(edges=curbs(street, 9.2, -5.6), markings=outlined(street, *arrows))
     assert max(line.length for line, row in lines if row["direction"] == 1 and np.median(street.offsets(line)) < -3.0) > 50.0
+
+
+def test_a_lane_that_fills_the_room_between_its_line_and_a_curb_is_drawn_though_a_second_reading_has_none():
+    street = Street(length=58.0, vehicle=0.0).paint(-1.6, 5.0, 55.0, kind="").paint(-3.9, 5.0, 55.0, kind="")
+    beside = [row for line, row in street.lanes(edges=curbs(street, 1.87, -7.43))[0] if abs(np.median(street.offsets(line)) + 5.67) < 0.1]
+    assert beside and all(row["confidence"] <= 0.6 for row in beside)
