@@ -27,6 +27,8 @@ from .pseudo_scanlines import expand_ranges
 if TYPE_CHECKING:
     from ..surface.road_look import SideLook
 
+IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by more across shorter gaps
+
 
 @dataclass
 class StepChain:
@@ -554,3 +556,31 @@ class GapLine:
         """(N,) m from the line, left positive."""
         t, v = self.place(x, y)
         return v - self.line(t)
+
+
+def line_across(points: np.ndarray, s: np.ndarray, k: int) -> tuple[float, GapLine | None, str]:
+    """The even bend that leads best across a gap, which begins at point k, on the map or as seen from the road.
+
+    points : (N,) structured array of curb points, by station, with the fields x, y, s and d in m
+    s : (N,) m, their stations
+
+    Returns
+        turn : radians that the curb on both sides turns off it
+        line : GapLine, None where too little of the curb is seen
+        axes : "xy" or "sd", the fields that are its axes
+
+    Where a bend begins or ends behind a row of parked cars no even bend leads through both sides; the road itself bends there alike.
+    A bay is only as long as the cars in it: its curb turns aside next to the gap, and where the last ten metres are not in one line the last
+    three tell where it leads.
+    """
+    best = np.inf, None, ""
+    for reach in (CURBS.line_fit_length, CURBS.min_bend_length):
+        if best[0] <= IN_LINE_TURN:
+            break
+        parts = points[stretch_of(s, s[k] - reach, s[k])], points[stretch_of(s, s[k + 1], s[k + 1] + reach)]
+        if reach == CURBS.line_fit_length and max(np.ptp(part["s"]) for part in parts) < CURBS.min_bend_length:
+            break
+        for axes in ("xy", "sd"):
+            line = GapLine(*(np.array([part[axis] for axis in axes]) for part in parts), max_degree=2)
+            best = min(best, (line.miss / reach, line, axes), key=lambda found: found[0])
+    return best

@@ -16,13 +16,12 @@ from ...curves.robust import MAD_TO_SIGMA
 from ...execution.phase import NoSource
 from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
-from ..common.tracking import GapLine
+from ..common.tracking import IN_LINE_TURN, line_across
 from ..weights import CURBS, EDGE
 from .corner_edges import curb_return_lines, draw_curb_returns, dropped_corners
 from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 
-_JOINED, _HIDDEN, _DROPPED = range(3)   # what lies between two curb points of an edge: nothing, something that hides the curb, or a lowered curb
-IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by more across shorter gaps
+_FULL, _HIDDEN, _LOWERED = range(3)   # what lies between two curb points of an edge: the curb, something that hides it, or the curb lowered
 
 
 @dataclass(frozen=True)
@@ -97,7 +96,7 @@ def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:
 
 
 def _pieces(rows, max_gap):
-    """Curb points of one side divided into edges: list of (points, what each gap to the next is: _JOINED, _HIDDEN or _DROPPED)."""
+    """Curb points of one side divided into edges: list of (points, what lies between each and the next: _FULL, _HIDDEN or _LOWERED)."""
     hidden = rows["s"][~rows["measured"]]
     points = without_outliers(rows[rows["measured"]])
     if len(points) < 2:
@@ -112,12 +111,10 @@ def _pieces(rows, max_gap):
     # the longer a gap is, the better both parts must show the direction of one line
     s = np.ascontiguousarray(points["s"])
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
-             if _line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
-    # a curb that sinks in sight and goes on in the same line some metres farther is lowered there
-    dropped = (gap > CURBS.max_joined_gap) & (gap <= min(EDGE.max_sunk_gap, max_gap)) & (across <= EDGE.max_edge_jump) & ~bridged
-    dropped[[k for k in np.flatnonzero(dropped) if not _sinks(points, s, k) or _line_across(points, s, k)[0] > IN_LINE_TURN]] = False
-    breaks = np.flatnonzero(~(joined | bridged | dropped)) + 1
-    kinds = np.append(_HIDDEN * bridged + _DROPPED * dropped, _JOINED)
+             if line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
+    lowered = _lowered(points, s)
+    breaks = np.flatnonzero(~(joined | bridged)) + 1
+    kinds = np.append(np.where(bridged, _HIDDEN, _LOWERED * (lowered[:-1] & lowered[1:])), _FULL)
     pieces = []
     for part, flags in zip(np.split(points, breaks), np.split(kinds, breaks)):
         if len(part) >= 2 and part["s"][-1] - part["s"][0] >= EDGE.min_edge_length:
@@ -125,32 +122,13 @@ def _pieces(rows, max_gap):
     return pieces
 
 
-def _sinks(points, s, k):
-    """Is the curb lower at either end of a gap, which begins at point k, than it is around it?"""
-    around = points["height"][stretch_of(s, s[k] - CURBS.line_fit_length, s[k + 1] + CURBS.line_fit_length)]
-    return points["height"][k:k + 2].min() <= EDGE.sunk_share * np.median(around)
-
-
-def _line_across(points, s, k):
-    """The even bend that leads best across a gap, which begins at point k, on the map or as seen from the road.
-
-    Returns (radians that the curb on both sides turns off it, GapLine or None, the fields that are its axes).
-
-    Where a bend begins or ends behind a row of parked cars no even bend leads through both sides; the road itself bends there alike.
-    A bay is only as long as the cars in it: its curb turns aside next to the gap, and where the last ten metres are not in one line the last
-    three tell where it leads.
-    """
-    best = np.inf, None, ""
-    for reach in (CURBS.line_fit_length, CURBS.min_bend_length):
-        if best[0] <= IN_LINE_TURN:
-            break
-        parts = points[stretch_of(s, s[k] - reach, s[k])], points[stretch_of(s, s[k + 1], s[k + 1] + reach)]
-        if reach == CURBS.line_fit_length and max(np.ptp(part["s"]) for part in parts) < CURBS.min_bend_length:
-            break
-        for axes in ("xy", "sd"):
-            line = GapLine(*(np.array([part[axis] for axis in axes]) for part in parts), max_degree=2)
-            best = min(best, (line.miss / reach, line, axes), key=lambda found: found[0])
-    return best
+def _lowered(points, s):
+    """(N,) bool, is the curb low at a point, and much lower than around it?"""
+    lowered = (points["height"] > 0.0) & (points["height"] < CURBS.usual_height)
+    for k in np.flatnonzero(lowered):
+        around = points["height"][stretch_of(s, s[k] - CURBS.line_fit_length, s[k] + CURBS.line_fit_length)]
+        lowered[k] = points["height"][k] <= EDGE.sunk_share * around.max()
+    return lowered
 
 
 def _with_bridges(points, bridged, frame, road):
@@ -161,7 +139,7 @@ def _with_bridges(points, bridged, frame, road):
     parts, begin, before, longest = [], 0, np.zeros(len(points), int), 0.0
     s = np.ascontiguousarray(points["s"])
     for k in np.flatnonzero(bridged):
-        turn, line, axes = _line_across(points, s, k)
+        turn, line, axes = line_across(points, s, k)
         if turn > IN_LINE_TURN:
             longest = max(longest, s[k + 1] - s[k])
             continue
@@ -253,11 +231,12 @@ def _noise(t, values):
 
 def _draw(found, frame, road, side, piece, number):
     """Add the pieces of one edge; returns its (start, end) station."""
-    points, bridged = piece
+    points, kinds = piece
+    bridged = kinds == _HIDDEN
     with_bridges, measured, longest = _with_bridges(points, bridged, frame, road)
     curve = EdgeCurve(with_bridges, longest, measured)
     t, residual = curve.t[measured], curve.residual[measured]
-    changes = np.flatnonzero(np.diff(bridged)) + 1
+    changes = np.flatnonzero(np.diff(kinds)) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
         check_cancelled()
@@ -269,7 +248,7 @@ def _draw(found, frame, road, side, piece, number):
         found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), height=float(np.median(rows["height"])), rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
                                # a bridge is one guess
-                               what="dropped" if bridged[i] == _DROPPED else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
+                               what="dropped" if kinds[i] == _LOWERED else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
     return float(points["s"][0]), float(points["s"][-1])
 
 

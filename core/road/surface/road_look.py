@@ -41,6 +41,26 @@ class RoadLook:
         """Height of the ground above the road as it goes on from the track; m, of one shape with stations and offsets; NaN where none was seen."""
         return self._at(self.cells.height, s, d)[0] - self._at(self._road, s, d)[0]
 
+    def step_at(self, s: np.ndarray, d: np.ndarray, outward: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """How far the ground steps up outward at (N,) stations and offsets, m, between the lines through the cells before it and behind it.
+
+        Returns
+            step : (N,) m, how far the two lines are apart at the place; NaN where one of the cells was not seen
+            height : (N,) m, of the first cell behind it above the line before it
+            bottom : (N,) m, of that line at the place, above the expected road
+        """
+        size, cells = self.cells.column_size, np.arange(1, SURFACE.cells_of_step + 1)
+        middle = (np.floor(d / size) + 0.5) * size - d
+        levels, slopes, firsts = [], [], []
+        for way in (outward, -outward):
+            heights, row = self._at(self.cells.height, s[:, None], d[:, None] + way * size * cells)
+            from_middle = size * (cells - cells.mean())
+            slopes.append(heights @ from_middle / (from_middle @ from_middle))
+            levels.append(heights.mean(1) - slopes[-1] * (size * cells.mean() + way * middle))
+            firsts.append(heights[:, 0])
+        height = firsts[0] - levels[1] + slopes[1] * (size + outward * middle)
+        return levels[0] - levels[1], height, levels[1] - self.prior[row[:, 0]]
+
     def side(self, sign: int) -> SideLook:
         """The look to the left, 1, or to the right, -1."""
         return SideLook(self, sign)
@@ -71,6 +91,15 @@ class SideLook:
     def road_height(self, s: np.ndarray, u: np.ndarray) -> np.ndarray:
         """`RoadLook.road_height` at stations and outward offsets."""
         return self.look.road_height(s, self.sign * u)
+
+    def step_at(self, s: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """`RoadLook.step_at` at stations and outward offsets."""
+        return self.look.step_at(s, self.sign * u, self.sign)
+
+    @property
+    def row_size(self) -> float:
+        """m along the road of a row of cells."""
+        return self.look.cells.row_size
 
     def level_to(self, s: np.ndarray, u: np.ndarray, end_s: float, end_u: float) -> np.ndarray:
         """(N,) bool, is the ground seen, and as high as the road, on the straight way from (N,) places to one?
