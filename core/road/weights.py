@@ -121,9 +121,8 @@ class _CurbWeights:
     # lowered curb
     lowered_rows: int = 5   # rows of ground cells, 2.5 m along a curb, whose median step counts
     least_lowered_step: float = 0.005   # m of that median: along simulated lowered curbs it was 0.007 to 0.02, across mouths of streets 0.002 at most
-    max_lowered_turn: float = 0.035   # radians that the curb on both sides turns off the line across: the step is measured on that line
+    max_lowered_turn: float = 0.03   # radians that the curb on both sides turns off the line across: the step is measured on that line
     road_beside: float = 1.0   # m from the curb toward the road, where the same rows show what is no step
-    lowered_support: int = 10   # points that show a place as surely as a line across a gap does: to 2 cm
     # chains
     max_link_length: float = 1.0   # m along the road that a link may span
     link_drift: float = 0.20   # m across per m along that a link may differ from the faces' own direction
@@ -514,7 +513,6 @@ class _EdgeWeights:
     same_place_distance: float = 0.02   # m within which two places are one
     # dropped corners
     max_dropped_gap: float = 8.0   # m of dropped curb around a corner
-    sunk_share: float = 0.5   # of its height around, to which a curb is lowered that is drawn as dropped
     min_dropped_gap: float = 0.3   # m
     min_arc_turn: float = np.radians(12.0)   # radians from end to end, least, and
     max_arc_turn: float = np.radians(100.0)   # most

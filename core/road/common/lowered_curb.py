@@ -69,7 +69,7 @@ def _seen_between(ends, full, stations, offsets, look):
     # one after the other from the curb before the gap, and from that behind it
     from_first, from_last = (_reached(runs[::way], s, tip) for way, tip in ((1, first), (-1, last)))
     return [dict(s=float(s[k]), u=float(u[k]), h=float(bottom[k]),
-                 fields=dict(status="measured", height=round(float(height[k]), 4), part="bottom", support=CURBS.lowered_support))
+                 fields=dict(status="bridged", height=round(float(height[k]), 4), part="bottom"))
             for run in sorted({*from_first, *from_last}) for k in range(*run)]
 
 

@@ -46,7 +46,7 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     edge share their end vertices and `chain`.
     """
     pieces: list[EdgePiece] = []
-    points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & np.isin(curb_points.status, ("measured", "occluded"))]
+    points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & np.isin(curb_points.status, ("measured", "bridged", "occluded"))]
     table, returns = point_table(points, frame), curb_return_lines(curb_points, frame)
     lines, of_table = 0, np.ascontiguousarray(table["road"])
     for road in frame.roads:
@@ -85,10 +85,10 @@ def tell_edges(edges: RoadEdges, progress: Progress) -> None:
 
 def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:
     """(N,) structured array of curb points in map coordinates, sorted by road, side and station; an unknown height is 0."""
-    table = np.empty(len(points), dtype=[("road", int), ("side", "U5"), ("measured", bool), ("s", float), ("d", float), ("x", float),
+    table = np.empty(len(points), dtype=[("road", int), ("side", "U5"), ("status", "U8"), ("s", float), ("d", float), ("x", float),
                                          ("y", float), ("z", float), ("height", float), ("chain", int), ("support", int)])
     places = points.map_places(frame)
-    for name, values in dict(road=points.road, side=points.side, measured=points.status == "measured", s=points.station, d=points.offset,
+    for name, values in dict(road=points.road, side=points.side, status=points.status, s=points.station, d=points.offset,
                              x=places[:, 0], y=places[:, 1], z=places[:, 2], height=np.nan_to_num(points.height), chain=points.chain,
                              support=points.support).items():
         table[name] = values
@@ -97,8 +97,8 @@ def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:
 
 def _pieces(rows, max_gap):
     """Curb points of one side divided into edges: list of (points, what lies between each and the next: _FULL, _HIDDEN or _LOWERED)."""
-    hidden = rows["s"][~rows["measured"]]
-    points = without_outliers(rows[rows["measured"]])
+    hidden = rows["s"][rows["status"] == "occluded"]
+    points = np.sort(np.append(without_outliers(rows[rows["status"] == "measured"]), rows[rows["status"] == "bridged"]), order="s")
     if len(points) < 2:
         return []
     gap = np.diff(points["s"])
@@ -112,23 +112,14 @@ def _pieces(rows, max_gap):
     s = np.ascontiguousarray(points["s"])
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
              if line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
-    lowered = _lowered(points, s)
+    lowered = points["status"] == "bridged"
     breaks = np.flatnonzero(~(joined | bridged)) + 1
-    kinds = np.append(np.where(bridged, _HIDDEN, _LOWERED * (lowered[:-1] & lowered[1:])), _FULL)
+    kinds = np.append(np.where(bridged, _HIDDEN, _LOWERED * (lowered[:-1] | lowered[1:])), _FULL)
     pieces = []
     for part, flags in zip(np.split(points, breaks), np.split(kinds, breaks)):
         if len(part) >= 2 and part["s"][-1] - part["s"][0] >= EDGE.min_edge_length:
             pieces.append((part, flags[:-1]))
     return pieces
-
-
-def _lowered(points, s):
-    """(N,) bool, is the curb low at a point, and much lower than around it?"""
-    lowered = (points["height"] > 0.0) & (points["height"] < CURBS.usual_height)
-    for k in np.flatnonzero(lowered):
-        around = points["height"][stretch_of(s, s[k] - CURBS.line_fit_length, s[k] + CURBS.line_fit_length)]
-        lowered[k] = points["height"][k] <= EDGE.sunk_share * around.max()
-    return lowered
 
 
 def _with_bridges(points, bridged, frame, road):
@@ -232,10 +223,10 @@ def _noise(t, values):
 def _draw(found, frame, road, side, piece, number):
     """Add the pieces of one edge; returns its (start, end) station."""
     points, kinds = piece
-    bridged = kinds == _HIDDEN
-    with_bridges, measured, longest = _with_bridges(points, bridged, frame, road)
-    curve = EdgeCurve(with_bridges, longest, measured)
-    t, residual = curve.t[measured], curve.residual[measured]
+    measured = points["status"] == "measured"
+    with_bridges, places, longest = _with_bridges(points, kinds == _HIDDEN, frame, road)
+    curve = EdgeCurve(with_bridges, longest, places[measured])
+    t, residual = curve.t[places], curve.residual[places]
     changes = np.flatnonzero(np.diff(kinds)) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
@@ -244,11 +235,11 @@ def _draw(found, frame, road, side, piece, number):
         along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE.edge_vertex_spacing)), 1) + 1)
         vertices, rows = curve.at(along), points[i:j + 1]
         passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
-        sigma = edge_sigma(along, t, residual, points["support"], passes=passes)
-        found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
+        sigma = edge_sigma(along, t[measured], residual[measured], points["support"][measured], passes=passes)
+        found.append(EdgePiece(vertices, road, side, "bridged" if kinds[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), height=float(np.median(rows["height"])), rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
                                # a bridge is one guess
-                               what="dropped" if kinds[i] == _LOWERED else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
+                               what="dropped" if kinds[i] == _LOWERED else "curb", sigma=float(sigma.mean()) if kinds[i] else sigma))
     return float(points["s"][0]), float(points["s"][-1])
 
 
