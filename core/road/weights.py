@@ -513,6 +513,7 @@ class _EdgeWeights:
     same_place_distance: float = 0.02   # m within which two places are one
     # dropped corners
     max_dropped_gap: float = 8.0   # m of dropped curb around a corner
+    lowered_share: float = 0.5   # of the height of a curb around, to which it is lowered at a drive: it was 0.2 to 0.5
     min_dropped_gap: float = 0.3   # m
     min_arc_turn: float = np.radians(12.0)   # radians from end to end, least, and
     max_arc_turn: float = np.radians(100.0)   # most

@@ -42,7 +42,7 @@ def lowered_points(rows: list[dict], road: Road, look: SideLook) -> list[dict]:
         turn, line, axes = line_across(points, s, k)
         full = points["height"][stretch_of(s, s[k] - CURBS.line_fit_length, s[k + 1] + CURBS.line_fit_length)].max()
         if line is not None and turn <= CURBS.max_lowered_turn:
-            stations, offsets = line.between(look.row_size)
+            stations, offsets = line.between(look.row_size, meets=False)
             if axes == "xy":
                 stations, offsets = road.locate(stations, offsets)
                 offsets = look.sign * offsets
@@ -59,7 +59,7 @@ def _seen_between(ends, full, stations, offsets, look):
     (first, last), order = ends["s"], np.argsort(stations)
     s = look.row_size * (np.arange(np.floor(first / look.row_size), np.ceil(last / look.row_size)) + 0.5)
     s = s[(s > first) & (s < last)]
-    u = np.interp(s, np.r_[first, stations[order], last], np.r_[ends["d"][0], offsets[order], ends["d"][1]])
+    u = np.interp(s, stations[order], offsets[order])
     step, height, bottom = look.step_at(s, u)
     noise = MAD_TO_SIGMA * _median_about(np.abs(look.step_at(s, u - CURBS.road_beside)[0])) / np.sqrt(CURBS.lowered_rows)
     with np.errstate(invalid="ignore"):

@@ -21,7 +21,6 @@ from ..weights import CURBS, EDGE
 from .corner_edges import curb_return_lines, draw_curb_returns, dropped_corners
 from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 
-_FULL, _HIDDEN, _LOWERED = range(3)   # what lies between two curb points of an edge: the curb, something that hides it, or the curb lowered
 
 
 @dataclass(frozen=True)
@@ -96,7 +95,7 @@ def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:
 
 
 def _pieces(rows, max_gap):
-    """Curb points of one side divided into edges: list of (points, what lies between each and the next: _FULL, _HIDDEN or _LOWERED)."""
+    """Curb points of one side divided into edges: list of (points, is the edge from each to the next bridged, and is the curb lowered there?)."""
     hidden = rows["s"][rows["status"] == "occluded"]
     points = np.sort(np.append(without_outliers(rows[rows["status"] == "measured"]), rows[rows["status"] == "bridged"]), order="s")
     if len(points) < 2:
@@ -112,14 +111,25 @@ def _pieces(rows, max_gap):
     s = np.ascontiguousarray(points["s"])
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
              if line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
-    lowered = points["status"] == "bridged"
     breaks = np.flatnonzero(~(joined | bridged)) + 1
-    kinds = np.append(np.where(bridged, _HIDDEN, _LOWERED * (lowered[:-1] | lowered[1:])), _FULL)
+    inferred, low = points["status"] == "bridged", _is_lowered(points, s)
+    inferred, low = inferred[:-1] | inferred[1:], low[:-1] & low[1:]
     pieces = []
-    for part, flags in zip(np.split(points, breaks), np.split(kinds, breaks)):
-        if len(part) >= 2 and part["s"][-1] - part["s"][0] >= EDGE.min_edge_length:
-            pieces.append((part, flags[:-1]))
+    for a, b in zip(np.r_[0, breaks], np.r_[breaks, len(points)]):
+        if b - a >= 2 and s[b - 1] - s[a] >= EDGE.min_edge_length:
+            gaps = slice(a, b - 1)
+            pieces.append((points[a:b], (bridged | inferred)[gaps], (inferred | low & ~bridged)[gaps]))
     return pieces
+
+
+def _is_lowered(points, s):
+    """(N,) bool, is the curb at a point much lower than before it and behind it?"""
+    low = (points["height"] > 0.0) & (points["height"] <= EDGE.lowered_share * points["height"].max())
+    for k in np.flatnonzero(low):
+        before, behind = (points["height"][stretch_of(s, *ends)].max()
+                          for ends in ((s[k] - CURBS.line_fit_length, s[k]), (s[k], s[k] + CURBS.line_fit_length)))
+        low[k] = points["height"][k] <= EDGE.lowered_share * min(before, behind)
+    return low
 
 
 def _with_bridges(points, bridged, frame, road):
@@ -222,12 +232,12 @@ def _noise(t, values):
 
 def _draw(found, frame, road, side, piece, number):
     """Add the pieces of one edge; returns its (start, end) station."""
-    points, kinds = piece
+    points, bridged, lowered = piece
     measured = points["status"] == "measured"
-    with_bridges, places, longest = _with_bridges(points, kinds == _HIDDEN, frame, road)
+    with_bridges, places, longest = _with_bridges(points, np.diff(points["s"]) > CURBS.max_joined_gap, frame, road)
     curve = EdgeCurve(with_bridges, longest, places[measured])
     t, residual = curve.t[places], curve.residual[places]
-    changes = np.flatnonzero(np.diff(kinds)) + 1
+    changes = np.flatnonzero(np.diff(bridged) | np.diff(lowered)) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
         check_cancelled()
@@ -236,10 +246,10 @@ def _draw(found, frame, road, side, piece, number):
         vertices, rows = curve.at(along), points[i:j + 1]
         passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
         sigma = edge_sigma(along, t[measured], residual[measured], points["support"][measured], passes=passes)
-        found.append(EdgePiece(vertices, road, side, "bridged" if kinds[i] else "measured", number, float(rows["s"][0]),
+        found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), height=float(np.median(rows["height"])), rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
                                # a bridge is one guess
-                               what="dropped" if kinds[i] == _LOWERED else "curb", sigma=float(sigma.mean()) if kinds[i] else sigma))
+                               what="dropped" if lowered[i] else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
     return float(points["s"][0]), float(points["s"][-1])
 
 
