@@ -16,6 +16,7 @@ import numpy as np
 from ...common.arrays import mask_runs, stretch_of
 from ...curves.robust import MAD_TO_SIGMA
 from ...survey.frame.road import Road
+from ..edges.fit import without_outliers
 from ..surface.ground_grid import known_median
 from ..weights import CURBS
 from .tracking import line_across
@@ -32,9 +33,10 @@ def lowered_points(rows: list[dict], road: Road, look: SideLook) -> list[dict]:
 
     Returns a list of dict like `rows`, one for each row of ground cells that shows the step
     """
-    points = np.array([(row["s"], row["u"], row["fields"]["height"], *road.to_map(row["s"], look.sign * row["u"])) for row in rows
-                       if row["fields"]["part"] == "bottom"], dtype=[(name, float) for name in ("s", "d", "height", "x", "y")])
-    points = np.sort(points, order="s")
+    points = np.array([(row["fields"]["chain"], row["s"], row["u"], row["fields"]["height"], *road.to_map(row["s"], look.sign * row["u"]))
+                       for row in rows if row["fields"]["part"] == "bottom"],
+                      dtype=[("chain", int), *((name, float) for name in ("s", "d", "height", "x", "y"))])
+    points = without_outliers(np.sort(points, order="s"))
     s = np.ascontiguousarray(points["s"])
     gaps = np.diff(s)
     found = []
