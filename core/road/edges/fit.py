@@ -45,7 +45,8 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     edge share their end vertices and `chain`.
     """
     pieces: list[EdgePiece] = []
-    points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & np.isin(curb_points.status, ("measured", "bridged", "occluded"))]
+    of_edges = np.isin(curb_points.status, ("measured", "bridged", "occluded"))
+    points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & of_edges]
     table, returns = point_table(points, frame), curb_return_lines(curb_points, frame)
     lines, of_table = 0, np.ascontiguousarray(table["road"])
     for road in frame.roads:
@@ -95,7 +96,7 @@ def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:
 
 
 def _pieces(rows, max_gap):
-    """Curb points of one side divided into edges: list of (points, is the edge from each to the next bridged, and is the curb lowered there?)."""
+    """Curb points of one side divided into edges: list of (points, is it bridged from each to the next, and is the curb lowered there?)."""
     hidden = rows["s"][rows["status"] == "occluded"]
     points = np.sort(np.append(without_outliers(rows[rows["status"] == "measured"]), rows[rows["status"] == "bridged"]), order="s")
     if len(points) < 2:
@@ -112,7 +113,7 @@ def _pieces(rows, max_gap):
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
              if line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
     breaks = np.flatnonzero(~(joined | bridged)) + 1
-    inferred, low = points["status"] == "bridged", _is_lowered(points, s)
+    inferred, low = points["status"] == "bridged", is_lowered(points, s)
     inferred, low = inferred[:-1] | inferred[1:], low[:-1] & low[1:]
     pieces = []
     for a, b in zip(np.r_[0, breaks], np.r_[breaks, len(points)]):
@@ -122,8 +123,11 @@ def _pieces(rows, max_gap):
     return pieces
 
 
-def _is_lowered(points, s):
-    """(N,) bool, is the curb at a point much lower than before it and behind it?"""
+def is_lowered(points: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """(N,) bool, is the curb at a point much lower than before it and behind it?
+
+    points : (N,) structured array, by station, with the field `height` (m); s : (N,) m, their stations
+    """
     low = (points["height"] > 0.0) & (points["height"] <= EDGE.lowered_share * points["height"].max())
     for k in np.flatnonzero(low):
         before, behind = (points["height"][stretch_of(s, *ends)].max()
