@@ -73,7 +73,7 @@ class ClassifyCloud(Algorithm):
             "every further road), z the height above the road. Points beyond the corridor are left out."), optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ..core.survey.las.point_fields import intensity_source_of
+        from ..core.survey.las.point_fields import in_one_scale, intensity_source_of
         from ..core.survey.las.reader import read_headers
         from ..core.survey.las.samples import sample_files
         from ..products.cloud.classify import CloudLayers, PointClass, PointClassifier
@@ -86,7 +86,9 @@ class ClassifyCloud(Algorithm):
                                              if field.name in read.split()], MAP_LAYERS[name].geometry)
                   for name, (read, _) in CLOUD_LAYERS.items()}
         survey = open_survey_with(call, layers, progress.part(0.0, 0.4))
-        intensity = intensity_source_of(sample_files(files), call.value("INTENSITY_FROM"))[0]
+        samples = sample_files(files)
+        intensity = intensity_source_of(samples, call.value("INTENSITY_FROM"))[0]
+        files, _ = in_one_scale(files, samples, call.value("INTENSITY_FROM"))
         classifier = PointClassifier(survey, CloudLayers(*layers.values()), call.settings(CLOUD_SETTINGS), call.value("CORRIDOR"), intensity)
         total, done, counts = sum(file.count for file in files), 0, Counter()
         for file, copy in zip(files, copies):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import LANES, MAP_FINDINGS, ROAD_ATTRIBUTES
+from ..core.common.features import COLOUR, LANES, MAP_FINDINGS, ROAD_ATTRIBUTES
 from ..core.common.setting import Limited, setting
 from ..core.lazy import shapely
 from .algorithm import Algorithm, SettingSpec
@@ -91,7 +91,7 @@ def write_map_layers(call, layers, progress):
 EXPORTED_LAYERS = {
     "DRIVING_LINES": ("road lane status station_m end_m sigma_m", tr(
         "Held against the middles of the lanes: the report says how far apart they are. The uncertainty of every lane comes from them.")),
-    "MARKING_LINES": ("road line kind pattern width_m", tr("The widths of the painted borders.")),
+    "MARKING_LINES": ("road line kind pattern width_m colour", tr("The widths of the painted borders, and from Colours of paint their colours.")),
     "ROAD_EDGES": ("road height_m edge", tr("The heights of curbs.")),
     "MARKINGS": ("road class", tr("Zebra crossings, stop lines, arrows and hatched areas.")),
 }
@@ -117,8 +117,8 @@ def road_map_source(call, progress):
     from ..products.export.sources import RoadMapSource, checked, known_of_roads
 
     areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
-    layers = {name.lower(): call.features(name, [field for field in MAP_LAYERS[name].schema if field.name in read.split()], MAP_LAYERS[name].geometry)
-              for name, (read, _) in EXPORTED_LAYERS.items()}
+    layers = {name.lower(): call.features(name, [field for field in [*MAP_LAYERS[name].schema, COLOUR] if field.name in read.split()],
+                                          MAP_LAYERS[name].geometry) for name, (read, _) in EXPORTED_LAYERS.items()}
     source = checked(RoadMapSource(Lanes.from_features(areas), **layers, signals=call.map_layer("SIGNALS"), attributes=known_of_roads(areas)))
     if call.cloud("ROAD_POINTS"):
         from ..products.export.sources import with_surface_heights

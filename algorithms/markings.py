@@ -1,6 +1,9 @@
-"""What is painted: intensity corrected and drawn, paint, markings and the lines along them."""
+"""What is painted: intensity corrected and drawn, paint, markings and the lines along them, and their colours."""
 
-from ..core.common.features import MARKINGS
+from dataclasses import replace
+
+from ..core.common.errors import RoadExtractionError
+from ..core.common.features import COLOUR, MARKING_LINES, MARKINGS
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, ParameterSpec, SettingSpec
 from .survey_input import bright_road_points_of, check_layers_on_roads, frame_of, paint_of, road_points_of
@@ -255,3 +258,80 @@ class FitMarkingLines(Algorithm):
         call.layer("MARKING_LINES", lines.to_features(frame))
         if call.wants("NAMED_MARKINGS"):
             call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines), frame))
+
+
+COLOURS = "products.cloud.colours:ColourSettings"
+
+COLOUR_SETTINGS = (
+    SettingSpec("AROUND", COLOURS, "around", tr("Width of asphalt about a marking (m)"),
+                tr("Its colour is what paint is compared with. Wider where colours lie some centimetres beside the paint, narrower where grass or "
+                   "other paint is near."), advanced=True),
+)
+
+
+class ColoursOfPaint(Algorithm):
+    ID, TITLE, GROUP = "paintcolours", "Colours of paint", "Markings"
+    SUMMARY = "Tells yellow paint from white, from the colours of the points or from an orthoimage."
+    HELP = ("Intensity does not show colour, so the colours of a camera are needed: those that the points of the survey have, or those of an "
+            "orthoimage. The blue of the paint is compared with the asphalt about it, so that the light and the white balance of the camera do not "
+            "matter.\n\n"
+            "The field colour of every marking is white or yellow, and empty where too little was seen or where both are possible. A line has the "
+            "colour in which most of its length is painted. The road plan draws yellow paint yellow, and Export OpenDRIVE and Export Lanelet2 write "
+            "the colour of each line.")
+    TAGS = ("yellow", "white", "colour", "color", "RGB", "orthoimage", "centre line")
+    LOOKS = {"COLOURED_MARKINGS": "MARKINGS", "COLOURED_LINES": "MARKING_LINES"}
+    NUMBERS = (("WHITE", tr("White markings")), ("YELLOW", tr("Yellow markings")), ("OPEN", tr("Markings whose colour stays open")))
+
+    def declare(self):
+        self.add_map_layer("MARKINGS", tr("As Cluster markings and Road map make it."))
+        self.add_map_layer("MARKING_LINES", tr("The lines that the markings make up."), optional=True)
+        self.add_input("clouds", "POINT_CLOUDS", tr("Point clouds with colours"),
+                       tr("The files of the survey whose points have red, green and blue."), optional=True)
+        self.add_input("raster", "IMAGE", tr("Orthoimage"),
+                       tr("In place of coloured points, or beside them: an image with a position on the map and the bands red, green and blue."),
+                       optional=True)
+        self.add_settings(COLOUR_SETTINGS)
+        self.add_sink("COLOURED_MARKINGS", tr("Markings with colours"), fields=[*MARKINGS, COLOUR], geometry="PolygonZ")
+        self.add_sink("COLOURED_LINES", tr("Marking lines with colours"), fields=[*MARKING_LINES, COLOUR], geometry="LineStringZ", optional=True)
+
+    def work(self, call, progress):
+        from ..core.io.crs import check_same_crs
+        from ..core.survey.las.reader import read_headers
+        from ..products.cloud.colours import WHITE, YELLOW, PaintColours, add_pixels, add_points, colours_of_lines
+
+        markings, lines = (_drawn(call.map_layer(name)) for name in ("MARKINGS", "MARKING_LINES"))
+        if not len(markings):
+            raise RoadExtractionError(tr("{label} holds no features, so there is no paint to look at. Choose the layer of a road map.").format(
+                label=call.label("MARKINGS")))
+        image = call.raster_in("IMAGE", markings.crs)
+        if not image and not call.given("POINT_CLOUDS"):
+            raise RoadExtractionError(tr("Nothing shows the colours of the paint. Give point clouds with colours, or an orthoimage."))
+        seen = PaintColours(markings, call.settings(COLOUR_SETTINGS))
+        if call.given("POINT_CLOUDS"):
+            files = read_headers(call.point_clouds(), progress.warn)
+            for file in files:
+                check_same_crs(markings.crs, file.crs, seen.origin, call.label("MARKINGS"))
+            add_points(seen, files, progress.part(0.0, 0.5 if image else 0.95))
+        if image:
+            add_pixels(seen, image, markings, progress.part(0.5 if call.given("POINT_CLOUDS") else 0.0, 0.95))
+        colours = seen.colours()
+        if not seen.seen.any():
+            progress.warn(tr("No coloured point or pixel lies in a marking, so all colours stay open. Check that both show the same road."))
+        call.layer("COLOURED_MARKINGS", _with_colours(markings, colours))
+        if lines is not None:
+            call.layer("COLOURED_LINES", _with_colours(lines, colours_of_lines(lines, markings, colours)))
+        counts = {"WHITE": int((colours == WHITE).sum()), "YELLOW": int((colours == YELLOW).sum())}
+        return {**counts, "OPEN": len(markings) - sum(counts.values())}
+
+
+def _drawn(layer):
+    """The features of a layer that have a geometry; None for None."""
+    if layer is None:
+        return None
+    kept = [k for k, shape in enumerate(layer.geometries) if shape is not None and not shape.is_empty]
+    return replace(layer, geometries=[layer.geometries[k] for k in kept], rows=[layer.rows[k] for k in kept])
+
+
+def _with_colours(layer, colours):
+    rows = [{**row, COLOUR.name: colour} for row, colour in zip(layer.rows, colours.tolist())]
+    return replace(layer, schema=[*layer.schema, COLOUR], rows=rows)

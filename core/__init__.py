@@ -25,7 +25,8 @@ PUBLIC = {
     "survey.store.road_points": ("RoadPoints",),   # points of the road, by section
     "survey.las.reader": ("CloudHeader", "open_cloud", "read_blocks", "read_headers"),   # LAS, LAZ and COPC files
     # scanners and intensity of files, and points that are no noise
-    "survey.las.point_fields": ("INTENSITY_SOURCES", "IntensitySource", "ScannerCensus", "intensity_source_of", "valid_points", "without_intensity"),
+    "survey.las.point_fields": ("INTENSITY_SOURCES", "IntensitySource", "ScannerCensus", "in_one_scale", "intensity_source_of", "valid_points",
+                                "without_intensity"),
     "survey.las.samples": ("coarse_coordinates", "distinct_rows", "may_overlap", "sample_files", "without_copies"),   # copies of points
     "survey.lattice.scan_lattice": ("find_lattice",),   # scan lines, numbered
     "survey.road_points_las": ("metres_of_file", "new_laz", "place_in_file"),   # new point clouds

@@ -11,13 +11,16 @@ from qgis.core import (
     QgsCategorizedSymbolRenderer,
     QgsContrastEnhancement,
     QgsDataSourceUri,
+    QgsFillSymbolLayer,
     QgsGraduatedSymbolRenderer,
     QgsMapLayerStyle,
     QgsProcessingLayerPostProcessorInterface,
+    QgsProperty,
     QgsProviderConnectionException,
     QgsProviderRegistry,
     QgsRasterLayer,
     QgsRasterMinMaxOrigin,
+    QgsRenderContext,
     QgsRendererCategory,
     QgsRendererRange,
     QgsRuleBasedRenderer,
@@ -30,6 +33,7 @@ from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtXml import QDomDocument
 
 from ..algorithms.destinations import destination_path
+from ..core.common.features import COLOUR
 from .results.attributes import WORDS, explain_attributes
 from .results.layer_tree import place_layer
 from .results.origin import describe_origin
@@ -75,6 +79,8 @@ def apply_style(layer, qml, schema=(), output=""):
         load_look(layer, qml)
     if isinstance(layer, QgsVectorLayer):
         explain_attributes(layer, output, schema)
+        if layer.fields().indexOf(COLOUR.name) >= 0 and layer.renderer() is not None:
+            _paint_yellow(layer.renderer().symbols(QgsRenderContext()))
     if isinstance(layer, QgsRasterLayer) and isinstance(layer.renderer(), QgsSingleBandGrayRenderer):
         # Intensities have no common scale: every image is stretched to its own values
         layer.setContrastEnhancement(
@@ -85,6 +91,20 @@ def apply_style(layer, qml, schema=(), output=""):
             stretch.setMinimumValue(round(stretch.minimumValue()))
             stretch.setMaximumValue(round(stretch.maximumValue()))
             layer.rendererChanged.emit()
+
+
+YELLOW_PAINT = "#e8a800"
+
+
+def _paint_yellow(symbols):
+    """Let the white of symbols be yellow where the paint of a feature is."""
+    for drawn in (drawn for symbol in symbols for drawn in symbol.symbolLayers()):
+        if drawn.subSymbol() is not None:
+            _paint_yellow([drawn.subSymbol()])
+        if drawn.color() == QColor("white"):
+            fill = isinstance(drawn, QgsFillSymbolLayer)
+            drawn.setDataDefinedProperty(drawn.Property.FillColor if fill else drawn.Property.StrokeColor, QgsProperty.fromExpression(
+                f"if(\"{COLOUR.name}\" = 'yellow', '{YELLOW_PAINT}', 'white')"))
 
 
 def style_on_load(name, dest, title, context, schema=(), run=None):

@@ -16,7 +16,7 @@ from ..core.io.crs import check_projected, crs_note
 from ..core.io.geotiff import new_geotiff
 from ..core.survey.blocks import sensor_height_of
 from ..core.survey.frame.road_frame import build_frame
-from ..core.survey.las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
+from ..core.survey.las.point_fields import INTENSITY_SOURCES, ScannerCensus, in_one_scale, intensity_source_of, without_intensity
 from ..core.survey.las.reader import read_blocks, read_headers
 from ..core.survey.las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from ..core.survey.open_survey import match_clocks
@@ -94,7 +94,9 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
             progress.report(done / total)
     inspection = counter.inspection(files, wkt, trajectory, progress)
     samples = sample_files(files)
-    inspection.notes[:0] = copies + [note for note in (coarse_coordinates(samples)[0], intensity_source_of(samples, INTENSITY_SOURCES[0])[1]) if note]
+    usual = INTENSITY_SOURCES[0]
+    notes = coarse_coordinates(samples)[0], in_one_scale(files, samples, usual)[1], intensity_source_of(samples, usual)[1]
+    inspection.notes[:0] = copies + [note for note in notes if note]
     return inspection
 
 

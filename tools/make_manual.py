@@ -27,6 +27,7 @@ FILES = {
     "correctintensity.OUTPUT": "road_points_corrected.laz", "intensityimage.ROAD_POINTS": "road_points_corrected.laz",
     "extractmarkings.ROAD_POINTS": "road_points_corrected.laz", "removeoutliers.INPUT": "marking_points.laz",
     "removeoutliers.OUTPUT": "marking_points_clean.laz", "clustermarkings.MARKING_POINTS": "marking_points_clean.laz",
+    "paintcolours.IMAGE": "orthoimage.tif", "COLOURED_MARKINGS": "coloured_markings.gpkg", "COLOURED_LINES": "coloured_lines.gpkg",
     "proposecontrolpoints.IMAGE": "uav_image.tif", "CONTROL_POINTS": "control_points.gpkg",
     "georeferenceimage.IMAGE": "uav_image.tif", "georeferenceimage.GCPS": "control_points.gpkg",
     "georeferenceimage.OUTPUT": "orthoimage.tif",
@@ -59,7 +60,7 @@ NAMED = {
     "roadmap": ("TRAJECTORY",), "roadattributes": ("OSM_FILE",),
     "roadside": ("ROAD_EDGES",),
     "exporttemplate": ("ROAD_EDGES", "MARKINGS", "MARKING_LINES"),
-    "classifycloud": ("ROAD_SURFACE", "ROAD_EDGES", "MARKINGS"),
+    "classifycloud": ("ROAD_SURFACE", "ROAD_EDGES", "MARKINGS"), "paintcolours": ("MARKING_LINES", "IMAGE"),
 }
 
 

@@ -120,6 +120,8 @@ LANES = [ROAD, Field("lane", int, "Lane"), Field("lane_id", str, "Lane and piece
          Field("left_patt", str, "Pattern of its left border"), Field("right_patt", str, "Pattern of its right border"),
          Field("successors", str, "Lanes that follow, by lane_id"), STATUS, CONFIDENCE, OTHER,
          STATION, END, WIDTH, LENGTH]
+# of markings and marking lines, beside their other fields
+COLOUR = Field("colour", str, "Colour of the paint (white/yellow)", needed=False)
 CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", str, "Turn (left/right)"),
                   Field("radius_m", float, "R (m)"), Field("radius_ft", float, "R (ft)"),
                   Field("delta_deg", float, "Δ (°)"), Field("degree_ft", float, "D (° per 100 ft)"),

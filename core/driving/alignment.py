@@ -48,11 +48,12 @@ class Course:
 
 @dataclass(frozen=True)
 class LanesOfRoad:
-    """The lanes of a road, and the (K,) grid stations on which they run."""
+    """The lanes of a road, the (K,) grid stations on which they run, and the lanes on its asphalt that other roads have."""
 
     tracks: list[LaneTrack]
     s: np.ndarray
     road: Road
+    of_others: Sequence[LaneTrack] = ()
 
 
 def fitted_lanes(roads: Sequence[LanesOfRoad], executor: Executor, progress: Progress = Progress()) -> list[tuple[list[Course], list[list[Element]]]]:

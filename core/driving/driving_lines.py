@@ -23,12 +23,13 @@ from ..survey.frame.road_frame import Road, RoadFrame
 from ..survey.frame.row_table import cuts_where_it_changes
 from ..survey.store.road_points import RoadPoints
 from .alignment import Course, Element, LanesOfRoad, design_check, element_of, fitted_lanes, is_curve, track_pieces
-from .heights import lane_heights
-from .lane_areas import RoadLanes, connectors_between_roads, lane_areas, make_lanes
+from .heights import lane_heights, road_heights
+from .lane_areas import RoadLanes, connectors_between_roads, follow_over_roads, lane_areas, make_lanes
 from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
 from .lanes import estimated_lanes, laid_out
 from .layers import CurveElements, DrivingLines, Lanes
 from .settings import DrivingSettings
+from .shared_lanes import lanes_once
 from .weights import SIGMA
 
 __all__ = ["DrivingSettings", "make_driving_lines"]
@@ -69,16 +70,18 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         progress.warn(f"The survey hardly shows on which side traffic drives; the {estimates.side} was taken. Set Side of traffic if that is wrong.")
     if estimates.against_arrows:
         progress.warn("The vehicle drove against the arrows painted in its lanes; lanes lead the way it drove. Look at the times of the trajectory.")
-    roads = [LanesOfRoad(_road_lanes(estimated, settings, estimates.lane_width), estimated.lines.s, frame.roads[number])
-             for number, estimated in estimates.roads.items()]
+    roads = lanes_once([LanesOfRoad(_road_lanes(estimated, settings, estimates.lane_width), estimated.lines.s, frame.roads[number])
+                        for number, estimated in estimates.roads.items()], frame, settings.shortest)
     progress.report(0.5)
     fitted = fitted_lanes(roads, THREADS if road_points is None else road_points.executor, progress.part(0.5, 0.7))
-    for count, ((number, estimated), road, (courses, alignment)) in enumerate(zip(estimates.roads.items(), roads, fitted)):
-        part = progress.part(0.7 + 0.3 * count / len(roads), 0.7 + 0.3 * (count + 1) / len(roads))
+    measured = [None] * len(roads) if road_points is None else road_heights(
+        road_points, [(number, road.s, road.tracks) for number, road in zip(estimates.roads, roads)], progress.part(0.7, 0.9))
+    for count, ((number, estimated), road, z_of_road, (courses, alignment)) in enumerate(zip(estimates.roads.items(), roads, measured, fitted)):
+        part = progress.part(0.9 + 0.1 * count / len(roads), 0.9 + 0.1 * (count + 1) / len(roads))
         s = road.s
         passes = frame.passes_sigma(number, s)
         tracks = [replace(track, confidence=track.confidence * share_within(passes[track.first:track.last + 1])) for track in road.tracks]
-        heights = lane_heights(estimated.lines, road_points, number, tracks, part.part(0.0, 0.7))
+        heights = lane_heights(estimated.lines, tracks, z_of_road)
         if any(np.isnan(z).any() for z in heights):
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
@@ -88,11 +91,12 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(
                 track, track.direction, course, elements, estimated.lines, z, sigma, country(settings.country))]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
-            part.report(0.7 + 0.2 * lane / len(tracks))
+            part.report(0.9 * lane / len(tracks))
         tracks = [track.without_jumps(s) for track in tracks]
-        areas += lane_areas(estimated, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number))
+        areas += lane_areas(estimated, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number), road.of_others)
         lanes[number] = RoadLanes(s, tracks, heights)
         part.report(1.0)
+    follow_over_roads(areas)
     areas += connectors_between_roads(lanes, frame, areas)
     lines = DrivingLines.of_pieces(rows, marking_lines.crs)
     _report_lengths(lines, estimates.side, progress)
@@ -100,13 +104,12 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
 
 
 def _road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
-    """The lanes of one road as a list of LaneTrack, by first station, then from right to left; `lane_width` where only one line is painted."""
+    """The lanes of one road as a list of LaneTrack; `lane_width` where only one line is painted."""
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
     tracks = connect(tracks, settings.max_bridge)
     clear = [track.without_doubtful_ends() for track in laid_out(tracks)]
-    tracks = [replace(track, confidence=track.said_confidence()) for track in clear
-              if track is not None and len(track) * STATION_STEP >= settings.shortest]
-    return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
+    return [replace(track, confidence=track.said_confidence()) for track in clear
+            if track is not None and len(track) * STATION_STEP >= settings.shortest]
 
 
 def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Element], road_lines: CrossSections,

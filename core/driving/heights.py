@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -22,38 +23,43 @@ HEIGHT_WINDOW = 20.0   # derived: m of road points in memory at a time
 HEIGHT_POINTS = 500_000   # derived: road points that a worker process looks at, about: 30 ms of its time
 
 
-def _road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack],
-                  progress: Progress = Progress()) -> list[np.ndarray]:
-    """Median height of road points within 0.3 m of the places along lanes: (N,) z for each track, NaN where there are fewer than 3 points."""
-    result, spans = [np.full(len(track), np.nan) for track in tracks], spans_of(tracks)
+def road_heights(road_points: RoadPoints, roads: Sequence[tuple[int, np.ndarray, list[LaneTrack]]],
+                 progress: Progress = Progress()) -> list[list[np.ndarray]]:
+    """Median height of road points within 0.3 m of the places along lanes: (N,) z for each track of each road, NaN where there are fewer than 3.
+
+    roads : number of each, (K,) m its stations, and its lanes
+    """
+    result = [[np.full(len(track), np.nan) for track in tracks] for _, _, tracks in roads]
     size, length = int(HEIGHT_WINDOW / STATION_STEP), road_points.store.section_length
-    windows, places = [], []
-    for first in range(0, len(s), size):
-        last = min(first + size, len(s)) - 1
-        inside = [(k, max(first, tracks[k].first), min(last, tracks[k].last)) for k in spans.near(first, last).tolist()]
-        if inside:
-            sections = [int(np.floor((s[k] + side * STATION_STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]
-            lanes = [(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]) for k, a, b in inside]
-            windows.append((sections, s[first:last + 1], lanes))
-            places.append([(k, a - tracks[k].first) for k, a, _ in inside])
-    points = sum(road_points.store.size(road, number) for number in road_points.sections(road))
+    windows, places, points = [], [], 0
+    for of_road, (road, s, tracks) in zip(result, roads):
+        spans = spans_of(tracks)
+        points += sum(road_points.store.size(road, number) for number in road_points.sections(road))
+        for first in range(0, len(s), size):
+            last = min(first + size, len(s)) - 1
+            inside = [(k, max(first, tracks[k].first), min(last, tracks[k].last)) for k in spans.near(first, last).tolist()]
+            if inside:
+                sections = [int(np.floor((s[k] + side * STATION_STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]
+                lanes = [(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]) for k, a, b in inside]
+                windows.append((road, *sections, s[first:last + 1], lanes))
+                places.append([of_road[k][a - tracks[k].first:b + 1 - tracks[k].first] for k, a, b in inside])
     together = max(HEIGHT_POINTS * len(windows) // max(points, 1), 1)
-    phase = Phase(heights_of_windows, road_points, (road,), lambda item: road_points.survey.stretch(road, item[0][1][0], item[-1][1][-1]),
-                  state=lambda item: road_points.store.state((road, item[0][0][0], item[-1][0][-1] + 1)))
+    phase = Phase(heights_of_windows, road_points, (), lambda item: road_points.survey.stretch(item[0][0], item[0][3][0], item[0][3][-1]),
+                  state=lambda item: [road_points.store.state((road, first, last + 1)) for road, first, last, *_ in item])
     for lanes_of_window, heights in zip(places, road_points.executor.run_together(phase, windows, together, progress)):
-        for (k, first), z in zip(lanes_of_window, heights):
-            result[k][first:first + len(z)] = z
+        for place, z in zip(lanes_of_window, heights):
+            place[:] = z
     return result
 
 
-def heights_of_windows(road_points: RoadPoints, item: list[tuple[Any, ...]], road: int) -> list[list[np.ndarray]]:
+def heights_of_windows(road_points: RoadPoints, item: list[tuple[Any, ...]]) -> list[list[np.ndarray]]:
     """The phase that measures heights along lanes: of each window the (M,) heights of each lane.
 
-    `item` : of each window the first and the last section that it lies in, (K,) m its stations, and of each lane (M,) int those that it has, and
-    (M,) m its offsets there.
+    `item` : of each window its road, the first and the last section that it lies in, (K,) m its stations, and of each lane (M,) int those that it
+    has, and (M,) m its offsets there.
     """
     result = []
-    for (first, last), s, lanes in item:
+    for road, first, last, s, lanes in item:
         check_cancelled()
         sections = [road_points.section(road, number).records for number in range(first, last + 1)]
         result.append(_heights([records for records in sections if len(records)], s, lanes))
@@ -171,11 +177,9 @@ def _smooth_heights(z: np.ndarray) -> np.ndarray:
     return gaussian_filter1d(np.r_[head, z, tail], HEIGHTS.height_smoothing_sigma / STATION_STEP)[pad:pad + len(z)]
 
 
-def lane_heights(lines: CrossSections, road_points: RoadPoints | None, road: int, tracks: list[LaneTrack],
-                 progress: Progress = Progress()) -> list[np.ndarray]:
-    """Local z along every lane, (N,) each: from road points where there are any, else from the marking lines beside it."""
-    measured = _road_heights(road_points, road, lines.s, tracks, progress) if road_points is not None else [None] * len(tracks)
-    return [_height(z, _line_heights(lines, track.first, track.d)) for z, track in zip(measured, tracks)]
+def lane_heights(lines: CrossSections, tracks: list[LaneTrack], measured: list[np.ndarray] | None) -> list[np.ndarray]:
+    """Local z along every lane, (N,) each: that of `road_heights` where there are road points, else from the marking lines beside it."""
+    return [_height(z, _line_heights(lines, track.first, track.d)) for z, track in zip(measured or [None] * len(tracks), tracks)]
 
 
 def _height(measured, painted):

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..common.arrays import mask_runs
 from ..common.parallel import check_cancelled
@@ -15,6 +17,7 @@ from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, ISLAND, LANE_LINE, OTHER_LINE, SURFACE
 from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
+from ..survey.weights import FRAME
 from .alignment import track_pieces
 from .lane_track import LANE_STATUS, LaneTrack, spans_of
 from .layers import Lanes
@@ -24,11 +27,11 @@ KIND_OF_BORDER = {LANE_LINE: "lane", CENTRE_LINE: "centre", EDGE_LINE: "edge", O
 
 
 def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[LaneTrack], heights: list[np.ndarray], frame: RoadFrame,
-               number: int, pavement: CrossSections | None = None) -> list[dict[str, Any]]:
+               number: int, pavement: CrossSections | None = None, of_others: Sequence[LaneTrack] = ()) -> list[dict[str, Any]]:
     """The rows of Lanes of one road: its lanes by piece, connectors along the drive where lanes end and begin again, and shoulders.
 
     `curbs`, `pavement` : edges of the pavement with and without a curb that were given to the estimate, or None. Lanes are numbered from 1 in the
-    order of the tracks; `heights` : local z along each.
+    order of the tracks; `heights` : local z along each; `of_others` : lanes on the asphalt of this road that others have.
     """
     rows = []
     for lane, (track, z) in enumerate(zip(tracks, heights), start=1):
@@ -41,7 +44,8 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
     if pavement is not None:
         lanes = max((row["lane"] for row in rows), default=0)
         borders = [_sides(road, track, slice(0, len(track)), z, frame, number) for track, z in zip(tracks, heights)]
-        rows += [row | dict(lane=lane) for lane, row in enumerate(shoulders(road, tracks, borders, pavement, frame, number), start=lanes + 1)]
+        strips = shoulders(road, tracks, borders, pavement, frame, number, of_others)
+        rows += [row | dict(lane=lane) for lane, row in enumerate(strips, start=lanes + 1)]
     names: dict[int, int] = {}
     for row in rows:
         names[row["lane"]] = names.get(row["lane"], 0) + 1
@@ -113,6 +117,30 @@ def follow(rows: list[dict[str, Any]]) -> None:
             and abs((candidate["first"] if way > 0 else candidate["last"]) - d) < max(row["width"], candidate["width"]) / 2)
 
 
+def follow_over_roads(rows: list[dict[str, Any]]) -> None:
+    """Name also what follows a lane that goes on as a lane of another road right where it ends, as one of which two roads have a part each."""
+    lanes = [row for row in rows if row["type"] == "driving"]
+    if not lanes:
+        return
+    begins, tips = ([_tip(row, *at) for row in lanes] for at in ((0, 1), (-1, -2)))
+    near = cKDTree([place for place, _ in begins]).query_ball_point([place for place, _ in tips], AREAS.next_lane_gap)
+    for row, (end, back), following in zip(lanes, tips, near):
+        names = []
+        for k in sorted(following):
+            begin, ahead = begins[k]
+            across = abs(back[0] * (begin - end)[1] - back[1] * (begin - end)[0])
+            along = -back @ ahead > np.cos(FRAME.parallel_angle)
+            if along and lanes[k]["road"] != row["road"] and across < max(row["width"], lanes[k]["width"]) / 2:
+                names.append(lanes[k]["lane_id"])
+        row["successors"] = row["successors"] or tuple(names)
+
+
+def _tip(row, tip, beside):
+    """The middle of a lane at one of its vertices, and the unit vector from there to the middle at another one."""
+    place, onward = ((row["left"][k] + row["right"][k])[:2] / 2 for k in (tip, beside))
+    return place, (onward - place) / max(np.hypot(*(onward - place)), 1e-9)
+
+
 def _begins(rows, way):
     """Stations, ascending, at which the lanes of a direction begin, and the rows they are of."""
     of = [k for k, row in enumerate(rows) if row["direction"] == way]
@@ -134,7 +162,7 @@ STRIP_WIDTH = 0.3, 4.0   # source: m of a strip at any place: the widest paved s
 
 
 def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[np.ndarray]], pavement: CrossSections, frame: RoadFrame,
-              number: int) -> list[dict[str, Any]]:
+              number: int, of_others: Sequence[LaneTrack] = ()) -> list[dict[str, Any]]:
     """Rows of Lanes without numbers between the edge lines of lanes and the edges of the pavement beside them, with the vertices of the lane beside.
 
     Where a curb bounds the road the strip beside the line may be for parking, cycling or nothing, so it is not named.
@@ -142,13 +170,14 @@ def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[n
     """
     s, lines = road.lines.s, road.lines
     shift = int(np.rint((s[0] - pavement.s[0]) / STATION_STEP))   # stations by which the grid of the lines begins behind that of the pavement
-    rows, spans = [], spans_of(tracks)
+    there = [*tracks, *of_others]
+    rows, spans = [], spans_of(there)
     for track, (left, right) in zip(tracks, borders):
         columns = np.arange(track.first, track.last + 1)
         for sign, line_row, use, border in ((1, track.left, track.left_use, left), (-1, track.right, track.right_use, right)):
             inner = track.d + sign * track.width / 2
             nearest, width = _nearest_edge(pavement, columns[0] + shift, inner, sign)
-            neighbours = [tracks[k] for k in spans.near(track.first, track.last).tolist()]
+            neighbours = [there[k] for k in spans.near(track.first, track.last).tolist()]
             wide = np.isfinite(width) & (use == EDGE_LINE) & (line_row >= 0) & (line_row < len(lines.d)) & ~_taken(neighbours, track, inner, sign)
             for a, b in mask_runs(wide):
                 if (b - a - 1) * STATION_STEP < AREAS.shortest_shoulder or np.median(width[a:b]) < AREAS.least_shoulder:

@@ -15,7 +15,7 @@ from .weights import EXECUTION
 class RememberedResults(Executor):
     """Executor that remembers the results of phases whose items hold all that they need, or that say in which state they read the rest.
 
-    A few that are missing are computed by threads: workers take longer to start.
+    A few that are missing are computed by threads: workers take longer to start. So is what a later run asks for a whole road at once.
     """
 
     def __init__(self, executor: Executor):
@@ -40,10 +40,12 @@ class RememberedResults(Executor):
 
     def _completed(self, phase, items, state, compute, progress):
         """Yield the results of all items, of which `compute` has an executor give those that are not remembered."""
-        names = [digest((name_of(phase.function), phase.arguments, item, state and state(item))) for item in items]
+        shared = digest((name_of(phase.function), phase.arguments))
+        names = [digest((shared, item, state and state(item))) for item in items]
         missing = {name: k for k, name in enumerate(names) if name not in self._results}
         rows = list(missing.values())
-        results = iter(compute(THREADS if 2 * len(missing) < len(names) else self.executor, Items(len(rows), lambda k: items[rows[k]])))
+        few = 2 * len(rows) < len(names) or self._first and len(rows) <= EXECUTION.few_items
+        results = iter(compute(THREADS if few else self.executor, Items(len(rows), lambda k: items[rows[k]])))
         for name in names:
             if name in missing:
                 del missing[name]   # a later item may be the same

@@ -24,6 +24,7 @@ class _ExecutionWeights:
     end_time: float = 5.0   # s that a worker may take to end by itself
     last_words: int = 2000   # characters of what a dead worker wrote that are passed on
     runs_remembered: int = 2   # times as many results as after the first run, beyond which all are forgotten: each correction adds a few
+    few_items: int = 8   # of a phase, which threads have done before workers have started, which takes these a second
     open_phases: int = 2   # phases kept open in a worker: the current one and the one before
     work_rounds: int = 8   # of work that a worker has in a phase at least, where its items come together, so that all end at about the same time
     least_tasks: int = 16   # that a phase is divided into where there is enough work, so that all workers end at about the same time

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..common.parallel import ScratchBuffers
+from .coverage import Coverage
 from .frame.projection import RoadProjection
 from .frame.road_frame import RoadFrame
 from .las.point_fields import EVER, MAX_INTENSITY, SCANNER_FIELDS, IntensitySource, LasAxis, ScannerCensus, flagged, valid_points
@@ -92,12 +93,13 @@ class PointChoice:
 
 @dataclass
 class ChosenPoints:
-    """What the points that are kept say of the survey: the HeightHistogram of those on the vehicle's own track, and samples.
+    """What the points that are kept say of the survey: the HeightHistogram and the Coverage of those on the vehicle's own track, and samples.
 
     sampled : (N,) times and (N, 3) units of 0.1 mm of some points; without times none
     """
 
     histogram: HeightHistogram
+    coverage: Coverage
     sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
 
 
@@ -122,7 +124,7 @@ class BlockReader:
 
     def chosen(self, drop: float) -> ChosenPoints:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
-        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop))
+        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame))
 
     def unfiltered(self, block: Any, summary: BlockSummary) -> list[tuple[int, Columns]]:
         """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
@@ -131,7 +133,7 @@ class BlockReader:
     def read(self, block: Any, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
              store: SectionStore) -> Iterator[PartitionedPoints]:
         """Yield the points of a block near the road, ready for the store, until the next ones are asked for; `summary` and `chosen` are updated."""
-        for road, points, near in self._near_roads(block, summary, ground):
+        for road, points, near in self._near_roads(block, summary, ground, chosen):
             yield self._partition(road, points, near, chosen, store)
 
     def filtered(self, parts: Iterable[tuple[int, Columns]], ground: HeightFilter, chosen: ChosenPoints,
@@ -142,14 +144,16 @@ class BlockReader:
                 near = ground.level(road_of(road), points["s"], points["z"])
             else:
                 near = ground.near(road, points["s"], points["z"], ScratchBuffers().of(len(points)))
+                self._count_far(road, points, ~near, chosen)
             if near.any():
                 yield self._partition(road, points, near, chosen, store)
 
     def _partition(self, road, points, own, chosen, store):
         if road < 0:
             return store.partition(road, points, own)
-        for number, drops in self.tracks.drops(road, points, own):
+        for number, s, drops in self.tracks.drops(road, points, own):
             chosen.histogram.add(number, drops)
+            chosen.coverage.add(number, s, drops, near=True)
         if self.choice.has_time:
             kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
             rows = np.flatnonzero(kept if own is None else kept & own)
@@ -157,20 +161,27 @@ class BlockReader:
                 chosen.sampled.append((points["time"][rows], np.stack([points[name][rows] for name in "xyz"], axis=1)))
         return store.partition(road, points, own)
 
-    def _near_roads(self, block, summary, ground=None):
+    def _count_far(self, road, points, far, chosen):
+        """Count the points of a road on the vehicle's own track, (N,) bool of all, that do not lie near its height."""
+        rows = np.flatnonzero(far)
+        if len(rows):
+            for number, s, drops in self.tracks.drops(road, points.take(rows)):
+                chosen.coverage.add(number, s, drops, near=False)
+
+    def _near_roads(self, block, summary, ground=None, chosen=None):
         """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
 
-        summary : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken. Yields road number, Columns of
-        a piece, and (N,) bool of the points to use, None for all; for ground beyond the corridor the number is that of `beside_road`, and
-        stations are the vehicle's.
+        summary : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken; chosen : ChosenPoints, which
+        counts those of other heights. Yields road number, Columns of a piece, and (N,) bool of the points to use, None for all; for ground beyond
+        the corridor the number is that of `beside_road`, and stations are the vehicle's.
         """
         names = set(block.point_format.dimension_names)
         axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
         # small pieces stay in the processor cache
         for first in range(0, len(block), FRAME.points_per_projection):
-            yield from self._piece(block[first:first + FRAME.points_per_projection], names, axes, summary, ground)
+            yield from self._piece(block[first:first + FRAME.points_per_projection], names, axes, summary, ground, chosen)
 
-    def _piece(self, piece, names, axes, summary, ground):
+    def _piece(self, piece, names, axes, summary, ground, chosen):
         buffers = self._scratch.of(len(piece))
         columns = self._columns(piece, names, buffers)
         summary.add_intensity(columns["intensity"])
@@ -189,6 +200,7 @@ class BlockReader:
         for number, of_road in self._by_road(columns["pass_number"], inside):
             if ground is not None:
                 near = ground.near(number, columns["s"], columns["z"], buffers)
+                self._count_far(number, points, _both(of_road, ~near), chosen)
                 of_road = _both(of_road, None if near.all() else near)
             if of_road is None or of_road.any():
                 yield number, points, of_road
@@ -326,8 +338,8 @@ class VehicleTracks:
             offsets, heights = p.at_station(middles)
             self._tracks[p.number] = first, to_units(offsets), to_units(heights)
 
-    def drops(self, road: int, points: Columns, own: np.ndarray | None = None) -> Iterator[tuple[int, np.ndarray]]:
-        """Yield pass number and (M,) int32 depths below the trajectory, units of 0.1 mm, of the points of a road on the pass's own track.
+    def drops(self, road: int, points: Columns, own: np.ndarray | None = None) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
+        """Yield pass number, (M,) int32 stations and depths below the trajectory, units of 0.1 mm, of the points of a road on the pass's own track.
 
         own : (N,) bool, points to use; all by default
         """
@@ -356,7 +368,7 @@ class VehicleTracks:
             if len(on):
                 drops = heights.take(cell.take(on), mode="clip")
                 drops -= points["z"].take(rows.take(on))
-                yield p.number, drops
+                yield p.number, along.take(rows.take(on)), drops
 
 
 def _between(values, least, most):

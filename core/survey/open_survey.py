@@ -22,10 +22,11 @@ from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import fitted_trajectory
 from .blocks import PointChoice, unwrap_week
+from .frame.passes import decimate_by_distance
 from .frame.road_frame import RoadFrame, build_frame
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
-from .las.point_fields import check_coloured, intensity_source_of, without_intensity
+from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
 from .las.reader import CloudHeader, read_headers
 from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .store.array_file import files_are_whole
@@ -34,7 +35,7 @@ from .store.section_store import SectionStore
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
-from .trajectory.time_systems import align_time, wrapped_week
+from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
 from .weights import FRAME, READING, STORE, VEHICLE
 
@@ -169,7 +170,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
     frame = _frame_of(files, fitted.trajectory, crs, has_time, progress)
     samples = sample_files(files)
-    intensity, rounding = _intensity_source(samples, settings, progress)
+    files, one_scale = in_one_scale(files, samples, settings.intensity_from)
+    intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
                          None if shared is None else shared.points)
     reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
@@ -195,11 +197,11 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     return survey
 
 
-def _intensity_source(samples, settings, progress):
+def _intensity_source(samples, settings, one_scale, progress):
     """How intensities are read, and m that coarse coordinates leave open across."""
     intensity, intensity_note = intensity_source_of(samples, settings.intensity_from)
     coarse_note, rounding = coarse_coordinates(samples)
-    for note in filter(None, (coarse_note, intensity_note)):
+    for note in filter(None, (coarse_note, one_scale, intensity_note)):
         progress.warn(note)
     return intensity, rounding
 
@@ -275,7 +277,7 @@ def _frame_of(files, trajectory, crs, has_time, progress):
         progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
                       "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
                       "the files of each drive with its own part of the trajectory.")
-    _check_extent(files, frame, crs, trajectory.crs)
+    _check_extent(files, frame, crs, trajectory.crs, progress)
     return frame
 
 
@@ -287,7 +289,10 @@ def _say_left_out(files, frame, reader, settings, progress):
     if left.excluded:
         progress.info(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if left.without_time:
-        progress.warn(f"{left.without_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the trajectory's.")
+        progress.warn(f"{left.without_time:,} of {total:,} points were left out: the trajectory, which runs {_said_of_times(frame)}, has no position "
+                      "at their gps_time. If they are part of this survey, give its whole trajectory, and points with their time.")
+    for warning in reader.not_covered:
+        progress.warn(warning)
     if reader.uneven:
         progress.warn("The trajectory does not keep to one height above the road: half of the points under the vehicle lie more than "
                       f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
@@ -373,12 +378,47 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
         return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
     if not all(file.has_time for file in files):
         return trajectory, "The point cloud has no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
-    span = _time_span(files)
-    if span is None:
+    sampled = _sampled_times(files)
+    times = np.concatenate([time for _, time in sampled])
+    if not len(times) or times.max() <= times.min():
         return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False
-    span, week_ends = span
+    week_ends = wrapped_week((times.min(), times.max()))
+    if week_ends:
+        sampled = [(path, unwrap_week(time)) for path, time in sampled]
+    spans = [(path, float(time.min()), float(time.max())) for path, time in sampled if len(time)]
+    span = min(first for _, first, _ in spans), max(last for *_, last in spans)
     offset, note = align_time(trajectory.time, span, settings.time, files[0].adjusted_time)
-    return trajectory.shifted(offset), note, True, week_ends
+    shifted = trajectory.shifted(offset)
+    _refuse_other_clocks(spans, trajectory.time, offset, settings.time)
+    return shifted, note, True, week_ends
+
+
+def _refuse_other_clocks(spans, time, offset, system):
+    """Refuse files, (path, first and last gps_time), that a trajectory covers only by another shift of its (N,) times than the offset of the others.
+
+    Of files whose times are less than a week apart one may well be of another day.
+    """
+    start, end = np.nanmin(time) + offset - FRAME.clock_slack, np.nanmax(time) + offset + FRAME.clock_slack
+    path, *ends = next((span for span in spans if span[1] <= end and span[2] >= start), spans[0])
+    for other, first, last in spans:
+        if first <= end and last >= start or first == last or abs(first - ends[0]) < SECONDS_PER_WEEK:
+            continue
+        try:
+            align_time(time, (first, last), system)
+        except RoadExtractionError:
+            continue   # of a drive that the trajectory does not hold
+        raise RoadExtractionError(f"The point clouds count time in two ways: {path} runs from {ends[0]:.1f} s to {ends[1]:.1f} s, and {other}, of "
+                                  f"the same drive, from {first:.1f} s to {last:.1f} s. Export all of them with one kind of gps_time, such as "
+                                  "adjusted standard GPS time, and run again.")
+
+
+def _said_of_times(frame):
+    """From when to when a trajectory runs, and the longest of its gaps."""
+    spans = sorted((p.time[0], p.time[-1]) for p in frame.passes)
+    gaps = [(last, first) for (_, last), (first, _) in zip(spans[:-1], spans[1:]) if first - last > FRAME.clock_slack]
+    gaps.sort(key=lambda gap: gap[0] - gap[1])
+    named = "".join(f", not from {last:.1f} s to {first:.1f} s" for last, first in gaps[:READING.told_stretches])
+    return f"from {spans[0][0]:.1f} s to {spans[-1][1]:.1f} s{named}{', …' if len(gaps) > READING.told_stretches else ''}"
 
 
 def _without_time(files, trajectory):
@@ -390,28 +430,31 @@ def _without_time(files, trajectory):
     return "all points have the same gps_time"
 
 
-def _time_span(files):
-    """((first, last) gps_time, whether the week ends in between), of samples of every file, its last points among them; None if all are equal."""
+def _sampled_times(files):
+    """[(path, (N,) gps_time)] of a few points of every file that has any, its last ones among them."""
     with ParallelCloudReader(("gps_time",)) as readers:
-        samples = [time[np.isfinite(time)] for file in files if file.count for time in readers.times(file)]
-    times = np.concatenate(samples)
-    if not len(times) or times.max() <= times.min():
-        return None
-    week_ends = wrapped_week((times.min(), times.max()))
-    times = unwrap_week(times) if week_ends else times
-    return (float(times.min()), float(times.max())), week_ends
+        return [(file.path, np.concatenate([time[np.isfinite(time)] for time in readers.times(file)])) for file in files if file.count]
 
 
-def _check_extent(files, frame, crs, trajectory_crs):
-    low = np.min([file.minimum for file in files if file.count], axis=0)
-    high = np.max([file.maximum for file in files if file.count], axis=0)
-    x = np.concatenate([p.x for p in frame.passes]) + frame.origin[0]
-    y = np.concatenate([p.y for p in frame.passes]) + frame.origin[1]
+def _check_extent(files, frame, crs, trajectory_crs, progress):
+    """Refuse clouds, or a file of them, with coordinates of another kind than those of the trajectory, and tell of files beside it."""
+    filled = [file for file in files if file.count]
+    low, high = np.min([file.minimum for file in filled], axis=0), np.max([file.maximum for file in filled], axis=0)
+    ways = [np.c_[p.x, p.y][decimate_by_distance(p.x, p.y, FRAME.track_step)] for p in frame.passes]
+    x, y = (np.concatenate(ways) + frame.origin[:2]).T
     reach = FRAME.corridor
-    if not _runs_through(low, high, x, y, reach):
+    away = [file for file in filled if not _runs_through(file.minimum, file.maximum, x, y, reach)]
+    if len(away) == len(filled):
         raise RoadExtractionError(f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, y "
                                   f"{low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to "
                                   f"{y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
+    for file in away:
+        ends = np.array(file.minimum), np.array(file.maximum)
+        if _runs_through(*ends, y, x, reach) or _advice_on_units(*ends, x, y, crs, reach):
+            raise RoadExtractionError(f"The coordinates of {file.path} are of another kind than those of the other point clouds, through which the "
+                                      f"trajectory runs. {_what_to_try(*ends, x, y, crs, trajectory_crs, reach)}")
+    if away:
+        progress.info(f"{len(away)} of {len(filled)} files lie beside the trajectory and give no points, such as {away[0].path}.")
 
 
 def _runs_through(low, high, x, y, reach):

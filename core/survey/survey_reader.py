@@ -35,7 +35,8 @@ class SurveyReader:
     """Reads files into a section store and gathers statistics of the whole survey, complete after `read`.
 
     summary : BlockSummary of all points
-    heights, uneven : {pass number: metres from the trajectory down to the road}, and as of `HeightHistogram.uneven`
+    heights, uneven, not_covered : {pass number: metres from the trajectory down to the road}, as of `HeightHistogram.uneven`, and of
+        `Coverage.warnings`
     slots, sampled : TimeSlots of the points by which scanners are distinguished that no field distinguishes; their (N,) times and (N, 3) units
         of 0.1 mm, in no order; without times none
     """
@@ -86,6 +87,7 @@ class SurveyReader:
     def _end(self):
         self._settle()
         self.heights, self.uneven = self._chosen.histogram.heights(), self._chosen.histogram.uneven()
+        self.not_covered = self._chosen.coverage.warnings(self.frame, self.heights)
 
     def _read_block(self, block):
         """Read one of the first blocks, by which the rough height of the road is estimated: its points wait until that is known."""
@@ -96,7 +98,7 @@ class SurveyReader:
         else:
             parts = self._blocks.unfiltered(block, summary)
             self._waiting += parts
-            self._samples += [drops[::7] for road, points in parts if road >= 0 for _, drops in self._blocks.tracks.drops(road, points)]
+            self._samples += [drops[::7] for road, points in parts if road >= 0 for _, _, drops in self._blocks.tracks.drops(road, points)]
             if sum(map(len, self._samples)) > READING.height_samples or sum(len(points) for _, points in self._waiting) > READING.max_waiting_points:
                 self._settle()
         self.summary.join(summary)
@@ -105,6 +107,7 @@ class SurveyReader:
         """Take a part that somebody else read, in the order of the files."""
         self.summary.join(part.summary)
         self._chosen.histogram.join(part.drops)
+        self._chosen.coverage.join(part.coverage)
         self._chosen.sampled.append((part.times, part.places))
         self.store.adopt(part.index, self.store.folder)
 
@@ -130,6 +133,7 @@ class _PartOfFiles:
     index: StoreIndex
     summary: BlockSummary
     drops: dict[int, np.ndarray]   # {pass number: counts of its HeightHistogram}
+    coverage: dict[int, np.ndarray]   # {pass number: counts of its Coverage}
     times: np.ndarray   # times, places: (N,) s and (N, 3) units of 0.1 mm of the sampled points
     places: np.ndarray
 
@@ -189,18 +193,18 @@ def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
                     store.add(part)
     index = store.index()
     sampled = list(zip(*chosen.sampled)) or [[np.empty(0)], [np.empty((0, 3), np.int32)]]
-    return _PartOfFiles(index, summary, chosen.histogram.counts, *(np.concatenate(column) for column in sampled))
+    return _PartOfFiles(index, summary, chosen.histogram.counts, chosen.coverage.counts, *(np.concatenate(column) for column in sampled))
 
 
 def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
     """One part of several that follow each other."""
     summary = BlockSummary()
-    drops: dict[int, np.ndarray] = {}
     for part in parts:
         summary.join(part.summary)
-        drops = {number: counts + drops.get(number, 0) for number, counts in part.drops.items()}
-    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), summary, drops, *(np.concatenate([getattr(part, name) for part in parts])
-                                                                                   for name in ("times", "places")))
+    drops, coverage = ({number: sum(getattr(part, name)[number] for part in parts) for number in getattr(parts[0], name)}
+                       for name in ("drops", "coverage"))
+    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), summary, drops, coverage,
+                        *(np.concatenate([getattr(part, name) for part in parts]) for name in ("times", "places")))
 
 
 # The phase that puts points in order: sections are read from where they were stored, finished, sorted, and written to a folder.

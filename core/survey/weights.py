@@ -208,6 +208,9 @@ class _LasWeights:
     max_spread: float = 60.0   # dB that no survey exceeds
     brightest: int = 30_000   # intensity that the brightest points get
     brightest_step: float = 5.0   # dB to which the brightest points are rounded, so that samples agree
+    sensor_bits: tuple[int, ...] = (8, 10, 11, 12)   # of intensities as sensors give them
+    other_scale: float = 6.0   # times the usual intensity of another file: asphalt, grass and trees differ by less
+    same_scale: float = 3.0   # times, that files with one scale may differ by
     farthest_height: float = 2e4   # m above or below the frame's origin: points beyond are outliers, and would overflow the integers of a record
 
 
@@ -233,6 +236,10 @@ class _ReadingWeights:
     height_range: float = 20.0   # m either side of the first estimate covered by the histogram
     height_peak_bin: float = 0.1   # m: bin width in which the road makes the peak
     max_suspension_travel: float = 0.15   # m: no suspension lets a vehicle rise and sink more than this for half of its way
+    coverage_cell_bits: int = 15   # of a station in units of 0.1 mm: whether a road was measured under the vehicle is asked every 3.3 m
+    least_near_share: float = 0.1   # of the points there that are far above or below: under a bridge or in a tunnel the road is as well seen
+    least_hole: float = 5.0   # m without a point under the vehicle: longer than a puddle, or than a vehicle behind
+    told_stretches: int = 4   # stretches that a warning names
     track_cell_bits: int = 8   # of a station in units of 0.1 mm: a track is looked up every 26 mm
     height_peak_reach: float = 0.5   # m either side of the peak that belong to the road
     max_waiting_points: int = 4_000_000   # points held back at most until the height of the road is known

@@ -113,22 +113,23 @@ class PointClassifier:
         last = max(float(p.time[-1]) for p in frame.passes)
         self._week_ends = survey.has_time and SECONDS_PER_WEEK < last < 2 * SECONDS_PER_WEEK
         self._ground = _Ground(survey, settings)
-        self._surface, self._paint = (_Areas(layer, frame) for layer in (layers.road_surface, layers.markings))
-        self._paint_from = self._levels_of_paint(_Areas(layers.markings, frame, settings.around))
+        self._surface, self._paint = (Areas(layer, frame.origin) for layer in (layers.road_surface, layers.markings))
+        self._paint_from = self._levels_of_paint(Areas(layers.markings, frame.origin, settings.around))
         self._edges, self._lines, self._objects = (_Near(layer, frame, settings.spacing) for layer in (
             _curbs_of(layers.road_edges), layers.roadside, layers.roadside_objects))
 
-    def places(self, points: Any) -> _RoadPlaces:
-        """Places and classes of a block of N laspy points, whose coordinates are in metres."""
+    def places(self, points: Any, brightness: int = 1) -> _RoadPlaces:
+        """Places and classes of a block of N laspy points, whose coordinates are in metres; brightness : as of its `CloudHeader`."""
         origin = self.survey.frame.origin
         x, y, z = (np.asarray(points[name], float) - start for name, start in zip("xyz", origin))
         road, s, d, (x, y, z) = self._placed(points, x, y, z)
-        classes, h, brightness = np.zeros(len(x), np.uint8), np.full(len(x), np.nan), _steps_of(self.intensity.of(points))
+        classes, h = np.zeros(len(x), np.uint8), np.full(len(x), np.nan)
+        steps = _steps_of(self.intensity.of(points) * np.float32(brightness))
         for number in np.unique(road[road >= 0]).tolist():
             rows = np.flatnonzero(road == number)
             ground, level = self._ground.at(number, s[rows], d[rows])
             h[rows] = z[rows] - level
-            classes[rows] = self._classes(x[rows], y[rows], z[rows], z[rows] - ground, brightness[rows])
+            classes[rows] = self._classes(x[rows], y[rows], z[rows], z[rows] - ground, steps[rows])
         return _RoadPlaces(classes, road, s, d, h)
 
     def _placed(self, points, x, y, z):
@@ -265,12 +266,12 @@ class _Ground:
         return height[tuple(nearest)], away <= chosen.reach
 
 
-class _Areas:
-    """Polygons of a layer, of which many points are asked whether they lie inside."""
+class Areas:
+    """Polygons of a layer, of which many points are asked whether they lie inside. origin : map coordinates of the local ones"""
 
-    def __init__(self, layer: Features | None, frame: RoadFrame, wider: float = 0.0):
+    def __init__(self, layer: Features | None, origin: np.ndarray, wider: float = 0.0):
         shapes = [] if layer is None else [shapely.force_2d(shape) for shape in layer.geometries if shape is not None]
-        self._shapes = shapely.transform(np.array(shapes, object), lambda places: places - frame.origin[:2])
+        self._shapes = shapely.transform(np.array(shapes, object), lambda places: places - origin[:2])
         self._shapes = shapely.buffer(self._shapes, wider) if wider else self._shapes
         shapely.prepare(self._shapes)
         self._tree = shapely.STRtree(self._shapes)

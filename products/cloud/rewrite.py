@@ -43,7 +43,7 @@ def classified_copy(file: CloudHeader, classifier: PointClassifier, path: str, u
     with ExitStack() as stack:
         writer, second = stack.enter_context(new_laz(path, header)), straight and stack.enter_context(new_laz(unrolled, straight))
         for points in read_blocks(file.path, units=file.units):
-            places = classifier.places(points)
+            places = classifier.places(points, file.brightness)
             record = _described(points, places, header, counts)
             writer.write_points(record)
             if second is not None:

@@ -202,9 +202,9 @@ class _Drafting:
             tags = {"type": "curbstone", "subtype": "low" if height < HIGH_CURB else "high"}
             return tags | ({} if np.isnan(height) else {"height": f"{height:.2f}"})
         if pattern in SUBTYPE_OF_PATTERN:
-            width = self.source.paint_width(line)
-            return {"type": "line_thick" if width > THICK_LINE else "line_thin", "subtype": SUBTYPE_OF_PATTERN[pattern]} | (
-                {} if np.isnan(width) else {"width": f"{width:.2f}"})
+            width, colour = self.source.paint_width(line), self.source.paint_colour(line)
+            tags = {"type": "line_thick" if width > THICK_LINE else "line_thin", "subtype": SUBTYPE_OF_PATTERN[pattern]}
+            return tags | ({} if np.isnan(width) else {"width": f"{width:.2f}"}) | ({"color": colour} if colour else {})
         return {"type": "road_border"} if kind in ("edge", "pavement") else {"type": "virtual"}
 
     def _new_nodes(self, places: np.ndarray) -> tuple[int, ...]:

@@ -13,7 +13,7 @@ import shapely
 from scipy.spatial import cKDTree
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.features import DRIVING_LINES, MARKINGS, ROAD_ATTRIBUTES, Features
+from ...core.common.features import COLOUR, DRIVING_LINES, MARKINGS, ROAD_ATTRIBUTES, Features
 from ...core.driving.layers import Lanes
 from ...core.io.crs import check_metric, horizontal_part, parse_crs, plane_wkt, same_crs
 from ...core.survey.store.road_points import RoadPoints
@@ -84,9 +84,17 @@ class RoadMapSource:
 
     def paint_width(self, line: str) -> float:
         """Metres of the paint of a border, by the name of its line in Lanes; NaN where unknown."""
-        rows = self.marking_lines.rows if self.marking_lines is not None and line.startswith("line ") else ()
-        widths = [float(row["width_m"]) for row in rows if str(row.get("line")) == line[5:] and row.get("width_m") is not None]
+        widths = self._painted(line, "width_m")
         return float(np.median(widths)) if widths else np.nan
+
+    def paint_colour(self, line: str) -> str:
+        """"white" or "yellow", the colour of most pieces of a border, by the name of its line in Lanes; "" where unknown."""
+        return next(iter(dict(Counter(self._painted(line, COLOUR.name)).most_common(1))), "")
+
+    def _painted(self, line, name):
+        """What the pieces of a marking line say in a field, where they say it."""
+        rows = self.marking_lines.rows if self.marking_lines is not None and line.startswith("line ") else ()
+        return [row[name] for row in rows if str(row.get("line")) == line[5:] and row.get(name) not in (None, "")]
 
 
 def is_stated(lanes: Lanes) -> bool:

@@ -154,7 +154,7 @@ def clusters_ours(size):
 
     points = _paint(size)
     road = points.roads()[0]
-    (_, labels), seconds = timed(lambda: connected_points(points, road, ClusterSettings.distance))
+    ((_, labels), *_), seconds = timed(lambda: connected_points(points, ClusterSettings.distance))
     clusters = np.empty(len(labels), np.int64)
     clusters[columns_of_roads(points.store, [road], ("time",))["time"].astype(np.int64)] = labels
     np.save(prepared("clusters_ours.npy", size), clusters)

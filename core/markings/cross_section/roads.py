@@ -236,18 +236,22 @@ def _usual_width(known, estimates, usual):
     for number, estimate in estimates.items():
         boundaries, candidates, _ = known[number]
         strips = lane_strips(estimate.sections.chosen(estimate.choice))
-        left, right = candidates.rows[strips.interval, strips.left, 1], candidates.rows[strips.interval, strips.right, 0]
-        for interval, *sides, count in zip(*(values.tolist() for values in (strips.interval, left, right, strips.number))):
+        sides = np.stack([candidates.rows[strips.interval, strips.left, 1], candidates.rows[strips.interval, strips.right, 0]])
+        first, count = candidates.first[strips.interval], candidates.last[strips.interval] + 1 - candidates.first[strips.interval]
+        end = np.cumsum(count)
+        of = np.repeat(np.arange(len(count)), count)
+        stations = np.arange(len(of)) + (first - end + count)[of]
+        apart = boundaries.d[sides[0, of], stations] - boundaries.d[sides[1, of], stations]
+        painted = boundaries.painted[sides]
+        edge = [np.bincount(of, boundaries.patterns[side[of], stations] == PAVEMENT, len(count)) > 0.5 * count for side in sides]
+        for k in np.flatnonzero((painted | edge).all(axis=0)).tolist():
             check_cancelled()
-            rows, painted = slice(candidates.first[interval], candidates.last[interval] + 1), boundaries.painted[sides]
-            edge = [np.mean(boundaries.patterns[row, rows] == PAVEMENT) > 0.5 for row in sides]
-            if (painted | edge).all():
-                apart = boundaries.d[sides[0], rows] - boundaries.d[sides[1], rows]
-                apart = apart[~np.isnan(apart)]
-                width = median(apart) / count if len(apart) else np.nan
-                # beside the edge of the pavement a lane may be narrower than the strip
-                widths.append(width if painted.all() else min(width, usual))
-                lengths.append(STATION_STEP * (rows.stop - rows.start))
+            of_strip = apart[end[k] - count[k]:end[k]]
+            of_strip = of_strip[~np.isnan(of_strip)]
+            width = median(of_strip) / strips.number[k] if len(of_strip) else np.nan
+            # beside the edge of the pavement a lane may be narrower than the strip
+            widths.append(width if painted[:, k].all() else min(width, usual))
+            lengths.append(STATION_STEP * int(count[k]))
     if not lengths:
         return usual, False
     widths, lengths = np.append(widths, usual), np.append(lengths, ROADS.length_of_usual)

@@ -163,9 +163,8 @@ class _Course:
     pieces: list[tuple[float, float]]   # first and last stations of what is drawn
 
 
-def _courses(selected, road, trend, edges, track_height):
-    """The _Courses of the selected lines of a road, which lead over the stations that are to be drawn, beyond the paint, too."""
-    places = [_places(chosen.line, trend, edges, chosen.span) for chosen in selected]
+def _courses(selected, places, road, track_height):
+    """The _Courses of the selected lines of a road, which lead over the stations that are to be drawn; places : of each, as of `_places`."""
     if not places:
         return []
     s, d, own = (np.concatenate(parts) for parts in list(zip(*places))[:3])
@@ -178,7 +177,7 @@ def _courses(selected, road, trend, edges, track_height):
 
 
 def _places(line, trend, edges, span):
-    """(N,) stations and offsets, whether they are the line's own, and the heights of those."""
+    """(N,) stations and offsets of a line, beyond its paint, too, whether they are its own, and the heights of those."""
     s, d, z, weight = line.places()
     strong = weight >= STRANDS.min_points_per_place
     if strong.sum() >= max(4, 0.5 * len(s)):
@@ -376,9 +375,9 @@ def _traced(points, markings, frame, edges, settings, executor, progress):
     edge_lines = edges_beside(edges, roads)
     phase = Phase(_lines_of_road, NoSource(), (settings,), lambda item: "the marking lines of a road")
     items = Items(len(roads), lambda k: _paint_of_road(points, markings, roads[k], edge_lines[roads[k]]))
-    for (of_road, trend, left_out), road in zip(executor.run(phase, items, progress), roads):
+    for (of_road, places, left_out), road in zip(executor.run(phase, items, progress), roads):
         dropped += left_out
-        courses += _courses(of_road, frame.road(road), trend, edge_lines[road], partial(frame.track_height, road))
+        courses += _courses(of_road, places, frame.road(road), partial(frame.track_height, road))
         selected += [(int(road), chosen) for chosen in of_road]
     return selected, courses, dropped
 
@@ -393,8 +392,8 @@ def _paint_of_road(points, markings, road, edges):
 
 
 def _lines_of_road(source: NoSource, item: tuple[dict[str, np.ndarray], np.ndarray, EdgesBeside, np.ndarray],
-                  settings: MarkingLineSettings) -> tuple[list[SelectedLine], CommonTrend, int]:
-    """The phase that traces and links the paint of one road: its lines, the trend that they have in common, and how many fragments were left out.
+                  settings: MarkingLineSettings) -> tuple[list[SelectedLine], list[tuple[np.ndarray, ...]], int]:
+    """The phase that traces and links the paint of one road: its lines, places along each as of `_places`, and how many fragments were left out.
 
     item : columns PAINT_OF_LINES of N points, and (N,) class of each, as `line_paint` gives them; the edges beside; the bars as of `hatching_bars`
     """
@@ -402,7 +401,7 @@ def _lines_of_road(source: NoSource, item: tuple[dict[str, np.ndarray], np.ndarr
     strands = painted_strands(Columns(columns, [(name, column.dtype) for name, column in columns.items()]), rank)
     lines, trend = _linked(strands, edges, settings)
     selected = select_lines(lines, trend, settings.min_paint, bars, country(settings.country).longest_dash)
-    return selected, trend, len(lines) - len(selected)
+    return selected, [_places(chosen.line, trend, edges, chosen.span) for chosen in selected], len(lines) - len(selected)
 
 
 def _linked(strands, edges, settings):

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +14,8 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.setting import Limited, setting
 from ...curves.robust import median
-from ...execution.phase import THREADS, Executor, Items, NoSource, Phase
+from ...execution.in_step import Asked, Work, in_step
+from ...execution.phase import THREADS, Executor, Items, NoSource
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
@@ -24,12 +24,23 @@ from ...survey.store.road_points import RoadPoints
 from ..road_grid import CELL_UNITS, occupied, track_reach
 from ..weights import CLASSES, ROWS, SHAPES
 from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, filled, relative_contrast, too_pale
-from .figures import figure_of_cells, painted_figures
+from .figures import painted_figures
 from .grouping import connected_points
 from .marking_objects import MarkingObjects, make_marking_objects
-from .repeating import Comb, Crossing, Stripe, blocks_of_strip, comb_of_window, give_way_blocks, stripes_of_crossing, zebra_stripes
+from .repeating import (
+    Comb,
+    Crossing,
+    Stripe,
+    blocks_of_strip,
+    comb_of_window,
+    crossings_of,
+    give_way_blocks,
+    spots_by_place,
+    stripes_apart,
+    stripes_of_crossing,
+)
 from .shape import Shape, drawn_outline, lifted, measure, smallest_rectangle
-from .split_merge import join_fragments, parts_of_compound, split_compounds
+from .split_merge import are_compound, join_fragments, parts_of_compound
 
 STRIP_KINDS = LINE_KINDS + ("stop",)  # drawn as even strips, the others cell by cell
 
@@ -59,64 +70,108 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
     roads = marking_points.roads()
     lines = [frame.road(road) for road in roads]
-    first, second, last = ([progress.part(begin + share * k / len(roads), begin + share * (k + 1) / len(roads)) for k in range(len(roads))]
-                           for begin, share in ((0.0, 0.1), (0.1, 0.6), (0.7, 0.3)))
-    connected = [connected_points(marking_points, road, settings.distance, part, executor) for road, part in zip(roads, first)]
+    connected = connected_points(marking_points, settings.distance, progress.part(0.0, 0.1), executor)
     counts = [len(records) for records, _ in connected]
-    works = [ApartWork(executor, line.number) for line in lines]
-    stripes_by_road = [_stripes_of_crossings(records, line, work, part.part(0.0, 0.5))
-                       for (records, _), line, work, part in zip(connected, lines, works, second)]
-    # what is not used any more is let go, since the paint of a whole road is in memory
-    paint = [(records.take(other_rows), labels[other_rows]) for (records, labels), (_, other_rows) in zip(connected, stripes_by_road)]
+    works = [_apart(*of_road, line, settings) for of_road, line in zip(connected, lines)]
+    # the labels of the points of all roads are in memory as long as anybody has them
     del connected
-    pieces_by_road = [_pieces(*of_road, work, settings, part.part(0.5, 1.0)) for of_road, work, part in zip(paint, works, second)]
-    del paint
-    blocks = _blocks_of_all(pieces_by_road)
-    rows, polygons, refused = [], [], 0
+    apart = in_step(works, executor, PLACE, progress.part(0.1, 0.7))
+    blocks = _blocks_of_all([pieces for _, pieces in apart])
+    named = in_step([_markings(stripes, pieces, of_road, k, lines, settings, marking_points.has_corrected)
+                     for k, ((stripes, pieces), of_road) in enumerate(zip(apart, blocks))], executor, PLACE, progress.part(0.7, 1.0))
+    rows, polygons = [], []
     cluster = [np.zeros(count, np.int32) for count in counts]
     number = 0
-    for k, ((stripes, other_rows), pieces, line, block, part) in enumerate(zip(stripes_by_road, pieces_by_road, lines, blocks, last)):
-        painted, without = _markings(pieces, block, settings, marking_points.has_corrected, part.part(0.0, 0.5))
-        refused += without
-        markings = sorted([*stripes, *painted], key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-        for marking, drawn in zip(markings, _outlines(markings, pieces.paint, line, pieces.work, part.part(0.5, 1.0))):
+    for k, (line, (markings, outlines, _)) in enumerate(zip(lines, named)):
+        for marking, drawn in zip(markings, outlines):
             number += 1
             check_cancelled()
-            cluster[k][other_rows[marking.rows] if marking.outline is None else marking.rows] = number
+            cluster[k][marking.rows] = number
             polygons += drawn
             rows += [_row(marking, number, line, frame)] * len(drawn)
     for road, numbers in zip(roads, cluster):
         _put(clustered.store, road, numbers, marking_points)
+    refused = sum(without for _, _, without in named)
     progress.info(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
                  "stands on the road.")
     return make_marking_objects(rows, polygons, frame, marking_points.crs), clustered
 
 
 class _Pieces(NamedTuple):
-    """Clusters of one road, before it is known what they are."""
+    """Clusters of one road but for the stripes of crossings, before it is known what they are."""
 
-    paint: Columns   # of the road but for stripes of crossings
-    records: Columns   # their points, one cluster after the other, and the rows of these in the paint
+    paint: Columns   # all points of paint of the road
+    records: Columns   # those of the clusters, one after the other, and their rows in the paint
     order: np.ndarray
     bounds: list[tuple[int, int]]   # first and end row of each cluster in the records, and its Shape
     shapes: list[Shape]
-    work: ApartWork
 
 
-def _pieces(paint, labels, work, settings, progress):
-    """_Pieces of one road: compound clusters divided, what wear has parted joined."""
-    split = split_compounds(paint, _with_rows_divided(paint, labels), partial(work.parts, progress=progress.part(0.0, 0.3)))
-    order, starts, _ = _by_cluster(split, 1)
-    records = paint.take(order)
-    pieces = work.shapes(records, starts, progress.part(0.3, 0.9))
+def _apart(records: Columns, labels: np.ndarray, road: Road, settings: ClusterSettings) -> Work:
+    """The work on one road that gives the stripes of its crossings as [_Marking], and its _Pieces.
+
+    Stripes are set apart, compound clusters divided, and what wear has parted is joined.
+    """
+    cells, member = occupied(records["x"] // CELL_UNITS, records["y"] // CELL_UNITS)
+    station = np.zeros(len(cells))
+    station[member] = records["s"] * COORDINATE_SCALE
+    places, way = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE, road.heading(station)
+    del cells, station
+    spots, windows = spots_by_place(places)
+    crossings = crossings_of(spots, windows, (yield combs_asked(places, windows, 0.35)))
+    del spots, windows
+    stripes = stripes_apart(places, way, crossings, (yield _stripes_asked(places, way, crossings, 0.45)))
+    stripe_of = np.full(len(places), -1, np.int32)
+    for k, stripe in enumerate(stripes):
+        stripe_of[stripe.spots] = k
+    of_point = stripe_of[member]
+    del places, way, member
+    striped, rows = list(members_of(of_point)), np.flatnonzero(of_point < 0)
+    paint, labels = records.take(rows), labels[rows]
+    split, pieces = yield from _divided(paint, _with_rows_divided(paint, labels))
     joins = join_fragments(pieces, settings.classes.max_width)
-    again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
-    records, order = records.take(again), order[again]
-    bounds = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
+    order, starts, _ = _by_cluster(split, 1)
+    again, starts, labels = _by_cluster(_relabelled(len(paint), starts, joins), settings.min_points)
+    order = rows[order[again]]
+    clusters, bounds = records.take(order), list(zip(starts[:-1].tolist(), starts[1:].tolist()))
     unjoined = _alone(pieces, joins)
-    joined_records, ends = _some_clusters(records, [span for label, span in zip(labels.tolist(), bounds) if label not in unjoined])
-    joined = iter(work.shapes(joined_records, ends, progress.part(0.9, 1.0)))
-    return _Pieces(paint, records, order, bounds, [unjoined[label] if label in unjoined else next(joined) for label in labels.tolist()], work)
+    # clusters that were joined, then stripes
+    measured = [order[first:end] for label, (first, end) in zip(labels.tolist(), bounds) if label not in unjoined]
+    shapes = iter((yield shapes_asked(records, [*measured, *(of_stripe for _, of_stripe in striped)], 1.0)))
+    of_clusters = [unjoined[label] if label in unjoined else next(shapes) for label in labels.tolist()]
+    return _stripe_markings(records, stripes, striped, shapes), _Pieces(records, clusters, order, bounds, of_clusters)
+
+
+def _divided(paint, labels):
+    """Part of a work: (N,) labels in which parts of compound clusters have labels of their own, and the Shape of each cluster in their order."""
+    order = order_by(labels)
+    starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
+    columns = tuple(paint[name].take(order) for name in MEASURED)
+    bounds = np.r_[starts, len(order)]
+    divided = yield pieces_asked(columns, bounds, are_compound(*columns[:2], starts), 0.9)
+    labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
+    alone, of_parts = [], []
+    for first, end, (parts, shapes) in zip(bounds[:-1].tolist(), bounds[1:].tolist(), divided):
+        if parts is None:
+            alone += shapes
+        else:
+            labels[order[first:end]] = following + parts
+            following += len(shapes)
+            of_parts += shapes
+    return labels, alone + of_parts
+
+
+def _stripe_markings(records, stripes, striped, shapes):
+    """[_Marking] of stripes of crossings, with points of each and its Shape."""
+    painted = records.take(np.concatenate([np.empty(0, np.intp), *(rows for _, rows in striped)])).load_all()
+    markings, first = [], 0
+    for (k, rows), shape in zip(striped, shapes):
+        corners = stripes[k].corners
+        length, width = (float(np.hypot(*(corners[j] - corners[j - 1]))) for j in (1, 2))
+        markings.append(_Marking(painted[first:first + len(rows)], rows, replace(shape, length=length, width=width), "zebra", "other",
+                                 shapely.Polygon(corners)))
+        first += len(rows)
+    return markings
 
 
 def _blocks_of_all(found):
@@ -156,8 +211,12 @@ def _with_rows_divided(records, labels):
     return labels
 
 
-def _markings(pieces, blocks, settings, has_corrected, progress):
-    """[_Marking] of one road but for stripes of crossings, and how many clusters are none; blocks : (N,) bool."""
+def _markings(stripes: list[_Marking], pieces: _Pieces, blocks: np.ndarray, number: int, roads: Sequence[Road], settings: ClusterSettings,
+              has_corrected: bool) -> Work:
+    """The work on the road of a number among all that gives its [_Marking] from its start on, [Polygon] of each, and how many clusters are none.
+
+    stripes : of crossings; blocks : (N,) bool, which pieces are blocks of give-way lines
+    """
     records, bounds, shapes = pieces.records.unread(), pieces.bounds, pieces.shapes
     half_width, hidden = records["half_width"], records["covered"]
     half_widths = [median(half_width[a:b].astype(float)) * 1e-3 for a, b in bounds]
@@ -171,25 +230,28 @@ def _markings(pieces, blocks, settings, has_corrected, progress):
         possible &= ~np.array(pale, bool)
         kinds = [(NOT_PAINT, "other") if faint else kind for faint, kind in zip(pale, kinds)]
     classes: list[tuple[tuple[int, ...], str, str]] = [((k,), *kind) for k, kind in enumerate(kinds)]
-    for members, kind in painted_figures(shapes, [kind for kind, _ in kinds], possible, lambda group: _cells_together(records, bounds, group),
-                                         partial(pieces.work.figures, progress=progress)):
+    for members, kind in (yield from painted_figures(shapes, [kind for kind, _ in kinds], possible,
+                                                     lambda group: _cells_together(records, bounds, group))):
         for k in members:
             classes[k] = ((), NOT_PAINT, "other")
         classes[members[0]] = (members, kind, "other")
     # the columns that told kinds of markings are not used any more
-    markings, records = [], records.unread()
+    markings, records = [*stripes], records.unread()
     for members, kind, use in classes:
         if kind != NOT_PAINT:
             check_cancelled()
             of_it = _rows_of(bounds, members)
             shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
             markings.append(_Marking(records[of_it], pieces.order[of_it], shape, kind, use))
-    return markings, sum(kind == NOT_PAINT for members, kind, _ in classes if members)
+    markings = sorted(markings, key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
+    outlines = iter((yield _outlines_asked(pieces.paint, [marking for marking in markings if marking.outline is None], number, roads)))
+    drawn = [next(outlines) if marking.outline is None
+             else [lifted(marking.outline, np.stack([marking.records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)] for marking in markings]
+    return markings, drawn, sum(kind == NOT_PAINT for members, kind, _ in classes if members)
 
 
 class _Marking(NamedTuple):
-    """Records of a marking and their rows in the paint of its road; of a stripe of a crossing, whose outline in local coordinates is known
-    already, in all points of the road."""
+    """Records of a marking and their rows in the paint of its road; of a stripe of a crossing its outline in local coordinates is known already."""
 
     records: Columns
     rows: np.ndarray
@@ -197,35 +259,6 @@ class _Marking(NamedTuple):
     kind: str
     use: str
     outline: shapely.Polygon | None = None
-
-
-def _some_clusters(records, spans):
-    """The records of some clusters, of which the rows are given, one after the other, and their bounds."""
-    rows = np.concatenate([np.empty(0, np.intp), *(np.arange(a, b) for a, b in spans)])
-    return records.take(rows), np.cumsum([0, *(b - a for a, b in spans)])
-
-
-def _stripes_of_crossings(records, road, work, progress):
-    """[_Marking] the stripes of crossings, and the rows of all other records."""
-    cells, member = occupied(records["x"] // CELL_UNITS, records["y"] // CELL_UNITS)
-    station = np.zeros(len(cells))
-    station[member] = records["s"] * COORDINATE_SCALE
-    places, way = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE, road.heading(station)
-    del cells, station
-    stripes = zebra_stripes(places, way, lambda windows: work.combs(places, windows, progress.part(0.0, 0.7)),
-                            lambda crossings: work.stripes(places, way, crossings, progress.part(0.7, 0.9)))
-    stripe_of, markings = np.full(len(places), -1, np.int32), []
-    for k, stripe in enumerate(stripes):
-        stripe_of[stripe.spots] = k
-    of_point = stripe_of[member]
-    rows = list(members_of(of_point))
-    painted = records.take(np.concatenate([np.empty(0, np.intp), *(members for _, members in rows)])).load_all()
-    bounds = np.cumsum([0, *(len(members) for _, members in rows)])
-    for (k, members), first, end, shape in zip(rows, bounds[:-1], bounds[1:], work.shapes(painted, bounds, progress.part(0.9, 1.0))):
-        corners = stripes[k].corners
-        length, width = (float(np.hypot(*(corners[j] - corners[j - 1]))) for j in (1, 2))
-        markings.append(_Marking(painted[first:end], members, replace(shape, length=length, width=width), "zebra", "other", shapely.Polygon(corners)))
-    return markings, np.flatnonzero(of_point < 0)
 
 
 def _put(store, road, cluster, points):
@@ -257,11 +290,10 @@ def _alone(pieces, joins):
     return {number: piece for number, piece in zip(joins.tolist(), pieces) if count[number] == 1}
 
 
-def _relabelled(records, starts, number):
-    """Label of every record after joining; records of no cluster get labels of their own."""
+def _relabelled(count, starts, number):
+    """Label of each of so many records after joining; records of no cluster get labels of their own."""
     labels = np.repeat(number, np.diff(starts))
-    extra = len(records) - len(labels)
-    return np.r_[labels, len(number) + np.arange(extra)]
+    return np.r_[labels, len(number) + np.arange(count - len(labels))]
 
 
 def _by_cluster(labels, fewest):
@@ -277,15 +309,6 @@ def _by_cluster(labels, fewest):
     labels = labels[order[:np.count_nonzero(large)]]
     starts = np.flatnonzero(np.r_[True, labels[1:] != labels[:-1]]) if len(labels) else np.empty(0, np.int64)
     return order, np.r_[starts, len(labels)], labels[starts]
-
-
-def _outlines(markings, records, road, work, progress):
-    """[Polygon] in local coordinates of each marking, from the road's start on; records : of the road."""
-    unknown = [marking for marking in markings if marking.outline is None]
-    looks = [(marking.shape, marking.kind in STRIP_KINDS) for marking in unknown]
-    drawn = iter(work.outlines(records, [marking.rows for marking in unknown], looks, road, progress))
-    return [next(drawn) if marking.outline is None
-            else [lifted(marking.outline, np.stack([marking.records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)] for marking in markings]
 
 
 def _row(marking, number, line, frame):
@@ -312,6 +335,9 @@ def _scanning_distance(records, line, frame):
 
 # The phases: what is computed of some clusters or windows apart from all others; their items hold the columns that they need.
 
+MEASURED = "s", "d", "spacing"   # columns of points, in 0.1 mm and mm, by which a cluster is measured
+DRAWN = "s", "d", "x", "y", "z", "spacing"   # by which a marking is drawn
+PLACE = "the markings of all roads"   # names the stretch of road in messages
 TASK_POINTS = 20_000   # derived: of paint, that a worker process is given together on average: about a tenth of a second of its time
 
 
@@ -339,24 +365,38 @@ def _zebra_stripes(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndar
     return stripes
 
 
-def _parts_of_compounds(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]) -> list[tuple[np.ndarray, int]]:
-    """The phase that divides compound clusters; item : s, d (0.1 mm), spacing (mm) of the points, and the bounds of the clusters."""
-    return [parts_of_compound(*columns) for columns in _clusters(item)]
+def pieces_of_clusters(source: NoSource, item: tuple[Any, ...]) -> list[tuple[np.ndarray | None, list[Shape]]]:
+    """The phase that divides compound clusters and measures all.
+
+    `item` : columns MEASURED of the points, the bounds of the clusters, and whether each may be compound. Returns of each the (N,) part of every
+    point, from 0 on, None of a single one, and the Shape of each part.
+    """
+    *columns, compound = item
+    return [_pieces_of_cluster(*cluster, divisible) for cluster, divisible in zip(_clusters(columns), compound)]
+
+
+def _pieces_of_cluster(s, d, spacing, divisible):
+    """What `pieces_of_clusters` gives of one."""
+    parts, count = parts_of_compound(s, d, spacing) if divisible else (None, 1)
+    if count == 1:
+        return None, [measure(s, d, spacing)]
+    _, parts = np.unique(parts, return_inverse=True)
+    return parts, [measure(s[rows], d[rows], spacing[rows]) for _, rows in members_of(parts)]
 
 
 def shapes_of_clusters(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]) -> list[Shape]:
-    """The phase that measures clusters; item : as of `_parts_of_compounds`."""
+    """The phase that measures clusters; item : columns MEASURED of the points, and the bounds of the clusters."""
     return [measure(*columns) for columns in _clusters(item)]
 
 
-def outlines_of_markings(source: NoSource, item: tuple[Any, ...], road: Road) -> tuple[np.ndarray, ...]:
+def outlines_of_markings(source: NoSource, item: tuple[Any, ...], roads: Sequence[Road]) -> tuple[np.ndarray, ...]:
     """The phase that draws markings.
 
-    `item` : s, d, x, y, z (0.1 mm), spacing (mm) of the points, the bounds of the markings, and the Shape and whether it is a strip of each. Returns
+    `item` : the number of the road, columns DRAWN of the points, the bounds of the markings, and the Shape and whether it is a strip of each. Returns
     (V, 3) local m, first vertex of each ring, first ring of each polygon, each with the end, and the number of polygons of each marking.
     """
-    *columns, looks = item
-    drawn = [drawn_outline(cluster, shape, strip, road) for cluster, (shape, strip) in zip(_clusters(columns), looks)]
+    number, *columns, looks = item
+    drawn = [drawn_outline(cluster, shape, strip, roads[number]) for cluster, (shape, strip) in zip(_clusters(columns), looks)]
     polygons = [polygon for outline in drawn for polygon in outline]
     _, vertices, starts = shapely.to_ragged_array(polygons, include_z=True) if polygons else (None, np.empty((0, 3)), (np.zeros(1, int),) * 2)
     return vertices, *starts, np.array([len(outline) for outline in drawn])
@@ -369,68 +409,49 @@ def _clusters(item):
         yield [column[first:end] for column in columns]
 
 
-@dataclass(frozen=True)
-class ApartWork:
-    """The phases for the clusters of one road, by its number."""
+def combs_asked(places: np.ndarray, windows: Sequence[np.ndarray], until: float) -> Asked:
+    """Asks for the Comb of each window, None where it has no stripes; places : (N, 2) m, windows : rows of the spots of each."""
+    rows = np.concatenate([np.empty(0, np.int32), *windows])
+    return _asked(combs_of_windows, lambda a, b: (places[rows[a:b]],), np.cumsum([0, *map(len, windows)]), until,
+                  read=lambda combs: [None if comb is None else Comb(*comb) for comb in combs])
 
-    executor: Executor
-    road: int
 
-    def combs(self, places: np.ndarray, windows: Sequence[np.ndarray], progress: Progress) -> list[Comb | None]:
-        """The Comb of each window, None where it has no stripes; places : (N, 2) m, windows : rows of the spots of each."""
-        bounds = np.cumsum([0, *map(len, windows)])
-        rows = np.concatenate([np.empty(0, np.int32), *windows])
-        combs = self._run(combs_of_windows, lambda a, b: (places[rows[bounds[a]:bounds[b]]],), bounds, progress)
-        return [None if comb is None else Comb(*comb) for comb in combs]
+def _stripes_asked(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], until: float) -> Asked:
+    """Asks for the stripes of each crossing, their spots by number among those of the crossing; (N,) radians `way` : of the road at each place."""
+    rows = np.concatenate([np.empty(0, np.intp), *(spots for spots, _ in crossings)])
+    return _asked(_zebra_stripes, lambda a, b: (places[rows[a:b]], way[rows[a:b]]), np.cumsum([0, *(len(spots) for spots, _ in crossings)]), until,
+                  [tuple(comb) for _, comb in crossings], read=lambda found: [[Stripe(*stripe) for stripe in stripes] for stripes in found])
 
-    def stripes(self, places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], progress: Progress) -> list[list[Stripe]]:
-        """The stripes of each crossing, their spots by number among those of the crossing; places, way : as of `zebra_stripes`."""
-        bounds = np.cumsum([0, *(len(spots) for spots, _ in crossings)])
-        rows = np.concatenate([np.empty(0, np.intp), *(spots for spots, _ in crossings)])
-        stripes = self._run(_zebra_stripes, lambda a, b: tuple(values[rows[bounds[a]:bounds[b]]] for values in (places, way)), bounds, progress,
-                            looks=[tuple(comb) for _, comb in crossings])
-        return [[Stripe(*stripe) for stripe in crossing_stripes] for crossing_stripes in stripes]
 
-    def parts(self, s: np.ndarray, d: np.ndarray, spacing: np.ndarray, spans: Sequence[tuple[int, int]],
-              progress: Progress) -> list[tuple[np.ndarray, int]]:
-        """Of each compound cluster, which begins and ends at rows of the columns, the part of every point, and how many parts there are."""
-        rows = np.concatenate([np.empty(0, np.intp), *(np.arange(first, end) for first, end in spans)])
-        bounds = np.cumsum([0, *(end - first for first, end in spans)])
-        return self._run(_parts_of_compounds, lambda a, b: tuple(column[rows[bounds[a]:bounds[b]]] for column in (s, d, spacing)), bounds, progress)
+def pieces_asked(columns: Sequence[np.ndarray], bounds: np.ndarray, compound: np.ndarray, until: float) -> Asked:
+    """Asks for what `pieces_of_clusters` gives of each cluster; bounds : of the clusters in the columns MEASURED."""
+    return _asked(pieces_of_clusters, lambda a, b: tuple(column[a:b] for column in columns), bounds, until, compound.tolist())
 
-    def shapes(self, records: Columns, bounds: np.ndarray, progress: Progress) -> list[Shape]:
-        """The Shape of each cluster; bounds : of the clusters in the records."""
-        def columns(a, b):
-            return _columns_at(records, np.arange(bounds[a], bounds[b]), ("s", "d", "spacing"))
 
-        return self._run(shapes_of_clusters, columns, bounds, progress)
+def shapes_asked(records: Columns, rows: Sequence[np.ndarray], until: float) -> Asked:
+    """Asks for the Shape of each cluster; rows : in the records, of each."""
+    together = np.concatenate([np.empty(0, np.intp), *rows])
+    return _asked(shapes_of_clusters, lambda a, b: _columns_at(records, together[a:b], MEASURED), np.cumsum([0, *map(len, rows)]), until)
 
-    def outlines(self, records: Columns, rows: Sequence[np.ndarray], looks: Sequence[tuple[Shape, bool]], road: Road,
-                 progress: Progress) -> list[list[Any]]:
-        """The polygons of each marking, of `drawn_outline`; rows : in the records, of each; looks : the Shape of each and whether it is a strip."""
-        def columns(a, b):
-            return _columns_at(records, np.concatenate(rows[a:b]), ("s", "d", "x", "y", "z", "spacing"))
 
-        return self._run(outlines_of_markings, columns, np.cumsum([0, *map(len, rows)]), progress, looks=looks, arguments=(road,), read=_polygons)
+def _outlines_asked(paint: Columns, markings: Sequence[_Marking], number: int, roads: Sequence[Road]) -> Asked:
+    """Asks for [Polygon] of each marking, of `drawn_outline`, on the road of that number among all."""
+    together = np.concatenate([np.empty(0, np.intp), *(marking.rows for marking in markings)])
+    return _asked(outlines_of_markings, lambda a, b: (number, *_columns_at(paint, together[a:b], DRAWN)),
+                  np.cumsum([0, *(len(marking.rows) for marking in markings)]), 1.0,
+                  [(marking.shape, marking.kind in STRIP_KINDS) for marking in markings], (list(roads),), _polygons)
 
-    def figures(self, cells: list[tuple[np.ndarray, np.ndarray]], begin: float, end: float, progress: Progress) -> Iterator[str]:
-        """What `figure_of_cells` finds in each of some markings together; they are the work from a fraction `begin` of the progress to `end`."""
-        phase = Phase(figure_of_cells, NoSource(), (), lambda item: f"markings of road {self.road}", together=4)
-        return self.executor.run(phase, cells, progress.part(begin, end))
 
-    def _run(self, function: Callable[..., Any], columns: Callable[[int, int], tuple[np.ndarray, ...]], bounds: np.ndarray, progress: Progress,
-             looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),
-             read: Callable[[Any], list[Any]] = list) -> list[Any]:
-        """Results of all clusters; `columns` gives those of the clusters from a number to before another, one after the other."""
-        phase = Phase(function, NoSource(), arguments, lambda item: f"markings of road {self.road}")
-        cuts = _lasting_cuts(bounds, TASK_POINTS).tolist()
+def _asked(function: Callable[..., Any], columns: Callable[[int, int], tuple[Any, ...]], bounds: np.ndarray, until: float,
+           looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (), read: Callable[[Any], list[Any]] = list) -> Asked:
+    """Asks a phase about clusters, some in each item; `columns` gives those of the points, cluster after cluster, from a row to before another."""
+    cuts = _lasting_cuts(bounds, TASK_POINTS).tolist()
 
-        def item(k):
-            a, b = cuts[k:k + 2]
-            return *columns(a, b), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
+    def item(k):
+        a, b = cuts[k:k + 2]
+        return *columns(bounds[a], bounds[b]), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
 
-        chunks = self.executor.run(phase, Items(len(cuts) - 1, item), progress) if len(bounds) > 1 else []
-        return [result for chunk in chunks for result in read(chunk)]
+    return Asked(function, Items(len(cuts) - 1 if len(bounds) > 1 else 0, item), until, arguments, read)
 
 
 def _lasting_cuts(bounds, points):

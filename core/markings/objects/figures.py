@@ -7,7 +7,7 @@ and BUS reach 0.61 to 0.89 as a whole; most other words, numbers, arrows and fil
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from ...common.arrays import linked_groups, members_of, overlapping_pairs
 from ...countries.painted_symbols import SYMBOLS, PaintedSymbol
+from ...execution.in_step import Asked, Work
 from ...execution.phase import NoSource
 from ...lazy import cv2
 from ..road_grid import CELL_SIZE, fill_gaps, filled_between_tracks
@@ -34,21 +35,20 @@ class _RecognisedFigure(NamedTuple):
 
 
 def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.ndarray,
-                    cells_of: Callable[[tuple[int, ...]], tuple[np.ndarray, np.ndarray]],
-                    look: Callable[[list[tuple[np.ndarray, np.ndarray]], float, float], Iterable[str]]) -> list[_RecognisedFigure]:
-    """Bicycles and words among the N markings of one road; no marking is in two of them.
+                    cells_of: Callable[[tuple[int, ...]], tuple[np.ndarray, np.ndarray]]) -> Work:
+    """Part of a work: [_RecognisedFigure], bicycles and words among the N markings of one road; no marking is in two of them.
 
     kinds : N classes, "" for what was taken for no paint
     possible : (N,) bool, whether a marking lies where paint can be
     cells_of : gives the (K, 2) int cells of some markings together, different ones, and the (K,) m of `track_reach` there
-    look : gives what `figure_of_cells` finds in each of some markings together, which are all of them from one fraction to another
     """
     parts = np.flatnonzero(possible & np.isin(np.array(kinds, object), FIGURE_PARTS))
     result: list[_RecognisedFigure] = []
     groups = list(_candidates(shapes, kinds, parts))
     for first in range(0, len(groups), GROUPS_AT_ONCE):
         batch = groups[first:first + GROUPS_AT_ONCE]
-        found = iter(look([cells_of(members) for group in batch for members in group], first / len(groups), (first + len(batch)) / len(groups)))
+        cells = [cells_of(members) for group in batch for members in group]
+        found = iter((yield Asked(figure_of_cells, cells, 0.5 * (first + len(batch)) / len(groups), read=lambda kind: [kind])))
         for group in batch:
             used: set[int] = set()
             for members, kind in [(members, next(found)) for members in group]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import groupby
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -24,9 +25,9 @@ LINKED_POINTS = 50_000   # derived: of paint, that are linked together at most, 
 PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
 
 
-def connected_points(marking_points: RoadPoints, road: int, distance: float, progress: Progress = Progress(),
-                     executor: Executor = THREADS) -> tuple[Columns, np.ndarray]:
-    """Connected components of the points of one road.
+def connected_points(marking_points: RoadPoints, distance: float, progress: Progress = Progress(),
+                     executor: Executor = THREADS) -> list[tuple[Columns, np.ndarray]]:
+    """Connected components of the points of each road.
 
     Points of one 4 cm cell are one member, at their mean place: points of dense paint would otherwise have hundreds of neighbours each. Cells are
     fixed in station, and windows are joined through the cells they share, so neither window nor section length shows in the result.
@@ -34,38 +35,44 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     distance : m, by which points of one marking are joined
     executor : who links the points of windows
 
-    Returns
+    Returns of each road
         records : Columns PAINT_COLUMNS of the N points of the road, by station, which are read when they are asked for and not kept
         labels : (N,) int32 component of each; its numbering follows station
     """
-    records = columns_of_roads(marking_points.store, [road], PAINT_COLUMNS)
-    labels, links = [], []
+    store, length, beyond = marking_points.store, LINKING_WINDOW_CELLS * CELL_UNITS * COORDINATE_SCALE, 1.0 + distance * GROUPS.reach_along_factor
+    phase = Phase(links_of_windows, store, (distance, LINKING_WINDOW_CELLS), lambda item: f"markings of road {item[0]}",
+                  state=lambda item: marking_points.state(item[0], item[1] * length - beyond, item[2] * length + beyond))
+    items = [(road, *windows) for road in marking_points.roads() for windows in _windows_together(marking_points, road)]
+    # road by road, window by window, as they come
+    by_road = groupby(zip(items, store.readers(executor).run(phase, items, progress)), lambda linked: linked[0][0])
+    return [(columns_of_roads(store, [road], PAINT_COLUMNS), _joined_labels(window for _, windows in of_road for window in windows))
+            for road, of_road in by_road]
+
+
+def _joined_labels(windows):
+    """(N,) int32 component of the points of a road, from what `links_of_windows` finds in each window."""
+    labels, links = [np.empty(0, np.int32)], [np.empty((0, 2), np.int64)]
     shared_cells, shared_labels, count = np.empty((0, 2), np.int64), np.empty(0, np.int64), 0
-    for cells, component, beyond, member in _linked_windows(marking_points, road, distance, progress, executor):
+    for cells, component, beyond, member in windows:
         component = component + count
         count = component.max(initial=count - 1) + 1
         links.append(_shared_labels(shared_cells, shared_labels, cells, component))
         shared_cells, shared_labels = cells[beyond], component[beyond]
         labels.append(component[member].astype(np.int32))
-    if not labels:
-        return records, np.empty(0, np.int32)
     pairs = np.concatenate(links)
     merged = linked_groups(pairs[:, 0], pairs[:, 1], count).astype(np.int32, copy=False)
-    return records, np.concatenate([merged[window_labels] for window_labels in labels])
+    return np.concatenate([merged[window_labels] for window_labels in labels])
 
 
-def _linked_windows(marking_points, road, distance, progress, executor):
-    """What `links_of_windows` finds in each window of a road, in their order."""
-    store, length, beyond = marking_points.store, LINKING_WINDOW_CELLS * CELL_UNITS * COORDINATE_SCALE, 1.0 + distance * GROUPS.reach_along_factor
-    phase = Phase(links_of_windows, store, (road, distance, LINKING_WINDOW_CELLS), lambda item: f"markings of road {road}",
-                  state=lambda item: marking_points.state(road, item[0] * length - beyond, item[1] * length + beyond))
-    first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in marking_points.store.span(road))
-    points = sum(marking_points.store.size(road, number) for number in marking_points.sections(road))
+def _windows_together(marking_points, road):
+    """First and last + 1 numbers of the windows of a road that are linked together."""
+    store = marking_points.store
+    first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in store.span(road))
+    points = sum(store.size(road, number) for number in marking_points.sections(road))
     # a power of two, so that windows stay together where others change
     together = 2 ** max(int(np.log2(LINKED_POINTS * (last + 1 - first) / max(points, 1))), 0)
     begins = [first, *range((first // together + 1) * together, last + 1, together), last + 1]
-    for links in store.readers(executor).run(phase, list(zip(begins, begins[1:])), progress):
-        yield from links
+    return zip(begins, begins[1:])
 
 
 def _points_to_link(store, road, distance, first, end):
@@ -77,14 +84,15 @@ def _points_to_link(store, road, distance, first, end):
     return [records[name] for name in LINKING_COLUMNS]
 
 
-def links_of_windows(store: SectionStore, item: tuple[int, int], road: int, distance: float, size: int) -> list[tuple[np.ndarray, ...]]:
-    """The phase that links the points of windows of so many cells, (first, last + 1) of their numbers, by `distance`, m.
+def links_of_windows(store: SectionStore, item: tuple[int, int, int], distance: float, size: int) -> list[tuple[np.ndarray, ...]]:
+    """The phase that links the points of windows of so many cells, (road, first, last + 1 of their numbers), by `distance`, m.
 
     Returns of each (K, 2) int occupied cells, (K,) int their component, (K,) bool whether they lie beyond the end, and (M,) int the cell of each
     point that does not.
     """
     links: list[tuple[np.ndarray, ...]] = []
-    for number in range(*item):
+    road, *windows = item
+    for number in range(*windows):
         end = (number + 1) * size
         columns = _points_to_link(store, road, distance, number * size, end)
         cells, member, component = _components_of_points(dict(zip(LINKING_COLUMNS, columns)), distance)

@@ -6,7 +6,7 @@ much is worn off. That is measured by the length of their mean phase. Bars of ha
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -55,29 +55,20 @@ class Stripe(NamedTuple):
 Crossing = tuple[np.ndarray, Comb]   # rows of the spots about a crossing, and the clearest comb of its windows
 
 
-def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Sequence[np.ndarray]], list[Comb | None]] | None = None,
-                  stripes_of: Callable[[Sequence[Crossing]], list[list[Stripe]]] | None = None) -> list[Stripe]:
-    """The stripes of crossings.
-
-    places : (N, 2) m, spots of paint on the ground, one a cell. Where the road bends, station and offset would bend stripes, too
-    way : (N,) radians, the direction of the road at each, in the same axes
-    combs_of : what applies `comb_of_window` to the spots of windows, given their rows; by default one after the other
-    stripes_of : what applies `stripes_of_crossing` to the spots of crossings; by default likewise
-    """
-    if len(places) < STRIPES.least_spots:
-        return []
-    spots = PlaceIndex(places, STRIPES.comb_window / 2)
-    windows = spots.windows(STRIPES.least_spots)
-    window_combs = combs_of(windows) if combs_of else [comb_of_window(places[members]) for members in windows]
+def crossings_of(spots: PlaceIndex, windows: Sequence[np.ndarray], window_combs: Sequence[Comb | None]) -> list[Crossing]:
+    """The crossings that windows of spots, given by their rows, show by what `comb_of_window` finds in each."""
     combs = [comb for comb in window_combs if comb is not None]
     rows = [members for members, comb in zip(windows, window_combs) if comb is not None]
-    del windows
     crossings: list[Crossing] = []
     for group in _alike(combs):
         check_cancelled()
         best = max((combs[k] for k in group), key=lambda comb: comb.coherence)
         crossings.append((_about(spots, np.unique(np.concatenate([rows[k] for k in group])), best.heading), best))
-    stripe_lists = stripes_of(crossings) if stripes_of else [stripes_of_crossing(places[members], way[members], best) for members, best in crossings]
+    return crossings
+
+
+def stripes_apart(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], stripe_lists: Sequence[list[Stripe]]) -> list[Stripe]:
+    """The stripes of all crossings of a road, each spot on one of them; `stripe_lists` : what `stripes_of_crossing` finds of each."""
     result, unused = [], np.ones(len(places), bool)
     for (members, best), stripes in zip(crossings, stripe_lists):
         if not unused[members].all():
@@ -89,6 +80,15 @@ def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Seque
         unused[np.concatenate([np.empty(0, np.int64), *(stripe.spots for stripe in stripes)])] = False
         result += stripes
     return result
+
+
+def spots_by_place(places: np.ndarray) -> tuple[PlaceIndex, list[np.ndarray]]:
+    """An index of spots of paint on the ground, (N, 2) m, one a cell, and the rows of those in each window that may show stripes of a crossing.
+
+    Where the road bends, station and offset would bend stripes, too.
+    """
+    spots = PlaceIndex(places, STRIPES.comb_window / 2)
+    return spots, spots.windows(STRIPES.least_spots)
 
 
 def _about(spots, rows, heading):

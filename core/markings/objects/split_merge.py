@@ -6,15 +6,14 @@ separated are joined: lines along the road and stop lines across it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.arrays import linked_groups, members_of, order_by, overlapping_pairs, stretch_of
+from ...common.arrays import linked_groups, members_of, overlapping_pairs, stretch_of
 from ...common.parallel import check_cancelled
 from ...lazy import cv2
-from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import CELL_SIZE, CELL_UNITS, fill_gaps, filled_between_tracks, occupied, track_reach
 from ..weights import CLASSES, COMPOUNDS
@@ -24,32 +23,16 @@ from .shape import Shape
 MORPHOLOGY_CHUNK = 100.0   # derived: m of road looked at together
 
 
-def split_compounds(records: Columns, labels: np.ndarray, parts_of: Callable[..., list[tuple[np.ndarray, int]]] | None = None) -> np.ndarray:
-    """(N,) int labels of the points of one road, with labels of their own for the parts of compound clusters.
+def are_compound(s: np.ndarray, d: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """(K,) bool, which clusters are so large that they may be several markings.
 
-    `parts_of` : what applies `parts_of_compound` to clusters, given s, d, spacing and [(first, end)] rows of each; by default one after the other.
+    s, d : (N,) int, units of 0.1 mm, of points one cluster after the other; starts : (K,) int, where each begins
     """
-    if not len(labels):
-        return labels
-    labels = labels.copy()
-    order = order_by(labels)
-    starts = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0])
-    following = int(labels.max()) + 1
-    along, across, apart = (records[name].take(order) for name in ("s", "d", "spacing"))
-    ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (along, across)]
+    if not len(starts):
+        return np.zeros(0, bool)
+    ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (s, d)]
     length, breadth = (extent * COORDINATE_SCALE for extent in ranges)
-    large = _of_several(length, breadth) | (length >= COMPOUNDS.min_length_beside_bar) & (breadth >= COMPOUNDS.min_stop_line_piece)
-
-    bounds = list(zip(starts[large].tolist(), np.r_[starts[1:], len(order)][large].tolist()))
-    if parts_of is None:
-        divided = [parts_of_compound(along[a:b], across[a:b], apart[a:b]) for a, b in bounds]
-    else:
-        divided = parts_of(along, across, apart, bounds)
-    for (a, b), (parts, count) in zip(bounds, divided):
-        if count > 1:
-            labels[order[a:b]] = following + parts
-            following += count
-    return labels
+    return _of_several(length, breadth) | (length >= COMPOUNDS.min_length_beside_bar) & (breadth >= COMPOUNDS.min_stop_line_piece)
 
 
 def _of_several(length, breadth):

@@ -30,7 +30,7 @@ class RoadLook:
     def roughness(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) roughness at stations and offsets, (N,) m, in units of that of the road under the vehicle there; NaN where it is not known."""
         rough, row = self._at(self.cells.rough, s, d)
-        return rough / self.usual[row]
+        return rough / np.where(self.usual > 0.0, self.usual, np.nan)[row]   # heights in coarse steps have none
 
     def road_height(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """Height of the road as it goes on from the track, above the expected one; m, of one shape with stations and offsets, m."""

@@ -12,7 +12,7 @@ import numpy as np
 from ...lazy import laspy, lazrs
 from ..weights import LAS
 from .header import chunks_of
-from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error, wrap_read_error
+from .reader import MAX_INTENSITY, CloudHeader, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error, wrap_read_error
 
 
 class ParallelCloudReader:
@@ -61,10 +61,11 @@ class ParallelCloudReader:
 
     def points(self, file: CloudHeader, first: int, count: int, size: int) -> Iterator[Any]:
         """Yield the points of a range, as of `ranges` with the same size, as laspy point records; the next may overwrite one."""
-        if _in_one_piece(file, size):
-            yield from read_blocks(file.path, size, self._layers, file.units)
-        else:
-            yield self._load(file, first, count)
+        whole = _in_one_piece(file, size)
+        for points in read_blocks(file.path, size, self._layers, file.units) if whole else (self._load(file, first, count),):
+            if file.brightness > 1:
+                points.array["intensity"] = file.brightness * np.minimum(points.array["intensity"], MAX_INTENSITY // file.brightness)
+            yield points
 
     def _load(self, file, first, count):
         """The points of a range of whole chunks, or of any points of a LAS file."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ..store.records import COORDINATE_SCALE, MAX_XY_32_BIT, fill_units
 from ..weights import LAS
-from .reader import CloudHeader, read_blocks
+from .reader import MAX_INTENSITY, CloudHeader, read_blocks
 from .samples import FileSample
 
 EVER = (-np.inf, np.inf)      # s
@@ -136,7 +136,6 @@ INTENSITY_SOURCES = "intensity", "rgb"
 COLOUR_FIELDS = "red", "green", "blue"
 LUMINANCE_WEIGHTS = 0.2126, 0.7152, 0.0722   # source: of red, green and blue (ITU-R BT.709-6, section 3.2)
 USUAL_FIELDS = "reflect", "amplitude", "intensity"   # parts of names of extra fields that hold what a scanner received, the best first
-MAX_INTENSITY = 2**16 - 1   # derived: of 16 bits
 SIGN = 2**15   # derived: from here on the values of 16 bits are negative, where they have a sign
 VALUES_PER_DECIBEL = 1, 10, 100   # source: as exporters store it
 MAX_POWER = 290.0         # derived: of ten, with which a double can be multiplied
@@ -197,6 +196,40 @@ def intensity_source_of(samples: Sequence[FileSample], wanted: str) -> tuple[Int
         return source, (f"The intensity of all points is the same, {int(values.max(initial=0))}; the extra field {name} is read in its "
                         f"place, as {_unit(source)}.")
     return IntensitySource(), ""
+
+
+def in_one_scale(files: Sequence[CloudHeader], samples: Sequence[FileSample], wanted: str) -> tuple[list[CloudHeader], str]:
+    """The files with intensities that have one scale, where some were written with fewer bits than others, and what to tell of them.
+
+    LAS stores a value times 65,536 / the dynamic range of the sensor (ASPRS, LAS specification 1.4 R15, Intensity); some exporters do not multiply.
+
+    wanted : one of INTENSITY_SOURCES
+    """
+    usual = {sample.file.path: float(np.median(values)) for sample in samples
+             if len(values := sample.intensity[sample.intensity > 0]) and values.min() < values.max()}
+    brightest = max(usual, key=lambda path: usual[path], default="")
+    factors: dict[str, int] = {}
+    other: list[str] = []
+    for sample in samples if wanted == INTENSITY_SOURCES[0] else ():
+        path, share = sample.file.path, usual.get(sample.file.path, np.inf) / usual.get(brightest, 1.0)
+        if share * LAS.other_scale < 1.0:
+            bits = int(sample.intensity.max()).bit_length()
+            fitting = [2 ** (16 - used) for used in LAS.sensor_bits if used >= bits]
+            factor = min(fitting, key=lambda each: abs(np.log(each * share)), default=1)
+            if 1.0 / LAS.same_scale < factor * share < LAS.same_scale:
+                factors[path] = factor
+            else:
+                other.append(path)
+    if other:
+        times = usual[brightest] / usual[other[0]]
+        return list(files), (f"The intensities of {other[0]} are about {times:.0f} times weaker than those of {brightest}, as if they had another "
+                             "scale: paint is missed, or invented, where both are seen. Export all files with one scale of intensities.")
+    note = ""
+    if factors:
+        path, factor = next(iter(factors.items()))
+        note = (f"The intensities of {len(factors)} of {len(files)} files have fewer bits than those of the others, such as {path}: they were "
+                f"multiplied by {factor}, so that all have one scale.")
+    return [replace(file, brightness=factors.get(file.path, 1)) for file in files], note
 
 
 def _fields_of_intensity(samples):

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from pyproj import CRS
 
 CLOUD_SUFFIXES = (".las", ".laz")
+MAX_INTENSITY = 2**16 - 1   # derived: of 16 bits
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
 ReadResult = TypeVar("ReadResult")
@@ -48,6 +49,7 @@ class CloudHeader:
     notes: tuple[str, ...] = ()   # sentences about what the header states otherwise than the file shows
     units: FileUnits = METRES   # of the coordinates in the file; all others here are in metres
     crs_problem: str = ""   # why what the file says about its coordinates is not used, "" for nothing
+    brightness: int = 1   # by which intensities are multiplied, so that they have the scale of other files, see `in_one_scale`
 
 
 def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None, sparse: bool = False,

@@ -68,16 +68,26 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
         short = (np.abs(steps - np.abs(np.spacing(ends))) <= scales).any(axis=0)
         coarse = steps > LAS.coarse_coordinates
         clear = coarse & (short | np.isclose(steps, scales, rtol=0.01))
-        # Coarse steps on another axis that neither explains are those of a raster on which the points lie, as after thinning by voxels
-        if not clear.any() or (coarse & ~clear).any():
+        is_raster = bool((coarse & ~clear).any())   # neither explains its steps, as after thinning by voxels
+        if not coarse.any() or is_raster and not all(_even(sample.raw[:, axis], steps[axis] / scales[axis]) for axis in np.flatnonzero(coarse)):
             continue
-        k = int(np.argmax(np.where(clear, steps, 0.0)))
-        listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if clear[axis])
-        cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of 32-bit numbers, in which some program kept them" if short[k] else \
-            f"that is the scale in the header of the file ({scales[k]:g} m)"
+        k = int(np.argmax(np.where(coarse, steps, 0.0)))
+        listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if coarse[axis])
+        if is_raster:
+            cause = "they were rounded, or points were thinned and moved to a raster"
+        elif short[k]:
+            cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of 32-bit numbers, in which some program kept them"
+        else:
+            cause = f"that is the scale in the header of the file ({scales[k]:g} m)"
         return (f"The coordinates of {sample.file.path} lie in steps of {listed}: {cause}. Edges and markings are no better than that. Export "
-                "the cloud again with coordinates of 64 bits and a scale of 0.001 m.", float(np.where(clear, steps, 0.0)[:2].max() / np.sqrt(6.0)))
+                "the cloud again with coordinates of 64 bits and a scale of 0.001 m.", float(np.where(coarse, steps, 0.0)[:2].max() / np.sqrt(6.0)))
     return "", 0.0
+
+
+def _even(values, step):
+    """Whether nearly all gaps between (N,) integers are multiples of a step."""
+    gaps = np.diff(np.unique(values)) / step
+    return (np.abs(gaps - np.rint(gaps)) * step > 1.0).mean() < LAS.share_of_other_gaps
 
 
 # An even sample of a survey's points that keeps neighbours together, whatever the order of the files.

@@ -182,7 +182,8 @@ class _Drafting:
             return RoadMark(0.0, "curb" if not pattern else MARK_OF_PATTERN.get(pattern, "none"))
         name = MARK_OF_PATTERN.get(pattern, "edge" if kind == "pavement" else "none")
         width = self.source.paint_width(line)
-        mark = RoadMark(0.0, name, "white" if name not in ("none", "edge") else "standard", RoadMark.width if np.isnan(width) else round(width, 3))
+        colour = self.source.paint_colour(line) if name not in ("none", "edge") else ""
+        mark = RoadMark(0.0, name, colour or RoadMark.colour, RoadMark.width if np.isnan(width) else round(width, 3))
         if "broken" in name:
             mark.dash, mark.gap = USUAL_DASH
         return mark

@@ -5,6 +5,9 @@ import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.core.driving.driving_lines import DrivingSettings
+from lanewright.core.driving.heights import road_heights
+from lanewright.core.driving.lane_track import MEASURED, LaneTrack
+from lanewright.core.execution.phase import Threads
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore
@@ -315,6 +318,20 @@ def test_among_crowded_points_height_is_known_to_the_millimetre_wherever_section
     np.testing.assert_array_equal(z, other)
     inner = (x > x[0] + 5.0) & (x < x[-1] - 5.0)
     np.testing.assert_allclose(z[inner], HEIGHT + 0.02 * (x[inner] - 500_000.0), atol=0.001)
+
+
+def test_lanes_of_two_roads_get_their_own_heights_in_one_phase(monkeypatch):
+    points, phases, run = scanned(Street(vehicle=-1.75), 100_000), [], Threads.run
+    higher = points.all_points().records.copy()
+    higher["z"] += to_units(1.0)
+    points.store.append(1, higher)
+    monkeypatch.setattr(Threads, "run", lambda self, phase, *others: phases.append(phase.function.__name__) or run(self, phase, *others))
+    s, count = np.arange(20.0, 100.0, 0.5), 160
+    track = LaneTrack(0, np.full(count, -1.75), np.full(count, 3.5), np.full(count, MEASURED), np.zeros(count, bool),
+                      *[np.full(count, -1)] * 4, *[np.ones(count)] * 3, 1)
+    (low,), (high,) = road_heights(points, [(0, s, [track]), (1, s, [track])])
+    np.testing.assert_allclose(high - low, 1.0, atol=1e-4)
+    assert phases == ["heights_of_windows"]
 
 
 def test_a_street_without_paint_has_no_driving_lines_and_says_so():

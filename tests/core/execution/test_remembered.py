@@ -55,6 +55,14 @@ def test_items_that_come_together_are_remembered_one_by_one_so_that_a_new_one_be
     assert len(asked.items) == 1, "the new one alone is few, which threads of the program compute"
 
 
+def test_what_a_later_run_asks_for_a_whole_road_at_once_does_not_wait_for_workers_to_start():
+    asked = Asked()
+    remembered = RememberedResults(asked)
+    assert results(remembered, [1]) == [2] and not remembered.full
+    assert results(remembered, [2]) == [4] and results(remembered, range(3, 30)) == [2 * k for k in range(3, 30)]
+    assert asked.items == [[1], list(range(3, 30))], "workers do the first run, and what is much"
+
+
 def test_other_arguments_are_another_question():
     asked = Asked()
     remembered = RememberedResults(asked)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, contents, drive, joined, surveyed_points, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.progress import Progress
+from lanewright.core.common.progress import Progress, RememberedMessages
 from lanewright.core.survey.frame.row_table import SigmaAlong
 from lanewright.core.survey.open_survey import SurveySettings, open_survey, section_length
 from lanewright.core.survey.trajectory.trajectory import Trajectory
@@ -392,3 +392,57 @@ def test_sections_are_as_long_as_hold_some_hundred_thousand_points(points, metre
     roads = [SimpleNamespace(length=1500.0), SimpleNamespace(length=500.0)]
     files = [SimpleNamespace(count=points * 500), SimpleNamespace(count=points * 1500)]
     assert section_length(files, SimpleNamespace(roads=roads)) == metres
+
+
+WEEK_OF_ADJUSTED = 604800.0 * 2179 - 1e9   # adjusted GPS seconds at which a week begins
+
+
+@pytest.mark.parametrize("shift", [WEEK_OF_ADJUSTED, 1e9], ids=["seconds of the week", "GPS seconds"])
+def test_files_of_one_drive_that_count_time_in_two_ways_are_refused_by_name(tmp_path, shift):
+    at = WEEK_OF_ADJUSTED + 200_000.0
+    trajectory = drive(PATH, start=at)
+    x, y, z, time = surveyed_points(trajectory)
+    late = time > at + 8
+    first = write_cloud(tmp_path / "early.laz", *(c[~late] for c in (x, y, z, time)), crs=CRS)
+    other_time = time + 1e9 if shift == 1e9 else time - shift
+    second = write_cloud(tmp_path / "late.laz", *(c[late] for c in (x, y, z, other_time)), crs=CRS, adjusted=False)
+    with pytest.raises(RoadExtractionError, match="early.laz runs from .*late.laz, of the same drive.*one kind of gps_time"):
+        open_survey([first, second], trajectory)
+
+
+def test_a_file_of_another_day_is_left_out_and_the_gaps_of_the_trajectory_are_told(street, tmp_path):
+    trajectory, (x, y, z, time), path = street
+    tomorrow = write_cloud(tmp_path / "tomorrow.laz", x, y, z, time + 86_400.0, crs=CRS)
+    listener = RememberedMessages()
+    survey = open_survey([path, tomorrow], trajectory, progress=listener)
+    assert survey.counts["kept"] == len(x)
+    said, = listener.warnings
+    assert f"{len(x):,} of {2 * len(x):,} points were left out" in said and "runs from 1000.0 s to 10" in said and "not from" not in said
+
+
+def test_a_gap_in_the_trajectory_is_told_with_its_times(street):
+    trajectory, _, path = street
+    away = (trajectory.time > 1006) & (trajectory.time < 1012)
+    listener = RememberedMessages()
+    open_survey([path], Trajectory(*(getattr(trajectory, name)[~away] for name in ("time", "x", "y", "z"))), progress=listener)
+    assert any("not from 1006.0 s to 1012.0 s" in warning for warning in listener.warnings)
+
+
+@pytest.mark.parametrize("kind, says", [("feet", "in feet"), ("exchanged", "x and y are exchanged"), ("degrees", "look like degrees")])
+def test_a_file_with_coordinates_of_another_kind_than_the_others_is_refused_by_name(tmp_path, kind, says):
+    trajectory = drive(PATH)
+    x, y, z, time = surveyed_points(trajectory)
+    late = time > 1010
+    first = write_cloud(tmp_path / "early.laz", *(c[~late] for c in (x, y, z, time)), crs=CRS)
+    places = {"feet": (x / 0.3048, y / 0.3048, z / 0.3048), "exchanged": (y, x, z), "degrees": (9 + x * 1e-9, 48 + y * 1e-9, z)}[kind]
+    second = write_cloud(tmp_path / "late.laz", *(c[late] for c in (*places, time)))
+    with pytest.raises(RoadExtractionError, match=f"late.laz are of another kind.*{says}"):
+        open_survey([first, second], trajectory)
+
+
+def test_a_file_beside_the_drive_is_no_mistake(street, surveyed, tmp_path):
+    trajectory, (x, y, z, time), path = street
+    listener = RememberedMessages()
+    beside = write_cloud(tmp_path / "beside.laz", x + 3000.0, y, z, time, crs=CRS)
+    np.testing.assert_array_equal(contents(open_survey([path, beside], trajectory, progress=listener)), surveyed)
+    assert listener.warnings == [] and any("1 of 2 files lie beside" in text for _, text in listener.messages)

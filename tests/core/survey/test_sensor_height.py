@@ -34,7 +34,7 @@ def road_below(frame, reach=4.0, count=40_000):
 def test_the_height_is_told_to_the_millimetre_on_a_steep_road_too(grade):
     frame = climbing(grade)
     points, _ = road_below(frame)
-    (number, drops), = VehicleTracks(frame).drops(0, points)
+    (number, _, drops), = VehicleTracks(frame).drops(0, points)
     assert estimate_sensor_height(drops) == pytest.approx(RIDES, abs=5e-4)
     tally = HeightHistogram([number], 2.0)
     for some in np.array_split(drops, 7):
@@ -45,10 +45,10 @@ def test_the_height_is_told_to_the_millimetre_on_a_steep_road_too(grade):
 def test_points_on_the_track_are_those_within_a_metre_and_a_half_of_it():
     frame = climbing(0.0)
     points, off = road_below(frame)
-    (_, drops), = VehicleTracks(frame).drops(0, points)
+    (_, _, drops), = VehicleTracks(frame).drops(0, points)
     assert len(drops) == pytest.approx(np.count_nonzero(np.abs(off) < 1.5), abs=20)
     own = np.abs(off) > 1.0
-    (_, some), = VehicleTracks(frame).drops(0, points, own)
+    (_, _, some), = VehicleTracks(frame).drops(0, points, own)
     assert len(some) == pytest.approx(np.count_nonzero((np.abs(off) < 1.5) & own), abs=20)
     assert not list(VehicleTracks(frame).drops(0, points, np.abs(off) > 1.6))
 

@@ -76,9 +76,10 @@ def test_borders_have_the_types_and_subtypes_of_the_format(tmp_path):
     edges = Features("LineStringZ", ROAD_EDGES)
     edges.add(shapely.linestrings(line.at([0, 40], [-3.5, -3.5])), height_m=0.04)
     painted = Features("LineStringZ", MARKING_LINES)
-    painted.add(shapely.linestrings(line.at([0, 40], [0, 0])), line=4, width_m=0.25)
+    painted.add(shapely.linestrings(line.at([0, 40], [0, 0])), line=4, width_m=0.25, colour="yellow")
     draft, _ = exported(tmp_path, scene.lanes(), road_edges=edges, marking_lines=painted)
     tags = [{key: way.tags.get(key) for key in ("type", "subtype")} for way in draft.ways if way.tags["type"] != "centerline"]
+    assert [way.tags.get("color") for way in draft.ways if way.tags["type"] in ("line_thick", "line_thin")] == ["yellow", None]
     assert tags == [{"type": "line_thick", "subtype": "dashed"}, {"type": "curbstone", "subtype": "low"}, {"type": "line_thin", "subtype": "solid"},
                     {"type": "road_border", "subtype": None}, {"type": "virtual", "subtype": None}]
 

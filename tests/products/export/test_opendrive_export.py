@@ -186,7 +186,7 @@ def test_curbs_paint_and_what_was_inferred_are_said(tmp_path):
     scene.add(line, 3.5, 0.0, lane=2, direction=-1, **kinds(pattern="double-solid"))
     edges, painted = Features("LineStringZ", ROAD_EDGES), Features("LineStringZ", MARKING_LINES)
     edges.add(shapely.linestrings(line.at([0, 40], [-3.5, -3.5])), height_m=0.13)
-    painted.add(shapely.linestrings(line.at([0, 40], [0, 0])), line=4, width_m=0.15)
+    painted.add(shapely.linestrings(line.at([0, 40], [0, 0])), line=4, width_m=0.15, colour="yellow")
     driven = Features("LineStringZ", DRIVING_LINES)
     for station, end, sigma in ((0.0, 20.0, 0.003), (20.0, 40.0, 0.004)):
         driven.add(shapely.linestrings(line.at([station, end], [1.75, 1.75])), road=1, lane=2, station_m=station, end_m=end, sigma_m=sigma)
@@ -195,6 +195,7 @@ def test_curbs_paint_and_what_was_inferred_are_said(tmp_path):
     assert lanes[-2].type == "curb" and lanes[-2].heights[0, 2] == 0.13 and lanes[-1].marks[0].type == "curb"
     assert (lanes[0].marks[0].type, lanes[0].marks[0].width, lanes[0].marks[0].dash) == ("broken", 0.15, 3.0)
     assert lanes[1].marks[0].type == "solid solid"
+    assert [lanes[id].marks[0].colour for id in (0, 1)] == ["yellow", "standard"], "a colour that nobody saw is not said"
     assert lanes[-1].data["lanewright:status"] == "bridged" and "lanewright:status" not in lanes[1].data
     assert lanes[1].data["lanewright:sigma_m"] == "0.004" and "lanewright:sigma_m" not in lanes[-1].data, "RMS of 3 and 4 mm is 3.5"
 

@@ -4,14 +4,14 @@ from contextlib import closing
 
 import numpy as np
 import pytest
-from lanewright.core.common.progress import Progress
 from lanewright.core.countries.painted_symbols import SYMBOLS
+from lanewright.core.execution.in_step import Asked, in_step
 from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.tasks import find_interpreter
 from lanewright.core.markings.objects import cluster as phases
-from lanewright.core.markings.objects.cluster import ApartWork
-from lanewright.core.markings.objects.figures import figures_of
+from lanewright.core.markings.objects.cluster import combs_asked, pieces_asked, shapes_asked
+from lanewright.core.markings.objects.figures import figure_of_cells, figures_of
 from lanewright.core.markings.road_grid import CELL_SIZE
 from lanewright.core.survey.store.columns import Columns
 
@@ -37,36 +37,42 @@ def figure(symbol):
     return np.argwhere((image > 0.3 * image.max())[row, column])
 
 
-def found_by(executor):
-    """The results of all phases."""
+def asking_all():
+    """A work that asks for all, and gives the answers."""
+    clusters = [COMPOUND, *STRIPES, *DASHES]
+    s, d = np.concatenate(clusters).T.copy()
+    spacing = np.zeros(len(s), np.uint16)
+    bounds = np.cumsum([0, *map(len, clusters)])
+    spots = np.unique(np.concatenate(STRIPES + DASHES) // 400, axis=0) * 0.04
+    windows = [np.flatnonzero(np.abs(spots[:, 0] - station) < 2.5) for station in range(18, 80, 3)]
+    combs = yield combs_asked(spots, [rows for rows in windows if len(rows) > 3], 0.2)
+    pieces = yield pieces_asked((s, d, spacing), bounds, np.arange(len(clusters)) < 4, 0.4)
+    records = Columns(dict(s=s, d=d, spacing=spacing), [("s", "i4"), ("d", "i4"), ("spacing", "u2")])
+    shapes = yield shapes_asked(records, [np.arange(*ends) for ends in zip(bounds, bounds[1:])], 0.6)
+    shown = [*map(figure, SYMBOLS), np.argwhere(np.ones((9, 30)))]
+    figures = yield Asked(figure_of_cells, [(cells, np.zeros(len(cells))) for cells in shown], 1.0, read=lambda kind: [kind])
+    return ([comb and (comb.middle.tobytes(), *comb._replace(middle=None)) for comb in combs],
+            [(None if parts is None else parts.tobytes(), of_parts) for parts, of_parts in pieces],
+            shapes, [type(value) for shape in shapes for value in vars(shape).values()], figures)
+
+
+def found_by(executor, works=1):
+    """The results of all phases of some works."""
     with closing(executor):
-        work = ApartWork(executor, 0)
-        clusters = [COMPOUND, *STRIPES, *DASHES]
-        s, d = np.concatenate(clusters).T.copy()
-        spacing = np.zeros(len(s), np.uint16)
-        bounds = np.cumsum([0, *map(len, clusters)])
-        spots = np.unique(np.concatenate(STRIPES + DASHES) // 400, axis=0) * 0.04
-        windows = [np.flatnonzero(np.abs(spots[:, 0] - station) < 2.5) for station in range(18, 80, 3)]
-        combs = work.combs(spots, [rows for rows in windows if len(rows) > 3], Progress())
-        parts = work.parts(s, d, spacing, list(zip(bounds[:4].tolist(), bounds[1:5].tolist())), Progress())
-        records = Columns(dict(s=s, d=d, spacing=spacing), [("s", "i4"), ("d", "i4"), ("spacing", "u2")])
-        shapes = work.shapes(records, bounds, Progress())
-        shown = [*map(figure, SYMBOLS), np.argwhere(np.ones((9, 30)))]
-        figures = list(work.figures([(cells, np.zeros(len(cells))) for cells in shown], 0.0, 1.0, Progress()))
-        return ([comb and (comb.middle.tobytes(), *comb._replace(middle=None)) for comb in combs],
-                [(part.tobytes(), count) for part, count in parts], shapes, [type(value) for shape in shapes for value in vars(shape).values()],
-                figures)
+        return in_step([asking_all() for _ in range(works)], executor, "a street")
 
 
 @pytest.mark.slow
 def test_worker_processes_find_what_threads_find(monkeypatch):
-    combs, parts, shapes, _, figures = known = found_by(Threads(1))
+    (combs, pieces, shapes, _, figures), = known = found_by(Threads(1))
     assert set(figures) == {"bicycle", "bus", ""} and figures[-1] == ""
     assert sum(comb is not None for comb in combs) >= 2 and None in combs
-    assert parts[0][1] >= 2 and len(shapes) == len(STRIPES) + len(DASHES) + 1
+    (parts, of_parts), (whole, alone) = pieces[0], pieces[-1]
+    assert parts is not None and len(of_parts) >= 2 and whole is None and alone == shapes[-1:] and len(shapes) == len(STRIPES) + len(DASHES) + 1
     assert found_by(Threads(3)) == known
     monkeypatch.setattr(phases, "TASK_POINTS", 200)
     assert found_by(WorkerProcesses(find_interpreter(), 2)) == known
+    assert found_by(Threads(2), 3) == 3 * known
 
 
 def test_where_a_cluster_changes_the_tasks_of_others_stay_as_they_were():
@@ -84,7 +90,28 @@ def test_where_a_cluster_changes_the_tasks_of_others_stay_as_they_were():
     assert len(set(tasks(changed)) - set(known)) <= 3
 
 
+def test_works_on_several_roads_ask_together_though_one_has_fewer_steps():
+    """The phases are as many as those of the road with the most, whatever each asks for."""
+    phases_run = []
+
+    class Noting(Threads):
+        def run(self, phase, items, *others):
+            phases_run.append((phase.function.__name__, len(items)))
+            return super().run(phase, items, *others)
+
+    def looking(count):
+        spots = np.unique(STRIPES[0] // 400, axis=0) * 0.04
+        for _ in range(count):
+            yield combs_asked(spots, [np.arange(len(spots))], 0.5)
+        return count
+
+    assert in_step([looking(2), looking(0), looking(1)], Noting(1), "a street") == [2, 0, 1]
+    assert phases_run == [("combs_of_windows", 2), ("combs_of_windows", 1)]
+
+
 def test_where_there_is_no_paint_there_is_nothing_to_do():
-    empty = np.empty(0, np.int32)
-    work = ApartWork(Threads(1), 0)
-    assert work.combs(np.empty((0, 2)), [], Progress()) == work.parts(empty, empty, empty, [], Progress()) == []
+    def asking():
+        combs = yield combs_asked(np.empty((0, 2)), [], 0.5)
+        return combs + (yield pieces_asked(np.empty((3, 0), np.int32), np.zeros(1, int), np.zeros(0, bool), 1.0))
+
+    assert in_step([asking()], Threads(1), "a street") == [[]] and in_step([], Threads(1), "a street") == []

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.objects.split_merge import split_compounds
+from lanewright.core.markings.objects.split_merge import are_compound, parts_of_compound
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 
 
@@ -20,7 +20,10 @@ def paint(*strips, spacing=0.03):
 
 
 def split(records):
-    return split_compounds(records, np.zeros(len(records), np.int64))
+    """The part of every point of one cluster."""
+    columns = [records[name] for name in ("s", "d", "spacing")]
+    compound = are_compound(*columns[:2], np.zeros(1, np.int64))
+    return parts_of_compound(*columns)[0] if compound.all() else np.zeros(len(records), np.int64)
 
 
 def share_together(labels, owner, number):
@@ -134,5 +137,5 @@ def test_the_order_of_the_points_does_not_matter():
     assert np.array_equal(split(records[shuffle]), split(records)[shuffle])
 
 
-def test_no_points_give_no_labels():
-    assert len(split_compounds(np.zeros(0, ROAD_POINT), np.empty(0, np.int64))) == 0
+def test_where_there_are_no_clusters_none_is_compound():
+    assert len(are_compound(*np.zeros((2, 0), np.int32), np.empty(0, np.int64))) == 0

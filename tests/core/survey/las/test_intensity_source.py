@@ -1,9 +1,13 @@
 """Intensities as exporters write them: with a sign, in decibels, in an extra field."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import laspy
 import numpy as np
 import pytest
-from lanewright.core.survey.las.point_fields import intensity_source_of
+from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
+from lanewright.core.survey.las.point_fields import in_one_scale, intensity_source_of
 from lanewright.core.survey.las.reader import read_blocks, read_headers
 from lanewright.core.survey.las.samples import coarse_coordinates, sample_files
 
@@ -15,14 +19,14 @@ RNG.shuffle(REFLECTANCE)
 DECIBELS = 10 * np.log10(REFLECTANCE)
 
 
-def cloud(path, intensity=0, x=None, y=None, scale=0.001, **fields):
+def cloud(path, intensity=0, x=None, y=None, z=None, scale=0.001, **fields):
     header = laspy.LasHeader(version="1.4", point_format=6)
     header.scales, header.offsets = [scale] * 3, [500_000.0, 5_800_000.0, 0.0]
     header.add_extra_dims([laspy.ExtraBytesParams(name, values.dtype.str[1:]) for name, values in fields.items()])
     las = laspy.LasData(header)
     las.x = 500_000 + RNG.uniform(0, 200, COUNT) if x is None else x
     las.y = 5_800_000 + RNG.uniform(0, 20, COUNT) if y is None else y
-    las.z = 60 + RNG.uniform(0, 3, COUNT)
+    las.z = 60 + RNG.uniform(0, 3, COUNT) if z is None else z
     las.intensity = np.broadcast_to(intensity, COUNT)
     for name, values in fields.items():
         las[name] = values
@@ -118,10 +122,56 @@ def test_coordinates_through_numbers_of_32_bits_are_told_with_their_step(tmp_pat
 def test_points_on_a_raster_are_not_taken_for_numbers_of_32_bits(tmp_path):
     """Steps of 0.5 m in y are those of 32-bit numbers there, steps of 0.2 m in x are not: the points were thinned to a raster."""
     x, y = 500_000 + 0.2 * RNG.integers(0, 1000, COUNT), 5_800_000 + 0.5 * RNG.integers(0, 400, COUNT)
-    assert coarse(cloud(tmp_path / "raster.laz", x=x, y=y)) == ""
+    said = coarse(cloud(tmp_path / "raster.laz", x=x, y=y))
+    assert "0.2 m in x, 0.5 m in y: they were rounded, or points were thinned" in said
+
+
+def test_heights_that_were_rounded_to_decimetres_are_told(tmp_path):
+    said = coarse(cloud(tmp_path / "rounded.laz", z=np.round(60 + RNG.uniform(0, 30, COUNT), 1)))
+    assert "0.1 m in z: they were rounded" in said
+
+
+def test_few_points_in_a_wide_field_lie_in_no_steps(tmp_path):
+    """Neighbouring values of 5,000 points looked at over 200 km lie metres apart, by chance."""
+    assert coarse(cloud(tmp_path / "wide.laz", x=400_000 + RNG.uniform(0, 200_000, COUNT), y=5_700_000 + RNG.uniform(0, 200_000, COUNT))) == ""
 
 
 @pytest.mark.parametrize("scale, says", [(0.1, "0.1 m in x, 0.1 m in y, 0.1 m in z"), (0.01, "")])
 def test_a_scale_of_decimetres_is_told(tmp_path, scale, says):
     told = coarse(cloud(tmp_path / "cloud.laz", scale=scale))
     assert says in told and bool(told) == bool(says)
+
+
+def scales(tmp_path, **intensities):
+    """({name: factor} of files with these intensities, and what is said of them)."""
+    files = read_headers([cloud(tmp_path / f"{name}.laz", np.clip(np.rint(values), 0, 65535)) for name, values in intensities.items()])
+    scaled, note = in_one_scale(files, sample_files(files), "intensity")
+    return {Path(file.path).stem: file.brightness for file in scaled}, note
+
+
+@pytest.mark.parametrize("bits", [8, 10, 12])
+def test_a_file_with_fewer_bits_than_the_others_is_brought_to_their_scale(tmp_path, bits):
+    whole = np.clip(20_000 * REFLECTANCE, 0, 65535)
+    factors, note = scales(tmp_path, whole=whole, few=np.floor(whole / 2 ** (16 - bits)))
+    assert factors == {"whole": 1, "few": 2 ** (16 - bits)}
+    assert "1 of 2 files have fewer bits" in note and "few.laz" in note and f"by {2 ** (16 - bits)}" in note
+
+
+def test_files_over_darker_ground_have_the_same_scale(tmp_path):
+    factors, note = scales(tmp_path, road=20_000 * REFLECTANCE, dark=6000 * REFLECTANCE, bright=30_000 * REFLECTANCE)
+    assert set(factors.values()) == {1} and note == ""
+
+
+def test_another_scale_that_no_number_of_bits_explains_is_told(tmp_path):
+    factors, note = scales(tmp_path, whole=20_000 * REFLECTANCE, other=1000 * REFLECTANCE + 3500 * (REFLECTANCE > 1.2))
+    assert factors == {"whole": 1, "other": 1} and "other.laz are about 20 times weaker" in note
+
+
+@pytest.mark.parametrize("size", [700, 400_000])
+def test_points_of_a_file_with_fewer_bits_are_read_in_the_scale_of_the_others(tmp_path, size):
+    values = np.clip(np.rint(120 * REFLECTANCE), 0, 255)
+    file, = read_headers([cloud(tmp_path / "few.laz", values)])
+    with ParallelCloudReader() as reader:
+        found = [points["intensity"].copy() for part in reader.ranges([file], size)
+                 for points in reader.points(replace(file, brightness=256), *part[1:], size)]
+    np.testing.assert_array_equal(np.concatenate(found), 256 * values)
