@@ -128,7 +128,7 @@ def is_lowered(points: np.ndarray, s: np.ndarray) -> np.ndarray:
 
     points : (N,) structured array, by station, with the field `height` (m); s : (N,) m, their stations
     """
-    low = (points["height"] > 0.0) & (points["height"] <= EDGE.lowered_share * points["height"].max())
+    low = (points["height"] > 0.0) & (points["height"] <= EDGE.lowered_share * points["height"].max(initial=0.0))
     for k in np.flatnonzero(low):
         before, behind = (points["height"][stretch_of(s, *ends)].max()
                           for ends in ((s[k] - CURBS.line_fit_length, s[k]), (s[k], s[k] + CURBS.line_fit_length)))

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 import shapely
 from curbed_streets import EAST, LENGTH, NORTH, driven, street, survey_of
+from lanewright.core.road.common.lowered_curb import lowered_points
+from lanewright.core.road.surface.ground_grid import MeasuredGround
+from lanewright.core.road.surface.road_look import RoadLook
 from road_layers import detect_curbs, fit_road_edges
 
 HEIGHT, RAMP, OFFSET = 0.12, 1.0, 3.5   # m: of the full curb, along the road down to the lowered one, from the track to the left curb
@@ -61,6 +64,11 @@ def test_a_lowered_curb_goes_on_as_a_dropped_edge_whichever_way_it_is_driven(low
 def test_a_curb_that_is_lowered_to_the_end_of_the_survey_goes_on_for_some_metres():
     end = max(end for _, end, off, _ in edges_of(lowered(street(seed=1), 0.02, (30.0, 60.0))) if off < 0.06)
     assert 34.0 < end < 44.0
+
+
+def test_a_side_without_curb_has_no_lowered_one():
+    survey = survey_of(street())
+    assert not lowered_points([], survey.frame.road(0), RoadLook(MeasuredGround(survey), 0).side(1))
 
 
 def test_across_level_ground_nothing_goes_on():
