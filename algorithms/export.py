@@ -138,15 +138,15 @@ def lanes_with_borders(source):
     return with_shared_borders(with_inferred_ways(source))
 
 
-def warn_of_faults(notes, found, progress):
+def warn_of_faults(notes, findings, progress):
     """Say what a map lacks, and what the check of its file found."""
-    for text in (*notes, *(tr("{fault}: {count}").format(fault=told(fault), count=count) for fault, count in found.counts().items())):
+    for text in (*notes, *(tr("{fault}: {count}").format(fault=told(fault), count=count) for fault, count in findings.counts().items())):
         progress.warn(text)
 
 
-def fault_table(found):
+def fault_table(findings):
     """The table of a report on what the check of a file found; none where it found nothing."""
-    counts = [(told(fault), count) for fault, count in sorted(found.counts().items())]
+    counts = [(told(fault), count) for fault, count in sorted(findings.counts().items())]
     return [(tr("Findings of the check"), (tr("Fault"), tr("Count")), counts)] if counts else []
 
 
@@ -306,7 +306,7 @@ def write_opendrive(call, source, name, progress):
     return {name: float(value) for name, value in numbers.items()}
 
 
-def _report(name, whole, found, shown, misses, notes):
+def _report(name, whole, network, shown, misses, notes):
     from ..core.common.texts import word
     from ..products.report.hd_map import map_export_report
 
@@ -314,8 +314,8 @@ def _report(name, whole, found, shown, misses, notes):
     for road in whole.roads:
         for element in road.plan.elements:
             lengths[element.kind] += element.length
-    facts = [(tr("Roads"), len(whole.roads)), (tr("Junctions"), len(whole.junctions)), (tr("Lanes of sections that are driven"), found.lanes),
-             (tr("Links from one lane to the next"), found.successors), (tr("Pairs of lanes side by side"), found.neighbours),
+    facts = [(tr("Roads"), len(whole.roads)), (tr("Junctions"), len(whole.junctions)), (tr("Lanes of sections that are driven"), network.lanes),
+             (tr("Links from one lane to the next"), network.successors), (tr("Pairs of lanes side by side"), network.neighbours),
              (tr("False origin"), f"{whole.offset[0]:g}, {whole.offset[1]:g}"), ("geoReference", whole.reference or tr("none"))]
     names = (tr("Borders, across"), tr("Borders, in height"), tr("Driving lines from the middles of lanes (measured)"),
              tr("The same, of lanes beside no double line"))
@@ -325,7 +325,7 @@ def _report(name, whole, found, shown, misses, notes):
         (tr("Elements of the reference lines"), (tr("Element"), tr("Length (m)")),
          [(word(kind, "element"), round(metres, 1)) for kind, metres in sorted(lengths.items())]),
     ]
-    return map_export_report(tr("OpenDRIVE map"), name, facts, tables + fault_table(found), notes, shown)
+    return map_export_report(tr("OpenDRIVE map"), name, facts, tables + fault_table(network), notes, shown)
 
 
 LANELETS = "products.export.lanelet_export:LaneletSettings"

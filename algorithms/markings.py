@@ -43,7 +43,7 @@ class CorrectIntensity(Algorithm):
         for line in report.lines()[1:]:  # the first was said when it was found, as was a warning
             if line != report.saturation_warning:
                 progress.info(line)
-        call.text("REPORT", html_page("intensity_correction", found=report))
+        call.text("REPORT", html_page("intensity_correction", report=report))
 
 
 IMAGE = "core.intensity.image:ImageSettings"

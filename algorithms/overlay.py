@@ -232,14 +232,14 @@ def _control_points(call, image, progress):
     return points
 
 
-def _numbers(found):
+def _numbers(result):
     from ..products.overlay.control_points import CHECK, CONTROL
 
-    lengths = [float((dx * dx + dy * dy) ** 0.5) for dx, dy in found.errors[found.points.having(CONTROL)]]
+    lengths = [float((dx * dx + dy * dy) ** 0.5) for dx, dy in result.errors[result.points.having(CONTROL)]]
     values = {
-        "POINTS": len(lengths), "RMSE": found.rmse(), "LEFT_OUT_RMSE": found.left_out_rmse,
-        "CHECK_POINTS": len(found.points.having(CHECK)), "CHECK_RMSE": found.rmse(CHECK), "LARGEST": max(lengths),
-        "OUTSIDE": 100.0 * found.outside,
+        "POINTS": len(lengths), "RMSE": result.rmse(), "LEFT_OUT_RMSE": result.left_out_rmse,
+        "CHECK_POINTS": len(result.points.having(CHECK)), "CHECK_RMSE": result.rmse(CHECK), "LARGEST": max(lengths),
+        "OUTSIDE": 100.0 * result.outside,
     }
     # JSON knows no NaN: what cannot be told is left out
     return {name: value for name, value in values.items() if value == value}

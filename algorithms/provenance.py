@@ -49,7 +49,7 @@ class Provenance:
     def parameters(self) -> str:
         """Inputs and settings as JSON, without passwords."""
         text = json.dumps({name: value for name, value in self.values.items() if value not in (None, "", [])}, ensure_ascii=False, default=str)
-        return CREDENTIALS.sub(r"\1:…@", SECRET.sub(lambda found: f"{found[1]}=…", text.replace('\\"', "'")))
+        return CREDENTIALS.sub(r"\1:…@", SECRET.sub(lambda match: f"{match[1]}=…", text.replace('\\"', "'")))
 
     @property
     def time(self) -> str:
@@ -102,8 +102,8 @@ def _without_folders(value, folders):
         value = os.fspath(value)
     if not isinstance(value, str):
         return value
-    folders.update(found["folder"] for found in FOLDER.finditer(value))
-    return FOLDER.sub(lambda found: found["before"], value)
+    folders.update(match["folder"] for match in FOLDER.finditer(value))
+    return FOLDER.sub(lambda match: match["before"], value)
 
 
 @lru_cache(maxsize=256)   # every look at the layers of a project reads them all

@@ -25,11 +25,11 @@ GPS_EPOCH, ADJUSTED = datetime(1980, 1, 6), 1e9  # s, what adjusted GPS time lea
 
 
 class PointCloudsWidget(QWidget):
-    """A line of names with a button to add more; with `told`, a second line says how many files they are."""
+    """A line of names with a button to add more; with `describes`, a second line says how many files they are."""
 
     changed = pyqtSignal()
 
-    def __init__(self, parent: QWidget | None = None, told: bool = True):
+    def __init__(self, parent: QWidget | None = None, describes: bool = True):
         super().__init__(parent)
         self.names = DropLine(self)
         self.names.setPlaceholderText(tr("Files, a folder, or wildcards such as /data/B12/*.laz; or drop them here"))
@@ -45,16 +45,16 @@ class PointCloudsWidget(QWidget):
         self.menu = QMenu(self)
         self.menu.aboutToShow.connect(self._fill_menu)
         self.button.setMenu(self.menu)
-        self.told = wrapped() if told else None
-        if self.told is not None:  # what stands below does not move when the first file is named
-            policy = self.told.sizePolicy()
+        self.message = wrapped() if describes else None
+        if self.message is not None:  # what stands below does not move when the first file is named
+            policy = self.message.sizePolicy()
             policy.setRetainSizeWhenHidden(True)
-            self.told.setSizePolicy(policy)
+            self.message.setSizePolicy(policy)
         names = QHBoxLayout()
         names.setContentsMargins(0, 0, 0, 0)
         names.addWidget(self.names, 1)
         names.addWidget(self.button)
-        column(self, names, *([self.told] if told else []), rim=0).layout().setSpacing(2)
+        column(self, names, *([self.message] if describes else []), rim=0).layout().setSpacing(2)
         self._tell()
 
     # -- the value ------------------------------------------------------------------------------
@@ -103,9 +103,9 @@ class PointCloudsWidget(QWidget):
             QgsSettings().setValue(LAST_INPUT, str(folders[0]))
 
     def _tell(self) -> None:
-        if self.told is not None:
-            self.told.setText(described(self.value()))
-            self.told.setVisible(bool(self.value()))
+        if self.message is not None:
+            self.message.setText(described(self.value()))
+            self.message.setVisible(bool(self.value()))
         self.names.setToolTip("\n".join(self.value()))
 
 
@@ -211,7 +211,7 @@ class PointCloudsWrapper(DialogWrapper):
     """The widget in QGIS's dialogs and batches."""
 
     def createWidget(self, **more):
-        widget = PointCloudsWidget(told=self.dialogType == QgsProcessingGui.WidgetType.Standard)
+        widget = PointCloudsWidget(describes=self.dialogType == QgsProcessingGui.WidgetType.Standard)
         widget.changed.connect(self.announce)
         return widget
 

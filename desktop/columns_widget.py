@@ -39,9 +39,9 @@ class ColumnsWidget(QWidget):
         self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
         self.table.verticalHeader().hide()
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        self.told = wrapped()
+        self.message = wrapped()
         self.boxes: list[QComboBox] = []
-        column(self, self.line, self.table, self.told, rim=0)
+        column(self, self.line, self.table, self.message, rim=0)
         self._show_nothing()
 
     def value(self) -> str:
@@ -67,7 +67,7 @@ class ColumnsWidget(QWidget):
 
     def _show_nothing(self):
         self.table.hide()
-        self.told.hide()
+        self.message.hide()
 
     def _read(self):
         from ..core.survey.trajectory.meaning import columns_of_table, facts_of
@@ -92,14 +92,14 @@ class ColumnsWidget(QWidget):
         except RoadExtractionError as problem:
             self._say(told(columns.problem or str(problem)), wrong=True)
 
-    def _fill(self, found):
-        count = len(found.roles)
+    def _fill(self, table):
+        count = len(table.roles)
         # while the user writes, words that are not yet whole leave the boxes as they are
-        roles = [box.currentData() for box in self.boxes] if found.problem and len(self.boxes) == count else list(found.roles)
+        roles = [box.currentData() for box in self.boxes] if table.problem and len(self.boxes) == count else list(table.roles)
         self.table.clear()
         self.table.setColumnCount(count)
-        self.table.setRowCount(1 + len(found.rows))
-        self.table.setHorizontalHeaderLabels([title or tr("Column {number}").format(number=k + 1) for k, title in enumerate(found.titles)])
+        self.table.setRowCount(1 + len(table.rows))
+        self.table.setHorizontalHeaderLabels([title or tr("Column {number}").format(number=k + 1) for k, title in enumerate(table.titles)])
         self.boxes = []
         for k, role in enumerate(roles):
             box = choices((title, name) for name, title in ROLE_TITLES.items())
@@ -107,7 +107,7 @@ class ColumnsWidget(QWidget):
             box.activated.connect(lambda index: self._assigned())
             self.table.setCellWidget(0, k, box)
             self.boxes.append(box)
-            for row, values in enumerate(found.rows, start=1):
+            for row, values in enumerate(table.rows, start=1):
                 self.table.setItem(row, k, QTableWidgetItem(values[k]))
         self.table.resizeColumnsToContents()
         height = self.table.horizontalHeader().sizeHint().height() + sum(self.table.rowHeight(row) for row in range(self.table.rowCount()))
@@ -123,9 +123,9 @@ class ColumnsWidget(QWidget):
         self.line.setText(",".join(box.currentData() or SKIPPED for box in self.boxes))
 
     def _say(self, text, wrong=False):
-        self.told.setText(text)
-        self.told.setStyleSheet("color: #b00020" if wrong else "")
-        self.told.show()
+        self.message.setText(text)
+        self.message.setStyleSheet("color: #b00020" if wrong else "")
+        self.message.show()
 
 
 def described(facts) -> str:

@@ -133,11 +133,11 @@ def _rows_of(path):
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as problem:
         raise RoadExtractionError(f"{path} cannot be read as a table in UTF-8 ({problem}). Save it as “CSV UTF-8”.") from problem
-    said = [(number, line) for number, line in enumerate(lines, 1) if line.strip(" ;,\t") and not line.lstrip(' "').startswith("#")]
-    if len(said) < 2:
+    filled = [(number, line) for number, line in enumerate(lines, 1) if line.strip(" ;,\t") and not line.lstrip(' "').startswith("#")]
+    if len(filled) < 2:
         raise RoadExtractionError(f"{path} holds no rows. Its first line names the columns, and each further one says what becomes what.")
-    delimiter = max(";,\t", key=said[0][1].count)
-    return [(number, next(csv.reader([line], delimiter=delimiter))) for number, line in said]
+    delimiter = max(";,\t", key=filled[0][1].count)
+    return [(number, next(csv.reader([line], delimiter=delimiter))) for number, line in filled]
 
 
 def _rule(line, fields, texts, sources):

@@ -240,33 +240,34 @@ def _named(counts):
     return {int(value): int(counts[value]) for value in np.flatnonzero(counts)}
 
 
-def _judge_crs(found):
+def _judge_crs(inspection):
     try:
-        crs = check_projected(found.files, found.crs)
-        note = crs_note(found.files, "", crs) if crs else "The point clouds carry no CRS: set the parameter CRS, so that the results carry one."
-        found.notes += [note] if note else []
+        crs = check_projected(inspection.files, inspection.crs)
+        note = crs_note(inspection.files, "", crs) if crs else "The point clouds carry no CRS: set the parameter CRS, so that the results carry one."
+        inspection.notes += [note] if note else []
     except RoadExtractionError as problem:
-        found.notes.append(str(problem))
+        inspection.notes.append(str(problem))
 
 
-def _judge_trajectory(found, wkt, has_time, progress):
+def _judge_trajectory(inspection, wkt, has_time, progress):
     """Overlap in space and time; what is wrong goes to the notes."""
     try:
-        trajectory = clean_trajectory(reproject_trajectory(found.trajectory, wkt))
-        found.notes += [note for note in (*trajectory.notes, *trajectory.doubts) if note not in found.notes]
+        trajectory = clean_trajectory(reproject_trajectory(inspection.trajectory, wkt))
+        inspection.notes += [note for note in (*trajectory.notes, *trajectory.doubts) if note not in inspection.notes]
         if has_time:
-            trajectory, note, *_ = match_clocks(found.files, trajectory, SurveySettings(), progress)
-            found.notes += [note] if note else []
-        found.trajectory = trajectory
+            trajectory, note, *_ = match_clocks(inspection.files, trajectory, SurveySettings(), progress)
+            inspection.notes += [note] if note else []
+        inspection.trajectory = trajectory
     except RoadExtractionError as problem:
-        found.notes.append(str(problem))
+        inspection.notes.append(str(problem))
         return
     if has_time and trajectory.has_time:
-        first, last = found.time_span
+        first, last = inspection.time_span
         shared = min(last, trajectory.time[-1]) - max(first, trajectory.time[0])
-        found.in_time_share = float(np.clip(shared / (last - first), 0.0, 1.0))
-    if not found.near_share:
-        found.notes.append(f"No point lies within {NEAR_TRAJECTORY:.0f} m of the trajectory. Check that both belong to one survey and use one CRS.")
+        inspection.in_time_share = float(np.clip(shared / (last - first), 0.0, 1.0))
+    if not inspection.near_share:
+        inspection.notes.append(f"No point lies within {NEAR_TRAJECTORY:.0f} m of the trajectory. Check that both belong to one survey and use one "
+                                "CRS.")
 
 
 @dataclass(frozen=True)
@@ -311,10 +312,10 @@ def _profile(driven, track_z, at, heights, drops, height):
     return np.c_[places, np.interp(places, driven, track_z), road]
 
 
-def write_density(found: Inspection, path: str | Path) -> None:
+def write_density(inspection: Inspection, path: str | Path) -> None:
     """Write the density of an Inspection to a GeoTIFF: float32 points per m², NaN where no point lies."""
-    density, (west, north) = found.density
+    density, (west, north) = inspection.density
     height, width = density.shape
-    cell = found.settings.cell_size
-    with new_geotiff(path, width, height, (west, cell, 0.0, north, 0.0, -cell), found.crs, nodata=np.nan, description="Points per m²") as raster:
+    cell = inspection.settings.cell_size
+    with new_geotiff(path, width, height, (west, cell, 0.0, north, 0.0, -cell), inspection.crs, nodata=np.nan, description="Points per m²") as raster:
         raster.write(0, 0, density)

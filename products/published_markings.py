@@ -242,13 +242,13 @@ def _bright(records, length, limits, settings):
     return take_rows(records, Points(records).value > table[window - first[0], segment - first[1]])
 
 
-def dense_enough(records: Columns, own: np.ndarray, settings: PointSegments) -> np.ndarray:
-    """(N,) bool, those of the points `own`, (N,) bool, that have as many bright neighbours as paint has; the others only count as neighbours."""
+def dense_enough(records: Columns, mask: np.ndarray, settings: PointSegments) -> np.ndarray:
+    """(N,) bool, those of the points `mask`, (N,) bool, that have as many bright neighbours as paint has; the others only count as neighbours."""
     keep = np.zeros(len(records), bool)
-    if not own.any():
+    if not mask.any():
         return keep
     places = np.c_[records["s"], records["d"]] * COORDINATE_SCALE
-    rows = np.flatnonzero(own)
+    rows = np.flatnonzero(mask)
     # points at one place have the same neighbours: where a cloud holds points several times, each place is searched once
     distinct, member = occupied(records["s"].take(rows), records["d"].take(rows))
     count = cKDTree(places).query_ball_point(distinct * COORDINATE_SCALE, settings.radius, return_length=True).take(member) - 1

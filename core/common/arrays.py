@@ -34,7 +34,7 @@ def order_by(*keys: np.ndarray) -> np.ndarray:
     return order
 
 
-def bucket_argsort(cell: np.ndarray, count: int, own: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+def bucket_argsort(cell: np.ndarray, count: int, mask: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Rows, of all or those of a mask (N,), sorted by cell, stable; in linear time for fewer than 2**16 cells.
 
     cell : (N,) cell numbers, 0 to count - 1
@@ -45,8 +45,8 @@ def bucket_argsort(cell: np.ndarray, count: int, own: np.ndarray | None = None) 
     """
     kind = np.min_scalar_type(count)
     cell = cell.astype(kind)
-    if own is not None:
-        cell[~own] = count
+    if mask is not None:
+        cell[~mask] = count
     rows = np.argsort(cell, kind="stable")
     ends = np.searchsorted(cell.take(rows), np.arange(count, dtype=kind), side="right")
     return rows[:ends[-1]], ends

@@ -142,8 +142,8 @@ class CoreMessages:
             return value
         if "; " in value:   # a list whose parts are known, such as places, is none of them
             parts = [(part, self._value(part)) for part in value.split("; ")]
-            if all(told != part for part, told in parts):
-                return "; ".join(told for _, told in parts)
+            if all(shown != part for part, shown in parts):
+                return "; ".join(shown for _, shown in parts)
         translated = self.told(value)
         return translated if translated != value else ", ".join(map(self._part, value.split(", ")))
 

@@ -238,8 +238,8 @@ def _check_versions(client: Any) -> None:
         _compare(name, client.run(importlib.metadata.version, name, on_error="return"), local[name])
 
 
-def _compare(name, found, here):
-    for worker, installed in found.items():
+def _compare(name, versions, here):
+    for worker, installed in versions.items():
         if isinstance(installed, BaseException):
             raise RoadExtractionError(f"The worker {worker} has no {name}. Install it for its Python: {INSTALL} (QGIS is not needed there).")
         if here and installed != here:

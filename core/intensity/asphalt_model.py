@@ -196,17 +196,17 @@ class IntensityHistograms:
             result.append(BinCounts(kind, first, counts))
         return result
 
-    def add(self, found: Sequence[BinCounts], times: int = 1) -> None:
+    def add(self, counts: Sequence[BinCounts], times: int = 1) -> None:
         """Add results of `count`; each counted point stands for some `times` of them."""
-        for part in found:
+        for part in counts:
             bins = slice(part.first, part.first + part.counts.shape[1])
             self.counts[part.kind, :, bins] += part.counts if times == 1 else times * part.counts
 
     @classmethod
-    def together(cls, found: Sequence[Sequence[BinCounts]]) -> list[BinCounts]:
+    def together(cls, results: Sequence[Sequence[BinCounts]]) -> list[BinCounts]:
         """Results of `count` as one, which takes no more room than the largest."""
-        parts = [part for counts in found for part in counts]
-        if len(found) < 2 or not parts:
+        parts = [part for counts in results for part in counts]
+        if len(results) < 2 or not parts:
             return parts
         whole = cls(parts[0].counts.shape[0])
         whole.add(parts)

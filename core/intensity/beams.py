@@ -158,15 +158,15 @@ class Beams:
         samples = _samples(road_points, frame, scanners)
         if not samples:
             return None
-        turns = _ScannerTurns.of(road_points) if _may_be_turns([points for found in samples.values() for points in found]) \
+        turns = _ScannerTurns.of(road_points) if _may_be_turns([points for beams in samples.values() for points in beams]) \
             else _ScannerTurns.none()
-        models = {scanner: model for scanner, found in samples.items() if (model := _sharpest(found, frame.passes, turns)) is not None}
+        models = {scanner: model for scanner, beams in samples.items() if (model := _sharpest(beams, frame.passes, turns)) is not None}
         if not models:
             return None
-        found = cls(models, {}, {}, {})
+        beams = cls(models, {}, {}, {})
         for scanner, levels in zip(models, _levels(road_points, models, progress)):
-            found._estimate(scanner, levels)
-        return found if found.corrections else None
+            beams._estimate(scanner, levels)
+        return beams if beams.corrections else None
 
     def _estimate(self, scanner, levels):
         """Corrections that bring each beam's asphalt to the level of all, from (ELEVATION_BINS, INTENSITY_LEVELS) counts."""

@@ -438,8 +438,8 @@ class _Grid:
 def state_about(image: TiledImage, frame: RoadFrame, road: int, start: float, end: float) -> list[Any]:
     """Plain values that differ where the points of a road between two stations (m), or the image of `make_intensity_image` about them, are others."""
     pieces, margin = list(image.pieces), int(np.ceil(IMAGE.state_margin / image.cell_size))
-    own = np.array([piece.road == road and start < (piece.number + 1) * PIECE_LENGTH and piece.number * PIECE_LENGTH < end for piece in pieces])
-    across = np.array([piece.across for piece, is_own in zip(pieces, own.tolist()) if is_own]).reshape(-1, 2) * COORDINATE_SCALE
+    inside = np.array([piece.road == road and start < (piece.number + 1) * PIECE_LENGTH and piece.number * PIECE_LENGTH < end for piece in pieces])
+    across = np.array([piece.across for piece, is_own in zip(pieces, inside.tolist()) if is_own]).reshape(-1, 2) * COORDINATE_SCALE
     if not len(across):
         return []
     s = np.arange(start, end + IMAGE.state_margin, IMAGE.state_margin)
@@ -447,7 +447,7 @@ def state_about(image: TiledImage, frame: RoadFrame, road: int, start: float, en
     (c0, c1), (r0, r1) = ([int(np.floor((end + o) / image.cell_size)) for end in (np.min(c), np.max(c))] for c, o in zip(zip(*sides), frame.origin))
     extents = np.array([piece.extent for piece in pieces])
     about = (extents[:, 0] <= c1 + margin) & (extents[:, 1] >= c0 - margin) & (extents[:, 2] <= r1 + margin) & (extents[:, 3] >= r0 - margin)
-    return [list(image.geotransform), *(image.pieces[pieces[k]] for k in np.flatnonzero(own | about).tolist())]
+    return [list(image.geotransform), *(image.pieces[pieces[k]] for k in np.flatnonzero(inside | about).tolist())]
 
 
 # Whether an intensity image shows the road points it is used with.

@@ -149,8 +149,8 @@ class TiledImage(IntensityImage):
 
 
 def _state_of(path):
-    found = os.stat(path)
-    return [found.st_size, found.st_mtime_ns]
+    status = os.stat(path)
+    return [status.st_size, status.st_mtime_ns]
 
 
 def _shared_image(file: str, tiles: np.ndarray, geotransform: list[float], width: int, height: int, crs: str) -> TiledImage:

@@ -91,16 +91,16 @@ def moved_by(a: Any, b: Any, place: tuple[float, float]) -> float:
     return float(np.hypot(x - place[0], y - place[1]))
 
 
-def check_same_crs(own: str, other: str, place: tuple[float, float], label: str) -> None:
+def check_same_crs(layer_crs: str, other: str, place: tuple[float, float], label: str) -> None:
     """Raise RoadExtractionError for a layer in another CRS than the point clouds; one whose CRS is not known is taken to be in theirs.
 
     Two that give the place of the layer the same coordinates, such as UTM zone 32 of ETRS89 and of WGS 84, are no others.
 
-    own, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
+    layer_crs, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
     place : (x, y) in the layer
     label : name of the layer, as at the beginning of a sentence
     """
-    layer, clouds = horizontal_part(parse_crs(own)), horizontal_part(parse_crs(other))
+    layer, clouds = horizontal_part(parse_crs(layer_crs)), horizontal_part(parse_crs(other))
     if layer is not None and clouds is not None and not moved_by(layer, clouds, place) < IO.same_coordinates:
         raise RoadExtractionError(f"{label} is in {layer.name}, the point clouds are in {clouds.name}. "
                                   "Reproject the layer to their CRS and run again.")
@@ -149,11 +149,16 @@ def _crs_of_clouds(files, given):
     for file in files:
         if file.crs:
             path_by_crs.setdefault(file.crs, file.path)
-    (first, path), *rest = [(horizontal_part(parse_crs(wkt)), path) for wkt, path in path_by_crs.items()] or [(None, "")]
+    (first, path), *rest = [(parse_crs(wkt), path) for wkt, path in path_by_crs.items()] or [(None, "")]
+    heights = first
     for crs, other_path in rest:
-        if not crs.equals(first, ignore_axis_order=True):
-            raise RoadExtractionError(f"The point clouds use different CRSs: {path} is in {first.name}, "
-                                      f"{other_path} in {crs.name}. Reproject them to one CRS first.")
+        if not horizontal_part(crs).equals(horizontal_part(first), ignore_axis_order=True):
+            raise RoadExtractionError(f"The point clouds use different CRSs: {path} is in {horizontal_part(first).name}, "
+                                      f"{other_path} in {horizontal_part(crs).name}. Reproject them to one CRS first.")
+        heights = heights if heights.is_compound else crs
+        if crs.is_compound and not crs.sub_crs_list[-1].equals(heights.sub_crs_list[-1]):
+            raise RoadExtractionError(f"The point clouds have heights of different kinds: {heights.sub_crs_list[-1].name} and, in {other_path}, "
+                                      f"{crs.sub_crs_list[-1].name}. Bring all files to one kind of heights, and run again.")
     return next(iter(path_by_crs), "")
 
 

@@ -190,7 +190,7 @@ def _recognise_format(lines):
     for delimiter in DELIMITERS:
         split = [fields for fields in (_fields(line, delimiter) for line in lines) if len(fields) >= IO.min_number_columns]
         formats += [_explained(split, delimiter, style) for style in styles if delimiter not in (style.decimal, style.grouping)]
-    best = max(formats, key=lambda found: found[:4])
+    best = max(formats, key=lambda reading: reading[:4])
     return best[4] if best[0] else None
 
 

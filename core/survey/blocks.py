@@ -124,7 +124,7 @@ class BlockReader:
 
     def chosen(self, drop: float) -> ChosenPoints:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
-        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame))
+        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))
 
     def unfiltered(self, block: Any, summary: BlockSummary) -> list[tuple[int, Columns]]:
         """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
@@ -148,25 +148,25 @@ class BlockReader:
             if near.any():
                 yield self._partition(road, points, near, chosen, store)
 
-    def _partition(self, road, points, own, chosen, store):
+    def _partition(self, road, points, mask, chosen, store):
         if road < 0:
-            return store.partition(road, points, own)
-        for number, s, drops in self.tracks.drops(road, points, own):
+            return store.partition(road, points, mask)
+        for number, s, drops in self.tracks.drops(road, points, mask):
             chosen.histogram.add(number, drops)
-            chosen.coverage.add(number, s, drops, near=True)
+            chosen.coverage.add(number, s, drops)
         if self.choice.has_time:
             kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
-            rows = np.flatnonzero(kept if own is None else kept & own)
+            rows = np.flatnonzero(kept if mask is None else kept & mask)
             if len(rows):
                 chosen.sampled.append((points["time"][rows], np.stack([points[name][rows] for name in "xyz"], axis=1)))
-        return store.partition(road, points, own)
+        return store.partition(road, points, mask)
 
     def _count_far(self, road, points, far, chosen):
         """Count the points of a road on the vehicle's own track, (N,) bool of all, that do not lie near its height."""
         rows = np.flatnonzero(far)
         if len(rows):
             for number, s, drops in self.tracks.drops(road, points.take(rows)):
-                chosen.coverage.add(number, s, drops, near=False)
+                chosen.coverage.add(number, s, drops)
 
     def _near_roads(self, block, summary, ground=None, chosen=None):
         """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
@@ -338,10 +338,10 @@ class VehicleTracks:
             offsets, heights = p.at_station(middles)
             self._tracks[p.number] = first, to_units(offsets), to_units(heights)
 
-    def drops(self, road: int, points: Columns, own: np.ndarray | None = None) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
+    def drops(self, road: int, points: Columns, mask: np.ndarray | None = None) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
         """Yield pass number, (M,) int32 stations and depths below the trajectory, units of 0.1 mm, of the points of a road on the pass's own track.
 
-        own : (N,) bool, points to use; all by default
+        mask : (N,) bool, points to use; all by default
         """
         if not len(points):
             return
@@ -356,8 +356,8 @@ class VehicleTracks:
             track = offsets[low:high + 1]
             # most points lie beside the whole track
             near_track = _between(across, int(track.min()) - OWN_TRACK_HALF_WIDTH_UNITS, int(track.max()) + OWN_TRACK_HALF_WIDTH_UNITS)
-            if own is not None:
-                near_track &= own
+            if mask is not None:
+                near_track &= mask
             if not only:
                 near_track &= number == p.number
             rows = np.flatnonzero(near_track)
@@ -421,26 +421,6 @@ class HeightHistogram:
         measured = [height for height in heights.values() if height is not None]
         usual = float(np.median(measured)) if measured else READING.default_sensor_height
         return {number: usual if height is None else height for number, height in heights.items()}
-
-    def uneven(self) -> tuple[float, float] | None:
-        """(median absolute deviation, height) of the trajectory above the road in metres, where it varies by more than a vehicle can cause.
-
-        Points and trajectory share the errors of navigation, so half of the points on the own track lie within a few centimetres of one height
-        below it, whatever is parked or grows on the rest. The pass with the largest deviation counts; None if none exceeds `max_suspension_travel`.
-        """
-        heights = self.heights()
-        deviations = [(_half_within(counts, self.origin, heights[number]), heights[number])
-                      for number, counts in self.counts.items() if counts.sum() > READING.min_track_points]
-        off, height = max(deviations, default=(0.0, 0.0))
-        return (off, height) if off > READING.max_suspension_travel else None
-
-
-def _half_within(counts, origin, height):
-    """Metres from `height` within which half of the counts of a histogram per millimetre lie."""
-    off = np.abs(origin + np.arange(len(counts)) * READING.height_resolution - height)
-    order = np.argsort(off, kind="stable")
-    near = np.cumsum(counts[order])
-    return float(off[order[np.searchsorted(near, (near[-1] + 1) // 2)]])
 
 
 def sensor_height_of(drops: np.ndarray) -> float | None:

@@ -1,8 +1,8 @@
-"""Whether a road was measured under the vehicle all along its way: by points there, and at its height."""
+"""Whether the road was measured under the vehicle all along its way, at one height below the trajectory."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -10,86 +10,113 @@ from .frame.road_frame import RoadFrame
 from .store.records import COORDINATE_SCALE, to_units
 from .weights import READING
 
+CountedCells = tuple[int, int, np.ndarray]   # number of a pass, its first cell that has points, and the counts from there on
+
 
 class Coverage:
-    """Counts of the points on the vehicle's own track, by pass and cell of station; independent of the order of adding.
+    """Counts of the points on the vehicle's own track, by pass, cell of station and depth below the trajectory.
 
-    counts : {pass number: (3, C) int64} of the points near the height of the road, of those far above or below it, and the sum of the depths of the
-        latter below the trajectory, units of 0.1 mm
+    They do not depend on the order of adding. about : m, first estimate of the height of the trajectory above the road
     """
 
-    def __init__(self, frame: RoadFrame):
-        ends = {p.number: to_units(np.array(p.span)) >> READING.coverage_cell_bits for p in frame.passes}
-        self._first = {number: int(first) for number, (first, _) in ends.items()}
-        self.counts = {number: np.zeros((3, int(last - first) + 1), np.int64) for number, (first, last) in ends.items()}
+    def __init__(self, frame: RoadFrame, about: float):
+        self.frame, self._about = frame, float(to_units(np.array([about]))[0])
+        self._ends = {p.number: (to_units(np.array(p.span)) >> READING.coverage_cell_bits).tolist() for p in frame.passes}
+        # the last two columns are for points beyond all bins: their number, and the sum of their depths in units of 0.1 mm
+        self._counts: dict[int, np.ndarray] = {}
 
-    def add(self, number: int, s: np.ndarray, drops: np.ndarray, near: bool) -> None:
-        """Count points of a pass, near the height of the road or not: (N,) int32 stations and depths below the trajectory, units of 0.1 mm."""
-        counts = self.counts[number]
-        cell = np.clip((s >> READING.coverage_cell_bits) - self._first[number], 0, counts.shape[1] - 1)
-        counts[0 if near else 1] += np.bincount(cell, minlength=counts.shape[1])
-        if not near:
-            np.add.at(counts[2], cell, drops)
+    def add(self, number: int, s: np.ndarray, drops: np.ndarray) -> None:
+        """Count points of a pass: (N,) int32 stations and depths below the trajectory, units of 0.1 mm."""
+        first, last = self._ends[number]
+        cell = np.clip((s >> READING.coverage_cell_bits) - first, 0, last - first)
+        low, bins = int(cell.min()), READING.coverage_bins
+        cell -= low
+        k = np.floor((drops - self._about) * (COORDINATE_SCALE / READING.coverage_step)).astype(np.int64) + bins // 2
+        far = (k < 0) | (k >= bins)
+        k[far] = bins
+        rows = int(cell.max()) + 1
+        counted = np.bincount(cell * (bins + 2) + k, minlength=rows * (bins + 2)).reshape(rows, bins + 2)
+        np.add.at(counted[:, -1], cell[far], drops[far])
+        self._of(number)[low:low + rows] += counted
 
-    def join(self, counts: dict[int, np.ndarray]) -> None:
+    def _of(self, number):
+        if number not in self._counts:
+            first, last = self._ends[number]
+            self._counts[number] = np.zeros((last - first + 1, READING.coverage_bins + 2), np.int64)
+        return self._counts[number]
+
+    def counted(self) -> list[CountedCells]:
+        """The counts, to be sent elsewhere."""
+        cells = {number: np.flatnonzero(counts.any(axis=1)) for number, counts in self._counts.items()}
+        return [(number, int(rows[0]), self._counts[number][rows[0]:rows[-1] + 1].copy()) for number, rows in cells.items() if len(rows)]
+
+    def join(self, others: Iterable[CountedCells]) -> None:
         """Add the counts of other points."""
-        for number, counted in counts.items():
-            self.counts[number] += counted
+        for number, first, counts in others:
+            self._of(number)[first:first + len(counts)] += counts
 
-    def warnings(self, frame: RoadFrame, heights: dict[int, float]) -> list[str]:
-        """What to tell of stretches that were driven and show no road; `heights` as of `SurveyReader`."""
-        elsewhere: list[tuple[int, float, float]] = []
+    def warnings(self) -> tuple[str, str]:
+        """What to tell of stretches that were driven and show a road at another height, and of those that show none; "" for nothing."""
+        moved: list[tuple[int, float, float]] = []
         holes: list[tuple[int, float, float]] = []
-        above: list[float] = []
-        for road in frame.roads:
-            first, driven, (near, far, depths) = self._of_road(frame, road.number)
-            other = driven & (far > READING.min_track_points) & (near < READING.least_near_share * far)
-            height = np.mean([heights[p.number] for p in frame.passes_of(road.number)])
-            above += (height - COORDINATE_SCALE * depths[other] / far[other]).tolist()
-            elsewhere += [(road.number, *ends) for ends in _runs(other, first)]
-            seen = np.flatnonzero(near)
-            hole = driven & (near == 0) & ~other
-            hole[:seen.min(initial=len(hole))] = hole[seen.max(initial=0):] = False
+        metres: list[float] = []
+        for road in self.frame.roads:
+            passes = self.frame.passes_of(road.number)
+            first = min(self._ends[p.number][0] for p in passes)
+            driven, seen = np.zeros((2, max(self._ends[p.number][1] for p in passes) - first + 1), bool)
+            for p in passes:
+                at, counts = self._ends[p.number][0] - first, self._of(p.number)
+                higher = self._levels(counts.sum(axis=0, keepdims=True)) - self._levels(counts)
+                for start, end in _runs(np.abs(higher) > READING.other_level, first + at, READING.least_moved):
+                    moved.append((road.number, *_stations(start, end)))
+                    metres += higher[start - first - at:end - first - at].tolist()
+                seen[at:at + len(counts)] |= counts[:, :-2].any(axis=1) | np.isfinite(higher)
+                driven[at + 1:at + len(counts) - 1] = True
+            where = np.flatnonzero(seen)
+            hole = driven & ~seen
+            hole[:where.min(initial=len(hole))] = hole[where.max(initial=0):] = False
             # two surveys along one trajectory have more between them than a file that is missing
-            if hole.sum() < len(seen):
-                holes += [(road.number, *ends) for ends in _runs(hole, first) if ends[1] - ends[0] > READING.least_hole]
-        return [*_said_of_heights(elsewhere, above), *_said_of_holes(holes)]
+            if hole.sum() < len(where):
+                holes += [(road.number, *_stations(start, end)) for start, end in _runs(hole, first, READING.least_hole)]
+        return _said_of_heights(moved, metres) if moved else "", _said_of_holes(holes) if holes else ""
 
-    def _of_road(self, frame, road):
-        """(first cell, (C,) bool of the cells that a pass drove through, (3, C) counts of its passes together)."""
-        passes = frame.passes_of(road)
-        first = min(self._first[p.number] for p in passes)
-        length = max(self._first[p.number] - first + self.counts[p.number].shape[1] for p in passes)
-        driven, total = np.zeros(length, bool), np.zeros((3, length), np.int64)
-        for p in passes:
-            at, counts = self._first[p.number] - first, self.counts[p.number]
-            total[:, at:at + counts.shape[1]] += counts
-            driven[at + 1:at + counts.shape[1] - 1] = True
-        return first, driven, total
+    def _levels(self, counts):
+        """m down from the trajectory, less `about`, to where most points of cells lie, of (C, bins + 2) counts; NaN for too few points."""
+        near, far = counts[:, :-2], counts[:, -2]
+        padded = np.pad(near, ((0, 0), (1, 1)))
+        windows = np.stack([padded[:, k:k + near.shape[1]] for k in range(3)])   # each bin with its neighbours
+        peak, rows = windows.sum(axis=0).argmax(axis=1), np.arange(len(counts))
+        weights = windows[:, rows, peak]
+        level = (peak + (weights[2] - weights[0]) / np.maximum(weights.sum(axis=0), 1) + 0.5 - near.shape[1] // 2) * READING.coverage_step
+        beyond = near.sum(axis=1) < READING.least_near_share * far
+        level[beyond] = COORDINATE_SCALE * (counts[beyond, -1] / far[beyond] - self._about)
+        return np.where(counts[:, :-1].sum(axis=1) > READING.min_track_points, level, np.nan)
 
 
-def _runs(chosen: np.ndarray, first: int) -> Iterator[tuple[float, float]]:
-    """(start, end) m of the runs of (C,) chosen cells, of which the first has a number."""
+def _runs(chosen: np.ndarray, first: int, least: float) -> Iterator[tuple[int, int]]:
+    """(first, last + 1) of the runs of (C,) chosen cells that are longer than so many metres; `first` is the number of the first cell."""
     ends = np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(np.int8)))
-    stations = COORDINATE_SCALE * (first + ends << READING.coverage_cell_bits)
-    return ((start, end) for start, end in stations.reshape(-1, 2).tolist())
+    return ((first + a, first + b) for a, b in ends.reshape(-1, 2).tolist() if np.subtract(*_stations(b, a)) > least)
+
+
+def _stations(*cells):
+    """m of the starts of cells."""
+    return tuple(COORDINATE_SCALE * (cell << READING.coverage_cell_bits) for cell in cells)
 
 
 def _named(stretches):
     longest = sorted(stretches, key=lambda stretch: stretch[1] - stretch[2])[:READING.told_stretches]
     places = "; ".join(f"road {road}, station {start:.0f} to {end:.0f} m" for road, start, end in longest)
-    return f"{sum(end - start for _, start, end in stretches):.0f} m of the drive ({places}{'; …' if len(stretches) > len(longest) else ''})"
+    return f"{sum(end - start for _, start, end in stretches):.0f} m ({places}{'; …' if len(stretches) > len(longest) else ''})"
 
 
-def _said_of_heights(stretches, above):
-    if stretches:
-        metres = float(np.median(above))
-        yield (f"Along {_named(stretches)} what was measured under the vehicle lies about {abs(metres):.0f} m {'above' if metres > 0 else 'below'} "
-               "the road elsewhere; it was left out, and the map lacks it. Files or drives seem to have heights of two kinds (above the ellipsoid "
-               "and above sea level). Export all with one kind of heights, and run again.")
+def _said_of_heights(stretches, metres):
+    up = float(np.median(metres))
+    return (f"The trajectory does not keep to one height above the road: along {_named(stretches)} the road lies about {abs(up):.2g} m "
+            f"{'higher' if up > 0 else 'lower'} than elsewhere below it, where most points are. Curbs and paint are missed there. Heights may be in "
+            "feet in one file and in metres in another, or of two kinds (above the ellipsoid and above sea level): export all from one solution.")
 
 
 def _said_of_holes(stretches):
-    if stretches:
-        yield (f"No point was kept under the vehicle along {_named(stretches)}, though there are some before and behind. A file may be missing, or "
-               "its points are withheld or without time. The map is bridged or broken off there: give all files, and run again.")
+    return (f"No point was kept under the vehicle along {_named(stretches)} of the drive, though there are some before and behind. A file may be "
+            "missing, or its points are withheld or without time. The map is bridged or broken off there: give all files, and run again.")

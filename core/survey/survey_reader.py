@@ -18,6 +18,7 @@ from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..execution.phase import Executor, Phase, Recipe
 from .blocks import BlockReader, BlockSummary, ChosenPoints, HeightFilter, PointChoice, estimate_sensor_height
+from .coverage import CountedCells
 from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
 from .las.parallel_reader import ParallelCloudReader
@@ -35,8 +36,7 @@ class SurveyReader:
     """Reads files into a section store and gathers statistics of the whole survey, complete after `read`.
 
     summary : BlockSummary of all points
-    heights, uneven, not_covered : {pass number: metres from the trajectory down to the road}, as of `HeightHistogram.uneven`, and of
-        `Coverage.warnings`
+    heights, moved, holes : {pass number: metres from the trajectory down to the road}, and as of `Coverage.warnings`
     slots, sampled : TimeSlots of the points by which scanners are distinguished that no field distinguishes; their (N,) times and (N, 3) units
         of 0.1 mm, in no order; without times none
     """
@@ -86,8 +86,7 @@ class SurveyReader:
 
     def _end(self):
         self._settle()
-        self.heights, self.uneven = self._chosen.histogram.heights(), self._chosen.histogram.uneven()
-        self.not_covered = self._chosen.coverage.warnings(self.frame, self.heights)
+        self.heights, (self.moved, self.holes) = self._chosen.histogram.heights(), self._chosen.coverage.warnings()
 
     def _read_block(self, block):
         """Read one of the first blocks, by which the rough height of the road is estimated: its points wait until that is known."""
@@ -133,7 +132,7 @@ class _PartOfFiles:
     index: StoreIndex
     summary: BlockSummary
     drops: dict[int, np.ndarray]   # {pass number: counts of its HeightHistogram}
-    coverage: dict[int, np.ndarray]   # {pass number: counts of its Coverage}
+    coverage: list[CountedCells]   # of its Coverage
     times: np.ndarray   # times, places: (N,) s and (N, 3) units of 0.1 mm of the sampled points
     places: np.ndarray
 
@@ -193,16 +192,17 @@ def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
                     store.add(part)
     index = store.index()
     sampled = list(zip(*chosen.sampled)) or [[np.empty(0)], [np.empty((0, 3), np.int32)]]
-    return _PartOfFiles(index, summary, chosen.histogram.counts, chosen.coverage.counts, *(np.concatenate(column) for column in sampled))
+    return _PartOfFiles(index, summary, chosen.histogram.counts, chosen.coverage.counted(), *(np.concatenate(column) for column in sampled))
 
 
 def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
     """One part of several that follow each other."""
     summary = BlockSummary()
+    drops: dict[int, np.ndarray] = {}
     for part in parts:
         summary.join(part.summary)
-    drops, coverage = ({number: sum(getattr(part, name)[number] for part in parts) for number in getattr(parts[0], name)}
-                       for name in ("drops", "coverage"))
+        drops = {number: counts + drops.get(number, 0) for number, counts in part.drops.items()}
+    coverage = [cells for part in parts for cells in part.coverage]
     return _PartOfFiles(StoreIndex.join([part.index for part in parts]), summary, drops, coverage,
                         *(np.concatenate([getattr(part, name) for part in parts]) for name in ("times", "places")))
 

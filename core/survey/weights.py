@@ -208,6 +208,8 @@ class _LasWeights:
     max_spread: float = 60.0   # dB that no survey exceeds
     brightest: int = 30_000   # intensity that the brightest points get
     brightest_step: float = 5.0   # dB to which the brightest points are rounded, so that samples agree
+    least_doubled: float = 0.02   # share of the points that share their time with one other, at least, where files were exported twice
+    most_of_pairs: float = 0.5   # of these pairs, that lie apart alike
     sensor_bits: tuple[int, ...] = (8, 10, 11, 12)   # of intensities as sensors give them
     other_scale: float = 6.0   # times the usual intensity of another file: asphalt, grass and trees differ by less
     same_scale: float = 3.0   # times, that files with one scale may differ by
@@ -235,10 +237,13 @@ class _ReadingWeights:
     height_resolution: float = 0.001   # m: resolution of the histogram
     height_range: float = 20.0   # m either side of the first estimate covered by the histogram
     height_peak_bin: float = 0.1   # m: bin width in which the road makes the peak
-    max_suspension_travel: float = 0.15   # m: no suspension lets a vehicle rise and sink more than this for half of its way
     coverage_cell_bits: int = 15   # of a station in units of 0.1 mm: whether a road was measured under the vehicle is asked every 3.3 m
-    least_near_share: float = 0.1   # of the points there that are far above or below: under a bridge or in a tunnel the road is as well seen
-    least_hole: float = 5.0   # m without a point under the vehicle: longer than a puddle, or than a vehicle behind
+    coverage_step: float = 0.1   # m of depth below the trajectory in which points are counted there,
+    coverage_bins: int = 80   # and how many of these: points beyond are counted as one
+    least_near_share: float = 0.1   # of the points there that are beyond: under a bridge or in a tunnel the road is as well seen
+    other_level: float = 0.3   # m that the road lies higher or lower than elsewhere below the trajectory: twice what a suspension gives way
+    least_moved: float = 10.0   # m of such a road: longer than a car that stands behind
+    least_hole: float = 5.0   # m without a point under the vehicle: longer than a puddle
     told_stretches: int = 4   # stretches that a warning names
     track_cell_bits: int = 8   # of a station in units of 0.1 mm: a track is looked up every 26 mm
     height_peak_reach: float = 0.5   # m either side of the peak that belong to the road
@@ -251,6 +256,7 @@ class _ReadingWeights:
     section_points: int = 250_000   # points of a section, about
     longer_sections: tuple[float, float] = 10.0, 25.0   # m that a section may be long beside the usual length
     parts_progress: float = 0.85   # share of reading, where the points are put in order afterwards
+    much_excluded: float = 0.25   # of the points: noise and what a second drive shows again are less
     highest_sensor: float = 5.0   # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
     clock_track_half_width: float = 2.0   # m either side of the own track where clocks are compared
     max_look_ahead: float = 6.5   # m along the road: every scanner measures road nearer than this in each rotation

@@ -104,7 +104,7 @@ class LanewrightDialog(AlgorithmDialog):
 
     def say_places(self, folder: str, places: dict[str, str]) -> None:
         """Say that results go to a folder, and which GeoPackage of an earlier run has some already."""
-        packages = {Path(found[0]) for found in map(package_and_table, places.values()) if found is not None and Path(found[0]).exists()}
+        packages = {Path(place[0]) for place in map(package_and_table, places.values()) if place is not None and Path(place[0]).exists()}
         self._say(" ".join([tr("The {count} results go to {folder}.").format(count=len(places), folder=folder),
                             *(tr("Those of the earlier run in {file} will be replaced.").format(file=package.name) for package in sorted(packages))]))
 

@@ -116,9 +116,9 @@ def _draw_profile(drawing, axis, first, last, top, strip, scale, times, named):
         rise = 1.6 * np.sign(z2 - z)
         drawing.line([(x, (rows[1] + rows[2]) / 2 + rise), (x2, (rows[1] + rows[2]) / 2 - rise)], GREY, 0.15)
         text = f"{100 * (z2 - z) / (s2 - s):+.2f} %"
-        for said in (f"{text} / {s2 - s:.0f} m", text):
-            if 0.353 * 6 * 0.62 * len(said) < x2 - x - 1:
-                drawing.text((x + x2) / 2, (rows[1] + rows[2]) / 2, said, 6.0, boxed=True)
+        for words in (f"{text} / {s2 - s:.0f} m", text):
+            if 0.353 * 6 * 0.62 * len(words) < x2 - x - 1:
+                drawing.text((x + x2) / 2, (rows[1] + rows[2]) / 2, words, 6.0, boxed=True)
                 break
 
 
@@ -143,7 +143,7 @@ def section_pages(axes: list[Axis], lines: list[MapLine], ground: Iterable[np.nd
     crossed = _crossings(planes, [line for line in lines if line.output != SECTIONS], reach)
     surfaces = [seen if len(seen) or profile is None else profile for seen, (*_, profile) in zip(_surfaces(planes, ground, reach), places)]
     heights = [_heights(*pair) for pair in zip(crossed, surfaces)]
-    seen = [k for k, found in enumerate(heights) if len(found)]
+    seen = [k for k, of_section in enumerate(heights) if len(of_section)]
     if not seen:
         return []
     columns = max(int(width // SECTION_WIDTH), 1)
@@ -196,15 +196,15 @@ def _crossings(planes, lines, reach):
     for x, y, heading in planes:
         left = np.array([-math.sin(heading), math.cos(heading)])
         cut = shapely.LineString(np.array([x, y]) + np.outer([reach, -reach], left))
-        found = []
+        crossings = []
         for k in tree.query(cut, predicate="intersects") if shapes else ():
             line = lines[k]
             along = np.append(0.0, np.cumsum(np.hypot(*np.diff(line.places[:, :2], axis=0).T)))
             for place in shapely.get_coordinates(shapely.intersection(cut, shapes[k])):
                 z = float(np.interp(shapes[k].project(shapely.Point(place)), along, line.places[:, 2]))
                 curb = line.row.get("edge") != "pavement" and line.row.get("part") != "top" and line.output == "ROAD_EDGES"
-                found.append((float((place - (x, y)) @ left), z, line.output, line.number("height") if curb else math.nan))
-        result.append(sorted((one for one in found if math.isfinite(one[1])), key=lambda one: -one[0]))
+                crossings.append((float((place - (x, y)) @ left), z, line.output, line.number("height") if curb else math.nan))
+        result.append(sorted((one for one in crossings if math.isfinite(one[1])), key=lambda one: -one[0]))
     return result
 
 
@@ -231,17 +231,17 @@ def _profile(points):
     return np.insert(profile, np.flatnonzero(np.diff(profile[:, 0]) > HOLE) + 1, np.nan, axis=0)
 
 
-def _heights(found, surface):
+def _heights(crossings, surface):
     """All heights of a section."""
-    tops = [z + curb for _, z, _, curb in found if math.isfinite(curb)]
-    return np.r_[[z for _, z, _, _ in found], tops, surface[np.isfinite(surface[:, 1]), 1]]
+    tops = [z + curb for _, z, _, curb in crossings if math.isfinite(curb)]
+    return np.r_[[z for _, z, _, _ in crossings], tops, surface[np.isfinite(surface[:, 1]), 1]]
 
 
-def _draw_section(drawing, left, top, wide, tall, head, name, found, surface, scale, up, reach):
+def _draw_section(drawing, left, top, wide, tall, head, name, crossings, surface, scale, up, reach):
     per_mm, per_mm_up = scale / 1000, up / 1000
     middle, base = left + LEFT + (wide - LEFT - 4) / 2, top + tall - 12
     drawing.text(left + 3, top + 4, name, 9.0, "start")
-    heights = _heights(found, surface)
+    heights = _heights(crossings, surface)
     step = round_step(7 * per_mm_up)
     datum = math.floor(heights.min() / step - 0.2) * step
     x_of = lambda offset: middle - np.asarray(offset) / per_mm  # noqa: E731
@@ -255,18 +255,18 @@ def _draw_section(drawing, left, top, wide, tall, head, name, found, surface, sc
         x = float(x_of(offset))
         drawing.line([(x, base), (x, top + head)], "#b00020" if offset == 0 else "#c8c8c8", 0.15 if offset == 0 else 0.1)
         drawing.text(x, base + 2.2, f"{offset + 0.0:g}", 5.5)
-    road = np.array([(offset, z) for offset, z, _, _ in found]).reshape(-1, 2)
+    road = np.array([(offset, z) for offset, z, _, _ in crossings]).reshape(-1, 2)
     if len(surface):
         drawing.line(np.c_[x_of(surface[:, 0]), y_of(surface[:, 1])], DARK, 0.25)
     else:
         drawing.line(np.c_[x_of(road[:, 0]), y_of(road[:, 1])], DARK, 0.25)
-    for offset, z, output, curb in found:
+    for offset, z, output, curb in crossings:
         x, y = float(x_of(offset)), float(y_of(z))
         size = 0.45
         if output == "ROAD_EDGES" and math.isfinite(curb):
             drawing.line([(x, y), (x, float(y_of(z + curb)))], COLOURS[output], 0.5)
         drawing.line([(x - size, y - size), (x + size, y - size), (x + size, y + size), (x - size, y + size)], COLOURS.get(output, GREY), 0.1,
                      fill=COLOURS.get(output, GREY), closed=True)
-    for offset, z, output, _ in sorted(found, key=lambda one: one[2] != "ROAD_EDGES"):
+    for offset, z, output, _ in sorted(crossings, key=lambda one: one[2] != "ROAD_EDGES"):
         if output != "DRIVING_LINES":
             drawing.text(float(x_of(offset)), base + 7, f"{z:.2f}", 5.0, turned=-90, yields=True, colour=COLOURS.get(output, GREY))

@@ -79,15 +79,15 @@ def road_lines(lines: list[MapLine]) -> list[RoadLine]:
 
 def accuracy_of(layers: dict[str, QgsMapLayer]) -> str:
     """What the layers themselves say of their accuracy: the median along the lines of their sigma, and the confidence of the driving lines."""
-    said = []
+    sentences = []
     for output, label in (("ROAD_EDGES", tr("road edges")), ("DRIVING_LINES", tr("driving lines"))):
         sigma = _along(layers.get(output), "sigma_m", 0.5)
         if math.isfinite(sigma):
-            said.append(tr("{what} {number:.1f} cm").format(what=label, number=100 * sigma))
+            sentences.append(tr("{what} {number:.1f} cm").format(what=label, number=100 * sigma))
     trust = _along(layers.get("DRIVING_LINES"), "confidence", None)
     if math.isfinite(trust):
-        said.append(tr("confidence {number:.2f}").format(number=trust))
-    return ", ".join(said) or tr("not stated")
+        sentences.append(tr("confidence {number:.2f}").format(number=trust))
+    return ", ".join(sentences) or tr("not stated")
 
 
 def _along(layer, name, quantile):

@@ -100,14 +100,14 @@ class PairsDialog(QDialog):
         self.pairs.setSpacing(6)
         self.pairs.itemChanged.connect(self._ticked)
         self.pairs.itemDoubleClicked.connect(self._zoom)
-        self.told = wrapped(tr("Add images, choose the intensity image, and let control points be proposed."))
+        self.message = wrapped(tr("Add images, choose the intensity image, and let control points be proposed."))
         accept, refuse = (button(text, lambda accepted=accepted: self.accept_selected(accepted)) for text, accepted in (
             (tr("Accept the selected"), True), (tr("Refuse the selected"), False)))
         self.place_button = button(tr("Georeference the images"), self.place)
         self.bar = QProgressBar()
         self.bar.hide()
         seen = QLabel(tr("Left the image, right the intensity image. A tick accepts a pair, a double click shows it on the map."))
-        right = column(QWidget(), seen, (self.pairs, 1), self.told, self.bar, row(accept, refuse, None, self.place_button), rim=0)
+        right = column(QWidget(), seen, (self.pairs, 1), self.message, self.bar, row(accept, refuse, None, self.place_button), rim=0)
         parts = QSplitter()
         parts.addWidget(left)
         parts.addWidget(right)
@@ -159,7 +159,7 @@ class PairsDialog(QDialog):
         for number, image in enumerate(self.images):
             self.list.item(number).setText(f"{image.name}\n{image.summary()}")
         if self.current is not None:
-            self.told.setText(f"{self.current.name}: {self.current.summary()}")
+            self.message.setText(f"{self.current.name}: {self.current.summary()}")
         self._enable()
 
     def _enable(self):
@@ -180,7 +180,7 @@ class PairsDialog(QDialog):
                 pictures = image.pictures(intensity.source())
             except RoadExtractionError as problem:
                 pictures = []
-                self.told.setText(str(problem))
+                self.message.setText(str(problem))
             for pair, picture in zip(image.rows(), pictures):
                 item = QListWidgetItem(QIcon(picture), "")
                 item.setData(_ID, pair.id())
@@ -237,7 +237,7 @@ class PairsDialog(QDialog):
         try:
             self.two_points = TwoPointsDialog(self.current.path, self.intensity.currentLayer(), self)
         except RoadExtractionError as problem:
-            self.told.setText(str(problem))
+            self.message.setText(str(problem))
             return
         image, dialog = self.current, self.two_points
         dialog.finished.connect(lambda result: self._pointed(image, dialog, result))
@@ -266,7 +266,7 @@ class PairsDialog(QDialog):
         self._run = BackgroundRun(name, inputs, lambda run, fine: self._ended(image, run, fine))
         self._run.feedback.progressChanged.connect(lambda share: self.bar.setValue(int(share)))
         self.bar.setValue(0)
-        self.told.setText(f"{image.name}: {self._run.algorithm.declaration.title()}…")
+        self.message.setText(f"{image.name}: {self._run.algorithm.declaration.title()}…")
         self._enable()
 
     def _ended(self, one, run, fine):
@@ -308,13 +308,13 @@ class TwoPointsDialog(QDialog):
         self.image: SourceImage = open_image(path)
         self.intensity = intensity
         self.photo = QgsRasterLayer(path, "image")
-        self.told = wrapped()
+        self.message = wrapped()
         self.places: dict[QgsMapCanvas, list[QgsPointXY]] = {}
         self.marks: list[tuple[QgsMapCanvas, QgsVertexMarker]] = []
         self.tools = []  # a canvas keeps no reference
         self.views = [self._canvas(layer) for layer in (self.photo, intensity)]
         self.buttons = answers(self, button(tr("Begin again"), self.begin))
-        column(self, self.told, (row(*self.views), 1), self.buttons)
+        column(self, self.message, (row(*self.views), 1), self.buttons)
         self.resize(1100, 620)
         self.begin()
 
@@ -365,7 +365,7 @@ class TwoPointsDialog(QDialog):
         in_image, in_intensity = (len(self.places[view]) for view in self.views)
         ready = in_image == in_intensity == NEEDED
         self.buttons.button(QDialogButtonBox.StandardButton.Ok).setEnabled(ready)
-        self.told.setText(tr("Good: the places may be off by some metres.") if ready else tr(
+        self.message.setText(tr("Good: the places may be off by some metres.") if ready else tr(
             "Click two places far apart in the image on the left, and the same two in the same order in the intensity image on the right. The wheel "
             "comes nearer. In the image: {seen}, in the intensity image: {known}.").format(seen=in_image, known=in_intensity))
 

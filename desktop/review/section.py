@@ -140,9 +140,9 @@ def corners(section: Section, layers: Iterable[QgsVectorLayer], along: float = C
     return result
 
 
-def middle_of(found: Iterable[Crossing]) -> float:
+def middle_of(crossings: Iterable[Crossing]) -> float:
     """m left of the section's middle: about where the middle of the road is, by the lines that cross."""
-    offsets = [crossing.offset for crossing in found]
+    offsets = [crossing.offset for crossing in crossings]
     return (min(offsets) + max(offsets)) / 2 if offsets else 0.0
 
 

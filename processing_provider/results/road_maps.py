@@ -125,21 +125,21 @@ def _place_key(node, project):
     return "place", str(parts.get("path") or (parts.get("dbname"), parts.get("schema")))
 
 
-def _road_map(found, project):
+def _road_map(layers_of_run, project):
     """The RoadMap of the (node of the layer tree, Origin) of one run."""
     newest: dict[str, Any] = {}
-    for node, origin in found:
+    for node, origin in layers_of_run:
         former = newest.get(origin.output)
         if former is None or origin.provenance.ended > former[1].provenance.ended:
             newest[origin.output] = node, origin
-    kept = [(node, origin) for node, origin in found if newest[origin.output][0] is node]
+    kept = [(node, origin) for node, origin in layers_of_run if newest[origin.output][0] is node]
     in_one_call = [origin for _, origin in kept if origin.provenance.algorithm in _whole_maps()]
     with_clouds = [origin for _, origin in kept if origin.provenance.values.get(CLOUDS)]
     provenance = (in_one_call or with_clouds or [kept[0][1]])[0].provenance
     groups = [node.parent() for node, _ in kept if node.parent() is not project.layerTreeRoot()]
     layers = tuple(node.layer() for node, _ in kept)
     return RoadMap(layers, tuple(origin.output for _, origin in kept), provenance, groups[0] if groups else None,
-                   tuple(node.layer() for node, _ in found if node.layer() not in layers))
+                   tuple(node.layer() for node, _ in layers_of_run if node.layer() not in layers))
 
 
 # -- point clouds -------------------------------------------------------------------------------

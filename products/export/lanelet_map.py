@@ -363,10 +363,10 @@ def _signals(whole, places, crs):
             height = np.ptp(points[:, 2]) if kind == "pole" else length_of_tag(way.tags.get("height"))
             named = re.fullmatch(r"([A-Za-z]{2})(\w+?)(?:-(.+))?", way.tags.get("subtype", "")) if kind == "sign" else None
             code = dict(zip(("country", "code", "subcode"), named.groups())) if named else {}
-            told = {name[len(OURS):]: value for name, value in way.tags.items() if name.startswith(OURS)}
+            about = {name[len(OURS):]: value for name, value in way.tags.items() if name.startswith(OURS)}
             layer.add(shapely.Point(*points[:, :2].mean(0), points[:, 2].min()), kind=kind, lanes=",".join(obeying[way.id]), heading=heading,
                       height_m=height or np.nan, width_m=width if width > LEAST_LED else np.nan,
-                      **{**code, **told, "value": length_of_tag(told.get("value"))})
+                      **{**code, **about, "value": length_of_tag(about.get("value"))})
     return layer
 
 
@@ -390,8 +390,8 @@ def _left_out(whole):
 
 def kmh(text: str) -> float | None:
     """A speed of a tag in km/h, with or without a unit; None where it is no number."""
-    found = re.fullmatch(r"(\d+(?:\.\d+)?) ?(km/h|kmh|kph|mph|m/s|mps)?", text.strip().lower())
-    return float(found[1]) * {"mph": 1.609344, "m/s": 3.6, "mps": 3.6}.get(found[2], 1.0) if found else None
+    match = re.fullmatch(r"(\d+(?:\.\d+)?) ?(km/h|kmh|kph|mph|m/s|mps)?", text.strip().lower())
+    return float(match[1]) * {"mph": 1.609344, "m/s": 3.6, "mps": 3.6}.get(match[2], 1.0) if match else None
 
 
 def length_of_tag(text: str | None) -> float:

@@ -129,6 +129,6 @@ def _said(tags, along):
     """What a way says of lanes that are driven along it, or against it."""
     speed = next((limit for name in (f"maxspeed:{'forward' if along else 'backward'}", "maxspeed") if (limit := kmh(tags.get(name, "")))), None)
     lanes = tags.get("lanes", "")
-    said = {"speed_kmh": speed, "name": tags.get("name"), "ref": tags.get("ref"), "surface": tags.get("surface"),
+    attributes = {"speed_kmh": speed, "name": tags.get("name"), "ref": tags.get("ref"), "surface": tags.get("surface"),
             "lanes": int(lanes) if lanes.isdecimal() else None, "oneway": ONE_WAY.get(tags.get("oneway", "").lower())}
-    return {name: value for name, value in said.items() if value}
+    return {name: value for name, value in attributes.items() if value}

@@ -308,24 +308,24 @@ def _falls(survey, road, s, grid, plane, strip, heading):
     return (plane.across - heading * along) / length, (along + heading * plane.across) / length
 
 
-def _say(found: RoadSections, progress: Progress) -> None:
+def _say(sections: RoadSections, progress: Progress) -> None:
     """Log what was estimated, and what cannot be known."""
-    for road, errors in found.errors.items():
+    for road, errors in sections.errors.items():
         if len(errors.windows):
             progress.info(f"Road {road}: passes and scanners lay up to {1000 * errors.largest_step:.1f} mm above each other (median of the "
                           "sections); such steps and tilts were taken off before anything was measured.")
-    unknown = [road for road, errors in found.errors.items() if not errors.opposite]
+    unknown = [road for road, errors in sections.errors.items() if not errors.opposite]
     if unknown:
-        found.notes.append(f"Road {', '.join(map(str, unknown))}: no two passes in opposite directions overlap, so an error in roll cannot be told "
-                           "from crossfall: 0.1° of roll is 0.17 % of crossfall. Widths, ruts, curbs and clearances do not depend on it. Drive the "
-                           "road in both directions to know it.")
-    if found.without_ruts:
-        found.notes.append(f"At {found.without_ruts} lane sections the points are too few or too noisy for a rut depth: noise alone would show more "
-                           f"than {1000 * MAX_RUT_CORRECTION:.0f} mm under the straight edge.")
-    if all(part.strip.borders == "track" for section in found.sections for part in section.parts):
-        found.notes.append("Without road edges, marking lines, driving lines or lanes, a lane of the country's usual width about the driven "
+        sections.notes.append(f"Road {', '.join(map(str, unknown))}: no two passes in opposite directions overlap, so an error in roll cannot be "
+                              "told from crossfall: 0.1° of roll is 0.17 % of crossfall. Widths, ruts, curbs and clearances do not depend on it. "
+                              "Drive the road in both directions to know it.")
+    if sections.without_ruts:
+        sections.notes.append(f"At {sections.without_ruts} lane sections the points are too few or too noisy for a rut depth: noise alone would "
+                              f"show more than {1000 * MAX_RUT_CORRECTION:.0f} mm under the straight edge.")
+    if all(part.strip.borders == "track" for section in sections.sections for part in section.parts):
+        sections.notes.append("Without road edges, marking lines, driving lines or lanes, a lane of the country's usual width about the driven "
                            "track was measured: its width is no measurement.")
-    for note in found.notes:
+    for note in sections.notes:
         progress.warn(note)
 
 

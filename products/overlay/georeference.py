@@ -125,13 +125,13 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
     return result
 
 
-def residual_vectors(found: Georeferencing) -> Features:
+def residual_vectors(result: Georeferencing) -> Features:
     """Features RESIDUALS of the control and check points: LineStringZ from the place of each by the polynomial to its measured place."""
     from shapely import LineString
 
-    points, errors = found.points, found.errors
+    points, errors = result.points, result.errors
     leverage = np.full(len(points), np.nan)
-    leverage[points.having(CONTROL)] = found.fit.leverage
+    leverage[points.having(CONTROL)] = result.fit.leverage
     layer = Features("LineStringZ", RESIDUALS, crs=points.crs)
     heights = np.nan_to_num(points.height)
     for k in range(len(points)):
@@ -139,7 +139,7 @@ def residual_vectors(found: Georeferencing) -> Features:
         start = end - errors[k]
         layer.add(LineString([(*start, heights[k]), (*end, heights[k])]), point=points.names[k], role=points.roles[k],
                   pixel=points.pixel[k], line=points.line[k], dx_m=errors[k, 0], dy_m=errors[k, 1], resid_m=np.hypot(*errors[k]),
-                  loo_m=np.hypot(*found.left_out[k]), leverage=leverage[k])
+                  loo_m=np.hypot(*result.left_out[k]), leverage=leverage[k])
     return layer
 
 
@@ -219,9 +219,9 @@ def _two_digits(size):
     return round(size, 1 - int(np.floor(np.log10(size))))
 
 
-def _notes(found: Georeferencing) -> Iterator[str]:
+def _notes(result: Georeferencing) -> Iterator[str]:
     """Warnings for the user, one sentence each."""
-    fit, points, order = found.fit, found.points, found.settings.order
+    fit, points, order = result.fit, result.points, result.settings.order
     used = points.having(CONTROL)
     if not points.crs:
         yield ("The control points have no CRS, so the result has none either: it lies in their coordinates. If these are "
@@ -235,16 +235,16 @@ def _notes(found: Georeferencing) -> Iterator[str]:
     elif order and len(used) < _SUFFICIENT_RATIO * MIN_CONTROL_POINTS[order]:
         yield (f"{len(used)} control points are few for order {order} ({MIN_CONTROL_POINTS[order]} at least): the residuals are smaller than "
                "the errors. Use the leave-one-out error instead.")
-    if order and found.outside > _NOTED_OUTSIDE_SHARE:
-        times = float(np.sqrt(_ring_leverage(found).max()))
-        share = f"{100 * found.outside:.0f} % of the image lies outside the hull of the control points"
-        if found.cut:
+    if order and result.outside > _NOTED_OUTSIDE_SHARE:
+        times = float(np.sqrt(_ring_leverage(result).max()))
+        share = f"{100 * result.outside:.0f} % of the image lies outside the hull of the control points"
+        if result.cut:
             yield f"{share} and is left out, because a polynomial of order {order} is not reliable there."
         elif order > 1 or times > 1.0:
             yield (f"{share}; there the polynomial extrapolates, and at the worst place on the border its error is {times:.1f} times "
                    "that of a single point.")
-    for index in _misfits(found):
-        yield (f"Point {points.names[index]} does not fit the others: it lies {np.hypot(*found.left_out[index]):.2f} m from where "
+    for index in _misfits(result):
+        yield (f"Point {points.names[index]} does not fit the others: it lies {np.hypot(*result.left_out[index]):.2f} m from where "
                "they place it. Check its coordinates.")
 
 
@@ -271,12 +271,12 @@ def _scale_of_map(crs, points):
         return float("nan")
 
 
-def _ring_leverage(found):
+def _ring_leverage(result):
     """Leverage along the border of the image."""
-    frame = shapely.box(0, 0, found.image.width, found.image.height)
+    frame = shapely.box(0, 0, result.image.width, result.image.height)
     places = shapely.get_coordinates(shapely.line_interpolate_point(
         frame.exterior, np.linspace(0, 1, _OUTLINE_PLACES), normalized=True))
-    return found.fit.leverage_at(places[:, 0], places[:, 1])
+    return result.fit.leverage_at(places[:, 0], places[:, 1])
 
 
 def _burden(fit):
@@ -284,15 +284,15 @@ def _burden(fit):
     return np.sum(fit.residuals**2, axis=1) / np.maximum(1.0 - fit.leverage, 1e-6)
 
 
-def _misfits(found):
+def _misfits(result):
     """Control points with an extreme residual (externally studentised, two coordinates)."""
-    fit, used = found.fit, found.points.having(CONTROL)
+    fit, used = result.fit, result.points.having(CONTROL)
     freedom = 2 * fit.free - 2
     if freedom < 2:
         return []
     burden = _burden(fit)
     rest = np.maximum(np.sum(fit.residuals**2) - burden, 0.0) / freedom
-    floor = (_MIN_POINT_ERROR * found.pixel_size) ** 2
+    floor = (_MIN_POINT_ERROR * result.pixel_size) ** 2
     extreme = burden / 2 > _MISFIT_RESIDUAL**2 * np.maximum(rest, floor)
     return used[extreme][np.argsort(-burden[extreme])][:_MAX_MISFITS]
 
@@ -443,41 +443,41 @@ _SMALLEST_OVERVIEW = 256  # pixels
 _ALGORITHMS = {"nearest": "near", "bilinear": "bilinear", "cubic": "cubic"}
 
 
-def drawn_area(found: Georeferencing) -> shapely.Geometry:
+def drawn_area(result: Georeferencing) -> shapely.Geometry:
     """The part of the image that is drawn, a polygon in pixel and line."""
-    frame = shapely.box(0, 0, found.image.width, found.image.height)
-    return found.hull.intersection(frame) if found.cut and found.hull is not None else frame
+    frame = shapely.box(0, 0, result.image.width, result.image.height)
+    return result.hull.intersection(frame) if result.cut and result.hull is not None else frame
 
 
-def output_grid(found: Georeferencing) -> tuple[tuple[float, float, float, float], int, int]:
+def output_grid(result: Georeferencing) -> tuple[tuple[float, float, float, float], int, int]:
     """((min x, min y, max x, max y) m, width, height in pixels) of the result.
 
     Bounds are whole multiples of the pixel size. A shift at the pixel size of the image keeps the bounds of the image, so that no pixel is resampled.
     Raises RoadExtractionError if the result would have more than MAX_RESULT_PIXELS.
     """
-    outline = drawn_area(found).exterior
+    outline = drawn_area(result).exterior
     outline = shapely.get_coordinates(outline.segmentize(max(outline.length / 400, 1e-6)))
-    easting, northing = found.fit.polynomial.to_map(outline[:, 0], outline[:, 1])
-    size = found.pixel_size
+    easting, northing = result.fit.polynomial.to_map(outline[:, 0], outline[:, 1])
+    size = result.pixel_size
     x0, y0, x1, y1 = easting.min(), northing.min(), easting.max(), northing.max()
-    if not _keeps_its_pixels(found):
+    if not _keeps_its_pixels(result):
         x0, y0 = np.floor(x0 / size + 1e-6) * size, np.floor(y0 / size + 1e-6) * size
     width, height = (max(int(np.ceil((b - a) / size - 1e-6)), 1) for a, b in ((x0, x1), (y0, y1)))
     if width * height > MAX_RESULT_PIXELS:
         raise RoadExtractionError(f"The result would have {width} by {height} pixels of {size:g} m. Give a larger pixel size, choose a lower order, "
                                   "or check the control points.")
-    y1 = y0 + height * size if not _keeps_its_pixels(found) else y1
+    y1 = y0 + height * size if not _keeps_its_pixels(result) else y1
     return (float(x0), float(y1 - height * size), float(x0 + width * size), float(y1)), width, height
 
 
-def _keeps_its_pixels(found):
+def _keeps_its_pixels(result):
     """Whether the image is only shifted, at its own pixel size."""
-    slope = found.fit.polynomial.jacobian(np.zeros(1), np.zeros(1))[0]
-    return found.settings.order == 0 and np.allclose(slope, found.pixel_size * np.array([[1, 0], [0, -1]]), rtol=1e-9, atol=1e-12)
+    slope = result.fit.polynomial.jacobian(np.zeros(1), np.zeros(1))[0]
+    return result.settings.order == 0 and np.allclose(slope, result.pixel_size * np.array([[1, 0], [0, -1]]), rtol=1e-9, atol=1e-12)
 
 
 @gdal_exceptions()
-def draw_image(found: Georeferencing, path: str | Path, progress: Progress | None = None) -> float:
+def draw_image(result: Georeferencing, path: str | Path, progress: Progress | None = None) -> float:
     """Write the image as a tiled GeoTIFF with lossless compression and overviews; the file appears when it is complete.
 
     Images of bytes get an alpha band. Images of larger integers get 0, and those of real numbers NaN, as no-data value, unless the image has its own.
@@ -485,18 +485,18 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
     Raises RoadExtractionError if the result would be too large, the image cannot be read, or the file cannot be written.
     """
     progress = progress or Progress()
-    bounds, width, height = output_grid(found)
+    bounds, width, height = output_grid(result)
     unfinished, tiled = (unfinished_path(path, suffix) for suffix in (".tif", ".source.tif"))
     source = view = None
     failure = ""
     cache = gdal.GetCacheMax()
     gdal.SetCacheMax(min(cache, GDAL_CACHE))
     try:
-        source = _with_point_grid(found, gdal_work(partial(_tiled, found.image, tiled), progress.part(0.0, 0.1)))
-        departure = _departure(source, found) + _APPROXIMATION
+        source = _with_point_grid(result, gdal_work(partial(_tiled, result.image, tiled), progress.part(0.0, 0.1)))
+        departure = _departure(source, result) + _APPROXIMATION
         # Blocks are resampled while they are written: every tile is compressed once, and Cancel takes effect in between
-        view = gdal.Warp("", source, **_warp_options(found, bounds))
-        gdal_work(partial(_write, view, unfinished, found.image), progress.part(0.1, 0.8))
+        view = gdal.Warp("", source, **_warp_options(result, bounds))
+        gdal_work(partial(_write, view, unfinished, result.image), progress.part(0.1, 0.8))
         # closed and opened again: GDAL 3.6 may deadlock where it reads what its own threads still write
         if levels := [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]:
             gdal_work(partial(_add_overviews, unfinished, levels), progress.part(0.8, 1.0))
@@ -510,7 +510,7 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
         for leftover in (unfinished, Path(f"{unfinished}.aux.xml"), tiled):
             leftover.unlink(missing_ok=True)
     if failure:   # raised here: the error of GDAL would keep its datasets alive until after GDAL itself is unloaded
-        raise RoadExtractionError(f"The image could not be drawn to {path} ({failure}). Is {found.image.path} whole, and is there room on the disk?")
+        raise RoadExtractionError(f"The image could not be drawn to {path} ({failure}). Is {result.image.path} whole, and is there room on the disk?")
     progress.report(1.0)
     return departure
 
@@ -529,46 +529,46 @@ def _tiled(image, path, callback):
     return str(path)
 
 
-def _with_point_grid(found, path):
+def _with_point_grid(result, path):
     """The image with a grid of ground control points in place of a position, as an open GDAL dataset.
 
     GDAL would fit its own polynomial from the map to the image, which is not the inverse of ours: in an oblique image it is
     off by tens of pixels. A dense grid of points that follow our polynomial makes it interpolate by thin-plate splines
     instead (an affine transformation needs any three of them).
     """
-    area, polynomial = drawn_area(found), found.fit.polynomial
+    area, polynomial = drawn_area(result), result.fit.polynomial
     x0, y0, x1, y1 = area.bounds
     for margin in _MARGINS:
         reach = margin * max(x1 - x0, y1 - y0)
         pixel, line = _node_grid((x0 - reach, y0 - reach, x1 + reach, y1 + reach), _NODES)
         if (np.linalg.det(polynomial.jacobian(pixel, line)) < 0).all():
             break
-    wkt, units = as_in_file(found.points.crs)
+    wkt, units = as_in_file(result.points.crs)
     easting, northing = units.in_file(np.column_stack(polynomial.to_map(pixel, line))).T
     points = [gdal.GCP(*map(float, point)) for point in zip(easting, northing, np.zeros(len(pixel)), pixel, line)]
-    options = {"rgbExpand": "rgb"} if found.image.palette else {}
+    options = {"rgbExpand": "rgb"} if result.image.palette else {}
     return gdal.Translate("", path, format="VRT", GCPs=points, outputSRS=wkt or None, **options)
 
 
-def _method(found):
-    return "GCP_TPS" if found.fit.polynomial.order > 1 else "GCP_POLYNOMIAL"
+def _method(result):
+    return "GCP_TPS" if result.fit.polynomial.order > 1 else "GCP_POLYNOMIAL"
 
 
-def _departure(source, found):
+def _departure(source, result):
     """Pixels between the places where GDAL's transformer and the inverse of the polynomial look for the result."""
-    area = drawn_area(found)
+    area = drawn_area(result)
     pixel, line = _node_grid(area.bounds, 33)
     inside = shapely.contains_xy(area, pixel, line)
     pixel, line = pixel[inside], line[inside]
-    easting, northing = as_in_file(found.points.crs)[1].in_file(np.column_stack(found.fit.polynomial.to_map(pixel, line))).T
-    transformer = gdal.Transformer(source, None, [f"METHOD={_method(found)}"] + ["MAX_GCP_ORDER=1"] * (_method(found) != "GCP_TPS"))
+    easting, northing = as_in_file(result.points.crs)[1].in_file(np.column_stack(result.fit.polynomial.to_map(pixel, line))).T
+    transformer = gdal.Transformer(source, None, [f"METHOD={_method(result)}"] + ["MAX_GCP_ORDER=1"] * (_method(result) != "GCP_TPS"))
     places, _ = transformer.TransformPoints(1, np.column_stack([easting, northing, np.zeros(len(pixel))]).tolist())
     return float(np.hypot(*(np.array(places)[:, :2] - np.column_stack([pixel, line])).T).max())
 
 
-def _warp_options(found, bounds):
-    image, size, (wkt, units) = found.image, found.pixel_size, as_in_file(found.points.crs)
-    transform = {"tps": True} if _method(found) == "GCP_TPS" else {"polynomialOrder": 1}
+def _warp_options(result, bounds):
+    image, size, (wkt, units) = result.image, result.pixel_size, as_in_file(result.points.crs)
+    transform = {"tps": True} if _method(result) == "GCP_TPS" else {"polynomialOrder": 1}
     ends = {}
     if not image.has_alpha:
         if image.nodata is not None:
@@ -578,13 +578,13 @@ def _warp_options(found, bounds):
         else:
             ends = {"dstNodata": 0 if image.kind == "integer" else "nan"}
     # By default GDAL estimates the scale from the extent of each window, and blurs rotated images at their borders
-    scale = min(1.0, _own_pixel_size(found.fit, drawn_area(found)) / size)
+    scale = min(1.0, _own_pixel_size(result.fit, drawn_area(result)) / size)
     options = [f"XSCALE={scale}", f"YSCALE={scale}"]
-    if found.cut:
-        options.append(f"CUTLINE={shapely.to_wkt(drawn_area(found), rounding_precision=3)}")
+    if result.cut:
+        options.append(f"CUTLINE={shapely.to_wkt(drawn_area(result), rounding_precision=3)}")
     return {
         "format": "VRT", "outputBounds": units.geotransform(bounds, to_file=True), "xRes": size / units.across, "yRes": size / units.across,
-        "resampleAlg": _ALGORITHMS[found.settings.resampling],
+        "resampleAlg": _ALGORITHMS[result.settings.resampling],
         "dstSRS": wkt or None, "errorThreshold": _APPROXIMATION, "warpOptions": options, **transform, **ends}
 
 

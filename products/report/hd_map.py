@@ -57,10 +57,10 @@ def _lanes_and_lines(shown: RoadMapSource) -> str:
     return "".join(parts) + "</svg>"
 
 
-def map_check_report(found: Findings, path: str, notes: Sequence[str] = ()) -> str:
+def map_check_report(findings: Findings, path: str, notes: Sequence[str] = ()) -> str:
     """The findings of a map in the file of a path, as HTML."""
-    groups, _ = found.groups()
-    return html_page("map_check", found=found, file=Path(path).name, notes=notes, faults=FAULTS, count=len(groups),
+    groups, _ = findings.groups()
+    return html_page("map_check", findings=findings, file=Path(path).name, notes=notes, faults=FAULTS, count=len(groups),
                   groups=[(row, places_of_findings(group, MOST_ROWS // 10), group) for row, group in enumerate(groups[:MOST_ROWS], start=1)])
 
 

@@ -162,14 +162,14 @@ def _with_gaps(stations, values, interval):
     return np.array(s), np.array(y)
 
 
-def roadside_report(found: Roadside, lines: Features, points: Features) -> str:
+def roadside_report(roadside: Roadside, lines: Features, points: Features) -> str:
     """The report as HTML. `lines`, `points`: Features of `roadside_to_features`."""
     lengths: dict[tuple[str, str], float] = defaultdict(float)
     for row in lines.rows:
         lengths[row["kind"], row["side"]] += row["length_m"]
-    roads = [(road, *_roadside_plan(found, road, edges, [row for row in points.rows if row["road"] == road]),
-              [row for row in lines.rows if row["road"] == road]) for road, edges in found.edges.items()]
-    return html_page("roadside", notes=found.notes, lengths=lengths, counts=Counter((row["kind"], row["side"]) for row in points.rows),
+    roads = [(road, *_roadside_plan(roadside, road, edges, [row for row in points.rows if row["road"] == road]),
+              [row for row in lines.rows if row["road"] == road]) for road, edges in roadside.edges.items()]
+    return html_page("roadside", notes=roadside.notes, lengths=lengths, counts=Counter((row["kind"], row["side"]) for row in points.rows),
                   name_of=_kind_name, roads=roads)
 
 
@@ -177,9 +177,9 @@ def _kind_name(kind):
     return kind.replace("_", " ") if language() == "en" else word(kind)
 
 
-def _roadside_plan(found, road, edges, points):
+def _roadside_plan(roadside, road, edges, points):
     """SVG of a road from above, straightened, the same height on the page whatever way it runs; (colour, kind) of what stands there."""
-    lines = [line for line in found.lines if line.chain.road == road]
+    lines = [line for line in roadside.lines if line.chain.road == road]
     reach = np.concatenate([edges.left, edges.right, *(line.chain.d for line in lines), [row["offset_m"] for row in points]])
     chart = Chart((float(edges.s[0]), float(edges.s[-1])), (float(reach.min()) - 0.5, float(reach.max()) + 0.5),
                   tr("Station (m)"), tr("Offset (m)"), 260)

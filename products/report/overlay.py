@@ -24,20 +24,21 @@ _GAP, _TEXT = 8, 20
 _ACCEPTED, _REFUSED = (80, 150, 40), (50, 50, 210)  # blue, green, red
 
 
-def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -> str:
+def georeferencing_report(result: Georeferencing, drawn: str, departure: float) -> str:
     """The report of a Georeferencing as HTML.
 
     `drawn`: path of the GeoTIFF that was drawn. `departure`: pixels between it and the polynomial, from `draw_image`.
     """
-    points, crs = found.points, found.points.crs
+    points, crs = result.points, result.points.crs
     control, check = points.having(CONTROL), points.having(CHECK)
-    picture, magnification = _residual_picture(found, drawn)
+    picture, magnification = _residual_picture(result, drawn)
     return html_page(
-        "georeferencing", found=found, notes=found.notes, grid=output_grid(found)[1:], crs=horizontal_part(parse_crs(crs)).name if crs else "",
+        "georeferencing", result=result, notes=result.notes, grid=output_grid(result)[1:], crs=horizontal_part(parse_crs(crs)).name if crs else "",
         departure=departure, residuals=picture, magnification=magnification,
-        sizes=(np.hypot(*found.errors.T), np.hypot(*found.left_out.T)),
-        errors=[(len(control), found.rmse(), _largest(found.errors[control])), (len(control), found.left_out_rmse, _largest(found.left_out[control])),
-                (len(check), found.rmse(CHECK), _largest(found.errors[check]))],
+        sizes=(np.hypot(*result.errors.T), np.hypot(*result.left_out.T)),
+        errors=[(len(control), result.rmse(), _largest(result.errors[control])),
+                (len(control), result.left_out_rmse, _largest(result.left_out[control])),
+                (len(check), result.rmse(CHECK), _largest(result.errors[check]))],
         colours=[(ROLE_CSS[role], word(role)) for role in (CONTROL, CHECK, DISABLED) if len(points.having(role))])
 
 
@@ -46,24 +47,24 @@ def _largest(vectors):
     return float(np.hypot(*finite.T).max()) if len(finite) else float("nan")
 
 
-def _residual_picture(found: Georeferencing, drawn: str) -> tuple[np.ndarray, float]:
+def _residual_picture(result: Georeferencing, drawn: str) -> tuple[np.ndarray, float]:
     """((H, W, 3) uint8, blue, green, red; magnification) of the drawn image, a GeoTIFF, with the residuals as arrows."""
     canvas, scale, corner = _reduced_copy(drawn)
-    points = found.points
+    points = result.points
 
     def at(x, y):
         return np.column_stack([(np.asarray(x) - corner[0]) * scale, (corner[1] - np.asarray(y)) * scale])
 
-    if found.hull is not None:
-        hull = np.array(drawn_area(found).exterior.coords) if found.cut else np.array(found.hull.exterior.segmentize(50.0).coords)
-        outline = at(*found.fit.polynomial.to_map(hull[:, 0], hull[:, 1]))
+    if result.hull is not None:
+        hull = np.array(drawn_area(result).exterior.coords) if result.cut else np.array(result.hull.exterior.segmentize(50.0).coords)
+        outline = at(*result.fit.polynomial.to_map(hull[:, 0], hull[:, 1]))
         cv2.polylines(canvas, [np.rint(outline * 16).astype(np.int32)], True, (255, 255, 255), 1, cv2.LINE_AA, 4)
     judged = points.roles != DISABLED
-    longest = np.hypot(*found.errors[judged].T).max() if judged.any() else 0.0
+    longest = np.hypot(*result.errors[judged].T).max() if judged.any() else 0.0
     magnification = _round_down(MAX_ARROW_LENGTH * max(canvas.shape[:2]) / (longest * scale)) if longest * scale > 1e-6 else 1.0
     # An arrow starts where the polynomial puts the point and is lengthened from there
-    starts = at(points.easting - found.errors[:, 0], points.northing - found.errors[:, 1])
-    tips = starts + found.errors * np.array([1.0, -1.0]) * scale * magnification
+    starts = at(points.easting - result.errors[:, 0], points.northing - result.errors[:, 1])
+    tips = starts + result.errors * np.array([1.0, -1.0]) * scale * magnification
     for start, tip, role in sorted(zip(starts, tips, points.roles), key=lambda one: one[2] != DISABLED):
         colour = ROLE_COLOURS[str(role)]
         if role == DISABLED:
@@ -110,27 +111,27 @@ def _reduced_copy(path):
     return canvas, width / (dataset.RasterXSize * size), (x0, y0)
 
 
-def proposed_points_report(found: Proposal) -> str:
+def proposed_points_report(proposal: Proposal) -> str:
     """The report of a Proposal as HTML."""
-    return html_page("proposed_points", found=found, notes=found.notes, cut_outs=_pairs_picture(found),
-                  rival=None if found.rival is None else np.hypot(found.rival.dx, found.rival.dy))
+    return html_page("proposed_points", proposal=proposal, notes=proposal.notes, cut_outs=_pairs_picture(proposal),
+                  rival=None if proposal.rival is None else np.hypot(proposal.rival.dx, proposal.rival.dy))
 
 
-def _pairs_picture(found: Proposal) -> np.ndarray:
+def _pairs_picture(proposal: Proposal) -> np.ndarray:
     """(H, W, 3) uint8, blue, green, red: all pairs of cut-outs in rows."""
     width, height = 2 * CUT_SIDE + 3 * _GAP, CUT_SIDE + _TEXT + 2 * _GAP
-    rows = -(-len(found) // PAIRS_PER_ROW)
+    rows = -(-len(proposal) // PAIRS_PER_ROW)
     canvas = np.full((rows * height, PAIRS_PER_ROW * width, 3), 255, np.uint8)
-    cuts = pair_cutouts(found.image, found.intensity, found.pixel, found.line, found.easting, found.northing, side=CUT_SIDE)
+    cuts = pair_cutouts(proposal.image, proposal.intensity, proposal.pixel, proposal.line, proposal.easting, proposal.northing, side=CUT_SIDE)
     for k, pair in enumerate(cuts):
         left, top = (k % PAIRS_PER_ROW) * width + _GAP, (k // PAIRS_PER_ROW) * height + _GAP
-        tint = _ACCEPTED if found.accepted[k] else _REFUSED
+        tint = _ACCEPTED if proposal.accepted[k] else _REFUSED
         for number, cut in enumerate(pair):
             x = left + number * (CUT_SIDE + _GAP // 2)
             canvas[top:top + CUT_SIDE, x:x + CUT_SIDE] = cut[..., ::-1]
             middle = (x + CUT_SIDE // 2, top + CUT_SIDE // 2)
             cv2.drawMarker(canvas, middle, (0, 220, 255), cv2.MARKER_CROSS, 16, 1, cv2.LINE_AA)
         cv2.rectangle(canvas, (left - 2, top - 2), (left + 2 * CUT_SIDE + _GAP // 2 + 1, top + CUT_SIDE + 1), tint, 2)
-        text = f"{k + 1}   {found.score[k]:.2f}   {100 * found.residual[k]:.1f} cm"
+        text = f"{k + 1}   {proposal.score[k]:.2f}   {100 * proposal.residual[k]:.1f} cm"
         cv2.putText(canvas, text, (left, top + CUT_SIDE + _TEXT - 4), cv2.FONT_HERSHEY_SIMPLEX, 0.42, tint, 1, cv2.LINE_AA)
     return canvas

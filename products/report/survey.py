@@ -22,28 +22,28 @@ CHART_COLUMNS = 600   # of the chart: each shows the worst of its time
 LEAST_CHART_TOP = 0.02  # m
 
 
-def inspection_report(found: Inspection) -> str:
+def inspection_report(inspection: Inspection) -> str:
     """The report of an Inspection as HTML."""
-    first, track, profile = (found.time_span or (0.0,))[0], found.trajectory, None
+    first, track, profile = (inspection.time_span or (0.0,))[0], inspection.trajectory, None
     # seconds beyond a week are no seconds of a week, whatever the header says of them
     start = datetime(1980, 1, 6) + timedelta(seconds=first + 1e9) if first > timedelta(weeks=1).total_seconds() else None
-    if found.drive is not None:
-        heights = found.drive.profile[:, 1:]
+    if inspection.drive is not None:
+        heights = inspection.drive.profile[:, 1:]
         low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
-        profile = dict(chart=_profile_chart(found.drive.profile, low, high), low=low, high=high)
-    values = np.flatnonzero(found.intensity)
-    quantiles = [int(np.searchsorted(np.cumsum(found.intensity) / found.count, q)) for q in (0.01, 0.5, 0.99)]
-    histogram = _histogram(found.intensity, quantiles[0], quantiles[2]) if len(values) > 1 else ""
+        profile = dict(chart=_profile_chart(inspection.drive.profile, low, high), low=low, high=high)
+    values = np.flatnonzero(inspection.intensity)
+    quantiles = [int(np.searchsorted(np.cumsum(inspection.intensity) / inspection.count, q)) for q in (0.01, 0.5, 0.99)]
+    histogram = _histogram(inspection.intensity, quantiles[0], quantiles[2]) if len(values) > 1 else ""
     return html_page(
-        "inspection", found=found, notes=found.notes, crs_name=_crs_name, size=found.maximum - found.minimum, density=_density_picture(found),
-        profile=profile, start=start and f"{start:%Y-%m-%d %H:%M:%S}",
+        "inspection", inspection=inspection, notes=inspection.notes, crs_name=_crs_name, size=inspection.maximum - inspection.minimum,
+        density=_density_picture(inspection), profile=profile, start=start and f"{start:%Y-%m-%d %H:%M:%S}",
         driven=None if track is None else float(np.hypot(np.diff(track.x), np.diff(track.y)).sum()),
         intensity=dict(lowest=values[0], highest=values[-1], number=len(values), quantiles=quantiles, chart=histogram))
 
 
-def _density_picture(found: Inspection) -> dict[str, Any]:
+def _density_picture(inspection: Inspection) -> dict[str, Any]:
     """The density of the points with the trajectory on it: `image` (H, W, 3) uint8, `most` points per m² that it shows, `with_track` or not."""
-    density, corner = found.density
+    density, corner = inspection.density
     filled = np.isfinite(density)
     top = max(float(np.percentile(density[filled], 98)), 1e-9)
     value = np.where(filled, 20 + 235 * np.clip(np.nan_to_num(density) / top, 0, 1), 0).astype(np.uint8)
@@ -52,10 +52,10 @@ def _density_picture(found: Inspection) -> dict[str, Any]:
     scale = max(DENSITY_PICTURE_SIDE / max(density.shape), 1.0 / 64)
     height, width = (max(int(round(n * scale)), 1) for n in density.shape)
     image = cv2.resize(image, (width, height), interpolation=cv2.INTER_NEAREST if scale >= 1 else cv2.INTER_AREA)
-    trajectory: Any = found.trajectory
-    with_track = trajectory is not None and bool(found.near_share)
+    trajectory: Any = inspection.trajectory
+    with_track = trajectory is not None and bool(inspection.near_share)
     if with_track:
-        track = np.c_[trajectory.x - corner[0], corner[1] - trajectory.y] / found.settings.cell_size * scale
+        track = np.c_[trajectory.x - corner[0], corner[1] - trajectory.y] / inspection.settings.cell_size * scale
         cv2.polylines(image, [np.rint(track).astype(np.int32)], False, (60, 60, 255), 2, cv2.LINE_AA)
     return dict(image=image, most=top, with_track=with_track)
 
@@ -81,29 +81,29 @@ def _crs_name(wkt):
     return horizontal_part(parse_crs(wkt)).name if wkt else tr("no CRS")
 
 
-def estimated_trajectory_report(found: EstimatedTrajectory) -> str:
+def estimated_trajectory_report(estimate: EstimatedTrajectory) -> str:
     """The report on an EstimatedTrajectory as HTML."""
-    place, height = ((np.median(sigma), sigma.max()) for sigma in (found.sigma, found.sigma_height))
-    return html_page("estimated_trajectory", found=found, notes=found.notes, way=WAYS[found.method], place=place, height=height,
-                  scanners=_scanners(found), chart="" if found.adjusted is None else _chart_of_sigmas(found))
+    place, height = ((np.median(sigma), sigma.max()) for sigma in (estimate.sigma, estimate.sigma_height))
+    return html_page("estimated_trajectory", estimate=estimate, notes=estimate.notes, way=WAYS[estimate.method], place=place, height=height,
+                  scanners=_scanners(estimate), chart="" if estimate.adjusted is None else _chart_of_sigmas(estimate))
 
 
-def _scanners(found):
-    if found.adjusted is None:
+def _scanners(estimate):
+    if estimate.adjusted is None:
         return []
-    adjusted, poses = found.adjusted, found.adjusted.poses
+    adjusted, poses = estimate.adjusted, estimate.adjusted.poses
     return [(scanner.number + 1, abs(float(poses.rate[k])), float(np.degrees(poses.turn[k])), float(np.degrees(poses.lean[k])),
              *map(float, poses.lever[k]), 1000.0 * float(np.median(misfit[np.isfinite(misfit)])))
-            for k, (scanner, misfit) in enumerate(zip(found.scanners, adjusted.misfit.T))]
+            for k, (scanner, misfit) in enumerate(zip(estimate.scanners, adjusted.misfit.T))]
 
 
-def _chart_of_sigmas(found):
-    time = found.trajectory.time - found.trajectory.time[0]
+def _chart_of_sigmas(estimate):
+    time = estimate.trajectory.time - estimate.trajectory.time[0]
     gone = np.minimum(np.diff(time, prepend=time[0]), 1.0).cumsum()
     cell = np.minimum((gone / max(gone[-1], 1e-9) * CHART_COLUMNS).astype(np.int64), CHART_COLUMNS - 1)
-    top = max(float(np.quantile(np.maximum(found.sigma, found.sigma_height), 0.995)), LEAST_CHART_TOP)
+    top = max(float(np.quantile(np.maximum(estimate.sigma, estimate.sigma_height), 0.995)), LEAST_CHART_TOP)
     chart = Chart((0.0, float(gone[-1])), (0.0, top), tr("seconds of driving, without pauses"), tr("one sigma (m)"))
-    for values, colour, title in ((found.sigma, PLACE_COLOUR, tr("place")), (found.sigma_height, HEIGHT_COLOUR, tr("height"))):
+    for values, colour, title in ((estimate.sigma, PLACE_COLOUR, tr("place")), (estimate.sigma_height, HEIGHT_COLOUR, tr("height"))):
         worst = np.full(CHART_COLUMNS, np.nan)
         np.fmax.at(worst, cell, values)
         chart.curve((np.arange(CHART_COLUMNS) + 0.5) / CHART_COLUMNS * gone[-1], worst, colour, title)

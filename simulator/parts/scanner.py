@@ -111,18 +111,18 @@ def butterfly(rotation_rate: float, pulse_rate: float, yaw: float) -> list[Scann
             Scanner(2, rotation_rate, pulse_rate, yaw, -20.0, (-2.45, -0.32, 0.0), 0.94)]
 
 
-def label_hits(scene: SurveyedScene, hits: Hits, found: np.ndarray) -> np.ndarray:
+def label_hits(scene: SurveyedScene, hits: Hits, rows: np.ndarray) -> np.ndarray:
     """(M,) uint8 labels of the hits of these (M,) indices."""
-    label = hits.label[found]
-    ground = found[hits.strip[found] != OBSTACLE]
-    label[hits.strip[found] != OBSTACLE] = scene.labels(hits.strip[ground], hits.station[ground], hits.offset[ground])
+    label = hits.label[rows]
+    ground = rows[hits.strip[rows] != OBSTACLE]
+    label[hits.strip[rows] != OBSTACLE] = scene.labels(hits.strip[ground], hits.station[ground], hits.offset[ground])
     return label
 
 
-def brightness_of(scene: SurveyedScene, label: np.ndarray, s: np.ndarray, d: np.ndarray, own: np.ndarray) -> np.ndarray:
-    """(M,) reflectance of hits with these labels at stations and offsets, m: of obstacles `own`, of the ground with patchy asphalt and repairs."""
+def brightness_of(scene: SurveyedScene, label: np.ndarray, s: np.ndarray, d: np.ndarray, of_obstacles: np.ndarray) -> np.ndarray:
+    """(M,) reflectance of hits with these labels at stations and offsets, m: of the ground with patchy asphalt and repairs."""
     texture = scene.texture
-    bright = np.where(_REFLECTANCE_OF_LABEL[label] > 0, _REFLECTANCE_OF_LABEL[label], own)
+    bright = np.where(_REFLECTANCE_OF_LABEL[label] > 0, _REFLECTANCE_OF_LABEL[label], of_obstacles)
     asphalt = np.flatnonzero((label == LABEL["road"]) | (label == LABEL["worn paint"]))
     at_s, at_d = s[asphalt], d[asphalt]
     patchy = 1.0 + 0.07 * texture.at(at_s, at_d, 1.7) + 0.08 * texture.at(at_s, at_d, 0.06)

@@ -187,7 +187,7 @@ def _runs(ring, where, edge, area):
 
 def _side(scene, place):
     """Side of a place as seen from the pass that drove nearest, in its direction of travel."""
-    nearest = min((way.path.locate(place[None]) for way, _ in scene.ways), key=lambda found: abs(found[1][0]))
+    nearest = min((way.path.locate(place[None]) for way, _ in scene.ways), key=lambda place: abs(place[1][0]))
     return "left" if nearest[1][0] > 0 else "right"
 
 

@@ -43,7 +43,7 @@ def trace(ground: Ground, origin: np.ndarray, direction: np.ndarray, farthest: f
     return _follow(ground, origin, direction, t, live, limit, flat, distance)
 
 
-def _follow(ground, origin, direction, t, live, limit, flat, found):
+def _follow(ground, origin, direction, t, live, limit, flat, reached):
     """Steps on the exact ground until below it, then the place between the last two."""
     before, above = t.copy(), np.zeros(len(t))
     below, under = np.full(len(t), np.nan), np.zeros(len(t))
@@ -62,8 +62,8 @@ def _follow(ground, origin, direction, t, live, limit, flat, found):
         if len(live) == 0:
             break
     rays = np.flatnonzero(np.isfinite(below) & (above > 0))
-    found[rays] = _between(ground, origin[:, rays], direction[:, rays], before[rays], above[rays], below[rays], under[rays])
-    return found
+    reached[rays] = _between(ground, origin[:, rays], direction[:, rays], before[rays], above[rays], below[rays], under[rays])
+    return reached
 
 
 def _between(ground, origin, direction, low, above, high, under):

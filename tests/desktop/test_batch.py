@@ -90,7 +90,7 @@ def dialog(provider, monkeypatch, tmp_path):
 
 def test_each_survey_of_a_batch_gets_a_geopackage_of_its_own_in_one_folder(dialog, tmp_path):
     panel = dialog.mainWidget()
-    assert panel.wrappers[0][panel.parameter_to_column["POINT_CLOUDS"]].widget.told is None, "it stands in a table"
+    assert panel.wrappers[0][panel.parameter_to_column["POINT_CLOUDS"]].widget.message is None, "it stands in a table"
     assert dialog.surveys() == ["B12_cloud", "B12_cloud_2"] and dialog.windowTitle() == "Batch: Road map"
     dialog.save_everything_to(str(tmp_path))
     first, second = (dialog.mainWidget().parametersForRow(row, dialog.processingContext(), warnOnInvalid=False)[0] for row in (0, 1))

@@ -23,10 +23,10 @@ def choose(widget, column, role):
 
 def test_what_was_understood_is_told_and_nothing_is_shown_without_a_file(qgis_app, drive):
     widget = ColumnsWidget()
-    assert widget.table.isHidden() and widget.told.isHidden()
+    assert widget.table.isHidden() and widget.message.isHidden()
     widget.show_file(drive)
     assert [box.currentData() for box in widget.boxes] == ["time", "y", "x", "z"] and widget.value() == ""
-    assert "201 positions over 200 m" in widget.told.text() and "36 km/h" in widget.told.text() and "adjusted GPS" in widget.told.text()
+    assert "201 positions over 200 m" in widget.message.text() and "36 km/h" in widget.message.text() and "adjusted GPS" in widget.message.text()
     assert widget.table.item(1, 2).text() == "500000"
 
 
@@ -34,9 +34,9 @@ def test_a_role_given_to_another_column_leaves_its_former_one(qgis_app, drive):
     widget = ColumnsWidget()
     widget.show_file(drive)
     choose(widget, 2, "z")
-    assert widget.value() == "time,y,z,-" and "no x" in widget.told.text()
+    assert widget.value() == "time,y,z,-" and "no x" in widget.message.text()
     choose(widget, 3, "x")
-    assert widget.value() == "time,y,z,x" and "positions" in widget.told.text()
+    assert widget.value() == "time,y,z,x" and "positions" in widget.message.text()
 
 
 def test_of_a_log_it_is_told_what_was_understood_and_there_is_nothing_to_assign(qgis_app, tmp_path):
@@ -45,7 +45,7 @@ def test_of_a_log_it_is_told_what_was_understood_and_there_is_nothing_to_assign(
                             f"$GPGGA,1000{k:02d}.00,4830.{50 * k:04d},N,00900.0000,E,4,12,0.9,300.0,M,48.0,M,,*00\n" for k in range(30)))
     widget = ColumnsWidget()
     widget.show_file(str(path))
-    assert widget.table.isHidden() and "30 positions" in widget.told.text() and "GPS seconds since 1980" in widget.told.text()
+    assert widget.table.isHidden() and "30 positions" in widget.message.text() and "GPS seconds since 1980" in widget.message.text()
 
 
 def test_another_file_begins_anew_and_a_layer_has_no_columns(qgis_app, drive, tmp_path):
@@ -55,7 +55,7 @@ def test_another_file_begins_anew_and_a_layer_has_no_columns(qgis_app, drive, tm
     other = tmp_path / "other.csv"
     other.write_text("x,y,z\n" + "\n".join(f"{500000 + k},5400000,30" for k in range(20)), encoding="utf-8")
     widget.show_file(str(other))
-    assert widget.value() == "" and [box.currentData() for box in widget.boxes] == ["x", "y", "z"] and "no time" in widget.told.text()
+    assert widget.value() == "" and [box.currentData() for box in widget.boxes] == ["x", "y", "z"] and "no time" in widget.message.text()
     widget.show_file("")
     assert widget.table.isHidden()
 

@@ -164,7 +164,7 @@ def test_points_can_be_begun_again(window, flight):
     asked = window.two_points
     asked.point_at(asked.views[0], asked.photo.extent().center())
     asked.begin()
-    assert asked.layer is None and not asked.marks and "image: 0" in asked.told.text()
+    assert asked.layer is None and not asked.marks and "image: 0" in asked.message.text()
     asked.reject()
     assert window.two_points is None and window.images[0].rough is None
 

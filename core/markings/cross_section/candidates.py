@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ...survey.frame.row_table import RowTable, stacked
+from ...survey.store.seen import FAR
 from ..weights import LANES
 from .sections import STATION_STEP, CrossSections
 from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, PAVEMENT, SOLID, SURFACE, EstimateWeights
@@ -15,7 +16,6 @@ from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISL
 NAMES = {"edge": EDGE_LINE, "centre": CENTRE_LINE}   # a line called lane line may have been called nothing better
 STATIONS_OF_CELL = 5   # derived: stations of the grid that are always in one interval: 2.5 m
 MAX_BOUNDARIES = 16   # derived: at one place
-FAR = 30.0   # derived: m: beyond any road
 USUAL_WIDTH = 0.10, 0.20   # source: m, of lines of usual breadth in all countries of the catalogue
 ENDS = SURFACE, PAVEMENT       # ends of the surface
 

@@ -10,22 +10,17 @@ import numpy as np
 import shapely
 from scipy.ndimage import grey_closing, median_filter
 
-from ...execution.phase import Phase
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.frame.row_table import RowTable
-from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
-from ...survey.store.section_store import Stretch
+from ...survey.store.seen import BIN, BINS, FAR
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..road_grid import CELL_SIZE
 from ..weights import EVIDENCE
-from .candidates import FAR, Candidates
+from .candidates import Candidates
 from .sections import STATION_STEP
-
-BIN = 0.2   # derived: m across, of what is seen of the surface and of hatching
-BINS = int(round(2 * FAR / BIN))   # derived
 
 _known: WeakKeyDictionary[Any, dict[Any, Any]] = WeakKeyDictionary()   # stores of road points -> what `surface_coverage` found
 
@@ -128,12 +123,12 @@ def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.n
 
 def _surface_coverage(points, road, first, count):
     """The same for stations first to first + count of the grid."""
-    seen = _known[points.store]
-    if points.store.count not in seen:
-        seen[points.store.count] = _seen_on_roads(points)
+    coverages, key = _known[points.store], points.store.count
+    if key not in coverages:
+        coverages[key] = points.seen_surface()
     covered = np.zeros((count, BINS), bool)
     total, number = np.zeros((2, count, 2))
-    for begin, *sums in seen[points.store.count].get(road, ()):
+    for begin, *sums in coverages[key].get(road, ()):
         a, b = max(begin, first), min(begin + len(sums[0]), first + count)
         if a < b:
             covered[a - first:b - first] |= sums[0][a - begin:b - begin]
@@ -142,16 +137,6 @@ def _surface_coverage(points, road, first, count):
     with np.errstate(invalid="ignore", divide="ignore"):
         ends = (1e-3 * total / number).T * np.array([[1.0], [-1.0]])
     return covered, ends
-
-
-def _seen_on_roads(points):
-    """{road: what `seen_in_stretch` gives of all its sections}"""
-    stretches, length, seen = points.stretches(), points.store.section_length, {}
-    phase = Phase(seen_in_stretch, points, (), lambda item: points.survey.stretch(item[0], item[1] * length, item[2] * length),
-                  state=points.store.state)
-    for sections, (road, *_) in zip(points.executor.run(phase, stretches), stretches):
-        seen.setdefault(road, []).extend(sections)
-    return seen
 
 
 def point_spacing(road_points: RoadPoints, road: int, s: np.ndarray) -> np.ndarray:
@@ -166,35 +151,6 @@ def point_spacing(road_points: RoadPoints, road: int, s: np.ndarray) -> np.ndarr
     count = np.array([road_points.store.size(road, number) for number in numbers.tolist()])
     side = np.sqrt(width * length / np.maximum(count, 1))
     return np.interp(s, middles, median_filter(side, EVIDENCE.sections_alike, mode="mirror"))
-
-
-def seen_in_stretch(points: RoadPoints, stretch: Stretch) -> list[tuple[int, np.ndarray, np.ndarray, np.ndarray]]:
-    """The phase that looks where the surface was scanned.
-
-    Returns of each section the number of the first of the N stations of the grid that it shows; (N, BINS) bool, the bins with points; (N, 2) sums of
-    half widths (mm) and (N, 2) numbers of points on the left and on the right.
-    """
-    return [_seen_in_section(points.section(*key).records) for key in points.store.in_stretch(stretch)]
-
-
-def _seen_in_section(records):
-    """What `seen_in_stretch` gives of one section."""
-    step, wide, reach = (int(round(length / COORDINATE_SCALE)) for length in (STATION_STEP, BIN, FAR))
-    k, d = (records["s"] + step // 2) // step, records["d"]
-    inside = np.abs(d) < reach
-    if not inside.any():
-        return 0, np.zeros((0, BINS), bool), np.zeros((0, 2)), np.zeros((0, 2))
-    half_width = records["half_width"]
-    if not inside.all():
-        k, d, half_width = k[inside], d[inside], half_width[inside]
-    begin = int(k.min())
-    k -= begin
-    stations = int(k.max()) + 1
-    covered = np.zeros((stations, BINS), bool)
-    covered.reshape(-1)[k * BINS + (d + reach) // wide] = True
-    side = 2 * k + (d < 0)
-    total, number = (np.bincount(side, weights, 2 * stations).reshape(-1, 2) for weights in (half_width, None))
-    return begin, covered, total, number
 
 
 def between_ends(ends: np.ndarray, likely: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -14,6 +14,7 @@ from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import FrameLines
 from ...survey.frame.row_table import BLOCK, RowSpans, RowTable
+from ...survey.store.seen import STATION_STEP
 from ..weights import SECTIONS
 
 if TYPE_CHECKING:
@@ -167,7 +168,6 @@ def _sections(lines: _GridLines) -> CrossSections:
 
 # Lines resampled to common stations: short gaps are bridged, and lines that continue each other are merged.
 
-STATION_STEP = 0.5   # derived: m of station between places where lanes are looked for
 GAP_REACH = int(SECTIONS.max_dash_gap / STATION_STEP)   # derived: the same in stations
 # what is known of a line at each station, and what stands where it is not
 MISSING = dict(d=np.float64(np.nan), z=np.float64(np.nan), seen=np.bool_(False), drawn=np.int32(-1), number=np.int32(-1), width=np.float64(np.nan))

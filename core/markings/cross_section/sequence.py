@@ -13,10 +13,11 @@ import numpy as np
 
 from ...common.parallel import check_cancelled
 from ...countries.catalogue import NEUTRAL
+from ...survey.store.seen import BIN, FAR
 from ..weights import LANES
 from .beside import BEYOND, WIDTH
-from .candidates import FAR, Candidates
-from .evidence import BIN, Evidence
+from .candidates import Candidates
+from .evidence import Evidence
 from .weights import (
     CENTRE_LINE,
     CURB,

@@ -341,28 +341,18 @@ PLACE = "the markings of all roads"   # names the stretch of road in messages
 TASK_POINTS = 20_000   # derived: of paint, that a worker process is given together on average: about a tenth of a second of its time
 
 
-def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> list[tuple[Any, ...] | None]:
+def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> list[Comb | None]:
     """The phase that looks for stripes of crossings; item : (N, 2) m spots of windows one after the other, and the bounds of the windows."""
-    places, bounds = item
-    combs = []
-    for first, end in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
-        check_cancelled()
-        comb = comb_of_window(places[first:end])
-        combs.append(None if comb is None else tuple(comb))
-    return combs
+    return [comb_of_window(spots) for spots, in _clusters(item)]
 
 
-def _zebra_stripes(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, list[tuple[Any, ...]]]) -> list[list[tuple[Any, ...]]]:
+def _zebra_stripes(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, list[Comb]]) -> list[list[Stripe]]:
     """The phase that finds the stripes of crossings.
 
     `item` : (N, 2) m spots about crossings one after the other, (N,) radians of the road there, the bounds of the crossings, and the Comb of each.
     """
-    places, way, bounds, combs = item
-    stripes = []
-    for first, end, comb in zip(bounds[:-1].tolist(), bounds[1:].tolist(), combs):
-        check_cancelled()
-        stripes.append([tuple(stripe) for stripe in stripes_of_crossing(places[first:end], way[first:end], Comb(*comb))])
-    return stripes
+    *columns, combs = item
+    return [stripes_of_crossing(*spots, comb) for spots, comb in zip(_clusters(columns), combs)]
 
 
 def pieces_of_clusters(source: NoSource, item: tuple[Any, ...]) -> list[tuple[np.ndarray | None, list[Shape]]]:
@@ -412,15 +402,14 @@ def _clusters(item):
 def combs_asked(places: np.ndarray, windows: Sequence[np.ndarray], until: float) -> Asked:
     """Asks for the Comb of each window, None where it has no stripes; places : (N, 2) m, windows : rows of the spots of each."""
     rows = np.concatenate([np.empty(0, np.int32), *windows])
-    return _asked(combs_of_windows, lambda a, b: (places[rows[a:b]],), np.cumsum([0, *map(len, windows)]), until,
-                  read=lambda combs: [None if comb is None else Comb(*comb) for comb in combs])
+    return _asked(combs_of_windows, lambda a, b: (places[rows[a:b]],), np.cumsum([0, *map(len, windows)]), until)
 
 
 def _stripes_asked(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], until: float) -> Asked:
     """Asks for the stripes of each crossing, their spots by number among those of the crossing; (N,) radians `way` : of the road at each place."""
     rows = np.concatenate([np.empty(0, np.intp), *(spots for spots, _ in crossings)])
     return _asked(_zebra_stripes, lambda a, b: (places[rows[a:b]], way[rows[a:b]]), np.cumsum([0, *(len(spots) for spots, _ in crossings)]), until,
-                  [tuple(comb) for _, comb in crossings], read=lambda found: [[Stripe(*stripe) for stripe in stripes] for stripes in found])
+                  [comb for _, comb in crossings])
 
 
 def pieces_asked(columns: Sequence[np.ndarray], bounds: np.ndarray, compound: np.ndarray, until: float) -> Asked:

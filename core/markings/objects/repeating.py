@@ -7,6 +7,7 @@ much is worn off. That is measured by the length of their mean phase. Bars of ha
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +33,8 @@ COMB_REACH = int(1.5 * STRIPES.comb_window / STRIPES.comb_bin)   # derived: bins
 COMB_PHASES = np.exp(2j * np.pi * STRIPES.comb_bin * np.arange(-COMB_REACH, COMB_REACH + 1)[:, None] / COMB_PITCHES)
 
 
-class Comb(NamedTuple):
+@dataclass(frozen=True)
+class Comb:
     """Stripes of one direction and pitch, as clear as `coherence` from 0 to 1.
 
     `heading` : radians from the first axis to theirs; `phase` : m, where the middle of one lies across them, from the place `middle` on.
@@ -45,7 +47,8 @@ class Comb(NamedTuple):
     coherence: float
 
 
-class Stripe(NamedTuple):
+@dataclass(frozen=True)
+class Stripe:
     """One stripe: the spots that lie on it, and its (4, 2) corners, m."""
 
     spots: np.ndarray
@@ -76,7 +79,7 @@ def stripes_apart(places: np.ndarray, way: np.ndarray, crossings: Sequence[Cross
             check_cancelled()
             members = members[unused[members]]
             stripes = stripes_of_crossing(places[members], way[members], best)
-        stripes = [stripe._replace(spots=members[stripe.spots]) for stripe in stripes]
+        stripes = [replace(stripe, spots=members[stripe.spots]) for stripe in stripes]
         unused[np.concatenate([np.empty(0, np.int64), *(stripe.spots for stripe in stripes)])] = False
         result += stripes
     return result
@@ -294,7 +297,7 @@ def _fitted(number, off, along, comb, row):
     shift, stretch, turn = np.linalg.lstsq(design, off[on_stripes], rcond=None)[0].tolist()
     # across the turned stripes the distances shorten by the cosine of the turn
     heading, c = comb.heading + np.arctan(turn), np.cos(np.arctan(turn))
-    return comb._replace(heading=float(heading), pitch=(comb.pitch + stretch) * c, phase=(comb.phase + shift) * c)
+    return replace(comb, heading=float(heading), pitch=(comb.pitch + stretch) * c, phase=(comb.phase + shift) * c)
 
 
 def _striped(number, phase, along):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -164,12 +164,15 @@ def _take_points(survey, found, road_points, counted, cubes, progress):
     phase = Phase(surface_points, road_points, (counted,), lambda item: survey.stretch(item[0][0], item[0][1] * length, item[0][2] * length),
                   state=lambda item: None)   # what is asked of a survey stays as it is
     items = [(stretch, surface_about(found[stretch[0]], stretch, length)) for stretch in survey.store.stretches(list(found))]
-    for (index, first_row, rows, of_scanners, of_sections), ((road, *_), _) in zip(executor.run(phase, items, progress), items):
+    seen: dict[int, list[Any]] = {}
+    for (index, first_row, rows, of_scanners, of_sections, seen_there), ((road, *_), _) in zip(executor.run(phase, items, progress), items):
         road_points.store.adopt(index, executor.folder)
+        seen.setdefault(road, []).extend(seen_there)
         cubes += of_sections
         road_points.of_scanners = of_scanners + (0 if road_points.of_scanners is None else road_points.of_scanners)
         first = first_row - found[road].cells.first_row
         per_row[road][first:first + len(rows)] += rows
+    road_points.seen = seen if counted else None
     return per_row
 
 

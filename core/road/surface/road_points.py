@@ -11,6 +11,7 @@ from ...survey.density import CountedCubes, counted_cubes
 from ...survey.store.records import COORDINATE_SCALE, Points, points_of_scanners
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import StoreIndex, Stretch
+from ...survey.store.seen import Seen, seen_in_section
 from ..weights import SURFACE
 from .pavement_edge import Carriageway
 
@@ -69,17 +70,17 @@ def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: fl
 
 
 def surface_points(road_points: RoadPoints, item: tuple[Stretch, Carriageway],
-                   counted: bool) -> tuple[StoreIndex, int, np.ndarray, np.ndarray, list[tuple[CountedCubes, CountedCubes]]]:
+                   counted: bool) -> tuple[StoreIndex, int, np.ndarray, np.ndarray, list[tuple[CountedCubes, CountedCubes]], list[Seen]]:
     """The phase that selects the points of the road surface, section by section, and puts them into a part of the store of road points.
 
     item : Stretch of a road, and what `surface_about` says of it
-    counted : whether points are counted in cubes
+    counted : whether points are counted in cubes, and is looked where the surface was scanned
 
     Returns where the points lie, the number of the first of R rows of cells, (R,) int64 points in each of them, (256,) of each scanner,
-    and of each section the CountedCubes of all its points and of those on the road.
+    and of each section the CountedCubes of all its points and of those on the road, and `seen_in_section` of the latter.
     """
     stretch, carriageway = item
-    per_row, of_scanners, cubes = np.zeros(len(carriageway.height), np.int64), [], []
+    per_row, of_scanners, cubes, seen = np.zeros(len(carriageway.height), np.int64), [], [], []
     with road_points.store.part() as part:
         for key in road_points.survey.store.in_stretch(stretch):
             records, of_section = _points_of_section(road_points.survey, key, carriageway)
@@ -88,7 +89,8 @@ def surface_points(road_points: RoadPoints, item: tuple[Stretch, Carriageway],
             of_scanners.append(points_of_scanners(records))
             if counted:
                 cubes.append((counted_cubes(road_points.survey.section(*key)), counted_cubes(Points(records))))
-    return part.index(), carriageway.cells.first_row, per_row, sum(of_scanners, np.zeros(256, np.int64)), cubes
+                seen.append(seen_in_section(records))
+    return part.index(), carriageway.cells.first_row, per_row, sum(of_scanners, np.zeros(256, np.int64)), cubes, seen
 
 
 def _points_of_section(survey, key, carriageway):

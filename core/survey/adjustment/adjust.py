@@ -105,9 +105,9 @@ def _disagree(offsets):
     return any(len(values) and np.percentile(values, 90) > least for values, least in zip(_separations(offsets), limits))
 
 
-def _report_offsets(road, offsets, found, progress):
+def _report_offsets(road, offsets, corrections, progress):
     """Log the offsets, and warn of places where passes still differ after the corrections found."""
-    if found:
+    if corrections:
         separations = _separations(offsets)
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in separations)
         message = f"Road {road}: its passes lay {plan} beside and {up} above each other"
@@ -121,14 +121,14 @@ def _report_offsets(road, offsets, found, progress):
         plan, up = (100 * np.percentile(v, 90) for v in _separations(offsets))
         progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
                      "they stay as they were measured.")
-    if warning := warning_of_places(road, remaining_places(offsets, found)):
+    if warning := warning_of_places(road, remaining_places(offsets, corrections)):
         progress.warn(warning)
 
 
-def _map_corrections(frame, found):
+def _map_corrections(frame, corrections):
     """PassCorrections of the result of `solve_corrections`."""
     moves = {}
-    for number, (stations, (along, left, up)) in found.items():
+    for number, (stations, (along, left, up)) in corrections.items():
         heading = frame.road(frame.passes[number].road).heading(stations)
         c, n = np.cos(heading), np.sin(heading)
         moves[number] = float(stations[0]), to_units([along * c - left * n, along * n + left * c, up]).astype(np.int16)

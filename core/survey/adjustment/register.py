@@ -246,11 +246,11 @@ def _taken_out(pair, axis, rough):
     return moves
 
 
-def _measured_again(found, axis, seen, again):
+def _measured_again(offsets, axis, seen, again):
     """The PassOffsets with offsets along an axis from evidence in which those along the other are taken out, where there is such evidence."""
     of_window = {pair: {row[0]: row for row in rows} for pair, rows in again.items()}
     evidence = {pair: [of_window.get(pair, {}).get(row[0], row) for row in rows] for pair, rows in seen.items()}
-    return [replace(before, **{axis: getattr(after, axis)}) for before, after in zip(found, _combined(evidence))]
+    return [replace(before, **{axis: getattr(after, axis)}) for before, after in zip(offsets, _combined(evidence))]
 
 
 def _with_rough(pair, places):
@@ -336,16 +336,16 @@ def _window_evidence(survey, road, number, moves, lags=LAGS):
     owner, s, d, h = points.pass_number.take(near), s[near] - number * WINDOW_LENGTH, d[near] + REGISTER.strip_half_width, h[near]
     intensity = points.intensity.take(near).astype(float)
 
-    def strips(own, along=0.0, left=0.0):
+    def strips(of_pass, along=0.0, left=0.0):
         """Strips across and along of the points of a pass, moved."""
-        places, offsets = s[own] + along, d[own] + left
-        return [Strips.of(fine, coarse, h[own], intensity[own], (round(width / REGISTER.row_cell), round(length / REGISTER.lag_cell)))
+        places, offsets = s[of_pass] + along, d[of_pass] + left
+        return [Strips.of(fine, coarse, h[of_pass], intensity[of_pass], (round(width / REGISTER.row_cell), round(length / REGISTER.lag_cell)))
                 for fine, coarse, length, width in ((offsets, places, 2 * REGISTER.strip_half_width, WINDOW_LENGTH),
                                                     (places, offsets, WINDOW_LENGTH, 2 * REGISTER.strip_half_width))]
 
-    rows = {pass_number: own for pass_number in np.unique(owner).tolist()
-            if len(own := np.flatnonzero(owner == pass_number)) > REGISTER.min_shared_cells}
-    still, evidence = {pass_number: strips(own) for pass_number, own in rows.items()}, {}
+    rows = {pass_number: of_pass for pass_number in np.unique(owner).tolist()
+            if len(of_pass := np.flatnonzero(owner == pass_number)) > REGISTER.min_shared_cells}
+    still, evidence = {pass_number: strips(of_pass) for pass_number, of_pass in rows.items()}, {}
     for pass_number, next_number in zip(list(rows)[:-1], list(rows)[1:]):
         move = moves.get((pass_number, next_number), {}).get(number)
         across, lengthwise = strips(rows[next_number], *move) if move is not None else still[next_number]

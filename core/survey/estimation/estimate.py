@@ -131,14 +131,14 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
     return result
 
 
-def _explains(found):
+def _explains(adjusted):
     """Whether returns lie on the rays of adjusted poses, None for none."""
-    return found is not None and found.unexplained <= RAYS.max_unexplained
+    return adjusted is not None and adjusted.unexplained <= RAYS.max_unexplained
 
 
-def _could_be_driven(found):
+def _could_be_driven(adjusted):
     """Whether a vehicle can have moved as the poses say."""
-    tracks = [found.poses.control[drive.first:drive.first + drive.count, :2] for drive in found.poses.drives]
+    tracks = [adjusted.poses.control[drive.first:drive.first + drive.count, :2] for drive in adjusted.poses.drives]
     return _usual_acceleration(tracks, MIRROR.knot_spacing) <= ESTIMATE.max_acceleration
 
 
@@ -203,19 +203,19 @@ def _returns(samples: Samples, poses: Poses, scanners: list[Spinning]) -> Return
     return Returns(interval, share, time, place, scanner, rounding_of(samples.time, samples.start))
 
 
-def _of_rays(samples, tracks, scanners, found, crs):
+def _of_rays(samples, tracks, scanners, adjusted, crs):
     """The poses at even times, as far as they are known well enough."""
     rows, lost = [], 0.0
-    for drive, knots in zip(samples.drives, found.poses.drives):
+    for drive, knots in zip(samples.drives, adjusted.poses.drives):
         first, last = float(samples.time[drive.start]), float(samples.time[drive.stop - 1])
         time = np.append(np.arange(first, last, ESTIMATE.row_spacing), last)
         interval, share = knots.interval(time)
-        covariance = found.place_covariance[interval + 1 + (share > 0.5)]
+        covariance = adjusted.place_covariance[interval + 1 + (share > 0.5)]
         flat = np.sqrt(covariance[:, 0, 0] + covariance[:, 1, 1] + ESTIMATE.least_sigma**2)
         kept = flat <= ESTIMATE.max_sigma
         lost += np.count_nonzero(~kept) * ESTIMATE.row_spacing
         up = np.sqrt(covariance[:, 2, 2] + ESTIMATE.least_sigma**2)
-        rows.append(np.column_stack([time, found.poses.at(interval, share)[:, :YAW + 1], flat, up])[kept])
+        rows.append(np.column_stack([time, adjusted.poses.at(interval, share)[:, :YAW + 1], flat, up])[kept])
     time, x, y, z, roll, pitch, yaw, flat, up = np.concatenate(rows).T
     if not len(time):
         raise RoadExtractionError(f"The places of the scanner could not be told to {ESTIMATE.max_sigma:g} m anywhere. The times may be those of an "
@@ -223,7 +223,7 @@ def _of_rays(samples, tracks, scanners, found, crs):
     ox, oy, oz = samples.origin
     trajectory = Trajectory(time + samples.start, x + ox, y + oy, z + oz, np.degrees(roll), np.degrees(pitch), (90.0 - np.degrees(yaw)) % 360.0, crs)
     ground = np.interp(time, *(np.concatenate(column) for column in zip(*((track.time, track.foot[:, 2]) for track in tracks))))
-    result = EstimatedTrajectory(trajectory, flat, up, "rays", scanners, found, float(np.median(z - ground)))
+    result = EstimatedTrajectory(trajectory, flat, up, "rays", scanners, adjusted, float(np.median(z - ground)))
     left_out = samples.scanners - len(scanners)
     if left_out:
         result.notes.append(f"{left_out} of {samples.scanners} scanners show no steadily turning mirror and took no part.")

@@ -141,9 +141,9 @@ class _LineLookup:
         offset += left
         return share, offset, left, bend, ahead
 
-    def _carry_on(self, k, x, y, found):
-        """Step to further nodes with the points whose nearest point lies beyond node k, and update `found`."""
-        share, _, _, bend, ahead = found
+    def _carry_on(self, k, x, y, so_far):
+        """Step to further nodes with the points whose nearest point lies beyond node k, and update `so_far`."""
+        share, _, _, bend, ahead = so_far
         rows = np.flatnonzero(~_beside(share))
         bend, ahead = bend.take(rows), ahead.take(rows)
         x, y = x.take(rows), y.take(rows)
@@ -154,7 +154,7 @@ class _LineLookup:
             moved = self._moved(k.take(rows), ahead, bend, buffers)
             k[rows] = moved
             nearest = self._nearest_point(moved, x, y, buffers)
-            for values, moved_values in zip(found[:4], nearest):
+            for values, moved_values in zip(so_far[:4], nearest):
                 values[rows] = moved_values
             on = np.flatnonzero(~_beside(nearest[0]))
             rows, x, y, bend, ahead = (column.take(on) for column in (rows, x, y, nearest[3], nearest[4]))

@@ -38,10 +38,10 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
     with ParallelCloudReader(("z", "intensity")) as reader:
         ranges = [(file, number) for file in files for number in file.numbers(reader, place, radius)]
         parts = ordered_map(lambda item: item[0].within(item[1], reader, place, radius), ranges, progress)
-        found = np.concatenate([np.empty((0, 4)), *parts])
+        points = np.concatenate([np.empty((0, 4)), *parts])
     if not units.metric:
-        found[:, :3] = units.in_file(found[:, :3].T).T
-    return found
+        points[:, :3] = units.in_file(points[:, :3].T).T
+    return points
 
 
 def _state(path):

@@ -246,9 +246,9 @@ def read_points(reader: Any, path: str | os.PathLike[str], first: int, count: in
     return points
 
 
-def truncated_file_error(path: str | os.PathLike[str], promised: int, found: int) -> RoadExtractionError:
+def truncated_file_error(path: str | os.PathLike[str], promised: int, present: int) -> RoadExtractionError:
     """The error for a file that ends before its last point."""
-    return RoadExtractionError(f"{path} is cut off: its header promises {promised} points, {found} are there. Copy or export the file again.")
+    return RoadExtractionError(f"{path} is cut off: its header promises {promised} points, {present} are there. Copy or export the file again.")
 
 
 def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str], promised: int, first: int) -> ReadResult:

@@ -13,6 +13,7 @@ from ...execution.phase import THREADS, Executor, Recipe
 from .columns import Columns
 from .records import ROAD_POINT, Points, join_columns, point_dtype, points_of_scanners
 from .section_store import SectionStore, Stretch, opened_store
+from .seen import Seen, seen_in_section
 
 if TYPE_CHECKING:
     from ..frame.row_table import SigmaAlong
@@ -33,6 +34,7 @@ class RoadPoints:
     survey: Any = field(default=None, repr=False)   # Survey whose points these are, None where they are their own
     density: Any = ()   # CubeDensity of all points of the survey and of these, where that was asked for
     of_scanners: np.ndarray | None = None   # as of `points_of_scanners`, where they were counted
+    seen: dict[int, list[Seen]] | None = None   # as of `seen_surface`, where that was looked at
 
     @property
     def executor(self) -> Executor:
@@ -95,6 +97,10 @@ class RoadPoints:
         """(256,) how many points each scanner has."""
         sections = (points_of_scanners(self.section(*key).records) for key in self.all_sections())
         return sum(sections, np.zeros(256, np.int64)) if self.of_scanners is None else self.of_scanners
+
+    def seen_surface(self) -> dict[int, list[Seen]]:
+        """{number of a road: what `seen_in_section` gives of its sections, in order}."""
+        return self.seen or {road: [seen_in_section(self.section(road, number).records) for number in self.sections(road)] for road in self.roads()}
 
     def all_sections(self) -> list[tuple[int, int]]:
         """(road, section number) of every section that has points, in order."""

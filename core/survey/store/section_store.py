@@ -91,18 +91,18 @@ class SectionStore:
     section_length : metres
     folder : where the points go, so that others can read them; None for temporary files without a name
     constants : {name: value} of the columns that have one value for all points
-    base : another store of the same points, which has the columns that are not `own`
+    base : another store of the same points, which has the columns that are not `stored`
     """
 
     def __init__(self, dtype: Any, section_length: float = STORE.section_length, folder: Path | None = None,
-                 constants: Mapping[str, Any] | None = None, base: SectionStore | None = None, own: Sequence[str] = ()):
+                 constants: Mapping[str, Any] | None = None, base: SectionStore | None = None, stored: Sequence[str] = ()):
         self.dtype, self.section_length, self.folder = np.dtype(dtype), section_length, folder
         self.constants, self.base = dict(constants or {}), base
         # the widest numbers come first, so that each begins at a multiple of its own bytes
-        names = [name for name in own or self.dtype.names or () if name not in self.constants]
-        self._own = sorted(names, key=lambda name: -self.dtype[name].itemsize)
-        sizes = [self.dtype[name].itemsize for name in self._own]
-        self._row_bytes, self._before = sum(sizes), dict(zip(self._own, np.cumsum([0, *sizes]).tolist()))
+        names = [name for name in stored or self.dtype.names or () if name not in self.constants]
+        self._stored = sorted(names, key=lambda name: -self.dtype[name].itemsize)
+        sizes = [self.dtype[name].itemsize for name in self._stored]
+        self._row_bytes, self._before = sum(sizes), dict(zip(self._stored, np.cumsum([0, *sizes]).tolist()))
         # called once for each section before it is sorted: (road, Columns in no order, which it may change) -> mask of points to keep, None for all
         self.finish: Callable[[int, Columns], np.ndarray | None] | None = None
         self.at_close: Callable[[], None] | None = None   # called once the points are released
@@ -136,15 +136,15 @@ class SectionStore:
 
     def add(self, points: PartitionedPoints) -> None:
         rows = len(points.records)
-        file, place = self._written(False, rows, (points.records[name] for name in self._own))
+        file, place = self._written(False, rows, (points.records[name] for name in self._stored))
         for k, (first, end) in enumerate(zip([0, *points.ends], points.ends)):
             if end > first:
                 self._add_part((points.road, points.first + k), _Part(file, place, rows, first, end - first), False)
 
     def put(self, road: int, section: int, records: Any) -> None:
-        """Set the own columns of the (N,) points of one section, in canonical order; no more points are added to it."""
+        """Set the stored columns of the (N,) points of one section, in canonical order; no more points are added to it."""
         if len(records):
-            file, place = self._written(True, len(records), (records[name] for name in self._own))
+            file, place = self._written(True, len(records), (records[name] for name in self._stored))
             self._add_part((int(road), int(section)), _Part(file, place, len(records), 0, len(records)), True)
 
     def _written(self, in_order, rows, columns):
@@ -230,7 +230,7 @@ class SectionStore:
         if not rows:
             return []
         file, place = target._written(True, rows, (records[name][order] if section.in_order else np.take(
-            records[name], order, out=buffer("moved", self.dtype[name])[:rows], mode="clip") for name in self._own))
+            records[name], order, out=buffer("moved", self.dtype[name])[:rows], mode="clip") for name in self._stored))
         return [_Part(file, place, rows, 0, rows)]
 
     def _gathered(self, parts, name, out):
@@ -242,7 +242,7 @@ class SectionStore:
         return out
 
     def _values(self, part, name):
-        """(N,) read-only values of an own column."""
+        """(N,) read-only values of a stored column."""
         file = opened(part.file) if isinstance(part.file, Path) else part.file
         return file.get(part.place + part.rows * self._before[name] + part.first * self.dtype[name].itemsize, part.size, self.dtype[name])
 
@@ -297,7 +297,7 @@ class SectionStore:
     @contextmanager
     def part(self) -> Iterator[SectionStore]:
         """A store like this one, without points, to be filled and told by its `index`; of a folder, in one new file that appears at the end."""
-        part = SectionStore(self.dtype, self.section_length, self.folder, self.constants, self.base, self._own)
+        part = SectionStore(self.dtype, self.section_length, self.folder, self.constants, self.base, self._stored)
         if self.folder is None:
             part._files, part._lock = self._files, self._lock
             yield part
@@ -322,7 +322,7 @@ class SectionStore:
     def contents(self) -> dict[str, Any]:
         """What another process needs to open this store by `opened_store`, whose points lie in its folder; plain values."""
         return dict(columns=[list(column) for column in self.dtype.descr], section_length=self.section_length, points=self.index(),
-                    constants=self.constants, own=self._own, base=self.base and dict(self.base.contents(), folder=str(self.base.folder)))
+                    constants=self.constants, stored=self._stored, base=self.base and dict(self.base.contents(), folder=str(self.base.folder)))
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open this store, whose points lie in its folder."""
@@ -362,9 +362,10 @@ class SectionStore:
 
 
 def opened_store(folder: str | Path, columns: list[list[str]], section_length: float, points: StoreIndex, constants: dict[str, Any],
-                 own: Sequence[str], base: dict[str, Any] | None) -> SectionStore:
+                 stored: Sequence[str], base: dict[str, Any] | None) -> SectionStore:
     """The store of `SectionStore.contents`, whose points lie in a folder."""
-    store = SectionStore([tuple(column) for column in columns], section_length, Path(folder), constants, opened_store(**base) if base else None, own)
+    store = SectionStore([tuple(column) for column in columns], section_length, Path(folder), constants, opened_store(**base) if base else None,
+                         stored)
     store.adopt(points, Path(folder))
     return store
 

@@ -305,26 +305,26 @@ class _Links:
                 fault = "dead end" if end == road.way_out(key[2]) else "no way in"
                 self.findings.add(fault, name, f"At its {end} it is linked to no driven lane.", corners[0])
 
-    def _joined(self, name, key, end, own, other, there, target, driven):
+    def _joined(self, name, key, end, here, other, there, target, driven):
         neighbour = self._end(other, there)
         # seen along the road, an end that touches another end has left and right swapped
         turned = end == there
-        pairs = ((own[0], neighbour[1] if turned else neighbour[0]), (own[1], neighbour[0] if turned else neighbour[1]))
+        pairs = ((here[0], neighbour[1] if turned else neighbour[0]), (here[1], neighbour[0] if turned else neighbour[1]))
         apart = [pair[0] - pair[1] for pair in pairs]
         gap, rise = max(float(np.hypot(*d[:2])) for d in apart), max(abs(float(d[2])) for d in apart)
-        kink = abs(float(wrapped(own[2] - neighbour[2] + np.pi * turned)))
+        kink = abs(float(wrapped(here[2] - neighbour[2] + np.pi * turned)))
         for fault, size, most, text in (("gap at a link", gap, MAX_GAP_AT_LINK, metres(gap)),
                                         ("height step at a link", rise, MAX_HEIGHT_AT_LINK, metres(rise)),
                                         ("kink at a link", kink * driven, MAX_KINK_AT_LINK, f"{kink:.3f} rad")):
             if size > most:
-                self.findings.add(fault, name, f"{text} between it and lane {other[2]} of road {other[0]} at its {end}.", own[0])
+                self.findings.add(fault, name, f"{text} between it and lane {other[2]} of road {other[0]} at its {end}.", here[0])
         road, to = self.network.roads[key[0]], self.network.roads[other[0]]
         if driven and target.type in DRIVEN_TYPES and (end == road.way_out(key[2])) == (there == to.way_out(other[2])):
-            self.findings.add("direction at a link", name, f"Lane {other[2]} of road {other[0]} is driven against it.", own[0])
+            self.findings.add("direction at a link", name, f"Lane {other[2]} of road {other[0]} is driven against it.", here[0])
         # lanes of a junction need not be linked back
         if (key[0] == other[0] or road.junction == to.junction == "-1") and not any(
                 back == key for back, _ in self.network.touching(other, there)):
-            self.findings.add("one-sided link", name, f"Lane {other[2]} of road {other[0]} is not linked back.", own[0])
+            self.findings.add("one-sided link", name, f"Lane {other[2]} of road {other[0]} is not linked back.", here[0])
 
     def _end(self, key, end):
         """(left, right) end of a lane's borders along the road, (3,) each, and the heading there."""

@@ -83,8 +83,8 @@ def _corners(road, item):
     if not len(corners):
         corners = np.array([[u, v, 0.0] for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1))]) * [item["length"] / 2, item["width"] / 2, 0.0]
     place, (heading,), _ = road.plan.at(np.array([s]))
-    own, n = heading + item["hdg"], np.array([-np.sin(heading), np.cos(heading)])
-    way = np.array([[np.cos(own), np.sin(own)], [-np.sin(own), np.cos(own)]])
+    turned, n = heading + item["hdg"], np.array([-np.sin(heading), np.cos(heading)])
+    way = np.array([[np.cos(turned), np.sin(turned)], [-np.sin(turned), np.cos(turned)]])
     return np.c_[place + t * n + corners[:, :2] @ way, corners[:, 2] + item["zOffset"] + road.elevation.at(np.array([s]))]
 
 
@@ -133,8 +133,8 @@ def add_objects(whole: OpenDriveMap, markings: Features | None, signals: Feature
     nearest = _nearest(roads)
     for number, (kind, name, corners) in enumerate(shapes):
         local = corners - origin
-        if (found := nearest(local[:, :2].mean(0))) is not None:
-            found[0].objects.append(_object(number, kind, name, local, *found))
+        if (place := nearest(local[:, :2].mean(0))) is not None:
+            place[0].objects.append(_object(number, kind, name, local, *place))
     homes = defaultdict(list)
     for road in whole.roads:
         for section in road.sections:
@@ -150,11 +150,11 @@ def _add_signal(number, place, row, homes, nearest):
         return
     names = [name.strip() for name in str(row.get("lanes") or "").split(",")]
     near = [min((_nearest([road])(place[:2], np.inf) for road, _ in homes[name]), key=lambda one: one[2]) for name in names if name in homes]
-    roads = {found[0].id: found for found in sorted(near, key=lambda one: one[2])}
-    found = next(iter(roads.values()), None) or nearest(place[:2])
-    if found is None:
+    roads = {place_on_road[0].id: place_on_road for place_on_road in sorted(near, key=lambda one: one[2])}
+    place_on_road = next(iter(roads.values()), None) or nearest(place[:2])
+    if place_on_road is None:
         return
-    for road, s_near, _ in list(roads.values()) or [found]:
+    for road, s_near, _ in list(roads.values()) or [place_on_road]:
         (s,), (t,) = road.plan.feet(place[None, :2], np.array([s_near]))
         s, t = float(np.clip(s, 0.0, road.length)), float(t)
         level = road.surface.places(np.array([s]), np.array([t]))[0, 2]
@@ -164,7 +164,7 @@ def _add_signal(number, place, row, homes, nearest):
             road.objects.append({**_object_of(item, "pole", "pole"), "length": width, "width": width, "height": row.get("height_m") or 0.0})
         else:
             obeying = {id for name in names for home, id in homes.get(name, ()) if home is road}
-            road.signals.append({**_signal(road, s, row, obeying), **item, "own": road is found[0]})
+            road.signals.append({**_signal(road, s, row, obeying), **item, "own": road is place_on_road[0]})
 
 
 def _signal(road, s, row, obeying):

@@ -450,9 +450,9 @@ def _known(road, number, id):
     """What a map says of a lane's road: the speed limit in the middle of the section, and its name where that is none by number."""
     section = road.sections[number]
     middle = (section.s + road.section_end(number)) / 2
-    said = [(s + section.s, speed) for s, speed in section.lanes[id].speeds if s + section.s <= middle] or [
+    limits = [(s + section.s, speed) for s, speed in section.lanes[id].speeds if s + section.s <= middle] or [
         (s, speed) for s, speed in road.speeds if s <= middle]
-    known = {"speed_kmh": said[-1][1]} if said and np.isfinite(said[-1][1]) else {}
+    known = {"speed_kmh": limits[-1][1]} if limits and np.isfinite(limits[-1][1]) else {}
     return known | ({"name": road.name} if road.name and not re.fullmatch(r"Road [\d, ]+", road.name) else {})
 
 

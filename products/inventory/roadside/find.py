@@ -89,17 +89,17 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
     return roadside
 
 
-def _report(found: Roadside, progress: Progress) -> None:
+def _report(roadside: Roadside, progress: Progress) -> None:
     """Log what was found, and what was missing for it."""
     lengths: dict[str, float] = {}
-    for line in found.lines:
+    for line in roadside.lines:
         lengths[line.kind] = lengths.get(line.kind, 0.0) + sum(piece.length for _, piece in line.chain.pieces())
     text = ", ".join(f"{length:.0f} m of {kind.replace('_', ' ')}" for kind, length in sorted(lengths.items())) or "no lines"
-    progress.info(f"Beside the road: {text}; {sum(map(len, found.poles.values()))} poles, signs and trunks.")
-    if not any(edges.known for edges in found.edges.values()):
-        found.notes.append(f"Without road edges, marking lines, driving lines or lanes everything more than {BEYOND_TRACK:.0f} m from the track "
+    progress.info(f"Beside the road: {text}; {sum(map(len, roadside.poles.values()))} poles, signs and trunks.")
+    if not any(edges.known for edges in roadside.edges.values()):
+        roadside.notes.append(f"Without road edges, marking lines, driving lines or lanes everything more than {BEYOND_TRACK:.0f} m from the track "
                            "counts as beside the road, parked cars too, and gutters are not looked for. Give the road edges.")
-    for note in found.notes:
+    for note in roadside.notes:
         progress.warn(note)
 
 
@@ -238,21 +238,21 @@ class Roadside:
     notes: list[str] = field(default_factory=list)
 
 
-def told_once(found: Roadside) -> tuple[list[SideLine], dict]:
+def told_once(roadside: Roadside) -> tuple[list[SideLine], dict]:
     """Lines of all roads, in their order, and poles by road, without those parts that a road nearer to them has too."""
-    return _lines(found), _poles(found)
+    return _lines(roadside), _poles(roadside)
 
 
-def _lines(found):
-    shapes = [shapely.linestrings(np.stack(found.frame.to_map(line.chain.road, line.chain.s, line.chain.d), axis=1)) for line in found.lines]
-    distances = [_away(found, line.chain.road, line.chain.s, line.chain.d, line.chain.side) for line in found.lines]
+def _lines(roadside):
+    shapes = [shapely.linestrings(np.stack(roadside.frame.to_map(line.chain.road, line.chain.s, line.chain.d), axis=1)) for line in roadside.lines]
+    distances = [_away(roadside, line.chain.road, line.chain.s, line.chain.d, line.chain.side) for line in roadside.lines]
     kept = []
-    for k, line in enumerate(found.lines):
-        nearer = [shapes[j] for j, twin in enumerate(found.lines) if twin.kind == line.kind != "gutter" and twin.chain.road != line.chain.road
+    for k, line in enumerate(roadside.lines):
+        nearer = [shapes[j] for j, twin in enumerate(roadside.lines) if twin.kind == line.kind != "gutter" and twin.chain.road != line.chain.road
                   and (distances[j], twin.chain.road) < (distances[k], line.chain.road)]
         if nearer:
             free = shapely.distance(shapely.points(shapely.get_coordinates(shapes[k])), shapely.union_all(nearer)) > SAME_THING
-            kept += [replace(line, chain=part) for part in _parts(line.chain, free, found.settings.min_length)]
+            kept += [replace(line, chain=part) for part in _parts(line.chain, free, roadside.settings.min_length)]
         else:
             kept.append(line)
     return kept
@@ -265,23 +265,23 @@ def _parts(chain, free, min_length):
     return [chain.part(np.arange(a, b)) for a, b in mask_runs(free) if chain.s[b - 1] - chain.s[a] >= min_length]
 
 
-def _poles(found):
-    rows = [(road, pole) for road, poles in found.poles.items() for pole in poles]
-    if len(found.poles) < 2 or not rows:
-        return found.poles
-    places = np.array([np.r_[found.frame.to_map(road, np.array([pole.s]), np.array([pole.d]))] for road, pole in rows]).reshape(len(rows), 2)
-    distances = np.array([min(_away(found, road, np.array([pole.s]), np.array([pole.d]), side) for side in (1, -1)) for road, pole in rows])
+def _poles(roadside):
+    rows = [(road, pole) for road, poles in roadside.poles.items() for pole in poles]
+    if len(roadside.poles) < 2 or not rows:
+        return roadside.poles
+    places = np.array([np.r_[roadside.frame.to_map(road, np.array([pole.s]), np.array([pole.d]))] for road, pole in rows]).reshape(len(rows), 2)
+    distances = np.array([min(_away(roadside, road, np.array([pole.s]), np.array([pole.d]), side) for side in (1, -1)) for road, pole in rows])
     number = np.array([road for road, _ in rows])
     first, second = shapely.STRtree(shapely.points(places)).query(shapely.points(places), predicate="dwithin", distance=SAME_THING)
     farther = (number[first] != number[second]) & (
         (distances[first] > distances[second]) | (distances[first] == distances[second]) & (number[first] > number[second]))
     twins = set(first[farther].tolist())
-    return {road: [pole for k, (pole_road, pole) in enumerate(rows) if pole_road == road and k not in twins] for road in found.poles}
+    return {road: [pole for k, (pole_road, pole) in enumerate(rows) if pole_road == road and k not in twins] for road in roadside.poles}
 
 
-def _away(found, road, s, d, side):
+def _away(roadside, road, s, d, side):
     """m, median distance of places from the edge of a side of a road, however it is known."""
-    return float(np.median(np.abs(d - found.edges[road].of(side, s))))
+    return float(np.median(np.abs(d - roadside.edges[road].of(side, s))))
 
 
 # What is thick and loose, as a hedge, shows uprights on its face and inside it, and may be followed along either: it is told once, by its face.
@@ -334,25 +334,25 @@ DRAWN_TOLERANCE = 0.03   # m to which lines are simplified
 ON_GROUND = (FIRST_BIN + 1) * HEIGHT_BIN  # m: what is seen from here down stands on the ground, for grass hides the rest
 
 
-def roadside_to_features(found: Roadside) -> tuple[Features, Features]:
+def roadside_to_features(roadside: Roadside) -> tuple[Features, Features]:
     """The layers ROADSIDE (the pieces of lines with Z along the foot, on the ground) and ROADSIDE_OBJECTS (points on the ground)."""
-    lines, points = Features("LineStringZ", ROADSIDE, crs=found.crs), Features("PointZ", ROADSIDE_OBJECTS, crs=found.crs)
-    for number, line in enumerate(found.lines):
+    lines, points = Features("LineStringZ", ROADSIDE, crs=roadside.crs), Features("PointZ", ROADSIDE_OBJECTS, crs=roadside.crs)
+    for number, line in enumerate(roadside.lines):
         road, side = line.chain.road, line.chain.side
         for status, piece in line.chain.pieces():
-            places = np.stack(found.frame.to_map(road, piece.s, piece.d, piece.ground), axis=1)
+            places = np.stack(roadside.frame.to_map(road, piece.s, piece.d, piece.ground), axis=1)
             if len(places) < 2:  # the slice of a single upright
                 continue
-            shape = shapely.linestrings(places[_vertices(piece.s, places, found.settings.interval)])
+            shape = shapely.linestrings(places[_vertices(piece.s, places, roadside.settings.interval)])
             lines.add(shape, road=road, side=_side(side), line=number, kind=line.kind, status=status, station_m=piece.s[0],
-                      end_m=piece.s[-1], offset_m=np.median(piece.d), edge_m=found.edges[road].beyond(side, piece.s, piece.d),
+                      end_m=piece.s[-1], offset_m=np.median(piece.d), edge_m=roadside.edges[road].beyond(side, piece.s, piece.d),
                       height_m=np.median(line.chain.top), foot_m=line.foot if line.foot > ON_GROUND else 0.0, length_m=shape.length)
-    for road, poles in found.poles.items():
+    for road, poles in roadside.poles.items():
         for pole in poles:
-            x, y, z = found.frame.to_map(road, np.array([pole.s]), np.array([pole.d]), np.array([pole.z]))
-            side = 1 if pole.d > float(found.edges[road].middle(np.array([pole.s]))[0]) else -1
+            x, y, z = roadside.frame.to_map(road, np.array([pole.s]), np.array([pole.d]), np.array([pole.z]))
+            side = 1 if pole.d > float(roadside.edges[road].middle(np.array([pole.s]))[0]) else -1
             points.add(shapely.Point(x[0], y[0], z[0]), road=road, side=_side(side), kind=pole.kind, station_m=pole.s,
-                       offset_m=pole.d, edge_m=found.edges[road].beyond(side, np.array([pole.s]), np.array([pole.d])),
+                       offset_m=pole.d, edge_m=roadside.edges[road].beyond(side, np.array([pole.s]), np.array([pole.d])),
                        height_m=pole.height, diam_m=pole.diameter)
     return lines, points
 

@@ -111,47 +111,47 @@ def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.nd
     return _described(peaks, upright, u[body], above[body], (i[inside], u[inside], above[inside], ground[inside], sight[inside]), slices[0], side)
 
 
-def _described(at, own, u, above, everything, first, side):
-    """Uprights at (slice, cell), with `own` the upright that every point of a body belongs to."""
+def _described(at, upright, u, above, everything, first, side):
+    """Uprights at (slice, cell), with `upright` the upright that every point of a body belongs to."""
     n = len(at)
-    order = np.lexsort((above, own))
-    own, u, above = own[order], u[order], above[order]
-    tops = _contiguous_top(own, above, n)
+    order = np.lexsort((above, upright))
+    upright, u, above = upright[order], u[order], above[order]
+    tops = _contiguous_top(upright, above, n)
     # what hangs over it is no part of it
-    part = above <= tops[own] + 1e-6
-    own, u, above = own[part], u[part], above[part]
-    count = np.bincount(own, minlength=n)
+    part = above <= tops[upright] + 1e-6
+    upright, u, above = upright[part], u[part], above[part]
+    count = np.bincount(upright, minlength=n)
     filled = count > 0
     at, tops, count = at[filled], tops[filled], count[filled]
-    own, n = (np.cumsum(filled) - 1)[own], len(at)
+    upright, n = (np.cumsum(filled) - 1)[upright], len(at)
     start = np.cumsum(count) - count
-    down = np.maximum((tops[own] - above) / TOP_BIN, 0.0).astype(np.int64)
+    down = np.maximum((tops[upright] - above) / TOP_BIN, 0.0).astype(np.int64)
     high = down < TOP_BINS
-    below_top = np.bincount(own[high] * TOP_BINS + down[high], minlength=n * TOP_BINS).reshape(n, TOP_BINS).astype(float)
+    below_top = np.bincount(upright[high] * TOP_BINS + down[high], minlength=n * TOP_BINS).reshape(n, TOP_BINS).astype(float)
     foot = above[start]
     # the face alone tells how it stands: of a low wall most points lie on its top
-    face = tops[own] - above > UPPER_SIDE
-    face |= (np.bincount(own[face], minlength=n) < MIN_FACE_POINTS)[own]
-    own, u, above = own[face], u[face], above[face]
-    on_face = np.bincount(own, minlength=n)
+    face = tops[upright] - above > UPPER_SIDE
+    face |= (np.bincount(upright[face], minlength=n) < MIN_FACE_POINTS)[upright]
+    upright, u, above = upright[face], u[face], above[face]
+    on_face = np.bincount(upright, minlength=n)
     start = np.cumsum(on_face) - on_face
-    by_u = np.lexsort((u, own))
+    by_u = np.lexsort((u, upright))
     ordered = u[by_u]
     nearest, middle, farthest = (ordered[start + np.rint(share * (on_face - 1)).astype(np.int64)] for share in (0.1, 0.5, 0.9))
-    mean_u, mean_h = (np.bincount(own, values, n) / on_face for values in (u, above))
-    du, dh = u - mean_u[own], above - mean_h[own]
-    batter = np.bincount(own, du * dh, n) / np.maximum(np.bincount(own, dh * dh, n), 1e-6)
+    mean_u, mean_h = (np.bincount(upright, values, n) / on_face for values in (u, above))
+    du, dh = u - mean_u[upright], above - mean_h[upright]
+    batter = np.bincount(upright, du * dh, n) / np.maximum(np.bincount(upright, dh * dh, n), 1e-6)
     i, all_u, all_above, all_ground, all_sight = everything
     ground = _ground_at(at, middle, i, all_u, all_ground)
     behind = _behind(at, middle, ground + tops, i, all_u, all_above + all_ground, all_sight)
     return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, below_top, farthest - nearest, batter, count.astype(float), behind,
-                    np.zeros(n, bool), _rough(own, u, n))
+                    np.zeros(n, bool), _rough(upright, u, n))
 
 
-def _rough(own, u, n):
+def _rough(upright, u, n):
     """(N,) m: median step across from one point of an upright to the next higher one; points in order of their owner and height."""
-    step, owner = np.abs(np.diff(u)), own[1:]
-    same = np.diff(own) == 0
+    step, owner = np.abs(np.diff(u)), upright[1:]
+    same = np.diff(upright) == 0
     step, owner = step[same], owner[same]
     order = np.lexsort((step, owner))
     count = np.bincount(owner, minlength=n)
@@ -159,19 +159,19 @@ def _rough(own, u, n):
     return np.where(count > 0, step[order][np.minimum(middle, max(len(step) - 1, 0))], 0.0) if len(step) else np.zeros(n)
 
 
-def _contiguous_top(own, above, n):
+def _contiguous_top(upright, above, n):
     """(N,) m: the top of what rises from the ground without a gap: of windows in what is tall, of a beam's height in what is not."""
     levels = int(np.floor(above.max() / TALL_BIN)) + 2 + MAX_TALL_GAP
     filled = np.zeros((n, levels), bool)
-    filled[own, np.floor(above / TALL_BIN).astype(np.int64)] = True
+    filled[upright, np.floor(above / TALL_BIN).astype(np.int64)] = True
     filled[:, :1 + MAX_LOW_GAP] = True
     low_end, end = (_first_gap(filled, gap) for gap in (MAX_LOW_GAP, MAX_TALL_GAP))
     end = np.where(low_end * TALL_BIN < TALL, low_end, end) * TALL_BIN
-    part = above < end[own]
-    own, above = own[part], above[part]
+    part = above < end[upright]
+    upright, above = upright[part], above[part]
     if not len(above):
         return np.full(n, FIRST_BIN * HEIGHT_BIN)
-    count = np.bincount(own, minlength=n)
+    count = np.bincount(upright, minlength=n)
     start = np.cumsum(count) - count
     return np.where(count > 0, above[np.minimum(start + np.floor(TOP_SHARE * np.maximum(count - 1, 0)).astype(np.int64), len(above) - 1)],
                     FIRST_BIN * HEIGHT_BIN)
@@ -245,11 +245,11 @@ class Pole:
     height: float
 
 
-def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, own: tuple[float, float], min_height: float) -> list[Pole]:
+def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, stretch: tuple[float, float], min_height: float) -> list[Pole]:
     """Poles, signs and trunks, at least `min_height` m high, of a stretch of road, from points beside it with a margin before and after.
 
     s, d, above, ground : (N,) m, stations, offsets, heights above the ground, and local z of it
-    own : stations (m) between which the middle of a pole must lie: a pole belongs to one stretch
+    stretch : stations (m) between which the middle of a pole must lie: a pole belongs to one stretch
     """
     low = np.flatnonzero((above > SHAFT[0]) & (above < SHAFT[1]))
     if len(low) < MIN_POLE_POINTS:
@@ -270,7 +270,7 @@ def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarr
             continue
         rows = low[(label[i, j] == number)]
         pole = _pole(rows, s, d, above, ground, min_height)
-        if pole is not None and own[0] <= pole.s < own[1]:
+        if pole is not None and stretch[0] <= pole.s < stretch[1]:
             poles.append(pole)
     return poles
 

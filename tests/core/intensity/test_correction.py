@@ -182,7 +182,7 @@ def test_points_are_left_or_right_of_the_vehicle_as_it_drove_and_as_far_away_as_
 def test_without_time_the_intensity_is_left_raw_and_the_report_says_why():
     points, report = corrected(street(count=5000)[0], straight_drive(time=False))
     assert np.isnan(points.corrected).all() and "gps_time" in report.reason
-    assert report.lines() == [report.reason] and "gps_time" in html_page("intensity_correction", found=report)
+    assert report.lines() == [report.reason] and "gps_time" in html_page("intensity_correction", report=report)
 
 
 def test_a_trajectory_of_another_day_leaves_the_intensity_raw():
@@ -233,7 +233,7 @@ def test_an_export_that_cuts_off_the_brightest_sixth_of_the_road_is_warned_of(sc
     warnings, report = warned(records)
     assert len(warnings) == 1 and warnings[0].startswith("16 % of the road's points have the highest intensity, 255:")
     assert warnings[0] in report.lines()
-    assert warnings[0] in html.unescape(html_page("intensity_correction", found=report))
+    assert warnings[0] in html.unescape(html_page("intensity_correction", report=report))
 
 
 def test_an_export_that_cuts_off_the_darkest_third_of_the_road_is_warned_of():

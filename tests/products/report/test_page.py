@@ -46,7 +46,7 @@ def test_a_table_aligns_numbers_right_and_shows_missing_ones():
 
 
 def test_a_page_that_lacks_a_value_is_not_written():
-    with pytest.raises(UndefinedError, match="found"):
+    with pytest.raises(UndefinedError, match="report"):
         html_page("intensity_correction")
 
 

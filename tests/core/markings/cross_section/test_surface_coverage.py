@@ -1,10 +1,14 @@
 """Where the road surface was scanned and where it ends, from road points."""
 
+from dataclasses import replace
+
+import curbed_streets as streets
 import numpy as np
-from lanewright.core.markings.cross_section.evidence import BIN, FAR, surface_coverage
-from lanewright.core.markings.cross_section.sections import STATION_STEP
+from lanewright.core.markings.cross_section.evidence import surface_coverage
+from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.survey.store.records import COORDINATE_SCALE
 from lanewright.core.survey.store.road_points import RoadPoints
+from lanewright.core.survey.store.seen import BIN, FAR, STATION_STEP
 
 STATIONS = 10.0 + STATION_STEP * np.arange(40)   # m: 10 to 29.5
 
@@ -47,3 +51,13 @@ def test_what_was_found_is_kept_until_points_are_added():
     assert surface_coverage(points, 0, STATIONS[:20])[0].shape == (20, first[0].shape[1])
     add(points, (20.0, -1.05, 4.0))
     assert surface_coverage(points, 0, STATIONS)[0].sum() == first[0].sum() + 1
+
+
+def test_what_was_seen_when_the_surface_was_extracted_is_what_its_points_show():
+    survey = streets.survey_of(streets.street())
+    points, _ = extract_road_surface(survey, None, counted=True)
+    assert points.seen and replace(points, seen=None).seen_surface().keys() == points.seen.keys()
+    for road, sections in replace(points, seen=None).seen_surface().items():
+        for here, there in zip(sections, points.seen[road]):
+            assert here[0] == there[0] and all(np.array_equal(*pair) for pair in zip(here[1:], there[1:]))
+        assert len(sections) == len(points.seen[road])

@@ -51,7 +51,7 @@ def asking_all():
     shapes = yield shapes_asked(records, [np.arange(*ends) for ends in zip(bounds, bounds[1:])], 0.6)
     shown = [*map(figure, SYMBOLS), np.argwhere(np.ones((9, 30)))]
     figures = yield Asked(figure_of_cells, [(cells, np.zeros(len(cells))) for cells in shown], 1.0, read=lambda kind: [kind])
-    return ([comb and (comb.middle.tobytes(), *comb._replace(middle=None)) for comb in combs],
+    return ([comb and (comb.middle.tobytes(), comb.heading, comb.pitch, comb.phase, comb.coherence) for comb in combs],
             [(None if parts is None else parts.tobytes(), of_parts) for parts, of_parts in pieces],
             shapes, [type(value) for shape in shapes for value in vars(shape).values()], figures)
 
