@@ -546,7 +546,7 @@ class GapLine:
         return dx * self.along[0] + dy * self.along[1], dy * self.along[0] - dx * self.along[1]
 
     def between(self, spacing: float, meets: bool = True) -> np.ndarray:
-        """(2, N) m, x and y of places in the gap about so far apart on the line; `meets` : is it moved to the last place before and the first after?"""
+        """(2, N) m, x and y of places in the gap about so far apart on the line; `meets` : is it moved to the places next to the gap?"""
         t, off = self.place(*self.ends)[0], self.off(*self.ends)
         inner = np.linspace(t[0], t[1], max(int(np.ceil((t[1] - t[0]) / spacing)), 1) + 1)[1:-1]
         v = self.line(inner) + meets * np.interp(inner, t, off)

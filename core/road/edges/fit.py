@@ -22,7 +22,6 @@ from .corner_edges import curb_return_lines, draw_curb_returns, dropped_corners
 from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 
 
-
 @dataclass(frozen=True)
 class EdgeSettings(Limited):
     """How curb points become lines.

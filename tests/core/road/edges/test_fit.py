@@ -129,8 +129,8 @@ def test_places_on_the_line_across_a_lowered_curb_do_not_make_its_points_surer()
     low = np.arange(22.0, 38.0, 0.5)
     points = curb_points(np.r_[np.arange(0, 22, 1.0), np.arange(38, 60, 1.0)], noise=0.02)
     for s in low:
-        points.add(shapely.Point(EAST + s, NORTH + 3.5, 100.0), road=0, side="left", status="bridged", part="bottom", station_m=float(s), offset_m=3.5,
-                   height_m=0.03)
+        points.add(shapely.Point(EAST + s, NORTH + 3.5, 100.0), road=0, side="left", status="bridged", part="bottom",
+                   station_m=float(s), offset_m=3.5, height_m=0.03)
     alone = fit_road_edges(curb_points(np.arange(0, 60, 1.0), noise=0.02), straight_frame())
     vertices = places(fit_road_edges(points, straight_frame()))
     np.testing.assert_allclose(vertices[:, 1], 3.5, atol=max(np.abs(places(alone)[:, 1] - 3.5).max(), 0.02))
