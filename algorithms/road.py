@@ -185,8 +185,8 @@ EDGES = "core.road.edges.fit:EdgeSettings"
 EDGE_SETTINGS = (
     SettingSpec("MAX_GAP", EDGES, "max_gap", tr("Longest gap bridged (m)"),
                 tr("Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there. Where both parts of the curb lie "
-                   "in one line, gaps up to twice as long are bridged. Where the ground shows that the curb is lowered, a dropped edge goes on for up to "
-                   "30 m, whatever this length is.")),
+                   "in one line, gaps up to twice as long are bridged. Where the ground shows that the curb is lowered, a dropped edge goes "
+                   "on for up to 30 m, whatever this length is.")),
     SettingSpec("FALLBACK_WIDTH", EDGES, "fallback_width", tr("Assumed road width where no curb is seen, 0 = none (m)"),
                 tr("0 draws no edge where none was found. A width draws one at half of it either side of the road's reference line, flagged as "
                    "inferred."), advanced=True),
