@@ -16,12 +16,9 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from ...common.arrays import mask_runs, stretch_of
-from ...curves.robust import MAD_TO_SIGMA
 from ...survey.frame.road import Road
-from ..edges.fit import is_lowered, without_outliers
-from ..surface.ground_grid import known_median
 from ..weights import CURBS
-from .tracking import line_across
+from .tracking import is_lowered, line_across, without_outliers
 
 if TYPE_CHECKING:
     from ..surface.road_look import SideLook
@@ -51,11 +48,14 @@ def lowered_points(rows: list[dict], road: Road, look: SideLook) -> list[dict]:
         if line is not None:
             found += _seen_between(near, look, (before, behind), line)
             continue
-        # where no line leads across, each curb may go on for some metres as it came
+        # where no line leads across, each curb may go on for some metres as it came, and where both would the nearer one does
+        nearest: dict[float, tuple[float, dict]] = {}
         for part, tip, way in ((near[near["s"] <= before], before, 1), (near[near["s"] >= behind], behind, -1)):
             if len(part) and np.ptp(part["s"]) >= CURBS.min_bend_length:
                 ends = tip, tip + way * min(CURBS.max_chain_gap, behind - before)
-                found += _seen_between(near, look, ends, Polynomial.fit(part["s"], part["d"], 1), both=False)
+                for row in _seen_between(near, look, ends, Polynomial.fit(part["s"], part["d"], 1), both=False):
+                    nearest[row["s"]] = min(nearest.get(row["s"], (np.inf, row)), (abs(row["s"] - tip), row), key=lambda of_side: of_side[0])
+        found += [row for _, row in nearest.values()]
     return found
 
 
@@ -85,22 +85,13 @@ def _seen_between(near, look, ends, offsets, both=True):
     s = look.row_size * (np.arange(np.floor(first / look.row_size), np.ceil(last / look.row_size)) + 0.5)
     s = s[(s > first) & (s < last)]
     u = offsets(s)
-    step, height, bottom = look.step_at(s, u)
-    noise = MAD_TO_SIGMA * _median_about(np.abs(look.step_at(s, u - CURBS.road_beside)[0])) / np.sqrt(CURBS.lowered_rows)
-    with np.errstate(invalid="ignore"):
-        shown = _median_about(step) >= np.maximum(CURBS.least_lowered_step, CURBS.significant_sigmas * noise)
-        lowered = shown & (step > 0.0) & (height > 0.0) & (height <= near["height"].max())
+    shown, height, bottom = look.steps_up(s, u)
+    lowered = shown & (height <= near["height"].max())
     runs = [(a, b) for a, b in mask_runs(lowered) if b - a >= CURBS.min_piece_steps]
     reached = {run for tip in ends[:1 + both] for run in _reached(runs[::1 if tip == first else -1], s, tip)}
     return [dict(s=float(s[k]), u=float(u[k]), h=float(bottom[k]),
                  fields=dict(status="bridged", height=round(float(height[k]), 4), part="bottom"))
             for run in sorted(reached) for k in range(*run)]
-
-
-def _median_about(step):
-    """(N,) median of the rows about each one, NaN where too few of them were seen."""
-    rows = np.lib.stride_tricks.sliding_window_view(np.pad(step, CURBS.lowered_rows // 2, constant_values=np.nan), CURBS.lowered_rows)
-    return np.where(np.isfinite(rows).sum(1) >= CURBS.min_piece_steps, known_median(rows, 1), np.nan)
 
 
 def _reached(runs, s, tip):

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from scipy.ndimage import median_filter
 
 from ...common.arrays import ROUNDING_TOLERANCE, linked_groups, stretch_of
 from ...common.parallel import check_cancelled
-from ...curves.robust import median, percentiles
-from ..weights import CURBS
+from ...curves.robust import MAD_TO_SIGMA, median, percentiles
+from ..weights import CURBS, EDGE
 from .corners import CurbSteps
 from .curb_limits import CurbLimits
 from .pseudo_scanlines import expand_ranges
@@ -584,3 +585,40 @@ def line_across(points: np.ndarray, s: np.ndarray, k: int) -> tuple[float, GapLi
             line = GapLine(*(np.array([part[axis] for axis in axes]) for part in parts), max_degree=2)
             best = min(best, (line.miss / reach, line, axes), key=lambda found: found[0])
     return best
+
+
+def is_lowered(points: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """(N,) bool, is the curb at a point much lower than before it and behind it?
+
+    points : (N,) structured array, by station, with the field `height` (m); s : (N,) m, their stations
+    """
+    low = (points["height"] > 0.0) & (points["height"] <= EDGE.lowered_share * points["height"].max(initial=0.0))
+    for k in np.flatnonzero(low):
+        before, behind = (points["height"][stretch_of(s, *ends)].max()
+                          for ends in ((s[k] - CURBS.line_fit_length, s[k]), (s[k], s[k] + CURBS.line_fit_length)))
+        low[k] = points["height"][k] <= EDGE.lowered_share * min(before, behind)
+    return low
+
+
+def without_outliers(points: np.ndarray) -> np.ndarray:
+    """Points near the running median of the offsets of their chain.
+
+    points : (N,) structured array, by station, with the fields `chain`, `s` and `d` (m)
+
+    Returns (K,) of the same type
+    """
+    inliers = np.ones(len(points), bool)
+    order = np.argsort(points["chain"], kind="stable")
+    for rows in np.split(order, np.flatnonzero(np.diff(points["chain"][order])) + 1):
+        if len(rows) < 5:
+            continue
+        s, d = points["s"][rows], points["d"][rows]
+        spacing = np.median(np.diff(s))
+        window = int(np.clip(2 * round(0.5 * EDGE.median_window / max(spacing, 0.05)) + 1, 3, len(rows) | 1))
+        # an edge that changes direction is no outlier: its own running direction is subtracted first
+        direction = median_filter(np.diff(d) / np.maximum(np.diff(s), 0.05), window, mode="nearest")
+        off = d - np.r_[0.0, np.cumsum(direction * np.diff(s))]
+        deviation = np.abs(off - median_filter(off, window, mode="nearest"))
+        limit = max(EDGE.outlier_mads * MAD_TO_SIGMA * np.median(deviation), EDGE.outlier_floor)
+        inliers[rows] = deviation <= limit
+    return points[inliers]

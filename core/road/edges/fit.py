@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import splev, splprep, splrep
-from scipy.ndimage import median_filter
 
 from ...common.arrays import stretch_of
 from ...common.parallel import check_cancelled
@@ -16,7 +15,7 @@ from ...curves.robust import MAD_TO_SIGMA
 from ...execution.phase import NoSource
 from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
-from ..common.tracking import IN_LINE_TURN, line_across
+from ..common.tracking import IN_LINE_TURN, is_lowered, line_across, without_outliers
 from ..weights import CURBS, EDGE
 from .corner_edges import curb_return_lines, draw_curb_returns, dropped_corners
 from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
@@ -122,19 +121,6 @@ def _pieces(rows, max_gap):
     return pieces
 
 
-def is_lowered(points: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """(N,) bool, is the curb at a point much lower than before it and behind it?
-
-    points : (N,) structured array, by station, with the field `height` (m); s : (N,) m, their stations
-    """
-    low = (points["height"] > 0.0) & (points["height"] <= EDGE.lowered_share * points["height"].max(initial=0.0))
-    for k in np.flatnonzero(low):
-        before, behind = (points["height"][stretch_of(s, *ends)].max()
-                          for ends in ((s[k] - CURBS.line_fit_length, s[k]), (s[k], s[k] + CURBS.line_fit_length)))
-        low[k] = points["height"][k] <= EDGE.lowered_share * min(before, behind)
-    return low
-
-
 def _with_bridges(points, bridged, frame, road):
     """Points of an edge with places of its bridges between them, as a GapLine leads, and the numbers that the points have among them.
 
@@ -156,30 +142,6 @@ def _with_bridges(points, bridged, frame, road):
         parts += [points[begin:k + 1], bridge]
         begin, before[k + 1] = k + 1, len(bridge)
     return np.concatenate([*parts, points[begin:]]), np.arange(len(points)) + np.cumsum(before), longest
-
-
-def without_outliers(points: np.ndarray) -> np.ndarray:
-    """Points near the running median of the offsets of their chain.
-
-    points : (N,) structured array, by station, with the fields `chain`, `s` and `d` (m)
-
-    Returns (K,) of the same type
-    """
-    inliers = np.ones(len(points), bool)
-    order = np.argsort(points["chain"], kind="stable")
-    for rows in np.split(order, np.flatnonzero(np.diff(points["chain"][order])) + 1):
-        if len(rows) < 5:
-            continue
-        s, d = points["s"][rows], points["d"][rows]
-        spacing = np.median(np.diff(s))
-        window = int(np.clip(2 * round(0.5 * EDGE.median_window / max(spacing, 0.05)) + 1, 3, len(rows) | 1))
-        # an edge that changes direction is no outlier: its own running direction is subtracted first
-        direction = median_filter(np.diff(d) / np.maximum(np.diff(s), 0.05), window, mode="nearest")
-        off = d - np.r_[0.0, np.cumsum(direction * np.diff(s))]
-        deviation = np.abs(off - median_filter(off, window, mode="nearest"))
-        limit = max(EDGE.outlier_mads * MAD_TO_SIGMA * np.median(deviation), EDGE.outlier_floor)
-        inliers[rows] = deviation <= limit
-    return points[inliers]
 
 
 class EdgeCurve:

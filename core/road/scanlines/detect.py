@@ -30,7 +30,8 @@ from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import Search, Section, SideSteps, curbs_along, merged_passes, steps_of_roads
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height
-from ..edges.fit import EdgeCurve, point_table, without_outliers
+from ..common.tracking import without_outliers
+from ..edges.fit import EdgeCurve, point_table
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook

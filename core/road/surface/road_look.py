@@ -7,7 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..weights import SURFACE
+from ...curves.robust import MAD_TO_SIGMA
+from ..weights import CURBS, SURFACE
 from .ground_change import follow_road, smooth_road
 from .ground_grid import MeasuredGround, known_median
 
@@ -92,9 +93,21 @@ class SideLook:
         """`RoadLook.road_height` at stations and outward offsets."""
         return self.look.road_height(s, self.sign * u)
 
-    def step_at(self, s: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """`RoadLook.step_at` at stations and outward offsets."""
-        return self.look.step_at(s, self.sign * u, self.sign)
+    def steps_up(self, s: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Whether the ground steps up outward at places in consecutive rows of cells, more than the same rows show on the road beside them.
+
+        s, u : (N,) m, stations of the middles of rows, and outward offsets
+
+        Returns
+            shown : (N,) bool
+            height, bottom : (N,) m, as of `RoadLook.step_at`
+        """
+        step, height, bottom = self.look.step_at(s, self.sign * u, self.sign)
+        beside = np.abs(self.look.step_at(s, self.sign * (u - CURBS.road_beside), self.sign)[0])
+        noise = MAD_TO_SIGMA * _median_about(beside) / np.sqrt(CURBS.lowered_rows)
+        with np.errstate(invalid="ignore"):
+            shown = _median_about(step) >= np.maximum(CURBS.least_lowered_step, CURBS.significant_sigmas * noise)
+            return shown & (step > 0.0) & (height > 0.0), height, bottom
 
     @property
     def row_size(self) -> float:
@@ -112,3 +125,9 @@ class SideLook:
         with np.errstate(invalid="ignore"):
             level = np.abs(off) < SURFACE.max_height_deviation
         return (seen.mean(0) >= SURFACE.min_seen_between) & (level.sum(0) >= SURFACE.min_level_between * seen.sum(0))
+
+
+def _median_about(step):
+    """(N,) median of the rows about each one, NaN where too few of them were seen."""
+    rows = np.lib.stride_tricks.sliding_window_view(np.pad(step, CURBS.lowered_rows // 2, constant_values=np.nan), CURBS.lowered_rows)
+    return np.where(np.isfinite(rows).sum(1) >= CURBS.min_piece_steps, known_median(rows, 1), np.nan)
