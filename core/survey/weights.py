@@ -543,6 +543,8 @@ class _VehicleWeights:
     attitude_noise: float = 0.01   # radians that roll, pitch and heading may be off, or differ from those of the way driven
     max_upright: float = 0.8   # of the plane's normal; what lies flatter is the ground
     one_move: float = 0.20   # m that one move may leave, as navigation drifts; more is the error of a drive by itself
+    least_jump: float = 0.5   # m from one place of a drive to the next: the way driven tells the heading of a vehicle so well in tight bends
+    largest_lag: float = 0.5   # s by which a clock may lag: more is told of by itself
     moved_share: float = 0.9   # of the windows, in which no more may be left
     clearly_better: float = 0.5   # of what one move leaves, below which another is taken
 
