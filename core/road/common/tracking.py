@@ -574,7 +574,7 @@ def line_across(points: np.ndarray, s: np.ndarray, k: int) -> tuple[float, GapLi
     A bay is only as long as the cars in it: its curb turns aside next to the gap, and where the last ten metres are not in one line the last
     three tell where it leads.
     """
-    best = np.inf, None, ""
+    best: tuple[float, GapLine | None, str] = np.inf, None, ""
     for reach in (CURBS.line_fit_length, CURBS.min_bend_length):
         if best[0] <= IN_LINE_TURN:
             break
@@ -582,7 +582,8 @@ def line_across(points: np.ndarray, s: np.ndarray, k: int) -> tuple[float, GapLi
         if reach == CURBS.line_fit_length and max(np.ptp(part["s"]) for part in parts) < CURBS.min_bend_length:
             break
         for axes in ("xy", "sd"):
-            line = GapLine(*(np.array([part[axis] for axis in axes]) for part in parts), max_degree=2)
+            before, behind = (np.array([part[axis] for axis in axes]) for part in parts)
+            line = GapLine(before, behind, max_degree=2)
             best = min(best, (line.miss / reach, line, axes), key=lambda found: found[0])
     return best
 
