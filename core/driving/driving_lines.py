@@ -26,7 +26,7 @@ from .alignment import Course, Element, LanesOfRoad, design_check, element_of, f
 from .heights import lane_heights, road_heights
 from .lane_areas import RoadLanes, connectors_between_roads, follow_over_roads, lane_areas, make_lanes
 from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
-from .lanes import estimated_lanes, laid_out
+from .lanes import beyond_paint, estimated_lanes, laid_out
 from .layers import CurveElements, DrivingLines, Lanes
 from .settings import DrivingSettings
 from .shared_lanes import lanes_once
@@ -106,7 +106,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
 def _road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
     """The lanes of one road as a list of LaneTrack; `lane_width` where only one line is painted."""
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
-    tracks = connect(tracks, settings.max_bridge)
+    tracks = beyond_paint(connect(tracks, settings.max_bridge), road.boundaries)
     clear = [track.without_doubtful_ends() for track in laid_out(tracks)]
     return [replace(track, confidence=track.said_confidence()) for track in clear
             if track is not None and len(track) * STATION_STEP >= settings.shortest]
@@ -244,7 +244,10 @@ def _mean_square_of_borders(track, known, paint, spacing):
     measured = track.status == MEASURED
     unbounded = np.where(bounding.any(axis=0), 0.0, SIGMA.gap_share * _distance_to(measured))
     by_width = np.where(~measured & track.offset, SIGMA.width_sigma, 0.0)
-    return (share**2 * error).sum(axis=0) + unbounded**2 + by_width**2
+    square = (share**2 * error).sum(axis=0)
+    if bounding.any():   # beyond all borders it is no surer than at the last place that has one
+        square = np.maximum(square, square[distance_transform_edt(~bounding.any(axis=0), return_distances=False, return_indices=True)[0]])
+    return square + unbounded**2 + by_width**2
 
 
 def _mean_square_misfit(track, course, road, lines):

@@ -149,11 +149,16 @@ def _crs_of_clouds(files, given):
     for file in files:
         if file.crs:
             path_by_crs.setdefault(file.crs, file.path)
-    (first, path), *rest = [(horizontal_part(parse_crs(wkt)), path) for wkt, path in path_by_crs.items()] or [(None, "")]
+    (first, path), *rest = [(parse_crs(wkt), path) for wkt, path in path_by_crs.items()] or [(None, "")]
+    heights = first
     for crs, other_path in rest:
-        if not crs.equals(first, ignore_axis_order=True):
-            raise RoadExtractionError(f"The point clouds use different CRSs: {path} is in {first.name}, "
-                                      f"{other_path} in {crs.name}. Reproject them to one CRS first.")
+        if not horizontal_part(crs).equals(horizontal_part(first), ignore_axis_order=True):
+            raise RoadExtractionError(f"The point clouds use different CRSs: {path} is in {horizontal_part(first).name}, "
+                                      f"{other_path} in {horizontal_part(crs).name}. Reproject them to one CRS first.")
+        heights = heights if heights.is_compound else crs
+        if crs.is_compound and not crs.sub_crs_list[-1].equals(heights.sub_crs_list[-1]):
+            raise RoadExtractionError(f"The point clouds have heights of different kinds: {heights.sub_crs_list[-1].name} and, in {other_path}, "
+                                      f"{crs.sub_crs_list[-1].name}. Bring all files to one kind of heights, and run again.")
     return next(iter(path_by_crs), "")
 
 

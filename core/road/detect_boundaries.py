@@ -18,7 +18,7 @@ from ..survey.lattice.scan_lattice import find_lattice
 from ..survey.open_survey import Survey
 from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
-from .common.decimation import LevelGround, PointDecimation
+from .common.decimation import PointDecimation
 from .common.occlusion import OcclusionGrid
 from .common.side_curbs import Section, curbs_along, grids_beside, steps_of_roads
 from .common.sides import SIDE_SIGNS
@@ -32,7 +32,7 @@ from .scanlines.section_planes import ScanlineSettings
 from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
 from .surface.road_look import RoadLook
-from .weights import BOUNDARY, CURBS, SCANLINE
+from .weights import BOUNDARY, CURBS
 
 BOUNDARY_METHODS = ("profiles", "scanlines", "both")
 METHODS = ("scanlines", "profiles")   # in the order of trust: three planes are a stricter model of a curb than a profile
@@ -85,8 +85,7 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
     curbs as each sees them alone, and "both" those of the best path through the chains of the two. Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
-    least = settings.scanlines.limits.least_height
-    with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing, least)) as decimation:
+    with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing)) as decimation:
         return _find_curb_points(decimation, settings, progress, ground or MeasuredGround(survey))
 
 
@@ -96,7 +95,8 @@ def _find_curb_points(decimation, settings, progress, ground):
     if settings.method == "profiles":
         return {"profiles": detect_curbs(survey, settings.curbs, progress, True, decimation, None, ground)}
     lattice = find_lattice(survey, settings.planes.rotation_frequency, progress.part(0.0, BOUNDARY.lattice_progress))
-    source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice, level=_level_for(decimation, settings.scanlines))
+    source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice,
+                             decimation=decimation if settings.method == "both" else None)
     searches = {"scanlines": planes_of(source, settings.scanlines, settings.curbs.block_length)}
     if settings.method == "both":
         searches["profiles"] = profiles_of(decimation, settings.curbs)
@@ -114,15 +114,9 @@ def _find_curb_points(decimation, settings, progress, ground):
 def _steps_of_methods(source: SurveyScanlines, section: Section, scanlines: ScanlineBoundarySettings,
                      profiles: CurbSettings) -> tuple[dict[str, Any], dict[str, OcclusionGrid]]:
     """The phase of both methods: what `steps_of_section` or `corners_of_section` finds, by the method of the section."""
-    if section[0] == "scanlines" or source.level is None:
+    if section[0] == "scanlines" or source.decimation is None:
         return corners_of_section(source, section, scanlines)
-    return steps_of_section(source.level.decimation, section, profiles)
-
-
-def _level_for(decimation, settings):
-    """The ground that SurveyScanlines leaves out, which can have no corner."""
-    along = settings.distance_along + SCANLINE.gap_fill_reach + BOUNDARY.level_strip_margin
-    return LevelGround(decimation, settings.distance_across + BOUNDARY.level_strip_margin, along)
+    return steps_of_section(source.decimation, section, profiles)
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),

@@ -63,23 +63,12 @@ class _CurbWeights:
     points_per_level_cell_in_plan: int = 6   # the same in plan, where a cell of the raster covers four of these cells and more
     points_per_uneven_cell: int = 60   # points of any other cell; more hardly separate its layers better
     level_cell_std: float = 0.008   # m, standard deviation of heights in a level cell, with and without a grade of the road
-    max_strip_profile_width: float = 0.30   # m; in the means of longer profiles a low curb at an angle to the road looks like a slope
-    min_step_height: float = 0.03   # m, the least step that is looked for anywhere
     mostly_uneven_share: float = 0.7   # share of points in cells that are not level
     stretch_length: float = 5.0   # m of road that are read together
     decimation_block_points: int = 256_000   # points that are decided together
     joined_points: int = 60_000   # points below which those of one stretch and the next are yielded together
-    min_dense_share: float = 0.5   # share of points in dense cells, below which the heights of the others are not looked at
     decimation_locks: int = 16   # locks that stretches share while they are decided; the last one is the file's
-    # the level strip about a track
-    max_strip_offset: float = 8.0   # m from the reference line within which the strip lies
     min_level_points: int = 4   # points that a cell needs for a statement whether it is level
-    max_step_width: float = 0.20   # m within which a step rises, even at an angle to the road: its height shows in means of cells so far apart
-    level_step_share: float = 0.4   # share of the least step height that such means may differ
-    max_strip_std: float = 0.016   # m, standard deviation of heights in a cell, above which it is not level
-    min_uneven_neighbours: int = 5   # of 15 cells that a step changes; a bird, a drop of rain or a ghost point changes one
-    blind_half_width: float = 1.5   # m beside the track that may be without points: scanners do not see the ground beneath their vehicle
-    min_strip_width: float = 1.0   # m; to leave a narrower strip out saves nothing
     # occlusion
     occlusion_cell: float = 0.25   # m across
     min_occluder_height: float = 0.45   # m above the expected road, from which a thing can hide a curb
@@ -118,6 +107,11 @@ class _CurbWeights:
     max_block_turn: float = np.radians(1.0)   # turn of the road within a block
     max_block_bend: float = 0.015   # m off its own straight line above which a block is divided
     chain_end_steps: int = 3   # profiles that give the end point of a chain
+    # lowered curb
+    lowered_rows: int = 5   # rows of ground cells, 2.5 m along a curb, whose median step counts
+    least_lowered_step: float = 0.005   # m of that median: along simulated lowered curbs it was 0.007 to 0.02, across mouths of streets 0.002 at most
+    max_lowered_turn: float = 0.03   # radians that the curb on both sides turns off the line across: the step is measured on that line
+    road_beside: float = 1.0   # m from the curb toward the road, where the same rows show what is no step
     # chains
     max_link_length: float = 1.0   # m along the road that a link may span
     link_drift: float = 0.20   # m across per m along that a link may differ from the faces' own direction
@@ -507,9 +501,8 @@ class _EdgeWeights:
     smoothing_half_length: float = 0.5   # m along a curb within which its points give its course
     same_place_distance: float = 0.02   # m within which two places are one
     # dropped corners
-    max_dropped_gap: float = 8.0   # m of dropped curb around a corner, and
-    max_sunk_gap: float = 12.0   # m in a line where the curb is seen to sink at an end,
-    sunk_share: float = 0.5   # to this share of its height: it was 0.2 to 0.5 before drives, 0.64 and more where the curb is cut
+    max_dropped_gap: float = 8.0   # m of dropped curb around a corner
+    lowered_share: float = 0.5   # of the height of a curb around, to which it is lowered at a drive: it was 0.2 to 0.5
     min_dropped_gap: float = 0.3   # m
     min_arc_turn: float = np.radians(12.0)   # radians from end to end, least, and
     max_arc_turn: float = np.radians(100.0)   # most
@@ -626,6 +619,7 @@ class _SurfaceWeights:
     smoothed_columns: int = 16   # columns smoothed along the road at a time
     cells_between_questions: int = 100_000   # followed until Cancel is asked for: some 50 ms
     # cells
+    cells_of_step: int = 3   # on either side of a step, to which its lines are fitted: 0.75 m
     row_length: float = 0.5   # m along, and
     column_width: float = 0.25   # m across the road, size of a ground cell
     ground_layer_jump: float = 0.06   # m of height between two layers: the ground and the sill of a car
@@ -723,7 +717,6 @@ class _BoundaryWeights:
     lattice_progress: float = 0.1   # share of the work at which the scan lattice is known, and
     returns_progress: float = 0.85   # share at which the search for curb returns begins
     curb_edges_progress: float = 0.1   # share of the edges that those at curbs are; the others need the ground beside the road
-    level_strip_margin: float = 0.20   # m beyond the points from which corners are measured, in which scanlines still continue
     # comparison
     comparison_step: float = 0.5   # m along the road between places that are compared
     min_reported_difference: float = 0.05   # m across above which a stretch is reported

@@ -28,7 +28,7 @@ from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
 from .las.reader import CloudHeader, read_headers
-from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
+from .las.samples import check_measured_once, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .store.array_file import files_are_whole
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
@@ -287,7 +287,8 @@ def _say_left_out(files, frame, reader, settings, progress):
     if not reader.store.count:
         raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
     if left.excluded:
-        progress.info(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
+        tell = progress.warn if left.excluded > READING.much_excluded * total else progress.info
+        tell(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if left.without_time:
         progress.warn(f"{left.without_time:,} of {total:,} points were left out: the trajectory, which runs {_said_of_times(frame)}, has no position "
                       "at their gps_time. If they are part of this survey, give its whole trajectory, and points with their time.")
@@ -355,6 +356,8 @@ def _tell_scanners_apart(survey, reader, progress):
     if not survey.has_time:
         return
     time, place = _sampled(survey, reader, progress)
+    if len(survey.files) > 1:
+        check_measured_once(time, place * COORDINATE_SCALE)
     if len(survey.scanners) > 1 or not len(time) or time.min() == time.max():
         return
     samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), reader.slots.stride)

@@ -208,6 +208,8 @@ class _LasWeights:
     max_spread: float = 60.0   # dB that no survey exceeds
     brightest: int = 30_000   # intensity that the brightest points get
     brightest_step: float = 5.0   # dB to which the brightest points are rounded, so that samples agree
+    least_doubled: float = 0.02   # share of the points that share their time with one other, at least, where files were exported twice
+    most_of_pairs: float = 0.5   # of these pairs, that lie apart alike
     sensor_bits: tuple[int, ...] = (8, 10, 11, 12)   # of intensities as sensors give them
     other_scale: float = 6.0   # times the usual intensity of another file: asphalt, grass and trees differ by less
     same_scale: float = 3.0   # times, that files with one scale may differ by
@@ -254,6 +256,7 @@ class _ReadingWeights:
     section_points: int = 250_000   # points of a section, about
     longer_sections: tuple[float, float] = 10.0, 25.0   # m that a section may be long beside the usual length
     parts_progress: float = 0.85   # share of reading, where the points are put in order afterwards
+    much_excluded: float = 0.25   # of the points: noise and what a second drive shows again are less
     highest_sensor: float = 5.0   # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
     clock_track_half_width: float = 2.0   # m either side of the own track where clocks are compared
     max_look_ahead: float = 6.5   # m along the road: every scanner measures road nearer than this in each rotation
@@ -540,6 +543,8 @@ class _VehicleWeights:
     attitude_noise: float = 0.01   # radians that roll, pitch and heading may be off, or differ from those of the way driven
     max_upright: float = 0.8   # of the plane's normal; what lies flatter is the ground
     one_move: float = 0.20   # m that one move may leave, as navigation drifts; more is the error of a drive by itself
+    least_jump: float = 0.5   # m from one place of a drive to the next: the way driven tells the heading of a vehicle so well in tight bends
+    largest_lag: float = 0.5   # s by which a clock may lag: more is told of by itself
     moved_share: float = 0.9   # of the windows, in which no more may be left
     clearly_better: float = 0.5   # of what one move leaves, below which another is taken
 

@@ -24,7 +24,7 @@ NUMBERS = {
     "core/io": 5,
     "core/curves": 9,
     "core/survey": 78,
-    "core/road": 19,
+    "core/road": 18,
     "core/intensity": 12,
     "core/markings": 62,
     "core/driving": 5,

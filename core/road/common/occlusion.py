@@ -59,18 +59,6 @@ class OcclusionGrid:
         joined.ground, joined.tall = (np.concatenate([getattr(part, name) for part in parts]) for name in ("ground", "tall"))
         return joined
 
-    def add_level_ground(self, profiles: tuple[int, int], nearest: np.ndarray, farthest: np.ndarray, height: np.ndarray) -> None:
-        """Add ground without gaps.
-
-        profiles : (first, last + 1), P of them
-        nearest, farthest : (P,) m, outward offsets between which it lies
-        height : (P,) m above the expected road
-        """
-        cell = np.arange(self.cells) * CURBS.occlusion_cell
-        inside = (cell >= nearest[:, None]) & (cell + CURBS.occlusion_cell <= farthest[:, None])
-        ground = self.ground[profiles[0] - self.first:profiles[1] - self.first]
-        ground[:] = np.where(inside, np.fmin(ground, height[:, None]), ground)
-
     def hidden(self, s: np.ndarray, u: np.ndarray, h: np.ndarray, near: np.ndarray) -> np.ndarray:
         """Is the curb that is expected at a place hidden from the scanner?
 

@@ -26,11 +26,12 @@ from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
 from ...survey.survey import Survey
 from ...survey.weights import READING
 from ..common.curb_points import CurbPoints
-from ..common.decimation import LevelGround
+from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import Search, Section, SideSteps, curbs_along, merged_passes, steps_of_roads
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height
-from ..edges.fit import EdgeCurve, point_table, without_outliers
+from ..common.tracking import without_outliers
+from ..edges.fit import EdgeCurve, point_table
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
@@ -49,7 +50,8 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
     ground : MeasuredGround of the survey; None where nothing but the scanlines is known of the ground
 
-    Returns CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb.
+    Returns CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb, and
+    those of status `bridged` lie on the line across a lowered one.
     """
     steps = steps_of_roads(corners_of_section, source, (settings,), {"scanlines": planes_of(source, settings, block_length)}, progress)
     points = curbs_along(source, with_scanner_noise(steps), None if ground is None else partial(RoadLook, ground))["scanlines"]
@@ -89,27 +91,16 @@ def corners_of_section(source: SurveyScanlines | LayerScanlines, item: Section,
         grid = height_grid(lines, heights, rows, interval, min(CURBS.max_curb_offset, source.corridor), settings.clipping_height)
         closed = grid.closed(gap_fill_rows(interval))
         tall = _tall(lines, heights, interval)
-        candidates, strip = {}, _level_beside(source, road, int(lines.pass_number[0]), stations[margin:-margin])
+        candidates = {}
         for side, sign in SIDE_SIGNS.items():
             origin = np.floor(nearest[side].min())
             outward = grid.outward(sign, origin)
             occlusion[side].add_points(sign * tall[0], tall[1], tall[2], (begin, end), outward.part(margin, margin + end - begin))
-            if strip is not None:
-                occlusion[side].add_level_ground((begin, end), *strip[sign])
             of_side = find_candidates(closed.outward(sign, origin), outward.low, nearest[side], settings)
             candidates[side] = of_side[(of_side.row >= margin) & (of_side.row < margin + end - begin)]
         for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
             corners_by_side[side].append(corners)
     return {side: merged_corners(parts) for side, parts in corners_by_side.items() if parts}, occlusion
-
-
-def _level_beside(source, road, number, stations):
-    """{sign of the side: (nearest, farthest, height)} of the ground left out beside the track of a pass, (R,) m each."""
-    if source.level is None:
-        return None
-    low, high, height = source.level(road, number, stations[0], stations[-1] + source.interval).at(stations)
-    height = height - expected_height(source, road, stations)
-    return {1: (low, high, height), -1: (-high, -low, height)}
 
 
 def _tall(lines, heights, interval):
@@ -219,7 +210,7 @@ class SurveyScanlines:
     sensor_height : m from the trajectory down to the road, 0 = from the data
     lattice : ScanLattice, or None to find it here
     progress : Progress of finding it
-    level : LevelGround that is left out; None uses all points
+    decimation : PointDecimation in whose points the same phase looks for profiles, or None
 
     frame : RoadFrame
     crs : WKT
@@ -227,8 +218,9 @@ class SurveyScanlines:
     """
 
     def __init__(self, survey: Survey, settings: ScanlineSettings = ScanlineSettings(), sensor_height: float = 0.0,
-                 lattice: ScanLattice | None = None, progress: Progress = Progress(), level: LevelGround | None = None):
-        self.settings, self.sensor_height, self.level = settings, sensor_height, level
+                 lattice: ScanLattice | None = None, progress: Progress = Progress(),
+                 decimation: PointDecimation | None = None):
+        self.settings, self.sensor_height, self.decimation = settings, sensor_height, decimation
         self.survey, self.interval, self.corridor = survey, self.settings.interval, self.settings.corridor
         self.lattice = find_lattice(survey, self.settings.rotation_frequency, progress) if lattice is None else lattice
         self.frame, self.crs = survey.frame, survey.crs
@@ -240,9 +232,10 @@ class SurveyScanlines:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the scanlines."""
-        level = None if self.level is None else self.level.recipe(folder)
-        return Recipe("core.road.scanlines.detect:SurveyScanlines", dict(survey=self.survey.recipe(folder), settings=self.settings, level=level,
-                                                                    sensor_height=self.sensor_height, lattice=self.lattice))
+        decimation = None if self.decimation is None else self.decimation.recipe(folder)
+        return Recipe("core.road.scanlines.detect:SurveyScanlines", dict(survey=self.survey.recipe(folder), settings=self.settings,
+                                                                    sensor_height=self.sensor_height, lattice=self.lattice,
+                                                                    decimation=decimation))
 
     def roads(self) -> list[int]:
         """Numbers of the roads."""
@@ -260,8 +253,7 @@ class SurveyScanlines:
 
     def runs(self, road: int, start: float, end: float) -> list[Scanlines]:
         """The scanlines with start <= station < end, apart for each pass and scanner; their intensity is 0."""
-        level = None if self.level is None else partial(self.level, road)
-        return scanline_runs(self.survey, road, start, end, self.settings, self.lattice, intensity=False, level=level)
+        return scanline_runs(self.survey, road, start, end, self.settings, self.lattice, intensity=False)
 
 
 class LayerScanlines:
@@ -273,14 +265,12 @@ class LayerScanlines:
 
     frame, interval, crs : as given
     corridor : m, greatest offset of a vertex
-    level : None; all points are used
 
     Raises RoadExtractionError if no road has scanlines on two planes.
     """
 
     def __init__(self, lines: dict[int, Scanlines], frame: RoadFrame, interval: float, crs: str, sensor_height: float = 0.0):
         self.lines = {road: scanlines for road, scanlines in sorted(lines.items()) if len(scanlines)}
-        self.level: LevelGround | None = None
         self.executor: Executor = THREADS
         self.frame, self.interval, self.crs = frame, interval, crs
         if not any(len(np.unique(scanlines.station)) > 1 for scanlines in self.lines.values()):

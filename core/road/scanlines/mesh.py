@@ -21,7 +21,6 @@ from ...survey.frame.passes import Pass
 from ...survey.lattice.scan_lattice import MirrorPhase, time_order
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, take_rows
-from ..common.decimation import LevelStrip
 from ..weights import SCANLINE
 
 LINE_OFFSET_UNITS = 2 * 10**10   # derived: 2 km between the offsets of consecutive lines in one sorted array
@@ -61,21 +60,16 @@ class Ribs(Rows):
 
 
 def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, corridor: float,
-                  level: LevelStrip | None = None, intensity: bool = True) -> ScannerLines | None:
+                  intensity: bool = True) -> ScannerLines | None:
     """The points of a scanner on their scan lines.
 
     records : survey points of one pass and scanner
     corridor : m either side of the reference line within which points are used
-    level : LevelStrip whose points are left out, or None
     intensity : are intensities wanted?
 
     Returns ScannerLines, or None where there are fewer than two lines
     """
-    d = records["d"]
-    used = np.abs(d) <= int(round(corridor / COORDINATE_SCALE))
-    if level is not None:
-        used &= ~level.contains(records["s"], d)
-    records = take_rows(records, used)
+    records = take_rows(records, np.abs(records["d"]) <= int(round(corridor / COORDINATE_SCALE)))
     if len(records) < 4:
         return None
     time = np.ascontiguousarray(records["time"])

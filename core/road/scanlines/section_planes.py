@@ -11,7 +11,7 @@ The paper on normalized scanlines (ISPRS Archives, 2020), section 2.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +21,6 @@ from ...common.setting import Limited, setting
 from ...execution.phase import Phase
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice, scanner_runs
 from ...survey.open_survey import Survey
-from ..common.decimation import LevelStrip
 from ..common.pseudo_scanlines import pseudo_scan_lines
 from ..common.sides import expected_height, fixed_sections
 from ..weights import CURBS, SCANLINE
@@ -60,13 +59,11 @@ def scanlines_of(survey: Survey, road: int, start: float, end: float, settings: 
 
 
 def scanline_runs(survey: Survey, road: int, start: float, end: float, settings: ScanlineSettings = ScanlineSettings(),
-                  lattice: ScanLattice | None = None, intensity: bool = True, level: Callable[[int,
-                  float, float], LevelStrip | None] | None = None) -> list[Scanlines]:
+                  lattice: ScanLattice | None = None, intensity: bool = True) -> list[Scanlines]:
     """The normalized scanlines of the planes with start <= station < end, apart for each pass and scanner.
 
     survey, road, start, end, settings, lattice : as in `scanlines_of`
     intensity : whether intensities are computed; else they are 0
-    level : function of pass number, start and end (m) that returns the LevelStrip to be left out; None uses all points
     """
     interval = settings.interval
     first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
@@ -77,14 +74,12 @@ def scanline_runs(survey: Survey, road: int, start: float, end: float, settings:
     parts, unmeshed = [], not lattice.mirror_phases
     if lattice.mirror_phases:
         margin = max(_margin(survey, road, lattice), SCANLINE.min_slice_length, interval)
-        window = first * interval - margin, (last - 1) * interval + margin
-        records = survey.window(road, *window).records
+        records = survey.window(road, first * interval - margin, (last - 1) * interval + margin).records
         for key, run in scanner_runs(records):
             mirror = lattice.mirror_phases.get(key)
             unmeshed |= mirror is None
             if mirror is not None:
-                parts.append(_cut(run, survey.frame.passes[key[0]], key, mirror, (first, last), settings, intensity,
-                                  None if level is None else level(key[0], *window)))
+                parts.append(_cut(run, survey.frame.passes[key[0]], key, mirror, (first, last), settings, intensity))
     if unmeshed:
         lines = point_scanlines(survey, road, start, end, interval, settings.corridor)
         meshed = [key in lattice.mirror_phases for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())]
@@ -127,9 +122,9 @@ def _margin(survey, road, lattice):
     return margin + SCANLINE.max_edge
 
 
-def _cut(records, p, key, mirror, planes, settings, intensity, level):
+def _cut(records, p, key, mirror, planes, settings, intensity):
     """Scanlines of one pass and scanner."""
-    lines = scanner_lines(records, p, mirror, settings.corridor, level, intensity)
+    lines = scanner_lines(records, p, mirror, settings.corridor, intensity)
     if lines is None:
         return Scanlines.none()
     ribs = Ribs.join([ribs_of(lines, p.direction, mirror, settings.interval), slanting_edges(lines, mirror, settings.interval)])

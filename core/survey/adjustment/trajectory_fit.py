@@ -122,6 +122,7 @@ def _on_way(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Pr
     times, lever = _places(mountings)
     far = np.abs(lever[:, 1]) > HALF_VEHICLE
     if not far.any():
+        _tell_jump(trajectory, times, lever, progress)
         return trajectory
     worst = float(lever[np.argmax(np.abs(lever[:, 1])), 1])
     x, y = (np.interp(times[np.argmax(far)], trajectory.time, getattr(trajectory, name)) for name in "xy")
@@ -130,6 +131,22 @@ def _on_way(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Pr
                   f"(first near x {x:.0f}, y {y:.0f}), as their laser beams show; no vehicle is so wide. It may belong to another lane or "
                   "drive, or be in another datum than the cloud. It was moved to where the scanners were; check that both files belong together.")
     return _moved_aside(trajectory, mountings, times, lever[:, 1])
+
+
+def _tell_jump(trajectory, times, lever, progress):
+    """Warn where the scanners rode elsewhere on the vehicle at one place than at the one before, in one drive."""
+    pauses = trajectory.time[:-1][np.diff(trajectory.time) > ADJUST.max_seam]
+    one_drive = np.diff(np.searchsorted(pauses, times)) == 0
+    speed = np.interp(times, trajectory.time, np.hypot(*(np.gradient(axis, trajectory.time) for axis in (trajectory.x, trajectory.y))))
+    moved = np.abs(np.diff(lever[:, :2], axis=0))
+    moved[:, 0] -= VEHICLE.largest_lag * np.abs(np.diff(speed))   # which a clock that lags moves along
+    jumps = np.flatnonzero(one_drive & (moved.max(axis=1) > VEHICLE.least_jump))
+    if len(jumps):
+        k = int(jumps[0])
+        metres = float(np.hypot(*np.diff(lever[k:k + 2, :2], axis=0)[0]))
+        progress.warn(f"The scanners ride {metres:.1f} m elsewhere beside the trajectory at {times[k + 1]:.1f} s than at {times[k]:.1f} s, as their "
+                      "laser beams show, and nothing on a vehicle moves so. Files of one drive seem to be in two datums or adjustments, and the map "
+                      "has a step between them. Export all files and the trajectory from one solution, and run again.")
 
 
 def _windows(mountings):

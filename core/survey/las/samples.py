@@ -9,6 +9,7 @@ from math import gcd
 import numpy as np
 import shapely
 
+from ...common.errors import RoadExtractionError
 from ..weights import LAS
 from .parallel_reader import ParallelCloudReader
 from .reader import CloudHeader, read_blocks
@@ -163,6 +164,29 @@ def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
     order = np.lexsort((*place.T, time))
     repeated = (time[order[1:]] == time[order[:-1]]) & (place[order[1:]] == place[order[:-1]]).all(axis=1)
     return np.sort(order[np.r_[True, ~repeated][:len(order)]])
+
+
+def check_measured_once(time: np.ndarray, place: np.ndarray) -> None:
+    """Raise RoadExtractionError where points were given twice, a little apart: one drive, exported in two datums.
+
+    Beams that are measured at one time lie apart by all kinds of distances, copies of one point always by the same.
+
+    time : (N,) seconds of points, each given once; place : (N, 3) m
+    """
+    order = np.argsort(time, kind="stable")
+    for later in (1, 2):   # of two scanners that measure at the same times, the copy of a point comes after the other's
+        pairs = np.flatnonzero(time[order[later:]] == time[order[:-later]])
+        if len(pairs) < LAS.least_doubled * len(time):
+            return
+        apart = place[order[pairs + later]] - place[order[pairs]]
+        apart *= np.where(apart[:, [int(np.abs(apart).sum(axis=0).argmax())]] < 0.0, -1.0, 1.0)   # whichever of the two comes first
+        east, north, up = usual = np.median(apart, axis=0)
+        alike = (np.abs(apart - usual) < LAS.coarse_coordinates).all(axis=1).sum()
+        if alike > max(LAS.most_of_pairs * len(pairs), LAS.least_doubled * len(time)) and np.linalg.norm(usual) > LAS.coarse_coordinates:
+            raise RoadExtractionError(
+                f"About {200 * alike / len(time):.0f} % of the points were given twice, at one gps_time and {east:+.2f} m east, {north:+.2f} m north "
+                f"and {up:+.2f} m up of each other. One drive seems to have been exported twice, in two datums or adjustments. Give one of its "
+                "exports, and run again.")
 
 
 def _whole(places):

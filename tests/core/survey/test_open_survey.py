@@ -4,6 +4,7 @@ import re
 from dataclasses import replace
 from types import SimpleNamespace
 
+import laspy
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, contents, drive, joined, surveyed_points, write_cloud
@@ -446,3 +447,23 @@ def test_a_file_beside_the_drive_is_no_mistake(street, surveyed, tmp_path):
     beside = write_cloud(tmp_path / "beside.laz", x + 3000.0, y, z, time, crs=CRS)
     np.testing.assert_array_equal(contents(open_survey([path, beside], trajectory, progress=listener)), surveyed)
     assert listener.warnings == [] and any("1 of 2 files lie beside" in text for _, text in listener.messages)
+
+
+@pytest.mark.parametrize("crss", [("EPSG:32632+3855", "EPSG:32632+5773"), ("EPSG:32632", "EPSG:32632+3855", "EPSG:32632+5773")])
+def test_files_that_say_heights_of_two_kinds_are_refused(street, tmp_path, crss):
+    trajectory, points, _ = street
+    paths = [write_cloud(tmp_path / f"{k}.laz", *(c[k::len(crss)] for c in points), crs=crs) for k, crs in enumerate(crss)]
+    with pytest.raises(RoadExtractionError, match="heights of different kinds: EGM2008 height and, in .*EGM96 height"):
+        open_survey(paths, trajectory)
+    assert open_survey(paths[:-1], trajectory).store.count
+
+
+@pytest.mark.parametrize("share, warned", [(0.1, False), (0.6, True)])
+def test_a_cloud_of_which_much_is_withheld_or_noise_is_warned_of(street, tmp_path, share, warned):
+    trajectory, points, _ = street
+    cloud = laspy.read(write_cloud(tmp_path / "street.laz", *points, crs=CRS))
+    cloud.withheld = np.arange(len(points[0])) < share * len(points[0])
+    cloud.write(tmp_path / "street.laz")
+    listener = RememberedMessages()
+    open_survey([tmp_path / "street.laz"], trajectory, progress=listener)
+    assert [("withheld" in text, kind) for kind, text in listener.messages if "noise" in text] == [(True, "warn" if warned else "info")]

@@ -1,5 +1,6 @@
 """A trajectory that is not that of its scanners: told by the rays of their mirrors, moved to where they were, and said in one warning."""
 
+import re
 import warnings
 from dataclasses import replace
 
@@ -109,6 +110,17 @@ def test_heights_of_the_cloud_alone_in_feet_are_named_as_such(tmp_path):
 def test_heights_that_are_upside_down_are_named(tmp_path):
     found, warned = told(*raised(mirror_drive(PAIR, seconds=5.0), tmp_path / "down.laz", lambda z: -z))
     assert len(warned) == 1 and "upside down" in warned[0] and found.sigma > 0.1
+
+
+@pytest.mark.parametrize("metres, told_of", [((0.0, 0.8), True), ((1.2, 0.0), True), ((0.1, 0.15), False)])
+def test_a_step_between_the_files_of_one_drive_is_told(tmp_path, metres, told_of):
+    """The second half of a street is in another datum, by less than the half of a vehicle."""
+    measured = mirror_drive(PAIR, seconds=20.0)
+    late = measured.time > np.median(measured.time)
+    place = measured.place.copy()
+    place[late, :2] += metres
+    _, warned = told(replace(measured, place=place).write(tmp_path / "street.laz"), measured.trajectory())
+    assert [bool(re.search("elsewhere beside the trajectory.*two datums", text)) for text in warned] == [True] * told_of
 
 
 def test_times_of_broken_points_do_not_disturb_those_of_the_drive(straight):

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from drives import write_cloud
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.las.reader import read_headers
-from lanewright.core.survey.las.samples import distinct_rows, may_overlap, without_copies
+from lanewright.core.survey.las.samples import check_measured_once, distinct_rows, may_overlap, without_copies
 
 
 def cloud(path, order=slice(None), moved=0.0, later=0.0, **other):
@@ -50,3 +51,31 @@ def test_files_may_overlap_where_their_bounds_do(tmp_path, east, share):
     b = write_cloud(tmp_path / "b.laz", *np.array([[east, east + 10.0], [0.0, 10.0], [0.0, 1.0], [1.0, 2.0]]))
     assert may_overlap(read_headers([a, b])) is share
     assert not may_overlap(read_headers([a]))
+
+
+def beams(count, of_turn=64, seed=4):
+    """(N,) times and (N, 3) places of a head whose 64 beams measure at one time."""
+    rng = np.random.default_rng(seed)
+    return np.repeat(np.arange(count // of_turn) * 5e-5, of_turn), rng.uniform(-20.0, 20.0, (count // of_turn * of_turn, 3))
+
+
+@pytest.mark.parametrize("moved", [(0.5, 0.0, 0.0), (-0.3, 0.4, 0.0), (0.0, 0.1, 1.2)])
+@pytest.mark.parametrize("share", [1.0, 0.1], ids=["all", "where tiles overlap"])
+def test_one_drive_that_was_exported_in_two_datums_is_refused(moved, share):
+    rng = np.random.default_rng(5)
+    time, place = np.arange(20_000) * 1e-5, rng.uniform(-20.0, 20.0, (20_000, 3))
+    again = rng.permutation(len(time))[:int(share * len(time))]
+    order = rng.permutation(len(time) + len(again))
+    both = np.r_[time, time[again]][order], np.concatenate([place, place[again] + moved + rng.normal(0.0, 0.002, (len(again), 3))])[order]
+    with pytest.raises(RoadExtractionError, match="given twice.*two datums"):
+        check_measured_once(*both)
+
+
+def test_points_that_share_their_time_with_others_were_not_given_twice():
+    check_measured_once(*beams(20_000))
+    time, place = beams(20_000, of_turn=2)
+    check_measured_once(time, place)
+    with pytest.raises(RoadExtractionError, match="100 % of the points were given twice"):
+        check_measured_once(np.r_[time, time], np.concatenate([place, place + [0.0, 0.5, 0.0]]))
+    # a copy whose coordinates were rounded in another way lies where it is
+    check_measured_once(np.r_[time, time], np.concatenate([place, np.round(place, 2)]))
