@@ -189,7 +189,7 @@ ROWS = (
         ("chains in plan joined", "tracking:join_chains", as_list),
         ("steps seen twice", "tracking:without_duplicates", lambda steps: np.arange(len(steps)))),
     *_room("edges", "road.edges",
-        ("outliers of curb points", "fit:without_outliers", nth(0)),
+        ("outliers of curb points", "tracking:without_outliers", nth(0)),
         ("even bends across gaps", "fit:_line_across", gives((np.inf, None, "")), "bends with a junction; parked cars in a bend"),
         ("dropped corners", "dropped_corners:dropped_corners", gives([]), "corners dropped for a crossing")),
     *_room("surface", "road.surface",
