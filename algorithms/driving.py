@@ -61,7 +61,8 @@ class DrivingLines(Algorithm):
         self.add_trajectory()
         self.add_map_layer("MARKINGS", tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are "
                                           "distinguished."), optional=True)
-        self.add_map_layer("ROAD_EDGES", tr("With it lanes without an outer line end at the edge."), optional=True)
+        self.add_map_layer("ROAD_EDGES", tr("With it lanes without an outer line end at the edge, and lanes go on between the edges from where "
+                                            "their paint ends to the mouth of a junction."), optional=True)
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
         self.add_settings(DRIVING_SETTINGS)
         self.add_map_sink("DRIVING_LINES")

@@ -26,7 +26,7 @@ from .alignment import Course, Element, LanesOfRoad, design_check, element_of, f
 from .heights import lane_heights, road_heights
 from .lane_areas import RoadLanes, connectors_between_roads, follow_over_roads, lane_areas, make_lanes
 from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
-from .lanes import estimated_lanes, laid_out
+from .lanes import beyond_paint, estimated_lanes, laid_out
 from .layers import CurveElements, DrivingLines, Lanes
 from .settings import DrivingSettings
 from .shared_lanes import lanes_once
@@ -74,7 +74,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
                         for number, estimated in estimates.roads.items()], frame, settings.shortest)
     progress.report(0.5)
     fitted = fitted_lanes(roads, THREADS if road_points is None else road_points.executor, progress.part(0.5, 0.7))
-    measured = [None] * len(roads) if road_points is None else road_heights(
+    measured: Sequence[Any] = [[None] * len(road.tracks) for road in roads] if road_points is None else road_heights(
         road_points, [(number, road.s, road.tracks) for number, road in zip(estimates.roads, roads)], progress.part(0.7, 0.9))
     for count, ((number, estimated), road, z_of_road, (courses, alignment)) in enumerate(zip(estimates.roads.items(), roads, measured, fitted)):
         part = progress.part(0.9 + 0.1 * count / len(roads), 0.9 + 0.1 * (count + 1) / len(roads))
@@ -106,7 +106,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
 def _road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
     """The lanes of one road as a list of LaneTrack; `lane_width` where only one line is painted."""
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
-    tracks = connect(tracks, settings.max_bridge)
+    tracks = beyond_paint(connect(tracks, settings.max_bridge), road.boundaries)
     clear = [track.without_doubtful_ends() for track in laid_out(tracks)]
     return [replace(track, confidence=track.said_confidence()) for track in clear
             if track is not None and len(track) * STATION_STEP >= settings.shortest]
@@ -244,7 +244,10 @@ def _mean_square_of_borders(track, known, paint, spacing):
     measured = track.status == MEASURED
     unbounded = np.where(bounding.any(axis=0), 0.0, SIGMA.gap_share * _distance_to(measured))
     by_width = np.where(~measured & track.offset, SIGMA.width_sigma, 0.0)
-    return (share**2 * error).sum(axis=0) + unbounded**2 + by_width**2
+    square = (share**2 * error).sum(axis=0)
+    if bounding.any():   # beyond all borders it is no surer than at the last place that has one
+        square = np.maximum(square, square[distance_transform_edt(~bounding.any(axis=0), return_distances=False, return_indices=True)[0]])
+    return square + unbounded**2 + by_width**2
 
 
 def _mean_square_misfit(track, course, road, lines):

@@ -9,13 +9,16 @@ from scipy.linalg import solveh_banded
 from scipy.ndimage import binary_dilation
 
 from ..common.parallel import check_cancelled
+from ..countries.catalogue import NEUTRAL
+from ..markings.cross_section.beside import BEYOND
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.sequence import beside_surface_end, lane_places
-from ..markings.cross_section.weights import UNPAINTED
+from ..markings.cross_section.weights import SAME_LANE, SURFACE_END, UNPAINTED
+from ..markings.weights import ROADS
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
-from .weights import TRACKS
+from .weights import ALIGNMENT, TRACKS
 
 
 def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: float, line_distance: float = 0.0) -> list[LaneTrack]:
@@ -68,6 +71,63 @@ def _within_its_borders(track, boundaries):
     return track.part(present[0], present[-1] + 1) if len(present) else track
 
 
+def beyond_paint(tracks: list[LaneTrack], boundaries: Boundaries) -> list[LaneTrack]:
+    """The same lanes, each on from where its paint ends, as at a stop line, up to where what bounds the road beside it begins to move aside.
+
+    That is the mouth of a junction. On the way a lane keeps its share of the room between the nearest borders that go on, which may change by the
+    double of SAME_LANE: half of that is what its middle is off by then. Where anything begins between these, such as an island, it shares it no more.
+    """
+    spans, result = spans_of(tracks), list(tracks)
+    least, reach = (int(length / STATION_STEP) for length in (ALIGNMENT.min_status_length, ROADS.shortest_bare))
+    for number in range(len(tracks)):
+        for head in (True, False):
+            track = result[number]
+            end, step = (track.first, -1) if head else (track.last, 1)
+            ahead = np.arange(end, end + step * (reach + 1), step)
+            ahead = ahead[(ahead >= 0) & (ahead < len(boundaries.s))]
+            d, width = track.at(end)
+            course = _beside_borders(boundaries, ahead, d, width, least)
+            near = [result[k] for k in spans.near(end - 2 * reach, end + 2 * reach).tolist() if k != number]
+            taken = [any(abs(other.at(k)[0] - place) < (other.at(k)[1] + width) / 2 - SAME_LANE for other in near)
+                     for k, place in zip(ahead.tolist(), course.tolist())]
+            count = taken.index(True) if True in taken else len(taken)
+            if count > least:
+                ahead, course = (values[1:count][::step] for values in (ahead, course))
+                more = _inferred(track.stretched(int(ahead[0]), course, np.full(len(course), width), 0 if head else -1))
+                result[number] = LaneTrack.joined([more, track] if head else [track, more])
+        check_cancelled()
+    return result
+
+
+def _inferred(track):
+    """A LaneTrack that nothing painted shows, which is as much less sure as a bridged one."""
+    unknown, trust = np.full(len(track), -1), TRACKS.bridged_trust
+    return replace(track, status=np.full(len(track), INFERRED), offset=np.zeros(len(track), bool), left=unknown, right=unknown,
+                   probability=trust * track.probability, confidence=trust * track.confidence)
+
+
+def _beside_borders(boundaries, ahead, d, width, least):
+    """(N,) m, offsets of a lane at `d` at the stations `ahead`, from the first of them on, as far as what bounds it goes on alike."""
+    rows = boundaries.d.spans.near(*sorted((int(ahead[0]), int(ahead[-1]))))
+    rows = rows[~SURFACE_END[boundaries.made_of[rows]]]
+    offset = boundaries.d[rows[:, None], ahead]
+    beside = offset[:, 0] - d
+    goes_on = np.isfinite(offset[:, :least + 1]).all(axis=1)
+    sides = [np.flatnonzero((side * beside > width / 2 - SAME_LANE) & goes_on) for side in (1, -1)]
+    if not all(len(side) for side in sides):
+        return np.array([d])
+    left, right = (side[np.abs(beside[side]).argmin()] for side in sides)
+    room = offset[left] - offset[right]
+    # between two lines that both go on it has ended for another reason
+    if boundaries.bounding[rows[[left, right]]].all() and room[0] < width + NEUTRAL.narrowest_lane:
+        return np.array([d])
+    course = offset[right] + room * (d - offset[right, 0]) / room[0]
+    begins = offset[np.isnan(beside)]
+    with np.errstate(invalid="ignore"):   # NaN where a border has ended
+        alike = (np.abs(room - room[0]) < 2 * SAME_LANE) & ~((begins < offset[left]) & (begins > offset[right])).any(axis=0)
+    return course[:len(alike) if alike.all() else int(np.argmin(alike))]
+
+
 def _without_steps(parts):
     """The LaneTracks of one lane, one after the other, as one without steps between them.
 
@@ -103,30 +163,40 @@ def _parts(boundaries, estimate, lane_width, line_distance):
     bounds = np.flatnonzero(np.diff(of)) + 1
     for span, of_span, drawn, begin, width in zip(spans, rows, made_of, *(np.split(values, bounds) for values in places)):
         part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
-        if UNPAINTED[list(drawn)].all() and span.count > 1:
+        if UNPAINTED[list(drawn)].any() and span.count > 1:
             part = _where_driven(part, boundaries.s, estimate, span, lane_width)
+        elif span.count == 1 and span.beside[BEYOND] >= 0 and SURFACE_END[list(drawn)].any():
+            drives = _drives(part, boundaries.s, estimate, np.arange(estimate.evidence.own))
+            part = replace(part, d=drives[np.abs(drives - part.d).mean(axis=1).argmin()])
         yield span.interval, part
 
 
 def _where_driven(part, s, estimate, span, lane_width):
-    """The LaneTrack of a lane of a strip without any paint, moved from its even share of the strip to where it was driven, as far as that is surer.
+    """The LaneTrack of a lane of a strip whose lanes nothing parts, moved from its even share of the strip to where it was driven, as far as surer.
 
-    One lane has all the room between its borders. Where several share it nothing shows what parts them: lanes of the usual width may lie anywhere in
-    it, and vehicles keep to their middle with some scatter. Both are errors about the middle.
+    One lane has all the room between its borders. Where several share it, lanes of the usual width may lie anywhere in it; and either they share it
+    evenly, or they are as unlike as lanes of a road are, both as probable. Vehicles keep to their middle with some scatter. All these are normal
+    errors about the middle: where one drove far from an even share it is not even.
     """
-    c, evidence = estimate.candidates, estimate.evidence
+    evidence, weights = estimate.evidence, estimate.weights
     passes = np.flatnonzero((evidence.directions == span.direction) & np.isfinite(evidence.driven[:, span.interval]))
-    middle, places = (s[c.first] + s[c.last]) / 2, s[part.first:part.last + 1]
-    seen = np.isfinite(evidence.driven)
-    driven = np.array([np.interp(places, middle[seen[p]], evidence.driven[p, seen[p]]) for p in passes])
-    beside = driven.reshape(-1, len(part)) - part.d
+    beside = _drives(part, s, estimate, passes) - part.d
     inside = np.abs(beside) < part.width / 2
     count = inside.sum(axis=0)
+    beside = (inside * beside).sum(axis=0) / np.maximum(count, 1)
     room = np.where(count > 0, np.maximum(part.width - lane_width, 0.0), 0.0)
-    variance = (span.count * room) ** 2 / 12   # of an even distribution
-    share = variance / (variance + estimate.weights.track_sigma**2 / np.maximum(count, 1))
-    return replace(part, d=part.d + share * (inside * beside).sum(axis=0) / np.maximum(count, 1), width=part.width - share * room,
-                   offset=share > 0.5)
+    of_place = (span.count * room) ** 2 / 12 + np.array([[0.0], [weights.width_sigma**2]])   # that of an even distribution, and of widths
+    variance = of_place + weights.track_sigma**2 / np.maximum(count, 1)
+    probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance)
+    share = np.where(count > 0, (probable * of_place / variance).sum(axis=0) / probable.sum(axis=0), 0.0)
+    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=share > 0.5)
+
+
+def _drives(part, s, estimate, passes):
+    """(P, N) m, offsets of some passes at the places of a LaneTrack, between the middles of intervals and beyond the last of them."""
+    c, driven = estimate.candidates, estimate.evidence.driven
+    middle, places, seen = (s[c.first] + s[c.last]) / 2, s[part.first:part.last + 1], np.isfinite(driven)
+    return np.array([np.interp(places, middle[seen[p]], driven[p, seen[p]]) for p in passes]).reshape(-1, len(part))
 
 
 def _with_borders(boundaries, candidates, span):

@@ -47,7 +47,7 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
     between = places.means(np.where(lined, across, np.nan), w.laid_out)
     usual_there, like = np.where(np.isfinite(between), between, usual), w.like_lines * (shown | np.isfinite(between))
     # beside an island all room is the lane's
-    offset = np.where(made == ISLAND, np.nan, step * (line - evidence.driven[:, i]))
+    offset = np.where(made == ISLAND, np.nan, step * (line - evidence.driven[:evidence.own, i]))
     near, passes = _driven_beside(offset, room, w)
     driven = places.means(np.where(passes > 0, near, np.nan), w.laid_out)
     sigma = w.track_sigma / np.sqrt(np.maximum(places.means(passes.astype(float), w.laid_out), 1e-9))
@@ -66,7 +66,9 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
         alike = _readings(room, driven, sigma, usual_there, np.full(len(i), w.like_lines), share, w)
         nats, width, spread = (np.where(np.isnan(driven), *values) for values in zip(alike, (nats, width, spread)))
     chosen = _chosen(places, room, lined, across, nats, width, spread, w)
-    result[i, m, side] = np.column_stack([chosen, _driven_apart(offset, room, chosen[:, WIDTH], w)])
+    end = m + step
+    free = np.where(np.isnan(room) & SURFACE_END[c.made_of[i, end]], np.abs(np.where(side == 0, c.right[i, end], c.left[i, end]) - line), room)
+    result[i, m, side] = np.column_stack([chosen, _driven_apart(offset, free, chosen[:, WIDTH], w)])
     return result
 
 

@@ -111,8 +111,8 @@ def _between_borders_too(lines, frame, curbs, pavement):
         of_road = lines.get(number, no_lines())
         edges = [sections for sections in (curbs.get(number), pavement.get(number)) if sections is not None]
         painted = np.rint(of_road.s[np.unique(of_road.d.spans.station[np.isfinite(of_road.d.values)])] / STATION_STEP)
-        driven_bare = [_driven_bare(p, edges, painted) for p in frame.passes_of(number)]
-        stations = np.concatenate([of_road.s, *driven_bare])
+        free = [_driven_bare(p, edges, painted) for p in frame.passes_of(number)]
+        stations = np.concatenate([of_road.s, *(s for both in free for s in both)])
         if not len(stations):
             continue
         first, count = stations.min(), int(np.rint(np.ptp(stations) / STATION_STEP)) + 1
@@ -120,13 +120,16 @@ def _between_borders_too(lines, frame, curbs, pavement):
         tables = {name: getattr(of_road, name).shifted(by, count) for name in ("d", "z", "seen", "drawn", "number", "width")}
         result[number] = replace(of_road, s=first + STATION_STEP * np.arange(count), **tables)
         bare[number] = np.zeros(count, bool)
-        for s in driven_bare:
+        for s, _ in free:
             bare[number][np.rint((s - first) / STATION_STEP).astype(int)] = True
     return result, bare
 
 
 def _driven_bare(p, edges, painted):
-    """(N,) m, stations of long stretches that a pass drove between two borders, without paint; `painted` : (M,) the numbers of those with paint."""
+    """(N,) and (M,) m, stations without paint that a pass drove between two borders: of long stretches, and of what is left beyond the paint's ends.
+
+    `painted` : the numbers of the stations with paint.
+    """
     s = STATION_STEP * np.arange(np.ceil(p.span[0] / STATION_STEP), np.floor(p.span[1] / STATION_STEP) + 1)
     track, sides = p.at_station(s)[0], np.zeros((2, len(s)), bool)
     for sections in edges:
@@ -135,8 +138,10 @@ def _driven_bare(p, edges, painted):
         across = d.values - track[d.spans.station]
         for side, there in zip(sides, (across > 0, across < 0)):
             side[d.spans.station[there & along]] = True
-    runs = mask_runs(sides.all(axis=0) & ~np.isin(np.rint(s / STATION_STEP), painted))
-    return np.concatenate([np.empty(0), *(s[first:end] for first, end in runs if (end - first) * STATION_STEP >= ROADS.shortest_bare)])
+    bare = sides.all(axis=0) & ~np.isin(np.rint(s / STATION_STEP), painted)
+    reach = painted[[0, -1]] * STATION_STEP + ROADS.shortest_bare * np.array([-1, 1]) if len(painted) else np.zeros(2)
+    return (np.concatenate([np.empty(0), *(s[first:end] for first, end in mask_runs(bare) if (end - first) * STATION_STEP >= ROADS.shortest_bare)]),
+            s[bare & (s > reach[0]) & (s < reach[1])])
 
 
 def _arrows_and_drive(markings, frame, lines, drives, automatic, weights):

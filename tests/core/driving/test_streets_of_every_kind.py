@@ -234,6 +234,14 @@ def test_without_paint_lanes_lie_where_they_were_driven_and_not_where_a_street_t
         assert max(np.abs(street.offsets(line) - 1.75 * side).max() for line in parts) < 0.15
 
 
+@pytest.mark.parametrize("left", [0.75, 1.65])
+def test_without_paint_a_street_is_shared_evenly_unless_it_was_driven_far_from_that(left):
+    street = Street(vehicle=-1.65, again=(left,))
+    places = [(row["direction"], np.abs(street.offsets(line) - (left if row["direction"] < 0 else -1.65)).max())
+              for line, row in street.lanes(edges=curbs(street, 3.3, -3.3))[0]]
+    assert {way for way, _ in places} == {1, -1} and max(off for _, off in places) < 0.1
+
+
 def test_one_lane_between_two_curbs_lies_in_their_middle_though_the_drive_was_not_quite_there():
     street = Street(vehicle=0.12)
     lines = list(street.lanes(edges=curbs(street, 2.2, -2.2))[0])
@@ -249,9 +257,37 @@ def test_lanes_go_on_between_the_curbs_where_the_paint_stops():
         assert max(np.abs(street.offsets(line) + 1.75 * way).max() for line in parts) < 0.05
 
 
-def test_paint_that_stops_some_metres_before_the_curbs_do_gives_no_lane_of_its_own():
-    street = Street(vehicle=-1.75).paint(0.0, 5.0, 100.0, pattern="dashed")
-    assert max(line.bounds[2] for line, _ in street.lanes(edges=curbs(street, 3.5, -3.5))[0]) - EAST < 103.0
+def beside_lines_and_curbs(last, left, right):
+    """Lanes of a street with dashes up to station `last` between two curbs: {direction: [(offset and station of its vertices)]}."""
+    street = Street(vehicle=-1.75).paint(0.0, 5.0, last, pattern="dashed")
+    found = {}
+    for line, row in street.lanes(edges=curbs(street, left, right))[0]:
+        found.setdefault(row["direction"], []).append(np.c_[street.offsets(line), np.asarray(line.coords)[:, 0] - EAST])
+    return {way: np.concatenate(places) for way, places in found.items()}
+
+
+@pytest.mark.parametrize("last", [98.0, 104.0, 108.0])
+def test_where_the_paint_stops_some_metres_before_the_curbs_do_its_lanes_go_on_between_these(last):
+    lanes = beside_lines_and_curbs(last, 3.5, -3.5)
+    assert {way: places[:, 1].max() for way, places in lanes.items()} == {1: pytest.approx(114.5, abs=0.6), -1: pytest.approx(114.5, abs=0.6)}
+    assert all(np.abs(places[:, 0] + 1.75 * way).max() < 0.05 for way, places in lanes.items())
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_beyond_a_stop_line_lanes_lead_up_to_where_the_curb_bends_into_the_side_street(side):
+    bent, straight = lambda s: side * (3.5 + np.where(s > 106.0, 6.0 - np.sqrt(np.maximum(36.0 - (s - 106.0) ** 2, 0.0)), 0.0)), -3.5 * side
+    lanes = beside_lines_and_curbs(100.0, *((bent, straight) if side > 0 else (straight, bent)))
+    assert all(106.0 < places[:, 1].max() < 109.0 for places in lanes.values()) and len(lanes) == 2
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_beyond_their_paint_lanes_lead_no_farther_than_an_island_between_them(side):
+    street = Street(vehicle=-1.75).paint(0.0, 5.0, 98.0, pattern="dashed")
+    edges, along = curbs(street, 3.5, -3.5), np.arange(106.0, 114.0, 0.5)
+    for chain, offset in enumerate((side * 0.2, side * 1.0), start=2):
+        edges.add(LineString(np.c_[street.places(along, offset), np.full(len(along), HEIGHT)]), road=0, kind="island", edge="curb", status="measured",
+                  part="bottom", chain=chain, side="left")
+    assert max(line.bounds[2] for line, _ in street.lanes(edges=edges)[0]) - EAST == pytest.approx(105.5, abs=0.6)
 
 
 def test_pockets_that_face_each_other_over_a_junction_are_two_lanes_and_the_median_before_them_is_none():
@@ -289,3 +325,28 @@ def test_two_arrows_show_a_turning_lane_beyond_a_solid_line_beside_the_curb():
     arrows = [(straight_arrow(station, -3.75, 1), "arrow") for station in (20.0, 65.0)]
     lines, _ = street.lanes(edges=curbs(street, 9.2, -5.6), markings=outlined(street, *arrows))
     assert max(line.length for line, row in lines if row["direction"] == 1 and np.median(street.offsets(line)) < -3.0) > 50.0
+
+
+def test_before_a_stop_line_the_solid_lines_under_it_part_lanes_that_lead_to_it():
+    """Three lanes between two curbs, of which the middle one was driven; the solid lines beside it could be the edges of the road, too."""
+    street = Street(length=60.0, vehicle=0.0).paint(1.75, kind="").paint(-1.75, kind="")
+    borders, stop = curbs(street, 5.2, -5.2), painted(street, (54.0, 54.5, -5.0, 5.0, "stop"))
+    assert lanes_of(street, edges=borders) == {0.0: 1}
+    assert {round(offset) for offset in lanes_of(street, edges=borders, markings=stop)} == {-3, 0, 3}
+    assert set(lanes_of(street, edges=borders, markings=stop).values()) == {1}
+    # before the driven lane alone it says nothing of the strips beside
+    assert lanes_of(street, edges=borders, markings=painted(street, (54.0, 54.5, -1.6, 1.6, "stop"))) == {0.0: 1}
+
+
+def test_a_drive_on_another_road_far_beside_a_lane_says_nothing_against_it():
+    """Beyond the solid line left of the driven lane lies a turning lane, then asphalt without paint up to another road, driven the other way."""
+    def street(again):
+        return Street(length=80.0, vehicle=0.0, again=again).paint(1.75, kind="").paint(-1.75, kind="edge")
+
+    def lanes(made):
+        arrows = [(straight_arrow(station, 3.4, 1), "arrow") for station in (10.0, 25.0, 40.0, 55.0, 70.0)]
+        return lanes_of(made, edges=curbs(made, 18.0, -4.0), markings=outlined(made, *arrows))
+
+    other = street(again=(15.0,))
+    assert len(other.frame.roads) == 2
+    assert lanes(other) == lanes(street(again=())) == {0.0: 1, 3.5: 1}

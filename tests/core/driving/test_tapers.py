@@ -159,3 +159,17 @@ def test_a_lane_goes_on_where_it_is_driven_while_the_line_beside_it_moves_aside_
     places = np.concatenate([np.c_[np.asarray(line.coords)[:, 0] - EAST, street.offsets(line)] for line, _ in street.lanes(edges=edges)[0]])
     opening = places[(places[:, 0] > 110.0) & (places[:, 0] < 119.0) & (places[:, 1] < 0.9)]
     assert len(opening) and np.abs(opening[:, 1] + 2.2).max() < 0.15
+
+
+def test_a_lane_driven_apart_from_its_line_lies_where_it_was_driven_where_the_curb_across_was_not_seen_too():
+    street = Street(length=110.0, vehicle=-3.4).paint(0.0)
+    edges = Features("LineStringZ", list(ROAD_EDGES))
+    for chain, (side, first, last) in enumerate((("left", 5.0, 105.0), ("right", 5.0, 45.0), ("right", 65.0, 105.0))):
+        along = np.arange(first, last, 0.5)
+        places = street.places(along, 3.6 if side == "left" else -5.2)
+        edges.add(LineString(np.c_[places, np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured", part="bottom",
+                  chain=chain, side=side)
+    ragged = -5.2 + np.random.default_rng(5).uniform(-0.2, 0.2, 60_000)
+    driven = [line for line, row in street.lanes(edges=edges, road_points=_points(street, ragged, 3.6))[0] if row["direction"] > 0]
+    assert sum(line.length for line in driven) > 95.0
+    assert max(np.abs(street.offsets(line) + 3.4).max() for line in driven) < 0.1
