@@ -496,8 +496,6 @@ class _EdgeWeights:
 
     # curb returns
     return_vertex_spacing: float = 0.25   # m between vertices: the nose of an island has a radius below a metre
-    min_corner_turn: float = np.radians(50.0)   # from the chord before to the chord after a sharp corner
-    max_corner_radius: float = 0.45   # m, radius that such a turn would have
     smoothing_half_length: float = 0.5   # m along a curb within which its points give its course
     same_place_distance: float = 0.02   # m within which two places are one
     # dropped corners

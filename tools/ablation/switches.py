@@ -191,7 +191,6 @@ ROWS = (
     *_room("edges", "road.edges",
         ("outliers of curb points", "tracking:without_outliers", nth(0)),
         ("even bends across gaps", "fit:_line_across", gives((np.inf, None, "")), "bends with a junction; parked cars in a bend"),
-        ("sharp corners of returns", "curb_returns:_sharp_chords", gives(NO_NUMBERS), "", "curb_returns:_sharp_chords curb_returns:_corner"),
         ("dropped corners", "dropped_corners:dropped_corners", gives([]), "corners dropped for a crossing")),
     *_room("surface", "road.surface",
         ("road edges bound the surface", "limits:edge_offsets",
