@@ -153,8 +153,9 @@ CURB_SETTINGS = (
 class DetectCurbs(Algorithm):
     ID, TITLE, GROUP = "detectcurbs", "Detect curbs", "Road"
     SUMMARY = "Finds the curb nearest to the driven track on each side, on profiles across the road."
-    HELP = ("Where there is no curb none is made up; a curb hidden behind parked cars becomes a point of status occluded. The field "
-            "kind tells the road's own curbs (main) from those of corners, side streets and islands, which are found in plan.")
+    HELP = ("Where there is no curb none is made up; a curb hidden behind parked cars becomes a point of status occluded, and one "
+            "that is lowered a point of status bridged wherever the ground still steps up on its line. The field kind tells the road's own "
+            "curbs (main) from those of corners, side streets and islands, which are found in plan.")
     TAGS = ("curb", "kerb", "road edge")
 
     def declare(self):
@@ -184,7 +185,8 @@ EDGES = "core.road.edges.fit:EdgeSettings"
 EDGE_SETTINGS = (
     SettingSpec("MAX_GAP", EDGES, "max_gap", tr("Longest gap bridged (m)"),
                 tr("Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there. Where both parts of the curb lie "
-                   "in one line, gaps up to twice as long are bridged. A curb that is lowered in sight is drawn as dropped across up to 12 m.")),
+                   "in one line, gaps up to twice as long are bridged. Where the ground shows that the curb is lowered, a dropped edge goes "
+                   "on for up to 30 m, whatever this length is.")),
     SettingSpec("FALLBACK_WIDTH", EDGES, "fallback_width", tr("Assumed road width where no curb is seen, 0 = none (m)"),
                 tr("0 draws no edge where none was found. A width draws one at half of it either side of the road's reference line, flagged as "
                    "inferred."), advanced=True),

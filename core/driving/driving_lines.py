@@ -74,7 +74,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
                         for number, estimated in estimates.roads.items()], frame, settings.shortest)
     progress.report(0.5)
     fitted = fitted_lanes(roads, THREADS if road_points is None else road_points.executor, progress.part(0.5, 0.7))
-    measured = [None] * len(roads) if road_points is None else road_heights(
+    measured: Sequence[Any] = [[None] * len(road.tracks) for road in roads] if road_points is None else road_heights(
         road_points, [(number, road.s, road.tracks) for number, road in zip(estimates.roads, roads)], progress.part(0.7, 0.9))
     for count, ((number, estimated), road, z_of_road, (courses, alignment)) in enumerate(zip(estimates.roads.items(), roads, measured, fitted)):
         part = progress.part(0.9 + 0.1 * count / len(roads), 0.9 + 0.1 * (count + 1) / len(roads))

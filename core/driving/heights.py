@@ -177,9 +177,9 @@ def _smooth_heights(z: np.ndarray) -> np.ndarray:
     return gaussian_filter1d(np.r_[head, z, tail], HEIGHTS.height_smoothing_sigma / STATION_STEP)[pad:pad + len(z)]
 
 
-def lane_heights(lines: CrossSections, tracks: list[LaneTrack], measured: list[np.ndarray] | None) -> list[np.ndarray]:
-    """Local z along every lane, (N,) each: that of `road_heights` where there are road points, else from the marking lines beside it."""
-    return [_height(z, _line_heights(lines, track.first, track.d)) for z, track in zip(measured or [None] * len(tracks), tracks)]
+def lane_heights(lines: CrossSections, tracks: list[LaneTrack], measured: Sequence[np.ndarray | None]) -> list[np.ndarray]:
+    """Local z along every lane, (N,) each: that of `road_heights` where it is known, else from the marking lines beside it."""
+    return [_height(z, _line_heights(lines, track.first, track.d)) for z, track in zip(measured, tracks)]
 
 
 def _height(measured, painted):

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from ..common.errors import RoadExtractionError
-from ..common.parallel import POLL_INTERVAL
+from ..common.parallel import POLL_INTERVAL, check_cancelled
 from ..common.progress import Progress
 from .folder_executor import FolderExecutor, Work
 from .tasks import BEAT, NEEDED, items_done_here, look_around, sees_files, versions
@@ -226,16 +226,31 @@ def wait_for_workers(client: Any, progress: Progress) -> dict[str, int]:
     return dict(workers)
 
 
+def _answers(client: Any, function: Callable[..., Any], *arguments: Any) -> dict[str, Any]:
+    """{worker: what a function gives there, or the exception}, asked again where a worker was lost that the scheduler still lists."""
+    until = time.monotonic() + EXECUTION.scheduler_lost
+    while True:
+        answers = client.run(function, *arguments, on_error="return")
+        lost = {worker: error for worker, error in answers.items() if isinstance(error, OSError)}
+        if not lost:
+            return answers
+        if time.monotonic() > until:
+            worker, error = lost.popitem()
+            raise RoadExtractionError(f"The worker {worker} does not answer: {_words(error)}. Look whether it still runs, or start it anew.")
+        check_cancelled()
+        time.sleep(POLL_INTERVAL)
+
+
 def _check_versions(client: Any) -> None:
     """Refuse workers whose Python or packages are others than ours; the message names the worker, the package and both versions."""
     local = versions(EQUAL)
     # functions of the standard library, which every worker has
     minor = {worker: installed if isinstance(installed, BaseException) else ".".join(installed.split(".")[:2])
-             for worker, installed in client.run(platform.python_version, on_error="return").items()}
+             for worker, installed in _answers(client, platform.python_version).items()}
     _compare("Python", minor, local["python"])
     for name in EQUAL:
         # the plugin is no installed package; what it consists of is compared by `_check_workers`
-        _compare(name, client.run(importlib.metadata.version, name, on_error="return"), local[name])
+        _compare(name, _answers(client, importlib.metadata.version, name), local[name])
 
 
 def _compare(name, versions, here):
@@ -252,7 +267,7 @@ def _check_workers(client: Any, folder: Path, word: str, named: bool, progress: 
 
     `named` tells whether the user chose the folder.
     """
-    for worker, report in client.run(look_around, str(folder), word, on_error="return").items():
+    for worker, report in _answers(client, look_around, str(folder), word).items():
         if isinstance(report, BaseException) or report["code"] != code_digest():
             raise RoadExtractionError(f"The worker {worker} has another {PACKAGE} than this computer, although maybe of the same version. Install "
                                       f"this one there: {INSTALL}, or pip install . in its folder.")

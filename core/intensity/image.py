@@ -230,7 +230,8 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     grid, work = _looked(road_points, settings, progress)
     image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, road_points.executor.folder)
     image.pieces = {piece: digest((settings, piece, road_points.state(*_span(PIECE_LENGTH, piece.road, piece.number))))
-                    for _, pieces in work for piece in pieces}
+                    for piece in dict.fromkeys(piece for _, pieces in work for piece in pieces)}   # most touch several tiles
+    image.places = np.array([(piece.road, piece.number, *piece.extent, *piece.across) for piece in image.pieces], np.int64)
     image.states = {tile: digest((grid.shape_of(*tile), [image.pieces[piece] for piece in pieces])) for tile, pieces in work}
     if before is not None:
         image.take_over(before)
@@ -437,17 +438,16 @@ class _Grid:
 
 def state_about(image: TiledImage, frame: RoadFrame, road: int, start: float, end: float) -> list[Any]:
     """Plain values that differ where the points of a road between two stations (m), or the image of `make_intensity_image` about them, are others."""
-    pieces, margin = list(image.pieces), int(np.ceil(IMAGE.state_margin / image.cell_size))
-    inside = np.array([piece.road == road and start < (piece.number + 1) * PIECE_LENGTH and piece.number * PIECE_LENGTH < end for piece in pieces])
-    across = np.array([piece.across for piece, is_own in zip(pieces, inside.tolist()) if is_own]).reshape(-1, 2) * COORDINATE_SCALE
-    if not len(across):
+    roads, numbers, c_first, c_last, r_first, r_last, low, high = image.places.T
+    inside = (roads == road) & (start < (numbers + 1) * PIECE_LENGTH) & (numbers * PIECE_LENGTH < end)
+    if not inside.any():
         return []
-    s = np.arange(start, end + IMAGE.state_margin, IMAGE.state_margin)
-    sides = [frame.road(road).to_map(s, d) for d in (across.min(), across.max())]
+    s, margin = np.arange(start, end + IMAGE.state_margin, IMAGE.state_margin), int(np.ceil(IMAGE.state_margin / image.cell_size))
+    sides = [frame.road(road).to_map(s, d * COORDINATE_SCALE) for d in (low[inside].min(), high[inside].max())]
     (c0, c1), (r0, r1) = ([int(np.floor((end + o) / image.cell_size)) for end in (np.min(c), np.max(c))] for c, o in zip(zip(*sides), frame.origin))
-    extents = np.array([piece.extent for piece in pieces])
-    about = (extents[:, 0] <= c1 + margin) & (extents[:, 1] >= c0 - margin) & (extents[:, 2] <= r1 + margin) & (extents[:, 3] >= r0 - margin)
-    return [list(image.geotransform), *(image.pieces[pieces[k]] for k in np.flatnonzero(inside | about).tolist())]
+    about = (c_first <= c1 + margin) & (c_last >= c0 - margin) & (r_first <= r1 + margin) & (r_last >= r0 - margin)
+    digests = list(image.pieces.values())
+    return [list(image.geotransform), *(digests[k] for k in np.flatnonzero(inside | about).tolist())]
 
 
 # Whether an intensity image shows the road points it is used with.

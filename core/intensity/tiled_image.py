@@ -47,6 +47,7 @@ class TiledImage(IntensityImage):
         self.folder = folder
         self._file: ArrayFile | Path | None = None
         self.pieces: dict[Any, str] = {}
+        self.places = np.empty((0, 8), np.int64)   # of each piece road, number, first and last column and row, least and greatest offset in 0.1 mm
         self.states: dict[tuple[int, int], str] = {}
         self.lost: list[tuple[int, int]] = []   # first pixels of tiles that another image did not take over
         self._written: tuple[Path, list[int]] | None = None   # the GeoTIFF of this image, and its size and time then

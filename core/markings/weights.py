@@ -361,6 +361,7 @@ class _EvidenceWeights:
     pass_spacing: int = 20   # stations, between the places of a pass at most
     sections_alike: int = 3   # sections of points whose median spacing is taken: one in which the road begins or ends holds fewer points
     stop_reach: float = 5.0   # m before and after a stop line where its lanes are still its lanes
+    approach: float = 40.0   # m before a stop line, over which lines between its lanes may be solid although they are dashes elsewhere
     # Hatched areas and their borders.
     bar_reach: float = 1.6   # m: bars of one hatched area are at most twice as far apart
     outline_spacing: float = 0.25   # m between places of an outline

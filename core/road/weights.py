@@ -107,6 +107,11 @@ class _CurbWeights:
     max_block_turn: float = np.radians(1.0)   # turn of the road within a block
     max_block_bend: float = 0.015   # m off its own straight line above which a block is divided
     chain_end_steps: int = 3   # profiles that give the end point of a chain
+    # lowered curb
+    lowered_rows: int = 5   # rows of ground cells, 2.5 m along a curb, whose median step counts
+    least_lowered_step: float = 0.005   # m of that median: along simulated lowered curbs it was 0.007 to 0.02, across mouths of streets 0.002 at most
+    max_lowered_turn: float = 0.03   # radians that the curb on both sides turns off the line across: the step is measured on that line
+    road_beside: float = 1.0   # m from the curb toward the road, where the same rows show what is no step
     # chains
     max_link_length: float = 1.0   # m along the road that a link may span
     link_drift: float = 0.20   # m across per m along that a link may differ from the faces' own direction
@@ -491,14 +496,11 @@ class _EdgeWeights:
 
     # curb returns
     return_vertex_spacing: float = 0.25   # m between vertices: the nose of an island has a radius below a metre
-    min_corner_turn: float = np.radians(50.0)   # from the chord before to the chord after a sharp corner
-    max_corner_radius: float = 0.45   # m, radius that such a turn would have
     smoothing_half_length: float = 0.5   # m along a curb within which its points give its course
     same_place_distance: float = 0.02   # m within which two places are one
     # dropped corners
-    max_dropped_gap: float = 8.0   # m of dropped curb around a corner, and
-    max_sunk_gap: float = 12.0   # m in a line where the curb is seen to sink at an end,
-    sunk_share: float = 0.5   # to this share of its height: it was 0.2 to 0.5 before drives, 0.64 and more where the curb is cut
+    max_dropped_gap: float = 8.0   # m of dropped curb around a corner
+    lowered_share: float = 0.5   # of the height of a curb around, to which it is lowered at a drive: it was 0.2 to 0.5
     min_dropped_gap: float = 0.3   # m
     min_arc_turn: float = np.radians(12.0)   # radians from end to end, least, and
     max_arc_turn: float = np.radians(100.0)   # most
@@ -615,6 +617,7 @@ class _SurfaceWeights:
     smoothed_columns: int = 16   # columns smoothed along the road at a time
     cells_between_questions: int = 100_000   # followed until Cancel is asked for: some 50 ms
     # cells
+    cells_of_step: int = 3   # on either side of a step, to which its lines are fitted: 0.75 m
     row_length: float = 0.5   # m along, and
     column_width: float = 0.25   # m across the road, size of a ground cell
     ground_layer_jump: float = 0.06   # m of height between two layers: the ground and the sill of a car

@@ -274,6 +274,7 @@ READING = _ReadingWeights()
 class _TrajectoryWeights:
     """Reading a trajectory and cleaning it."""
 
+    most_at_once: float = 50.0   # m driven between positions of one time: a second of a fast drive
     max_header_lines: int = 15   # lines above a table in which the names of its columns are looked for
     longest_name: int = 40   # characters of a name in a message
     most_names: int = 25   # names listed in a message

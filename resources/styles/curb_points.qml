@@ -1,6 +1,6 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
 <qgis version="3.40.6-Bratislava" labelsEnabled="0" styleCategories="Symbology|Labeling">
-  <renderer-v2 forceraster="0" attr="concat(&quot;side&quot;, ' ', &quot;status&quot;)" referencescale="-1" symbollevels="0" type="categorizedSymbol" enableorderby="0">
+  <renderer-v2 forceraster="0" attr="concat(&quot;side&quot;, if(&quot;status&quot; = 'measured', ' measured', ' occluded'))" referencescale="-1" symbollevels="0" type="categorizedSymbol" enableorderby="0">
     <categories>
       <category symbol="0" uuid="{bcc3b005-b588-41ab-9ffc-cd7e4bba7f7b}" label="Left, measured" value="left measured" type="string" render="true"/>
       <category symbol="1" uuid="{fa44d54f-f02b-4a05-8179-a64d40ccc834}" label="Left, hidden" value="left occluded" type="string" render="true"/>

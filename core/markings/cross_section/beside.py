@@ -47,7 +47,7 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
     between = places.means(np.where(lined, across, np.nan), w.laid_out)
     usual_there, like = np.where(np.isfinite(between), between, usual), w.like_lines * (shown | np.isfinite(between))
     # beside an island all room is the lane's
-    offset = np.where(made == ISLAND, np.nan, step * (line - evidence.driven[:, i]))
+    offset = np.where(made == ISLAND, np.nan, step * (line - evidence.driven[:evidence.own, i]))
     near, passes = _driven_beside(offset, room, w)
     driven = places.means(np.where(passes > 0, near, np.nan), w.laid_out)
     sigma = w.track_sigma / np.sqrt(np.maximum(places.means(passes.astype(float), w.laid_out), 1e-9))

@@ -96,7 +96,8 @@ def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int]], lane_w
 def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int], lane_width: float, weights: EstimateWeights) -> Sections:
     """The phase that chooses the cheapest cross-sections of the intervals of a stretch; what it is given is as of `estimates_of_roads`."""
     candidates, evidence, first_direction = item
-    sections = best_sections(candidates, strip_costs(candidates, evidence, weights, lane_width, first_direction), evidence.stops, weights)
+    costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
+    sections = best_sections(candidates, costs, evidence.stops, first_direction, weights)
     sections.cost += _roads_of_many_lanes(candidates, sections, evidence.divided, weights)
     return sections
 

@@ -37,7 +37,7 @@ class Evidence:
     asphalt: np.ndarray | None   # (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
     hatched: np.ndarray | None
     arrows: np.ndarray   # (A, 3) interval, offset, and which way it points: 1 along the road, -1 against it, nearer 0 the less sure
-    stops: np.ndarray   # (S, 3) interval, least and greatest offset
+    stops: np.ndarray   # (S, 4) interval, least and greatest offset, and how far ahead along the road the stop line lies, m, less than 0 behind
     divided: np.ndarray   # (I,) bool, whether the road is one carriageway of two
     bare: np.ndarray   # (I,) bool, where it was driven between two borders without any paint
     own: int | None = None   # how many of the passes are the road's own; None for all
@@ -46,7 +46,7 @@ class Evidence:
     def part(self, first: int, end: int) -> Evidence:
         """That of the intervals from `first` to `end` (exclusive)."""
         def of(rows):
-            return rows[(rows[:, 0] >= first) & (rows[:, 0] < end)] - [first, 0, 0]
+            return rows[(rows[:, 0] >= first) & (rows[:, 0] < end)] - np.append(first, np.zeros(rows.shape[1] - 1))
 
         asphalt, hatched = (None if share is None else share[first:end] for share in (self.asphalt, self.hatched))
         return Evidence(self.driven[:, first:end], self.directions, asphalt, hatched, of(self.arrows), of(self.stops), self.divided[first:end],
@@ -187,7 +187,7 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     count = np.add.reduceat(driven_there, candidates.first, axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
         offsets = np.where(2 * count >= size, np.add.reduceat(np.where(driven_there, driven, 0.0), candidates.first, axis=1) / count, np.nan)
-    stops = np.empty((0, 3)) if markings is None else _stop_lines(candidates, s, markings, road)
+    stops = np.empty((0, 4)) if markings is None else _stop_lines(candidates, s, markings, road)
     on_one_of_two, without_paint = (np.zeros(len(size), bool) if there is None else np.add.reduceat(there, candidates.first) * 2 > size
                                     for there in (divided, bare))
     return Evidence(offsets, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops, on_one_of_two, without_paint)
@@ -208,11 +208,13 @@ def _of_interval(candidates, s, arrows):
 
 
 def _stop_lines(candidates, s, markings, road):
-    """(S, 3) interval, least and greatest offset of the stop lines on or near it."""
+    """`Evidence.stops` of the stop lines on a road, for the intervals from which lanes may lead to them."""
     begin, end = s[candidates.first], s[candidates.last]
-    stops = [(k, low, high) for first, last, low, high in _extents(markings, road, "stop")
-             for k in np.flatnonzero((begin <= last + EVIDENCE.stop_reach) & (end >= first - EVIDENCE.stop_reach)).tolist()]
-    return np.array(stops).reshape(-1, 3)
+    stops = []
+    for first, last, low, high in _extents(markings, road, "stop"):
+        ahead = np.maximum(first - end, 0.0) - np.maximum(begin - last, 0.0)
+        stops += [(k, low, high, ahead[k]) for k in np.flatnonzero(np.abs(ahead) <= EVIDENCE.approach).tolist()]
+    return np.array(stops).reshape(-1, 4)
 
 
 # Hatched areas: where nobody drives, and the borders that bound the lanes beside.

@@ -14,7 +14,7 @@ import numpy as np
 from ...common.parallel import check_cancelled
 from ...countries.catalogue import NEUTRAL
 from ...survey.store.seen import BIN, FAR
-from ..weights import LANES
+from ..weights import EVIDENCE, LANES
 from .beside import BEYOND, WIDTH
 from .candidates import Candidates
 from .evidence import Evidence
@@ -125,7 +125,9 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     double = c.made_of == DOUBLE
     unused = np.where(double[:, :, None] & double[:, None, :], 2 * (w.double[CENTRE_LINE] - w.double[EDGE_LINE]), unused)
     inside = _inside(evidence.driven, c)
-    idle = scale * (np.where(hatched, 0.0, unused) + w.driven_rest * inside[:evidence.own].sum(0)) + arrows_in * w.arrow_outside
+    at_stop = _at_stop(evidence.stops)
+    idle = scale * (np.where(hatched, 0.0, unused) + w.driven_rest * inside[:evidence.own].sum(0)) + arrows_in * w.arrow_outside \
+        + w.rest_at_stop * _lanes_stopped(at_stop, d_left, d_right, lane_width)
     # each boundary in what nobody drives on ends a strip of it, so that the same lanes are the same cross-section
     number = np.cumsum(c.valid, axis=1)
     cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered & (number[:, None, :] - number[:, :, None] == 1), idle, np.inf)
@@ -162,7 +164,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
             driven = total + scale * (unpainted + _driven_cost(evidence, inside, begin, width_each, number, split, first_direction, w)) \
                 + _arrow_cost(arrows, width_each, number, split, first_direction, begin, w)
             if kind in TWO_WAY:
-                driven += w.split_stop * _stops_across(evidence.stops, begin - split * width_each)
+                driven += w.split_stop * _stops_across(at_stop, begin - split * width_each)
             better = driven < cost[kind]
             cost[kind][better], lanes[kind][better], first_lanes[kind][better] = driven[better], number, split
     return _StripCosts(cost, lanes, first_lanes, lane_width)
@@ -227,7 +229,9 @@ def _driven_cost(evidence, inside, d_left, each, number, split, first_direction,
         lane = np.clip(np.floor(np.nan_to_num(position)), 0, number - 1)
         offset = (np.nan_to_num(position) - lane - 0.5) * each
         way = np.where(lane < split, first_direction, -first_direction)
-        cost += inside[p] * (np.minimum(0.5 * (offset / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == -direction, w.driven_against, 0.0))
+        # beside the lanes of a strip other roads have theirs
+        there = inside[p] if evidence.own is None or p < evidence.own else inside[p] & (position >= 0) & (position < number)
+        cost += there * (np.minimum(0.5 * (offset / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == -direction, w.driven_against, 0.0))
     return cost
 
 
@@ -249,15 +253,30 @@ def _arrow_cost(arrows, each, count, split, first_direction, d_left, w):
     for k, d, way, inside in arrows:
         position = (d_left[k] - d) / np.maximum(each[k], 0.1)
         lane = np.clip(np.floor(position), 0, count - 1)
-        against = np.maximum(-way * np.where(lane < split, first_direction, -first_direction), 0.0)
+        against = np.maximum(-way * np.where(lane < split, first_direction, -first_direction), 0.0) * ((position >= 0) & (position < count))
         cost[k] += inside * (np.minimum(0.5 * ((position - lane - 0.5) * each[k] / w.arrow_sigma) ** 2, w.arrow_outside) + against * w.arrow_against)
     return cost
+
+
+def _at_stop(stops):
+    """Those stop lines of Evidence that lie in the interval or right before or behind it."""
+    return stops[np.abs(stops[:, 3]) <= EVIDENCE.stop_reach]
+
+
+def _lanes_stopped(stops, left, right, lane_width):
+    """(I, M, M) how much of a lane lies under stop lines, 1 at most, in the strips between `left` and `right`, m."""
+    share = np.zeros(np.broadcast_shapes(left.shape, right.shape))
+    for interval, low, high, _ in stops:
+        k = int(interval)
+        under = np.minimum(left[k], high - LANES.stop_margin) - np.maximum(right[k], low + LANES.stop_margin)
+        share[k] = np.maximum(share[k], np.clip(under / lane_width, 0.0, 1.0))
+    return share
 
 
 def _stops_across(stops: np.ndarray, divider: np.ndarray) -> np.ndarray:
     """(I, ...) how many stop lines, as in Evidence, cross the border between the two directions, which lies at `divider`, (I, ...) m."""
     number = np.zeros(divider.shape)
-    for interval, low, high in stops:
+    for interval, low, high, _ in stops:
         k = int(interval)
         number[k] += (divider[k] > low + LANES.stop_margin) & (divider[k] < high - LANES.stop_margin)
     return number
@@ -341,11 +360,12 @@ def _misnamed(what, named):
     return (what >= 0) & (named >= 0) & (named != what) & (what != OTHER_LINE)
 
 
-def best_sections(candidates: Candidates, costs: _StripCosts, stops: np.ndarray, weights: EstimateWeights, kept: int = KEPT) -> Sections:
-    """The `kept` best cross-sections of each interval; `stops` are those of Evidence."""
+def best_sections(candidates: Candidates, costs: _StripCosts, stops: np.ndarray, first_direction: int, weights: EstimateWeights,
+                  kept: int = KEPT) -> Sections:
+    """The `kept` best cross-sections of each interval; `stops` are those of Evidence, `first_direction` is that of the lanes met first."""
     count, size = candidates.left.shape
     kinds = len(STRIPS)
-    between = _boundary_costs(candidates, stops, weights)
+    between = _boundary_costs(candidates, stops, first_direction, weights)
     best = np.full((count, size, kinds, kept), np.inf)
     back = np.full((count, size, kinds, kept), -1, np.int32)
     # to the left of everything nobody drives
@@ -375,13 +395,17 @@ def _lowest(values, kept):
     return np.take_along_axis(indices, order, axis=1), np.take_along_axis(lowest, order, axis=1)
 
 
-def _boundary_costs(c, stops, w):
+def _boundary_costs(c, stops, first_direction, w):
     """(I, M, 7, 7) nats of a boundary between a strip on its left and one on its right."""
     scale = c.observations(w)[:, None]
     table = w.boundary[c.made_of]
-    stopped = _stops_across(stops, (c.left + c.right) / 2)
+    middle = (c.left + c.right) / 2
+    stopped = _stops_across(_at_stop(stops), middle)
     wide = np.nan_to_num(c.wide)[..., None]
     table = np.where(wide > 0, (1 - wide) * table + wide * w.wide_line[c.made_of.clip(SOLID, DASHED)], table)
+    solid = (c.made_of == SOLID)[..., None]
+    before = {kind: np.where(solid & (_stops_across(stops[way * stops[:, 3] > -EVIDENCE.stop_reach], middle) > 0)[..., None],
+                             np.minimum(table, w.solid_at_stop), table) for kind, way in ((FIRST, first_direction), (SECOND, -first_direction))}
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
     for left in STRIPS:
         for right in STRIPS:
@@ -389,7 +413,8 @@ def _boundary_costs(c, stops, w):
             if use >= 0:
                 misnamed = w.named * _misnamed(use, c.named)
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
-                cost[:, :, left, right] = scale * (table[:, :, use] + wrong + misnamed) \
+                as_drawn = before[left] if {left, right} <= {FIRST, SECOND} else table
+                cost[:, :, left, right] = scale * (as_drawn[:, :, use] + wrong + misnamed) \
                     + w.split_stop * stopped * (use == CENTRE_LINE)
     # other lines may be none, and what else lies where nobody drives bounds nothing
     cost[:, :, REST_FIRST, REST_FIRST] = cost[:, :, REST_SECOND, REST_SECOND] = scale * np.where(

@@ -82,6 +82,9 @@ class EstimateWeights:
     arrow_against: float = 5.0   # of an arrow that surely points against its lane: of 150, one is no arrow, or misread
     against_arrows: float = 7.0   # of a survey driven against the arrows: of a thousand, one was, or has times that run backwards
     wrong_side: float = 8.0   # of oncoming traffic on the near side
+    # of a solid line between lanes before their stop line, whichever way they lead, where it is not to be crossed
+    solid_at_stop: float = _costs(0.6)[0]
+    rest_at_stop: float = 4.0   # of a stop line as broad as a lane where no lane is
     split_stop: float = 4.0   # of a stop line across the border between the directions: no authority paints one, of fifty one is another bar
     change: float = 0.5   # of a metre across that becomes lane, or ceases to be one
     turn: float = 3.0   # of one that changes its direction

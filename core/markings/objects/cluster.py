@@ -352,7 +352,7 @@ def _zebra_stripes(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndar
     `item` : (N, 2) m spots about crossings one after the other, (N,) radians of the road there, the bounds of the crossings, and the Comb of each.
     """
     *columns, combs = item
-    return [stripes_of_crossing(*spots, comb) for spots, comb in zip(_clusters(columns), combs)]
+    return [stripes_of_crossing(places, way, comb) for (places, way), comb in zip(_clusters(columns), combs)]
 
 
 def pieces_of_clusters(source: NoSource, item: tuple[Any, ...]) -> list[tuple[np.ndarray | None, list[Shape]]]:
@@ -362,7 +362,7 @@ def pieces_of_clusters(source: NoSource, item: tuple[Any, ...]) -> list[tuple[np
     point, from 0 on, None of a single one, and the Shape of each part.
     """
     *columns, compound = item
-    return [_pieces_of_cluster(*cluster, divisible) for cluster, divisible in zip(_clusters(columns), compound)]
+    return [_pieces_of_cluster(s, d, spacing, divisible) for (s, d, spacing), divisible in zip(_clusters(columns), compound)]
 
 
 def _pieces_of_cluster(s, d, spacing, divisible):

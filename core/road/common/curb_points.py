@@ -28,7 +28,7 @@ class CurbPoints(LayerRows):
     road: np.ndarray = field(metadata=column())   # road, nearest_pass: (N,) int, number of the road and of the pass that drove nearest
     nearest_pass: np.ndarray = field(metadata=column(NEAREST_PASS.name))
     side: np.ndarray = field(metadata=column())   # (N,) str objects, left or right
-    status: np.ndarray = field(metadata=column())   # (N,) str objects, measured or occluded
+    status: np.ndarray = field(metadata=column())   # (N,) str objects: measured; bridged, on the line across a lowered curb; or occluded
     part: np.ndarray = field(metadata=column(unknown="bottom"))   # (N,) str objects, bottom or top
     kind: np.ndarray = field(metadata=column(unknown="main"))
     station: np.ndarray = field(metadata=column("station_m"))   # station, offset: (N,) metres

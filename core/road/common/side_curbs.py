@@ -16,6 +16,7 @@ from ..weights import CURBS
 from .corners import CurbSteps
 from .curb_limits import CurbLimits
 from .curb_points import CurbPoints, curb_points_at
+from .lowered_curb import lowered_points
 from .occlusion import OcclusionGrid
 from .sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, hidden_points, join_sections
 from .tracking import StepChain, curb_chains, drop_short_curbs, is_road, link_steps, select_along_road, with_pieces_in_line
@@ -238,6 +239,8 @@ def points_of_side(source: Any, road: int, side: str, found: Sequence[SideChains
     for number, members in enumerate(lines):
         method = int(np.searchsorted(first, members[0], side="right")) - 1
         rows += found[method].points(members - first[method], number)
+    if found[0].look is not None:
+        rows += lowered_points(rows, frame.road(road), found[0].look)
     bottoms = np.array([(row["s"], row["u"], row["h"]) for row in rows if row["fields"]["part"] == "bottom"]).reshape(-1, 3)
     rows += hidden_points(bottoms, occlusion, track)
     return points_of_rows(source, road, side, sorted(rows, key=lambda row: (row["s"], row["fields"]["part"])))

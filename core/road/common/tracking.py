@@ -15,17 +15,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from scipy.ndimage import median_filter
 
 from ...common.arrays import ROUNDING_TOLERANCE, linked_groups, stretch_of
 from ...common.parallel import check_cancelled
-from ...curves.robust import median, percentiles
-from ..weights import CURBS
+from ...curves.robust import MAD_TO_SIGMA, median, percentiles
+from ..weights import CURBS, EDGE
 from .corners import CurbSteps
 from .curb_limits import CurbLimits
 from .pseudo_scanlines import expand_ranges
 
 if TYPE_CHECKING:
     from ..surface.road_look import SideLook
+
+IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by more across shorter gaps
 
 
 @dataclass
@@ -543,14 +546,80 @@ class GapLine:
         dx, dy = x - self.origin[0], y - self.origin[1]
         return dx * self.along[0] + dy * self.along[1], dy * self.along[0] - dx * self.along[1]
 
-    def between(self, spacing: float) -> np.ndarray:
-        """(2, N) m, x and y of places in the gap about so far apart on the line, which is moved to meet the last place before and the first after."""
+    def between(self, spacing: float, meets: bool = True) -> np.ndarray:
+        """(2, N) m, x and y of places in the gap about so far apart on the line; `meets` : is it moved to the places next to the gap?"""
         t, off = self.place(*self.ends)[0], self.off(*self.ends)
         inner = np.linspace(t[0], t[1], max(int(np.ceil((t[1] - t[0]) / spacing)), 1) + 1)[1:-1]
-        v = self.line(inner) + np.interp(inner, t, off)
+        v = self.line(inner) + meets * np.interp(inner, t, off)
         return self.origin[:, None] + np.array([inner * self.along[0] - v * self.along[1], inner * self.along[1] + v * self.along[0]])
 
     def off(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """(N,) m from the line, left positive."""
         t, v = self.place(x, y)
         return v - self.line(t)
+
+
+def line_across(points: np.ndarray, s: np.ndarray, k: int) -> tuple[float, GapLine | None, str]:
+    """The even bend that leads best across a gap, which begins at point k, on the map or as seen from the road.
+
+    points : (N,) structured array of curb points, by station, with the fields x, y, s and d in m
+    s : (N,) m, their stations
+
+    Returns
+        turn : radians that the curb on both sides turns off it
+        line : GapLine, None where too little of the curb is seen
+        axes : "xy" or "sd", the fields that are its axes
+
+    Where a bend begins or ends behind a row of parked cars no even bend leads through both sides; the road itself bends there alike.
+    A bay is only as long as the cars in it: its curb turns aside next to the gap, and where the last ten metres are not in one line the last
+    three tell where it leads.
+    """
+    best: tuple[float, GapLine | None, str] = np.inf, None, ""
+    for reach in (CURBS.line_fit_length, CURBS.min_bend_length):
+        if best[0] <= IN_LINE_TURN:
+            break
+        parts = points[stretch_of(s, s[k] - reach, s[k])], points[stretch_of(s, s[k + 1], s[k + 1] + reach)]
+        if reach == CURBS.line_fit_length and max(np.ptp(part["s"]) for part in parts) < CURBS.min_bend_length:
+            break
+        for axes in ("xy", "sd"):
+            before, behind = (np.array([part[axis] for axis in axes]) for part in parts)
+            line = GapLine(before, behind, max_degree=2)
+            best = min(best, (line.miss / reach, line, axes), key=lambda found: found[0])
+    return best
+
+
+def is_lowered(points: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """(N,) bool, is the curb at a point much lower than before it and behind it?
+
+    points : (N,) structured array, by station, with the field `height` (m); s : (N,) m, their stations
+    """
+    low = (points["height"] > 0.0) & (points["height"] <= EDGE.lowered_share * points["height"].max(initial=0.0))
+    for k in np.flatnonzero(low):
+        before, behind = (points["height"][stretch_of(s, *ends)].max()
+                          for ends in ((s[k] - CURBS.line_fit_length, s[k]), (s[k], s[k] + CURBS.line_fit_length)))
+        low[k] = points["height"][k] <= EDGE.lowered_share * min(before, behind)
+    return low
+
+
+def without_outliers(points: np.ndarray) -> np.ndarray:
+    """Points near the running median of the offsets of their chain.
+
+    points : (N,) structured array, by station, with the fields `chain`, `s` and `d` (m)
+
+    Returns (K,) of the same type
+    """
+    inliers = np.ones(len(points), bool)
+    order = np.argsort(points["chain"], kind="stable")
+    for rows in np.split(order, np.flatnonzero(np.diff(points["chain"][order])) + 1):
+        if len(rows) < 5:
+            continue
+        s, d = points["s"][rows], points["d"][rows]
+        spacing = np.median(np.diff(s))
+        window = int(np.clip(2 * round(0.5 * EDGE.median_window / max(spacing, 0.05)) + 1, 3, len(rows) | 1))
+        # an edge that changes direction is no outlier: its own running direction is subtracted first
+        direction = median_filter(np.diff(d) / np.maximum(np.diff(s), 0.05), window, mode="nearest")
+        off = d - np.r_[0.0, np.cumsum(direction * np.diff(s))]
+        deviation = np.abs(off - median_filter(off, window, mode="nearest"))
+        limit = max(EDGE.outlier_mads * MAD_TO_SIGMA * np.median(deviation), EDGE.outlier_floor)
+        inliers[rows] = deviation <= limit
+    return points[inliers]

@@ -90,44 +90,9 @@ def _edge_of(points, places, first, last, passes, road, number):
 
 
 def _drawn(places):
-    """Vertices of the smooth line through places, with its sharp corners, and the distance of each place from it."""
+    """Vertices of the smooth line through places, and the distance of each place from it."""
     smooth = _smoothed(places)
-    bounds = np.r_[0, _sharp_chords(places) + 1, len(places)]
-    vertices, residuals = [], []
-    for k, (first, last) in enumerate(zip(bounds[:-1], bounds[1:])):
-        if k:
-            vertices.append(_corner(places[bounds[k - 1]:first], places[first:last])[None])
-        # a piece between two sharp corners is smoothed alone, so that the corners stay sharp
-        part = _smoothed(places[first:last]) if len(bounds) > 2 else smooth
-        vertices.append(_through(part))
-        residuals.append(np.hypot(*(part - places[first:last])[:, :2].T))
-    return np.concatenate(vertices), np.concatenate(residuals)
-
-
-def _sharp_chords(places):
-    """Chords that cut a sharp corner of the curb: index of the first place of each."""
-    x, y = places[:, 0], places[:, 1]
-    heading, length = np.arctan2(np.diff(y), np.diff(x)), np.hypot(np.diff(x), np.diff(y))
-    turn = np.zeros(len(length))
-    turn[1:-1] = np.abs((heading[2:] - heading[:-2] + np.pi) % (2 * np.pi) - np.pi)
-    around = length.copy()
-    around[1:-1] += 0.5 * (length[2:] + length[:-2])
-    turn[(turn < EDGE.min_corner_turn) | (turn < around / EDGE.max_corner_radius)] = 0.0
-    neighbour_turn = np.maximum(np.r_[0.0, turn[:-1]], np.r_[turn[1:], 0.0])
-    return np.flatnonzero((turn > neighbour_turn) | (turn == neighbour_turn) & (turn > 0) & (np.r_[0.0, turn[:-1]] < turn))
-
-
-def _corner(before, after):
-    """Where two pieces of curb meet if continued straight; the middle between their ends where that place is not between them."""
-    a, b = before[-1], after[0]
-    p, q = a - before[max(len(before) - 4, 0)], b - after[min(3, len(after) - 1)]
-    cross = p[0] * q[1] - p[1] * q[0]
-    f = ((b[0] - a[0]) * q[1] - (b[1] - a[1]) * q[0]) / cross if abs(cross) > 1e-6 else np.inf
-    meet = a[:2] + f * p[:2] if np.isfinite(f) else a[:2] + np.inf
-    gap = np.hypot(*(b - a)[:2])
-    if not max(np.hypot(*(meet - a[:2])), np.hypot(*(meet - b[:2]))) <= gap:
-        meet = 0.5 * (a + b)[:2]
-    return np.r_[meet, 0.5 * (a[2] + b[2])]
+    return _through(smooth), np.hypot(*(smooth - places)[:, :2].T)
 
 
 def _smoothed(places):

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import splev, splprep, splrep
-from scipy.ndimage import median_filter
 
 from ...common.arrays import stretch_of
 from ...common.parallel import check_cancelled
@@ -16,13 +15,10 @@ from ...curves.robust import MAD_TO_SIGMA
 from ...execution.phase import NoSource
 from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
-from ..common.tracking import GapLine
+from ..common.tracking import IN_LINE_TURN, is_lowered, line_across, without_outliers
 from ..weights import CURBS, EDGE
 from .corner_edges import curb_return_lines, draw_curb_returns, dropped_corners
 from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
-
-_JOINED, _HIDDEN, _DROPPED = range(3)   # what lies between two curb points of an edge: nothing, something that hides the curb, or a lowered curb
-IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by more across shorter gaps
 
 
 @dataclass(frozen=True)
@@ -47,7 +43,8 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     edge share their end vertices and `chain`.
     """
     pieces: list[EdgePiece] = []
-    points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & np.isin(curb_points.status, ("measured", "occluded"))]
+    of_edges = np.isin(curb_points.status, ("measured", "bridged", "occluded"))
+    points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & of_edges]
     table, returns = point_table(points, frame), curb_return_lines(curb_points, frame)
     lines, of_table = 0, np.ascontiguousarray(table["road"])
     for road in frame.roads:
@@ -86,10 +83,10 @@ def tell_edges(edges: RoadEdges, progress: Progress) -> None:
 
 def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:
     """(N,) structured array of curb points in map coordinates, sorted by road, side and station; an unknown height is 0."""
-    table = np.empty(len(points), dtype=[("road", int), ("side", "U5"), ("measured", bool), ("s", float), ("d", float), ("x", float),
+    table = np.empty(len(points), dtype=[("road", int), ("side", "U5"), ("status", "U8"), ("s", float), ("d", float), ("x", float),
                                          ("y", float), ("z", float), ("height", float), ("chain", int), ("support", int)])
     places = points.map_places(frame)
-    for name, values in dict(road=points.road, side=points.side, measured=points.status == "measured", s=points.station, d=points.offset,
+    for name, values in dict(road=points.road, side=points.side, status=points.status, s=points.station, d=points.offset,
                              x=places[:, 0], y=places[:, 1], z=places[:, 2], height=np.nan_to_num(points.height), chain=points.chain,
                              support=points.support).items():
         table[name] = values
@@ -97,9 +94,9 @@ def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:
 
 
 def _pieces(rows, max_gap):
-    """Curb points of one side divided into edges: list of (points, what each gap to the next is: _JOINED, _HIDDEN or _DROPPED)."""
-    hidden = rows["s"][~rows["measured"]]
-    points = without_outliers(rows[rows["measured"]])
+    """Curb points of one side divided into edges: list of (points, is it bridged from each to the next, and is the curb lowered there?)."""
+    hidden = rows["s"][rows["status"] == "occluded"]
+    points = np.sort(np.append(without_outliers(rows[rows["status"] == "measured"]), rows[rows["status"] == "bridged"]), order="s")
     if len(points) < 2:
         return []
     gap = np.diff(points["s"])
@@ -112,45 +109,16 @@ def _pieces(rows, max_gap):
     # the longer a gap is, the better both parts must show the direction of one line
     s = np.ascontiguousarray(points["s"])
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
-             if _line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
-    # a curb that sinks in sight and goes on in the same line some metres farther is lowered there
-    dropped = (gap > CURBS.max_joined_gap) & (gap <= min(EDGE.max_sunk_gap, max_gap)) & (across <= EDGE.max_edge_jump) & ~bridged
-    dropped[[k for k in np.flatnonzero(dropped) if not _sinks(points, s, k) or _line_across(points, s, k)[0] > IN_LINE_TURN]] = False
-    breaks = np.flatnonzero(~(joined | bridged | dropped)) + 1
-    kinds = np.append(_HIDDEN * bridged + _DROPPED * dropped, _JOINED)
+             if line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
+    breaks = np.flatnonzero(~(joined | bridged)) + 1
+    inferred, low = points["status"] == "bridged", is_lowered(points, s)
+    inferred, low = inferred[:-1] | inferred[1:], low[:-1] & low[1:]
     pieces = []
-    for part, flags in zip(np.split(points, breaks), np.split(kinds, breaks)):
-        if len(part) >= 2 and part["s"][-1] - part["s"][0] >= EDGE.min_edge_length:
-            pieces.append((part, flags[:-1]))
+    for a, b in zip(np.r_[0, breaks], np.r_[breaks, len(points)]):
+        if b - a >= 2 and s[b - 1] - s[a] >= EDGE.min_edge_length:
+            gaps = slice(a, b - 1)
+            pieces.append((points[a:b], (bridged | inferred)[gaps], (inferred | low & ~bridged)[gaps]))
     return pieces
-
-
-def _sinks(points, s, k):
-    """Is the curb lower at either end of a gap, which begins at point k, than it is around it?"""
-    around = points["height"][stretch_of(s, s[k] - CURBS.line_fit_length, s[k + 1] + CURBS.line_fit_length)]
-    return points["height"][k:k + 2].min() <= EDGE.sunk_share * np.median(around)
-
-
-def _line_across(points, s, k):
-    """The even bend that leads best across a gap, which begins at point k, on the map or as seen from the road.
-
-    Returns (radians that the curb on both sides turns off it, GapLine or None, the fields that are its axes).
-
-    Where a bend begins or ends behind a row of parked cars no even bend leads through both sides; the road itself bends there alike.
-    A bay is only as long as the cars in it: its curb turns aside next to the gap, and where the last ten metres are not in one line the last
-    three tell where it leads.
-    """
-    best = np.inf, None, ""
-    for reach in (CURBS.line_fit_length, CURBS.min_bend_length):
-        if best[0] <= IN_LINE_TURN:
-            break
-        parts = points[stretch_of(s, s[k] - reach, s[k])], points[stretch_of(s, s[k + 1], s[k + 1] + reach)]
-        if reach == CURBS.line_fit_length and max(np.ptp(part["s"]) for part in parts) < CURBS.min_bend_length:
-            break
-        for axes in ("xy", "sd"):
-            line = GapLine(*(np.array([part[axis] for axis in axes]) for part in parts), max_degree=2)
-            best = min(best, (line.miss / reach, line, axes), key=lambda found: found[0])
-    return best
 
 
 def _with_bridges(points, bridged, frame, road):
@@ -161,7 +129,7 @@ def _with_bridges(points, bridged, frame, road):
     parts, begin, before, longest = [], 0, np.zeros(len(points), int), 0.0
     s = np.ascontiguousarray(points["s"])
     for k in np.flatnonzero(bridged):
-        turn, line, axes = _line_across(points, s, k)
+        turn, line, axes = line_across(points, s, k)
         if turn > IN_LINE_TURN:
             longest = max(longest, s[k + 1] - s[k])
             continue
@@ -174,30 +142,6 @@ def _with_bridges(points, bridged, frame, road):
         parts += [points[begin:k + 1], bridge]
         begin, before[k + 1] = k + 1, len(bridge)
     return np.concatenate([*parts, points[begin:]]), np.arange(len(points)) + np.cumsum(before), longest
-
-
-def without_outliers(points: np.ndarray) -> np.ndarray:
-    """Points near the running median of the offsets of their chain.
-
-    points : (N,) structured array, by station, with the fields `chain`, `s` and `d` (m)
-
-    Returns (K,) of the same type
-    """
-    inliers = np.ones(len(points), bool)
-    order = np.argsort(points["chain"], kind="stable")
-    for rows in np.split(order, np.flatnonzero(np.diff(points["chain"][order])) + 1):
-        if len(rows) < 5:
-            continue
-        s, d = points["s"][rows], points["d"][rows]
-        spacing = np.median(np.diff(s))
-        window = int(np.clip(2 * round(0.5 * EDGE.median_window / max(spacing, 0.05)) + 1, 3, len(rows) | 1))
-        # an edge that changes direction is no outlier: its own running direction is subtracted first
-        direction = median_filter(np.diff(d) / np.maximum(np.diff(s), 0.05), window, mode="nearest")
-        off = d - np.r_[0.0, np.cumsum(direction * np.diff(s))]
-        deviation = np.abs(off - median_filter(off, window, mode="nearest"))
-        limit = max(EDGE.outlier_mads * MAD_TO_SIGMA * np.median(deviation), EDGE.outlier_floor)
-        inliers[rows] = deviation <= limit
-    return points[inliers]
 
 
 class EdgeCurve:
@@ -253,11 +197,12 @@ def _noise(t, values):
 
 def _draw(found, frame, road, side, piece, number):
     """Add the pieces of one edge; returns its (start, end) station."""
-    points, bridged = piece
-    with_bridges, measured, longest = _with_bridges(points, bridged, frame, road)
-    curve = EdgeCurve(with_bridges, longest, measured)
-    t, residual = curve.t[measured], curve.residual[measured]
-    changes = np.flatnonzero(np.diff(bridged)) + 1
+    points, bridged, lowered = piece
+    measured = points["status"] == "measured"
+    with_bridges, places, longest = _with_bridges(points, np.diff(points["s"]) > CURBS.max_joined_gap, frame, road)
+    curve = EdgeCurve(with_bridges, longest, places[measured])
+    t, residual = curve.t[places], curve.residual[places]
+    changes = np.flatnonzero(np.diff(bridged) | np.diff(lowered)) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
         check_cancelled()
@@ -265,11 +210,11 @@ def _draw(found, frame, road, side, piece, number):
         along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE.edge_vertex_spacing)), 1) + 1)
         vertices, rows = curve.at(along), points[i:j + 1]
         passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
-        sigma = edge_sigma(along, t, residual, points["support"], passes=passes)
+        sigma = edge_sigma(along, t[measured], residual[measured], points["support"][measured], passes=passes)
         found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), height=float(np.median(rows["height"])), rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
                                # a bridge is one guess
-                               what="dropped" if bridged[i] == _DROPPED else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
+                               what="dropped" if lowered[i] else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
     return float(points["s"][0]), float(points["s"][-1])
 
 

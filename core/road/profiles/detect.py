@@ -38,8 +38,8 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
     beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
     ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
-    Returns CurbPoints. Those of status `measured` are vertices of the road edge; those of
-    status `occluded` lie where the curb is expected and something hides it.
+    Returns CurbPoints. Those of status `measured` are vertices of the road edge; those of status `bridged` lie on the line
+    across a lowered curb, and those of status `occluded` where the curb is expected and something hides it.
     """
     if decimation is None:
         with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own_decimation:
@@ -58,8 +58,8 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
 
 def tell_points(points: CurbPoints, progress: Progress) -> None:
     """Say in the log how many curb points there are."""
-    measured = np.count_nonzero(points.status == "measured")
-    progress.info(f"Curb points: {measured:,} measured, {len(points) - measured:,} hidden by something in front.")
+    measured, hidden = (np.count_nonzero(points.status == status) for status in ("measured", "occluded"))
+    progress.info(f"Curb points: {measured:,} measured, {hidden:,} hidden by something in front.")
 
 
 def profiles_of(decimation: PointDecimation, settings: CurbSettings) -> Search:

@@ -30,7 +30,8 @@ from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import Search, Section, SideSteps, curbs_along, merged_passes, steps_of_roads
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height
-from ..edges.fit import EdgeCurve, point_table, without_outliers
+from ..common.tracking import without_outliers
+from ..edges.fit import EdgeCurve, point_table
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
@@ -49,7 +50,8 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
     ground : MeasuredGround of the survey; None where nothing but the scanlines is known of the ground
 
-    Returns CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb.
+    Returns CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb, and
+    those of status `bridged` lie on the line across a lowered one.
     """
     steps = steps_of_roads(corners_of_section, source, (settings,), {"scanlines": planes_of(source, settings, block_length)}, progress)
     points = curbs_along(source, with_scanner_noise(steps), None if ground is None else partial(RoadLook, ground))["scanlines"]

@@ -7,7 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..weights import SURFACE
+from ...curves.robust import MAD_TO_SIGMA
+from ..weights import CURBS, SURFACE
 from .ground_change import follow_road, smooth_road
 from .ground_grid import MeasuredGround, known_median
 
@@ -41,6 +42,26 @@ class RoadLook:
         """Height of the ground above the road as it goes on from the track; m, of one shape with stations and offsets; NaN where none was seen."""
         return self._at(self.cells.height, s, d)[0] - self._at(self._road, s, d)[0]
 
+    def step_at(self, s: np.ndarray, d: np.ndarray, outward: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """How far the ground steps up outward at (N,) stations and offsets, m, between the lines through the cells before it and behind it.
+
+        Returns
+            step : (N,) m, how far the two lines are apart at the place; NaN where one of the cells was not seen
+            height : (N,) m, of the first cell behind it above the line before it
+            bottom : (N,) m, of that line at the place, above the expected road
+        """
+        size, cells = self.cells.column_size, np.arange(1, SURFACE.cells_of_step + 1)
+        middle = (np.floor(d / size) + 0.5) * size - d
+        levels, slopes, firsts = [], [], []
+        for way in (outward, -outward):
+            heights, row = self._at(self.cells.height, s[:, None], d[:, None] + way * size * cells)
+            from_middle = size * (cells - cells.mean())
+            slopes.append(heights @ from_middle / (from_middle @ from_middle))
+            levels.append(heights.mean(1) - slopes[-1] * (size * cells.mean() + way * middle))
+            firsts.append(heights[:, 0])
+        height = firsts[0] - levels[1] + slopes[1] * (size + outward * middle)
+        return levels[0] - levels[1], height, levels[1] - self.prior[row[:, 0]]
+
     def side(self, sign: int) -> SideLook:
         """The look to the left, 1, or to the right, -1."""
         return SideLook(self, sign)
@@ -72,6 +93,27 @@ class SideLook:
         """`RoadLook.road_height` at stations and outward offsets."""
         return self.look.road_height(s, self.sign * u)
 
+    def steps_up(self, s: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Whether the ground steps up outward at places in consecutive rows of cells, more than the same rows show on the road beside them.
+
+        s, u : (N,) m, stations of the middles of rows, and outward offsets
+
+        Returns
+            shown : (N,) bool
+            height, bottom : (N,) m, as of `RoadLook.step_at`
+        """
+        step, height, bottom = self.look.step_at(s, self.sign * u, self.sign)
+        beside = np.abs(self.look.step_at(s, self.sign * (u - CURBS.road_beside), self.sign)[0])
+        noise = MAD_TO_SIGMA * _median_about(beside) / np.sqrt(CURBS.lowered_rows)
+        with np.errstate(invalid="ignore"):
+            shown = _median_about(step) >= np.maximum(CURBS.least_lowered_step, CURBS.significant_sigmas * noise)
+            return shown & (step > 0.0) & (height > 0.0), height, bottom
+
+    @property
+    def row_size(self) -> float:
+        """m along the road of a row of cells."""
+        return self.look.cells.row_size
+
     def level_to(self, s: np.ndarray, u: np.ndarray, end_s: float, end_u: float) -> np.ndarray:
         """(N,) bool, is the ground seen, and as high as the road, on the straight way from (N,) places to one?
 
@@ -83,3 +125,9 @@ class SideLook:
         with np.errstate(invalid="ignore"):
             level = np.abs(off) < SURFACE.max_height_deviation
         return (seen.mean(0) >= SURFACE.min_seen_between) & (level.sum(0) >= SURFACE.min_level_between * seen.sum(0))
+
+
+def _median_about(step):
+    """(N,) median of the rows about each one, NaN where too few of them were seen."""
+    rows = np.lib.stride_tricks.sliding_window_view(np.pad(step, CURBS.lowered_rows // 2, constant_values=np.nan), CURBS.lowered_rows)
+    return np.where(np.isfinite(rows).sum(1) >= CURBS.min_piece_steps, known_median(rows, 1), np.nan)

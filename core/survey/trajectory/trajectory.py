@@ -87,6 +87,7 @@ def clean_trajectory(trajectory: Trajectory) -> Trajectory:
     _refuse_two_drives(trajectory, rows)
     repeated = np.r_[False, np.diff(trajectory.time) <= 0]
     if repeated.any():
+        _refuse_coarse_times(trajectory, repeated)
         notes.append(f"{np.count_nonzero(repeated)} trajectory rows repeated an earlier time and were dropped.")
         trajectory = trajectory.rows(~repeated)
     jumps = _outlier_rows(trajectory)
@@ -123,6 +124,17 @@ def _refuse_two_drives(trajectory, rows):
         f"The trajectory is at two places at once: row {rows[first] + 1} of its positions at {trajectory.time[first]:.3f} s and row "
         f"{rows[second] + 1} at {trajectory.time[second]:.3f} s lie {steps[first]:.0f} m apart, and so do {at_once.sum():,} of {len(rows):,} rows. "
         "Two receivers or two days seem to have been put together: give each drive its own trajectory, or times that continue.")
+
+
+def _refuse_coarse_times(trajectory, repeated):
+    """Refuse positions, sorted by time, far from each other at one time; `repeated` : (N,) bool, whose time is that of the row before."""
+    first = np.flatnonzero(~repeated)
+    steps = np.r_[0.0, np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))]
+    driven = np.add.reduceat(np.where(repeated, steps, 0.0), first)
+    k = int(driven.argmax())
+    if trajectory.has_time and driven[k] > TRAJECTORY.most_at_once:
+        raise RoadExtractionError(f"The trajectory drives {driven[k]:.0f} m at one time, {trajectory.time[first[k]]:.3f} s: its times have too few "
+                                  "digits, as programs with 32-bit numbers save them. Export them with three decimals or more.")
 
 
 def _zero_rows(trajectory, good):

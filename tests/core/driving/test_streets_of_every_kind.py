@@ -331,3 +331,28 @@ def test_a_lane_that_fills_the_room_between_its_line_and_a_curb_is_drawn_though_
     street = Street(length=58.0, vehicle=0.0).paint(-1.6, 5.0, 55.0, kind="").paint(-3.9, 5.0, 55.0, kind="")
     beside = [row for line, row in street.lanes(edges=curbs(street, 1.87, -7.43))[0] if abs(np.median(street.offsets(line)) + 5.67) < 0.1]
     assert beside and all(row["confidence"] <= 0.6 for row in beside)
+
+
+def test_before_a_stop_line_the_solid_lines_under_it_part_lanes_that_lead_to_it():
+    """Three lanes between two curbs, of which the middle one was driven; the solid lines beside it could be the edges of the road, too."""
+    street = Street(length=60.0, vehicle=0.0).paint(1.75, kind="").paint(-1.75, kind="")
+    borders, stop = curbs(street, 5.2, -5.2), painted(street, (54.0, 54.5, -5.0, 5.0, "stop"))
+    assert lanes_of(street, edges=borders) == {0.0: 1}
+    assert {round(offset) for offset in lanes_of(street, edges=borders, markings=stop)} == {-3, 0, 3}
+    assert set(lanes_of(street, edges=borders, markings=stop).values()) == {1}
+    # before the driven lane alone it says nothing of the strips beside
+    assert lanes_of(street, edges=borders, markings=painted(street, (54.0, 54.5, -1.6, 1.6, "stop"))) == {0.0: 1}
+
+
+def test_a_drive_on_another_road_far_beside_a_lane_says_nothing_against_it():
+    """Beyond the solid line left of the driven lane lies a turning lane, then asphalt without paint up to another road, driven the other way."""
+    def street(again):
+        return Street(length=80.0, vehicle=0.0, again=again).paint(1.75, kind="").paint(-1.75, kind="edge")
+
+    def lanes(made):
+        arrows = [(straight_arrow(station, 3.4, 1), "arrow") for station in (10.0, 25.0, 40.0, 55.0, 70.0)]
+        return lanes_of(made, edges=curbs(made, 18.0, -4.0), markings=outlined(made, *arrows))
+
+    other = street(again=(15.0,))
+    assert len(other.frame.roads) == 2
+    assert lanes(other) == lanes(street(again=())) == {0.0: 1, 3.5: 1}

@@ -288,6 +288,24 @@ def test_a_server_that_is_no_scheduler_is_not_waited_for_without_end(monkeypatch
     cluster._check_greeting(address, None)   # nobody is there: a scheduler may still start
 
 
+def test_a_worker_that_ends_while_it_is_asked_is_left_out_and_one_that_stays_silent_is_named(monkeypatch):
+    """It has no other Python for that, and nothing is to be installed there."""
+    class Client:
+        def __init__(self, silences):
+            self.silences = silences
+
+        def run(self, function, *arguments, on_error):
+            self.silences -= 1
+            lost = {"tcp://gone:1": OSError("the connection was closed")} if self.silences >= 0 else {}
+            return {**lost, "tcp://here:2": function(*arguments)}
+
+    monkeypatch.setattr(cluster, "EQUAL", ("numpy",))
+    cluster._check_versions(Client(1))
+    monkeypatch.setattr(cluster, "EXECUTION", replace(cluster.EXECUTION, scheduler_lost=0.0))
+    with pytest.raises(RoadExtractionError, match="tcp://gone:1 does not answer: the connection was closed. Look"):
+        cluster._check_versions(Client(99))
+
+
 def test_where_dask_is_missing_one_sentence_says_how_to_get_it(monkeypatch):
     imported = builtins.__import__
 

@@ -239,6 +239,14 @@ def test_an_image_without_a_file_has_the_pixels_of_one_with_a_file(tmp_path):
     assert np.isnan(all_pixels(image)).all() and not image.tiles()
 
 
+def test_what_a_piece_of_road_depends_on_is_asked_once_however_many_tiles_it_touches(monkeypatch):
+    asked, state = [], RoadPoints.state
+    monkeypatch.setattr(RoadPoints, "state", lambda self, *where: asked.append(where) or state(self, *where))
+    image = make_intensity_image(road_points(painted_street()))
+    assert len(asked) == len(set(asked)) == len(image.pieces) == len(image.places) > 1
+    image.close()
+
+
 def image_of_levels(path, levels, before=None):
     """An image of a row of tiles, each of one value, None without data, in a file too; what did not change is taken over from the one before."""
     image = TiledImage((0.0, 0.04, 0.0, 100.0, 0.0, -0.04), 512 * len(levels), 512, "")

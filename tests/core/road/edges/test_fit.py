@@ -101,18 +101,39 @@ def test_an_opening_and_a_gap_that_is_too_long_break_the_edge(hidden, gap):
     assert edges.rows[0]["end_m"] == pytest.approx(19) and edges.rows[1]["station_m"] == pytest.approx(19 + gap)
 
 
-@pytest.mark.parametrize(("gap", "sunk", "aside", "kinds"), [
-    (6.0, 0.05, 0.0, ["curb", "dropped", "curb"]), (10.0, 0.05, 0.0, ["curb", "dropped", "curb"]), (6.0, 0.12, 0.0, ["curb", "curb"]),
-    (13.0, 0.05, 0.0, ["curb", "curb"]), (6.0, 0.05, 0.3, ["curb", "curb"])],
-    ids=["drive", "wide drive", "a curb that is cut", "mouth of a street", "two curbs"])
-def test_a_curb_that_is_lowered_in_sight_goes_on_as_a_dropped_one(gap, sunk, aside, kinds):
-    stations = np.r_[np.arange(0, 20, 1.0), np.arange(19 + gap, 60, 1.0)]
-    points = curb_points(stations, lambda s: 3.5 + aside * (s > 20))
-    points.rows[19]["height_m"] = sunk
+@pytest.mark.parametrize(("between", "pieces"), [
+    ("bridged", [("curb", "measured"), ("dropped", "bridged"), ("curb", "measured")]),
+    ("measured", [("curb", "measured"), ("dropped", "measured"), ("curb", "measured")]), (None, [("curb", "measured"), ("curb", "measured")])],
+    ids=["the ground steps", "low curb", "a curb that sinks and is not seen to go on"])
+def test_a_curb_that_is_lowered_goes_on_as_a_dropped_one_where_it_is_seen(between, pieces):
+    stations, low = np.r_[np.arange(0, 20, 1.0), np.arange(28, 60, 1.0)], np.arange(20, 28, 0.5)
+    points = curb_points(np.sort(np.r_[stations, low]) if between else stations)
+    for row in points.rows:
+        if row["station_m"] in low:
+            row.update(status=between, height_m=0.03)
+    points.rows[19]["height_m"] = 0.05
     edges = fit_road_edges(points, straight_frame())
-    assert [r["edge"] for r in edges.rows] == kinds
-    assert {r["status"] for r in edges.rows if r["edge"] == "dropped"} <= {"bridged"}
-    np.testing.assert_allclose(places(edges)[:, 1], 3.5, atol=aside + 0.01)
+    assert [(row["edge"], row["status"]) for row in edges.rows] == pieces
+    np.testing.assert_allclose(places(edges)[:, 1], 3.5, atol=0.01)
+
+
+def test_a_low_curb_without_higher_ones_on_both_sides_is_no_dropped_one():
+    points = curb_points(np.arange(0, 60, 1.0))
+    for row in points.rows[30:]:
+        row["height_m"] = 0.04
+    assert {row["edge"] for row in fit_road_edges(points, straight_frame()).rows} == {"curb"}
+
+
+def test_places_on_the_line_across_a_lowered_curb_do_not_make_its_points_surer():
+    """They lie on one line, and the points beside them scatter as much as others."""
+    low = np.arange(22.0, 38.0, 0.5)
+    points = curb_points(np.r_[np.arange(0, 22, 1.0), np.arange(38, 60, 1.0)], noise=0.02)
+    for s in low:
+        points.add(shapely.Point(EAST + s, NORTH + 3.5, 100.0), road=0, side="left", status="bridged", part="bottom",
+                   station_m=float(s), offset_m=3.5, height_m=0.03)
+    alone = fit_road_edges(curb_points(np.arange(0, 60, 1.0), noise=0.02), straight_frame())
+    vertices = places(fit_road_edges(points, straight_frame()))
+    np.testing.assert_allclose(vertices[:, 1], 3.5, atol=max(np.abs(places(alone)[:, 1] - 3.5).max(), 0.02))
 
 
 @pytest.mark.parametrize(("aside", "bridged"), [(0.0, 1), (0.6, 0)], ids=["in line", "aside"])

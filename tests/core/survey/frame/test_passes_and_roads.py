@@ -1,5 +1,7 @@
 """How a drive becomes passes and roads."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive, joined, standing
@@ -188,6 +190,15 @@ def test_a_vehicle_that_never_moved_is_refused_in_one_sentence():
     trajectory = drive(STREET).rows(slice(0, 1))
     with pytest.raises(RoadExtractionError, match=r"1 usable position\(s\) over 0.0 m"):
         build_frame(trajectory)
+
+
+def test_times_that_lost_their_digits_are_refused_as_such():
+    trajectory = drive(STREET)
+    adjusted = trajectory.time + 318_204_000.0
+    with pytest.raises(RoadExtractionError, match="m at one time.*too few digits"):
+        build_frame(replace(trajectory, time=adjusted.astype(np.float32).astype(float)))
+    # whole seconds are coarse, and tell the order
+    assert build_frame(replace(trajectory, time=np.floor(adjusted))).roads
 
 
 def test_rows_without_a_position_are_dropped_and_counted():
