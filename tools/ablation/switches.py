@@ -238,14 +238,15 @@ ROWS = (
         ("outliers", "outliers:remove_outliers", nth(0))),
     *_room("clusters", "markings",
         ("tracks of the scan linked", "objects.grouping:_across_tracks", gives(NO_ROWS), "sparse paint"),
-        ("compounds divided", "objects.split_merge:split_compounds", nth(1), "stop line that meets an edge line"),
+        ("compounds divided", "objects.split_merge:are_compound", none_of(2), "stop line that meets an edge line",
+         "objects.split_merge:are_compound objects.split_merge:parts_of_compound"),
         ("bars cut from lines", "objects.split_merge:bar_with_lines", lambda cells: (np.zeros(len(cells), np.int64), 1),
          "bends with a junction, worn stop line"),
         ("fragments joined", "objects.split_merge:join_fragments", lambda shapes, _: np.arange(len(shapes)), "worn lines"),
         ("gaps between oblique tracks joined", "objects.split_merge:_unseen_gaps", gives(NO_ROWS), "edge lines far from the vehicle"),
         ("pieces of bars joined", "objects.split_merge:_bars", gives(NO_ROWS), "worn stop lines"),
         ("rows of blocks divided", "objects.cluster:_with_rows_divided", nth(1), "roundabout, give-way blocks"),
-        ("zebra crossings", "objects.repeating:zebra_stripes", gives([]), "", "objects.repeating:zebra_stripes objects.repeating:find_comb "
+        ("zebra crossings", "objects.repeating:stripes_of_crossing", gives([]), "", "objects.repeating:find_comb "
          "objects.repeating:stripes_of_crossing objects.repeating:comb_of_window")),
     *_room("classes", "markings.objects",
         ("give-way blocks", "repeating:give_way_blocks", none_of(), "roundabout"),
