@@ -39,14 +39,14 @@ def lowered_points(rows: list[dict], road: Road, look: SideLook) -> list[dict]:
     s = np.ascontiguousarray(points["s"])
     # where a curb is low its place is known to some centimetres only
     full = points[~is_lowered(points, s)]
-    found = []
+    lowered = []
     for before, behind in zip(np.append(s[:1] - CURBS.max_chain_gap, s), np.append(s, s[-1:] + CURBS.max_chain_gap)):
         if behind - before <= CURBS.max_joined_gap:
             continue
         near = full[stretch_of(full["s"], before - CURBS.line_fit_length, behind + CURBS.line_fit_length)]
         line = _line_across(near, before, behind, road, look)
         if line is not None:
-            found += _seen_between(near, look, (before, behind), line)
+            lowered += _seen_between(near, look, (before, behind), line)
             continue
         # where no line leads across, each curb may go on for some metres as it came, and where both would the nearer one does
         nearest: dict[float, tuple[float, dict]] = {}
@@ -55,8 +55,8 @@ def lowered_points(rows: list[dict], road: Road, look: SideLook) -> list[dict]:
                 ends = tip, tip + way * min(CURBS.max_chain_gap, behind - before)
                 for row in _seen_between(near, look, ends, Polynomial.fit(part["s"], part["d"], 1), both=False):
                     nearest[row["s"]] = min(nearest.get(row["s"], (np.inf, row)), (abs(row["s"] - tip), row), key=lambda of_side: of_side[0])
-        found += [row for _, row in nearest.values()]
-    return found
+        lowered += [row for _, row in nearest.values()]
+    return lowered
 
 
 def _line_across(near, before, behind, road, look):
