@@ -41,22 +41,29 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
 
 
 def _to_its_ends(track, boundaries):
-    """The track up to where its two borders begin and end: intervals are coarser than stations."""
+    """The track up to where its painted borders begin and end: intervals are coarser than stations."""
     track = _within_its_borders(track, boundaries)
     for head in (True, False):
         tip = 0 if head else -1
-        left, right = int(track.left[tip]), int(track.right[tip])
-        if min(left, right) < 0 or not boundaries.painted[[left, right]].all():
-            continue
+        rows = np.array([int(track.left[tip]), int(track.right[tip])])
+        known = rows >= 0
         end = track.first if head else track.last
+        if not known.any() or not boundaries.painted[rows[known]].all() or np.isnan(boundaries.d[rows[known], end]).any():
+            continue
         reach, last = STATIONS_OF_CELL, len(boundaries.s) - 1
         ahead = np.arange(end - 1, max(end - reach, 0) - 1, -1) if head else np.arange(end + 1, min(end + reach, last) + 1)
-        bounded = np.isfinite(boundaries.d[left, ahead]) & np.isfinite(boundaries.d[right, ahead])
+        bounded = np.isfinite(boundaries.d[rows[known][:, None], ahead]).all(axis=0)
         ahead = ahead[:len(bounded) if bounded.all() else int(np.argmin(bounded))]
         if len(ahead):
             ahead = np.sort(ahead)
-            d_left, d_right = boundaries.d[left, ahead], boundaries.d[right, ahead]
-            more = track.stretched(int(ahead[0]), (d_left + d_right) / 2, d_left - d_right, tip)
+            # one painted border alone leads the lane on as it leads it up to there
+            d, width = (np.full(len(ahead), value) for value in track.at(end))
+            if known.all():
+                d_left, d_right = boundaries.d[rows[:, None], ahead]
+                d, width = (d_left + d_right) / 2, d_left - d_right
+            else:
+                d = d + boundaries.d[rows[known][0], ahead] - boundaries.d[rows[known][0], end]
+            more = track.stretched(int(ahead[0]), d, width, tip)
             track = LaneTrack.joined([more, track] if head else [track, more])
     return track
 
