@@ -85,8 +85,7 @@ def _seen_between(near, look, ends, offsets, both=True):
     s = look.row_size * (np.arange(np.floor(first / look.row_size), np.ceil(last / look.row_size)) + 0.5)
     s = s[(s > first) & (s < last)]
     u = offsets(s)
-    shown, height, bottom = look.steps_up(s, u)
-    lowered = shown & (height <= near["height"].max())
+    lowered, height, bottom = look.steps_up(s, u, near["height"].max())
     runs = [(a, b) for a, b in mask_runs(lowered) if b - a >= CURBS.min_piece_steps]
     reached = {run for tip in ends[:1 + both] for run in _reached(runs[::1 if tip == first else -1], s, tip)}
     return [dict(s=float(s[k]), u=float(u[k]), h=float(bottom[k]),
