@@ -39,14 +39,14 @@ def lowered_points(rows: list[dict], road: Road, look: SideLook) -> list[dict]:
     s = np.ascontiguousarray(points["s"])
     # where a curb is low its place is known to some centimetres only
     full = points[~is_lowered(points, s)]
-    found = []
+    lowered = []
     for k in np.flatnonzero(np.diff(s) > CURBS.max_joined_gap):
         before, behind = s[k:k + 2]
         near = full[stretch_of(full["s"], before - CURBS.line_fit_length, behind + CURBS.line_fit_length)]
         line = _line_across(near, before, behind, road, look)
         if line is not None:
-            found += _seen_between(near, look, before, behind, line)
-    return found
+            lowered += _seen_between(near, look, before, behind, line)
+    return lowered
 
 
 def _line_across(near, before, behind, road, look):
