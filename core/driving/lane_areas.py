@@ -218,14 +218,14 @@ def _usual(numbers):
     return int(np.bincount(valid).argmax()) if len(valid) else 0
 
 
-def _taken(tracks, own, inner, sign):
+def _taken(tracks, track, inner, sign):
     """(N,) bool, where another lane lies on the far side of a border of this one."""
-    result = np.zeros(len(own), bool)
+    result = np.zeros(len(track), bool)
     for other in tracks:
-        a, b = max(own.first, other.first), min(own.last, other.last)
-        if other is own or a > b:
+        a, b = max(track.first, other.first), min(track.last, other.last)
+        if other is track or a > b:
             continue
-        of_own, of_other = slice(a - own.first, b - own.first + 1), slice(a - other.first, b - other.first + 1)
+        of_own, of_other = slice(a - track.first, b - track.first + 1), slice(a - other.first, b - other.first + 1)
         apart = sign * (other.d[of_other] - inner[of_own])
         result[of_own] |= (apart > 0) & (apart < STRIP_WIDTH[1] + other.width[of_other] / 2)
     return result

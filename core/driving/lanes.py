@@ -244,11 +244,11 @@ def _filled(values):
     return np.interp(np.arange(len(values)), finite, values[finite]) if len(finite) else None
 
 
-def _followed(found, parts, first):
+def _followed(parts_of_lane, parts, first):
     """{part: lane} of the parts that go on as a lane, a list of parts, which ends right before them, one to one, the nearest first."""
     pairs = []
     for k, part in enumerate(parts):
-        for j, lane in enumerate(found):
+        for j, lane in enumerate(parts_of_lane):
             track = lane[-1]
             step = abs(part.d[0] - track.d[-1])
             if track.last == first - 1 and track.direction == part.direction \

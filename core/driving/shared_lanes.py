@@ -107,8 +107,8 @@ def _part(lane, others, spans):
     at = np.where(along, at, -1).astype(int)
     for number in spans.near(int(at[along].min()), int(at.max())).tolist():
         other = others[number]
-        for own, of_other in _one_lane(lane, other, station, at, d):
-            loser, places = max((lane, own), (other, of_other), key=lambda claimed: claimed[0].claim(claimed[1]))
+        for of_lane, of_other in _one_lane(lane, other, station, at, d):
+            loser, places = max((lane, of_lane), (other, of_other), key=lambda claimed: claimed[0].claim(claimed[1]))
             loser.kept[places] = False
 
 

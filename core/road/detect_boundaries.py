@@ -119,33 +119,33 @@ def _steps_of_methods(source: SurveyScanlines, section: Section, scanlines: Scan
     return steps_of_section(source.decimation, section, profiles)
 
 
-def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
+def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
                     progress: Progress = Progress(), survey: Survey | None = None, ground: MeasuredGround | None = None) -> _RoadBoundaries:
     """Edges through the curb points of one method, or of the path through those of two, and edges of the pavement where there is no curb.
 
     With both methods, `agree` of every piece says how far apart they lie.
 
-    found : result of `find_curb_points`
+    points_by_method : result of `find_curb_points`
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
     ground : MeasuredGround of it that an earlier stage kept, or None
     """
     executor = THREADS if survey is None else survey.executor.passing()
-    boundaries = _drawn(found, frame, settings, executor, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
+    boundaries = _drawn(points_by_method, frame, settings, executor, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
     if survey is not None:
         boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress.part(BOUNDARY.curb_edges_progress, 1.0),
                                                ground=ground)
     return boundaries
 
 
-def _drawn(found, frame, settings, executor, progress):
+def _drawn(points_by_method, frame, settings, executor, progress):
     """The edges at curbs alone."""
-    points = found["both"] if "both" in found else next(iter(found.values()))
+    points = points_by_method["both"] if "both" in points_by_method else next(iter(points_by_method.values()))
     edges, = executor.run(Phase(edges_through, NoSource(), (frame, settings), lambda item: "the edges of all roads"), [points])
     tell_edges(edges, progress)
-    if "both" not in found:
+    if "both" not in points_by_method:
         return _RoadBoundaries(points, edges)
-    edges, differences = measure_agreement(edges, *(found[method] for method in METHODS), frame)
-    lengths = {method: _measured_length(found[method]) for method in METHODS}
+    edges, differences = measure_agreement(edges, *(points_by_method[method] for method in METHODS), frame)
+    lengths = {method: _measured_length(points_by_method[method]) for method in METHODS}
     if any(lengths.values()):
         progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                      f"they lie more than 5 cm apart along {differences.length.sum():.0f} m.")

@@ -112,9 +112,9 @@ def _named(stretches):
 
 def _said_of_heights(stretches, metres):
     up = float(np.median(metres))
-    return (f"The trajectory does not keep to one height above the road: along {_named(stretches)} the road lies about {abs(up):.2g} m "
-            f"{'higher' if up > 0 else 'lower'} than elsewhere below it, where most points are. Curbs and paint are missed there. Heights may be in "
-            "feet in one file and in metres in another, or of two kinds (above the ellipsoid and above sea level): export all from one solution.")
+    return (f"The trajectory does not keep to one height above the road: along {_named(stretches)} the road lies {up:+.2g} m from its usual height "
+            "below it, where most points are. Curbs and paint are missed there. Heights may be in feet in one file and in metres in another, or of "
+            "two kinds (above the ellipsoid and above sea level): export all from one solution.")
 
 
 def _said_of_holes(stretches):

@@ -255,3 +255,18 @@ def test_a_docstring_explains_no_parameter_that_is_not_there():
             if extra:
                 gone.append(f"{'/'.join(name_of(path))}.py, {name}: {', '.join(sorted(extra))}")
     assert not gone
+
+
+PRONOUNS = {"found", "own", "said", "told"}   # of something that has a name
+
+
+def test_no_pronoun_is_a_name():
+    named = []
+    for path in sorted(path for path in ROOT.rglob("*.py") if not {"build", "tests", "tools", "docs"} & set(path.relative_to(ROOT).parts)):
+        for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(function, (ast.FunctionDef, ast.Lambda)):
+                nodes = list(ast.walk(function))
+                names = [node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
+                named += [f"{path.relative_to(ROOT)}: {name}" for name in [*names, *(node.arg for node in nodes if isinstance(node, ast.arg))]
+                          if name in PRONOUNS]
+    assert not named

@@ -165,8 +165,8 @@ def _chosen(places, room, lined, across, nats, width, spread, w):
     first = between[right.argmax(axis=0), columns]
     apart = np.where(np.abs(width - first) > 2 * SAME_LANE, nats, np.inf)
     second = np.argmin(apart, axis=0)
-    found = np.isfinite(apart[second, columns])
-    behind = np.where(found, np.where(found, apart[second, columns], 0.0) - nats[order, columns], np.inf)
+    known = np.isfinite(apart[second, columns])
+    behind = np.where(known, np.where(known, apart[second, columns], 0.0) - nats[order, columns], np.inf)
     # beyond the end of the curb, or of the other line, a lane goes on as wide as beside it
     bounded = np.isfinite(room)
     elsewhere = places.means(np.where(lined, across, np.where(bounded, first, np.nan)), w.laid_out)

@@ -305,8 +305,8 @@ def _place_shares(estimate, lanes, chosen, part):
     return chosen_lanes, np.stack([probability, either, directed], axis=1)[chosen_lanes]
 
 
-def _second_readings(estimate, lanes, own, way, part):
-    """The second Reading of each of the lanes `own`, which lead the way `way`, (L,); None where nothing is known of others."""
+def _second_readings(estimate, lanes, rows, way, part):
+    """The second Reading of each of the lanes `rows`, which lead the way `way`, (L,); None where nothing is known of others."""
     sides = [(lanes, estimate.second)]
     if estimate.opposite is not None:
         sides.append((_lanes_of(estimate.opposite, _strips_of(estimate.opposite, part)), estimate.opposite.second + estimate.opposite_behind))
@@ -315,9 +315,9 @@ def _second_readings(estimate, lanes, own, way, part):
     slot = np.concatenate([side.section + first for (side, _), first in zip(sides, slots)])
     interval, d, width, direction = (np.concatenate([getattr(side, name) for side, _ in sides]) for name in ("interval", "d", "width", "way"))
     order = np.argsort(interval, kind="stable")
-    begin, end = (np.searchsorted(interval[order], lanes.interval[own], side=side) for side in ("left", "right"))
+    begin, end = (np.searchsorted(interval[order], lanes.interval[rows], side=side) for side in ("left", "right"))
     readings = []
-    for row, facing, first, last in zip(own.tolist(), way.tolist(), begin.tolist(), end.tolist()):
+    for row, facing, first, last in zip(rows.tolist(), way.tolist(), begin.tolist(), end.tolist()):
         candidates, of_place = order[first:last], nats[lanes.interval[row]]
         alike = (np.abs(d[candidates] - lanes.d[row]) < SAME_LANE) & (direction[candidates] == facing)
         without = np.ones(len(of_place), bool)
@@ -334,19 +334,19 @@ def _second_readings(estimate, lanes, own, way, part):
     return readings
 
 
-def _second_places(estimate, lanes, strips, own, way):
-    """The Reading of another width for those of the lanes `own` that lie alone between a line and a curb or edge; None for most others.
+def _second_places(estimate, lanes, strips, rows, way):
+    """The Reading of another width for those of the lanes `rows` that lie alone between a line and a curb or edge; None for most others.
 
     Between two borders without paint there may be one lane or two, where these have room.
     """
-    c, intervals, strip = estimate.candidates, lanes.interval[own], lanes.strip[own]
+    c, intervals, strip = estimate.candidates, lanes.interval[rows], lanes.strip[rows]
     left, right = strips.left[strip], strips.right[strip]
     open_left, open_right = UNPAINTED[c.made_of[intervals, left]], UNPAINTED[c.made_of[intervals, right]]
     beside = beside_of(c, intervals, left, right)
     d = np.where(open_left, c.left[intervals, right] + beside[:, SECOND_WIDTH] / 2, c.right[intervals, left] - beside[:, SECOND_WIDTH] / 2)
-    known = (open_left ^ open_right) & (strips.number[strip] == 1) & np.isfinite(beside[:, NATS]) & (np.abs(d - lanes.d[own]) > SAME_LANE)
+    known = (open_left ^ open_right) & (strips.number[strip] == 1) & np.isfinite(beside[:, NATS]) & (np.abs(d - lanes.d[rows]) > SAME_LANE)
     result = [Reading(max(float(beside[k, NATS]), 0.0), ((float(d[k]), float(beside[k, SECOND_WIDTH]), int(way[k])),)) if known[k] else None
-              for k in range(len(own))]
+              for k in range(len(rows))]
     begin, room = c.right[intervals, left], c.right[intervals, left] - c.left[intervals, right]
     number = np.where(strips.number[strip] == 1, 2, 1)
     for k in np.flatnonzero(open_left & open_right & (room / number >= NEUTRAL.narrowest_lane)).tolist():

@@ -167,9 +167,9 @@ def _courses(selected, places, road, track_height):
     """The _Courses of the selected lines of a road, which lead over the stations that are to be drawn; places : of each, as of `_places`."""
     if not places:
         return []
-    s, d, own = (np.concatenate(parts) for parts in list(zip(*places))[:3])
+    s, d, rows = (np.concatenate(parts) for parts in list(zip(*places))[:3])
     bounds = np.cumsum([len(stations) for stations, *_ in places])[:-1]
-    track = np.split(track_height(s[own]), np.cumsum([len(z) for *_, z in places])[:-1])
+    track = np.split(track_height(s[rows]), np.cumsum([len(z) for *_, z in places])[:-1])
     x, y = (np.split(values, bounds) for values in road.to_map(s, d))
     pieces = [[(piece.first, piece.last) for piece in chosen.pieces] for chosen in selected]
     return [_Course(of_s, of_x, of_y, _along(road, of_s, of_d), of_own, z - below, of_line)

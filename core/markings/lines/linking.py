@@ -467,9 +467,9 @@ def _between(course, first, last):
     return course[0][inside], course[1][inside]
 
 
-def _full_width(markings, own):
+def _full_width(markings, rows):
     """The width of a line: that of the widest of its pieces, as few tracks show less of it and never more; 0 where nothing is known."""
-    long = own[markings.length[own] >= TREND.min_seen_length]
+    long = rows[markings.length[rows] >= TREND.min_seen_length]
     return float(markings.width[long].max()) if len(long) else 0.0
 
 

@@ -174,14 +174,14 @@ def _stripe_markings(records, stripes, striped, shapes):
     return markings
 
 
-def _blocks_of_all(found):
+def _blocks_of_all(pieces_by_road):
     """Of each road (N,) bool, which clusters are blocks of give-way lines: a row of them may lie on several roads, and oblique to them."""
-    shapes = [shape for pieces in found for shape in pieces.shapes]
+    shapes = [shape for pieces in pieces_by_road for shape in pieces.shapes]
     rectangles = [_rectangle(records, bounds) if max(shape.sides) <= SHAPES.small_marking_size else (0.0, 0.0, 0.0, 0.0)
-                  for pieces in found for records in [pieces.records.unread()] for bounds, shape in zip(pieces.bounds, pieces.shapes)]
+                  for pieces in pieces_by_road for records in [pieces.records.unread()] for bounds, shape in zip(pieces.bounds, pieces.shapes)]
     sides, middles = np.split(np.array(rectangles).reshape(-1, 4), 2, axis=1)
     blocks = give_way_blocks(filled(shapes), sides, middles)
-    return np.split(blocks, np.cumsum([len(pieces.shapes) for pieces in found])[:-1]) if found else []
+    return np.split(blocks, np.cumsum([len(pieces.shapes) for pieces in pieces_by_road])[:-1]) if pieces_by_road else []
 
 
 def _rectangle(records, bounds):
@@ -461,9 +461,9 @@ def _columns_at(records, rows, names):
     return tuple(selected[name] for name in names)
 
 
-def _polygons(found):
+def _polygons(outlines):
     """[[Polygon]] of each marking, from what `outlines_of_markings` gives."""
-    vertices, ring_start, polygon_start, count = found
+    vertices, ring_start, polygon_start, count = outlines
     ends = np.cumsum(count).tolist()
     polygons = shapely.from_ragged_array(shapely.GeometryType.POLYGON, vertices, (ring_start, polygon_start)).tolist()
     return [polygons[end - number:end] for end, number in zip(ends, count.tolist())]

@@ -48,10 +48,10 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
     for first in range(0, len(groups), GROUPS_AT_ONCE):
         batch = groups[first:first + GROUPS_AT_ONCE]
         cells = [cells_of(members) for group in batch for members in group]
-        found = iter((yield Asked(figure_of_cells, cells, 0.5 * (first + len(batch)) / len(groups), read=lambda kind: [kind])))
+        kind_of_group = iter((yield Asked(figure_of_cells, cells, 0.5 * (first + len(batch)) / len(groups), read=lambda kind: [kind])))
         for group in batch:
             used: set[int] = set()
-            for members, kind in [(members, next(found)) for members in group]:
+            for members, kind in [(members, next(kind_of_group)) for members in group]:
                 if kind and used.isdisjoint(members):
                     result.append(_RecognisedFigure(members, kind))
                     used.update(members)

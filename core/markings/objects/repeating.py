@@ -139,20 +139,20 @@ def find_comb(places: np.ndarray) -> Comb | None:
     return None
 
 
-def _phases(own):
+def _phases(spots):
     """(H, P) complex, nearly the mean phase of spots for every direction and pitch that is tried: by bins across the stripes."""
-    number = np.floor(own @ COMB_ACROSS / STRIPES.comb_bin).astype(np.int64) + COMB_REACH
+    number = np.floor(spots @ COMB_ACROSS / STRIPES.comb_bin).astype(np.int64) + COMB_REACH
     number = np.clip(number, 0, len(COMB_PHASES) - 1) + np.arange(len(COMB_HEADINGS)) * len(COMB_PHASES)
     counts = np.bincount(number.ravel(), minlength=len(COMB_HEADINGS) * len(COMB_PHASES)).reshape(len(COMB_HEADINGS), -1)
     # small: shared out to threads it takes longer
-    return np.einsum("hb,bp->hp", counts.astype(float), COMB_PHASES.view(float)).view(complex) / len(own)
+    return np.einsum("hb,bp->hp", counts.astype(float), COMB_PHASES.view(float)).view(complex) / len(spots)
 
 
-def _refined(own, middle, heading, pitch, steps=1.0):
+def _refined(spots, middle, heading, pitch, steps=1.0):
     """The clearest comb within some of the steps that are tried of a direction and a pitch."""
     headings = heading + STRIPES.comb_heading_step * steps * COMB_SHARES
     pitches = pitch * (1 + STRIPES.comb_pitch_step * steps * COMB_SHARES)
-    across = own @ np.array([-np.sin(headings), np.cos(headings)])
+    across = spots @ np.array([-np.sin(headings), np.cos(headings)])
     clear = _clear(across, pitches)
     headings, pitches = headings[clear.any(axis=1)], pitches[clear.any(axis=0)]
     phase = _mean_phase(across[:, clear.any(axis=1)], pitches)
@@ -168,18 +168,18 @@ def _clear(across, pitches):
     return length >= length.max() - PHASE_TOLERANCE
 
 
-def _numbered(own, comb):
+def _numbered(spots, comb):
     """Number of the stripe nearest to each spot, how far off its middle the spot lies, and where along it."""
-    across = own @ np.array([-np.sin(comb.heading), np.cos(comb.heading)]) - comb.phase
+    across = spots @ np.array([-np.sin(comb.heading), np.cos(comb.heading)]) - comb.phase
     number = np.rint(across / comb.pitch).astype(np.int64)
-    return number, across - number * comb.pitch, own @ np.array([np.cos(comb.heading), np.sin(comb.heading)])
+    return number, across - number * comb.pitch, spots @ np.array([np.cos(comb.heading), np.sin(comb.heading)])
 
 
-def _has_stripes(own, comb):
+def _has_stripes(spots, comb):
     """Whether at least three stripes side by side are long enough, and as long as each other at the same place."""
-    number, _, along = _numbered(own, comb)
+    number, _, along = _numbered(spots, comb)
     number -= number.min()
-    enough = np.bincount(number) >= STRIPES.min_share_of_stripe * len(own)
+    enough = np.bincount(number) >= STRIPES.min_share_of_stripe * len(spots)
     side_by_side = np.convolve(enough, np.ones(STRIPES.min_stripes, int)) == STRIPES.min_stripes   # the last of so many side by side
     if not side_by_side.any():
         return False
@@ -393,7 +393,7 @@ def likely_rows(shapes: Sequence[Shape], odds: np.ndarray) -> list[np.ndarray]:
     rows: list[np.ndarray] = []
     free = np.ones(len(shapes), bool)
     while True:
-        score, row = max((steps.likeliest(odds, free) for steps in directions), key=lambda found: found[0])
+        score, row = max((steps.likeliest(odds, free) for steps in directions), key=lambda scored: scored[0])
         if score <= ROWS.row:
             return rows
         rows.append(np.array(row))

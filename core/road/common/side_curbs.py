@@ -67,9 +67,9 @@ def steps_of_roads(function: Callable, source: Any, settings: tuple[Any, ...], s
     phase = Phase(function, source, settings, lambda section: _place_of(survey, searches[section[0]].width, *section[1:]), join_sections,
                   CURBS.sections_together * len(searches))
     for (steps_by_side, beside), (method, road, *_) in zip(source.executor.run(phase, sections, progress), sections):
-        for found, values in ((parts, steps_by_side), (grids, beside)):
+        for collected, values in ((parts, steps_by_side), (grids, beside)):
             for side, of_side in values.items():
-                found.setdefault((method, road, side), []).append(of_side)
+                collected.setdefault((method, road, side), []).append(of_side)
     result: dict[str, dict[tuple[int, str], SideSteps]] = {method: {} for method in searches}
     for (method, road, side), of_side in grids.items():
         steps, search = parts.get((method, road, side)), searches[method]
@@ -89,10 +89,10 @@ def phase_along(function: Callable, source: Any, arguments: tuple[Any, ...], wid
     return Phase(function, source, arguments, lambda section: _place_of(source.survey, width, *section), join, CURBS.sections_together)
 
 
-def merged_passes(found: Sequence[AnySteps]) -> AnySteps:
+def merged_passes(seen: Sequence[AnySteps]) -> AnySteps:
     """One step where several passes or scanners saw the same one: the mean, weighted by support."""
-    steps = type(found[0]).join(found)
-    if len(found) < 2 or not len(steps):
+    steps = type(seen[0]).join(seen)
+    if len(seen) < 2 or not len(steps):
         return steps
     steps = steps[np.lexsort((steps.u, steps.profile))]
     separate = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > CURBS.pass_merge_across) | (np.abs(np.diff(steps.h)) > CURBS.pass_merge_height)
@@ -127,28 +127,28 @@ class SideSteps:
     occlusion: OcclusionGrid
 
 
-def grids_beside(found: Mapping[tuple[int, str], SideSteps]) -> dict[int, dict[str, OcclusionGrid]]:
+def grids_beside(steps: Mapping[tuple[int, str], SideSteps]) -> dict[int, dict[str, OcclusionGrid]]:
     """What was seen beside each road: number of the road -> side -> OcclusionGrid."""
     beside: dict[int, dict[str, OcclusionGrid]] = {}
-    for (road, side), seen in found.items():
+    for (road, side), seen in steps.items():
         beside.setdefault(road, {})[side] = seen.occlusion
     return beside
 
 
-def curbs_along(source: Any, found: Mapping[str, Mapping[tuple[int, str], SideSteps]],
+def curbs_along(source: Any, steps_by_method: Mapping[str, Mapping[tuple[int, str], SideSteps]],
                 look_at: Callable[[int], RoadLook] | None = None) -> dict[str, CurbPoints]:
     """{method: CurbPoints} of each method alone and, as "both", those of the best path along the road through the chains of two.
 
     source : PointDecimation of a survey, or scanlines
-    found : method -> (number of the road, side) -> SideSteps; the method with the stricter model of a curb comes first
+    steps_by_method : method -> (number of the road, side) -> SideSteps; the method with the stricter model of a curb comes first
     look_at : gives the RoadLook of a road; None where nothing but the steps is known of the ground
     """
-    roads = sorted({road for road, _ in next(iter(found.values()))})
-    items = [(road, side, {method: steps[road, side] for method, steps in found.items()}) for road in roads for side in SIDE_SIGNS]
+    roads = sorted({road for road, _ in next(iter(steps_by_method.values()))})
+    items = [(road, side, {method: steps[road, side] for method, steps in steps_by_method.items()}) for road in roads for side in SIDE_SIGNS]
     looks = {road: look_at(road) for road in roads} if look_at else {}
     phase = Phase(_curbs_of_side, source, (looks,), lambda item: f"the {item[1]} side of road {item[0]}")
     parts = list(source.executor.run(phase, items))
-    methods, crs = [*found, "both"] if len(found) > 1 else [*found], getattr(source, "survey", source).crs
+    methods, crs = [*steps_by_method, "both"] if len(steps_by_method) > 1 else [*steps_by_method], getattr(source, "survey", source).crs
     return {method: CurbPoints.join([part[method] for part in parts if method in part], crs) for method in methods}
 
 
@@ -220,27 +220,27 @@ def _has_road_before(steps, length, look):
     return length >= CURBS.min_faint_length or is_road(look.roughness(*(v.ravel() for v in np.broadcast_arrays(steps.s, steps.u - before))))
 
 
-def points_of_side(source: Any, road: int, side: str, found: Sequence[SideChains], occlusion: OcclusionGrid) -> CurbPoints:
+def points_of_side(source: Any, road: int, side: str, by_method: Sequence[SideChains], occlusion: OcclusionGrid) -> CurbPoints:
     """Curb points of one side of one road, measured and hidden, in order of station.
 
     source : Survey, or scanlines: what has `frame` and `road_height`
-    found : SideChains of every method
+    by_method : SideChains of every method
     """
     frame, sign = source.frame, SIDE_SIGNS[side]
-    first = np.cumsum([0, *(len(part.steps) for part in found)])   # number of the first step of each method among all of them
-    steps = CurbSteps(*(np.concatenate([getattr(part.steps, field.name) for part in found]) for field in fields(CurbSteps)))
+    first = np.cumsum([0, *(len(part.steps) for part in by_method)])   # number of the first step of each method among all of them
+    steps = CurbSteps(*(np.concatenate([getattr(part.steps, field.name) for part in by_method]) for field in fields(CurbSteps)))
     chains = [replace(chain, steps=chain.steps + begin, method=method)
-              for method, (part, begin) in enumerate(zip(found, first)) for chain in part.chains]
+              for method, (part, begin) in enumerate(zip(by_method, first)) for chain in part.chains]
     chains.sort(key=lambda chain: (chain.start, chain.end))
     track = OutermostTrack(frame, road, sign)
-    selected = drop_short_curbs(select_along_road(chains, steps, track, found[0].look), chains, steps)
+    selected = drop_short_curbs(select_along_road(chains, steps, track, by_method[0].look), chains, steps)
     lines = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u), first[1:-1].tolist())
     rows = []
     for number, members in enumerate(lines):
         method = int(np.searchsorted(first, members[0], side="right")) - 1
-        rows += found[method].points(members - first[method], number)
-    if found[0].look is not None:
-        rows += lowered_points(rows, frame.road(road), found[0].look)
+        rows += by_method[method].points(members - first[method], number)
+    if by_method[0].look is not None:
+        rows += lowered_points(rows, frame.road(road), by_method[0].look)
     bottoms = np.array([(row["s"], row["u"], row["h"]) for row in rows if row["fields"]["part"] == "bottom"]).reshape(-1, 3)
     rows += hidden_points(bottoms, occlusion, track)
     return points_of_rows(source, road, side, sorted(rows, key=lambda row: (row["s"], row["fields"]["part"])))

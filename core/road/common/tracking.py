@@ -431,10 +431,10 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
             continue
         check_cancelled()
         before, after = (chosen.steps[chosen.rows(*ends)] for ends in ((a - CURBS.line_fit_length, a + 1e-9), (b - 1e-9, b + CURBS.line_fit_length)))
-        found = [(piece, begin) for begin, of_method in of_methods for piece in pieces_between(before, after, of_method, to_plan)]
+        in_line = [(piece, begin) for begin, of_method in of_methods for piece in pieces_between(before, after, of_method, to_plan)]
         # of pieces beside each other the one nearest to the line
         nearest: list[PieceInLine] = []
-        for piece, begin in sorted(found, key=lambda found_piece: found_piece[0].off):
+        for piece, begin in sorted(in_line, key=lambda found_piece: found_piece[0].off):
             if all(piece.end < other.start or piece.start > other.end for other in nearest):
                 nearest.append(piece)
                 pieces.append(begin + piece.steps)
@@ -584,7 +584,7 @@ def line_across(points: np.ndarray, s: np.ndarray, k: int) -> tuple[float, GapLi
         for axes in ("xy", "sd"):
             before, behind = (np.array([part[axis] for axis in axes]) for part in parts)
             line = GapLine(before, behind, max_degree=2)
-            best = min(best, (line.miss / reach, line, axes), key=lambda found: found[0])
+            best = min(best, (line.miss / reach, line, axes), key=lambda fitted: fitted[0])
     return best
 
 

@@ -72,12 +72,12 @@ def _length(x, y):
     return float(np.hypot(np.diff(x), np.diff(y)).sum())
 
 
-def _chain_scatter(own):
+def _chain_scatter(curb):
     """Median distance of the steps of a line from the chord of their neighbours, m."""
-    if len(own) < 3:
+    if len(curb) < 3:
         return 0.0
-    cx, cy = own.x[2:] - own.x[:-2], own.y[2:] - own.y[:-2]
-    off = np.abs(cx * (own.y[1:-1] - own.y[:-2]) - cy * (own.x[1:-1] - own.x[:-2])) / np.maximum(np.hypot(cx, cy), 1e-6)
+    cx, cy = curb.x[2:] - curb.x[:-2], curb.y[2:] - curb.y[:-2]
+    off = np.abs(cx * (curb.y[1:-1] - curb.y[:-2]) - cy * (curb.x[1:-1] - curb.x[:-2])) / np.maximum(np.hypot(cx, cy), 1e-6)
     return float(np.median(off))
 
 
@@ -120,22 +120,22 @@ def _sides_continued(runs, chains, steps):
     return ["" if chain.closed else sides.get(number, "") for number, chain in zip(group[len(runs):], chains)]
 
 
-def _curb_apart(own, falls, closed, line, limits, passes, lines):
+def _curb_apart(curb, falls, closed, line, limits, passes, lines):
     """A line that continues no main curb, as an island, as a side street whose corner is hidden, or else as a corner or of no kind."""
-    s, d = line.locate(own.x, own.y)
+    s, d = line.locate(curb.x, curb.y)
     behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
     side = _side(s, d, passes)
     if np.mean(np.isfinite(falls) & ~behind) >= RETURN.min_island_share:
-        return CurbReturn(own, s, d, side, "island", closed, falls=falls)
-    if _may_be_side_street(own, s, line, behind, lines):
-        straight = _straight_part(own)
-        return CurbReturn(own[straight], s[straight], d[straight], side, "side_street")
-    return CurbReturn(own, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "")
+        return CurbReturn(curb, s, d, side, "island", closed, falls=falls)
+    if _may_be_side_street(curb, s, line, behind, lines):
+        straight = _straight_part(curb)
+        return CurbReturn(curb[straight], s[straight], d[straight], side, "side_street")
+    return CurbReturn(curb, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "")
 
 
-def _free_and_islands(apart, found, runs, elsewhere):
+def _free_and_islands(apart, continued, runs, elsewhere):
     """Of lines apart the corners that other curbs confirm, and the outlines of islands."""
-    own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in found]
+    own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in continued]
     before, confirming = CurbLines(own_curbs), CurbLines([*own_curbs, *elsewhere])
     islands = [curb for curb in apart if curb.kind == "island" and not lies_behind(curb.steps, before)]
     return [curb for curb in apart if curb.kind == "corner" and is_free_corner(curb.steps, confirming)] + _long_islands(islands)
@@ -160,40 +160,40 @@ def _side(s, d, passes):
     return "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
 
 
-def _may_be_side_street(own, s, line, behind, lines):
+def _may_be_side_street(curb, s, line, behind, lines):
     """Is a line that nothing joins to the main curb the curb of a side street?"""
-    return _length(own.x, own.y) >= RETURN.min_isolated_length and np.mean(behind) <= RETURN.max_behind_share \
-        and np.median(_road_cosine(own, s, line)) < RETURN.min_road_cosine and _has_opposite_curb(own, lines)
+    return _length(curb.x, curb.y) >= RETURN.min_isolated_length and np.mean(behind) <= RETURN.max_behind_share \
+        and np.median(_road_cosine(curb, s, line)) < RETURN.min_road_cosine and _has_opposite_curb(curb, lines)
 
 
-def _straight_part(own):
+def _straight_part(curb):
     """The longest run of steps, as a slice, in the line's own direction: at its ends it may have caught a wall, or the back of a sidewalk."""
-    along = np.arctan2(*_chords(own)[::-1])
+    along = np.arctan2(*_chords(curb)[::-1])
     turn = np.abs((along - np.arctan2(np.median(np.sin(along)), np.median(np.cos(along))) + np.pi) % (2 * np.pi) - np.pi)
     runs = mask_runs(turn <= RETURN.max_side_street_turn)
-    return slice(*max(runs, key=lambda run: run[1] - run[0])) if runs else slice(0, len(own))
+    return slice(*max(runs, key=lambda run: run[1] - run[0])) if runs else slice(0, len(curb))
 
 
-def classify_continuation(own: PlanSteps, s: np.ndarray, d: np.ndarray, side: str, line: Road, limit: SearchLimit,
+def classify_continuation(curb: PlanSteps, s: np.ndarray, d: np.ndarray, side: str, line: Road, limit: SearchLimit,
                           runs: CurbLines) -> list[CurbReturn]:
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it.
 
-    own : N PlanSteps in order, uphill on the right
+    curb : N PlanSteps in order, uphill on the right
     s, d : (N,) m, their stations and offsets
     side : of the main curb
     limit : SearchLimit of that side
     runs : CurbLines, the main curbs
     """
-    along = _road_cosine(own, s, line)
+    along = _road_cosine(curb, s, line)
     if np.median(along) > RETURN.min_road_cosine and not limit.between(np.nanmin(s) + RETURN.main_curb_overlap,
                                                                        np.nanmax(s) - RETURN.main_curb_overlap):
-        return [CurbReturn(own, s, d, side, "main")]
-    near = runs.end_distances(own.x[[0, -1]], own.y[[0, -1]])
+        return [CurbReturn(curb, s, d, side, "main")]
+    near = runs.end_distances(curb.x[[0, -1]], curb.y[[0, -1]])
     # in order from the main curb outward
-    order = np.arange(len(own)) if near[0] <= near[1] else np.arange(len(own))[::-1]
-    cut = len(own) if max(near) <= CURBS.max_joined_gap else _where_straight(own, order, along)
+    order = np.arange(len(curb)) if near[0] <= near[1] else np.arange(len(curb))[::-1]
+    cut = len(curb) if max(near) <= CURBS.max_joined_gap else _where_straight(curb, order, along)
     parts = [(order[:cut + 1], "corner"), (order[cut:], "side_street")]
-    return [CurbReturn(own[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
+    return [CurbReturn(curb[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
 
 
 class _LinesOfSteps:
@@ -209,34 +209,34 @@ class _LinesOfSteps:
         return [self.lines[k] for k in np.unique(self.owner[self.tree.query_ball_point((x, y), distance)])]
 
 
-def _has_opposite_curb(own, lines):
+def _has_opposite_curb(curb, lines):
     """Is there another line along the opposite side of the street that this one bounds?"""
-    k = len(own) // 2
-    for line in lines.about(own.x[k], own.y[k], RETURN.side_street_widths[1] + RETURN.max_opposite_shift):
-        dx, dy = line.x - own.x[k], line.y - own.y[k]
-        out, shift = -(dx * own.nx[k] + dy * own.ny[k]), np.abs(dx * own.ny[k] - dy * own.nx[k])
-        opposite = line.nx * own.nx[k] + line.ny * own.ny[k] < -0.7
+    k = len(curb) // 2
+    for line in lines.about(curb.x[k], curb.y[k], RETURN.side_street_widths[1] + RETURN.max_opposite_shift):
+        dx, dy = line.x - curb.x[k], line.y - curb.y[k]
+        out, shift = -(dx * curb.nx[k] + dy * curb.ny[k]), np.abs(dx * curb.ny[k] - dy * curb.nx[k])
+        opposite = line.nx * curb.nx[k] + line.ny * curb.ny[k] < -0.7
         if np.any((out > RETURN.side_street_widths[0]) & (out < RETURN.side_street_widths[1]) & (shift < RETURN.max_opposite_shift) & opposite):
             return True
     return False
 
 
-def _road_cosine(own, s, line):
+def _road_cosine(curb, s, line):
     """(N,) cosine of the angle between a line and the road at its steps."""
-    dx, dy = _chords(own)
+    dx, dy = _chords(curb)
     return np.abs(dx * np.cos(line.heading(s)) + dy * np.sin(line.heading(s))) / np.maximum(np.hypot(dx, dy), 1e-9)
 
 
-def _chords(own):
+def _chords(curb):
     """(N,) m, x and y from the second step before each one to the second behind it: the course of a line is surer than its single faces."""
-    k = np.arange(len(own))
-    a, b = np.maximum(k - 2, 0), np.minimum(k + 2, len(own) - 1)
-    return own.x[b] - own.x[a], own.y[b] - own.y[a]
+    k = np.arange(len(curb))
+    a, b = np.maximum(k - 2, 0), np.minimum(k + 2, len(curb) - 1)
+    return curb.x[b] - curb.x[a], curb.y[b] - curb.y[a]
 
 
-def _where_straight(own, order, along):
+def _where_straight(curb, order, along):
     """Position in `order` from which a line runs straight to its end, away from the road; its length where it does not."""
-    x, y = own.x[order], own.y[order]
+    x, y = curb.x[order], curb.y[order]
     for k in range(len(x) - 2):
         chord = np.hypot(x[-1] - x[k], y[-1] - y[k])
         if chord < RETURN.min_straight_length:
@@ -295,29 +295,29 @@ def lies_behind(line: PlanSteps, curbs: CurbLines) -> bool:
 END_MARGIN = 0.01   # derived: m, more than distances are rounded by
 
 
-def is_free_corner(own: PlanSteps, curbs: CurbLines) -> bool:
+def is_free_corner(curb: PlanSteps, curbs: CurbLines) -> bool:
     """Does a line bend evenly about its uphill side, and point at the end of a curb both ways?
 
-    own : N PlanSteps in order
+    curb : N PlanSteps in order
     curbs : CurbLines, the other curbs
     """
-    if len(own) < 4 or not curbs.lines:
+    if len(curb) < 4 or not curbs.lines:
         return False
     # the circle of least squares (Kåsa)
-    mx, my = own.x.mean(), own.y.mean()
-    x, y = own.x - mx, own.y - my
+    mx, my = curb.x.mean(), curb.y.mean()
+    x, y = curb.x - mx, curb.y - my
     (cx, cy, c), *_ = np.linalg.lstsq(np.c_[2 * x, 2 * y, np.ones(len(x))], x * x + y * y, rcond=None)
     radius = float(np.sqrt(max(c + cx * cx + cy * cy, 0.0)))
     if not RETURN.corner_radii[0] <= radius <= RETURN.corner_radii[1]:
         return False
     off = np.abs(np.hypot(x - cx, y - cy) - radius)
     angle = np.unwrap(np.arctan2(y - cy, x - cx))
-    uphill = np.median((cx - x) * own.nx + (cy - y) * own.ny) > 0
+    uphill = np.median((cx - x) * curb.nx + (cy - y) * curb.ny) > 0
     if off.max() > RETURN.max_bend_deviation or abs(angle[-1] - angle[0]) < RETURN.min_corner_angle or not uphill:
         return False
     turn = np.sign(angle[-1] - angle[0])
     for k, out in ((0, -turn), (-1, turn)):
-        tip = np.array([own.x[k], own.y[k]])
+        tip = np.array([curb.x[k], curb.y[k]])
         # along the circle, out of the line
         direction = out * np.array([-np.sin(angle[k]), np.cos(angle[k])])
         if not any(_points_at(tip, direction, end, radius, out) for end in curbs.ends_about(tip, RETURN.max_crossing_gap + END_MARGIN)):

@@ -133,10 +133,10 @@ def _steps_in_plan(decimation, searches, settings, progress=Progress()):
     """{number of a road: its _PlanSearch, and what `plan_steps_of_section` finds on it}; `searches` : {number of a road: _PlanSearch}"""
     sections = [(road, *section) for road in searches for section in work_sections(decimation.survey, road, settings.profile_width)]
     phase = phase_along(plan_steps_of_section, decimation, (searches, settings), settings.profile_width, _join_parts)
-    found: dict[int, list] = {road: [] for road in searches}
+    parts: dict[int, list] = {road: [] for road in searches}
     for of_section, (road, *_) in zip(decimation.executor.run(phase, sections, progress), sections):
-        found[road].append(of_section)
-    return {road: (searches[road], _join_parts(of_road)) for road, of_road in found.items()}
+        parts[road].append(of_section)
+    return {road: (searches[road], _join_parts(of_road)) for road, of_road in parts.items()}
 
 
 def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray],

@@ -261,11 +261,11 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
     return list(extended.values()) + continuations
 
 
-def _until_met(own, met):
+def _until_met(curb, met):
     """A curb as far as another one."""
-    near = met.within(own.x, own.y, RETURN.meeting_curb_distance)
+    near = met.within(curb.x, curb.y, RETURN.meeting_curb_distance)
     near[:int(RETURN.leaving_length / RETURN.led_step)] = False
-    return own[:int(np.argmax(near))] if near.any() else own
+    return curb[:int(np.argmax(near))] if near.any() else curb
 
 
 def _joined(curb, more, before):

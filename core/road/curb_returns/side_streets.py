@@ -257,10 +257,10 @@ def _led(course, end, curb, at_tail, survey, road, line):
     return CurbReturn(steps[order], s[order], d[order], curb.side, "side_street", sigma=course.sigma(t)[order])
 
 
-def _distinct(found, met):
+def _distinct(curbs, met):
     """Of curbs that were continued, those beside no known one and no other."""
     chosen: list[CurbReturn] = []
-    for curb in sorted(found, key=lambda c: -len(c.steps)):
+    for curb in sorted(curbs, key=lambda c: -len(c.steps)):
         x, y = curb.steps.x, curb.steps.y
         if np.mean(met.within(x, y, RETURN.known_curb_distance)) > 0.5:
             continue

@@ -195,7 +195,7 @@ def _noise(t, values):
     return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, EDGE.min_point_sigma)
 
 
-def _draw(found, frame, road, side, piece, number):
+def _draw(pieces, frame, road, side, piece, number):
     """Add the pieces of one edge; returns its (start, end) station."""
     points, bridged, lowered = piece
     measured = points["status"] == "measured"
@@ -211,14 +211,14 @@ def _draw(found, frame, road, side, piece, number):
         vertices, rows = curve.at(along), points[i:j + 1]
         passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
         sigma = edge_sigma(along, t[measured], residual[measured], points["support"][measured], passes=passes)
-        found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
+        pieces.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), height=float(np.median(rows["height"])), rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
                                # a bridge is one guess
                                what="dropped" if lowered[i] else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
     return float(points["s"][0]), float(points["s"][-1])
 
 
-def _draw_fallback(found, frame, road, side, drawn, width, number):
+def _draw_fallback(pieces, frame, road, side, drawn, width, number):
     """Add lines at half the width beside the middle of the driven tracks where no edge was found."""
     passes = frame.passes_of(road.number)
     start, end = min(p.span[0] for p in passes), max(p.span[1] for p in passes)
@@ -234,6 +234,6 @@ def _draw_fallback(found, frame, road, side, drawn, width, number):
         tracks = np.array([p.at_station(s)[0] for p in passes])
         offset = 0.5 * (tracks.min(0) + tracks.max(0)) + (0.5 if side == "left" else -0.5) * width
         x, y, z = frame.to_map(road.number, s, offset, frame.track_height(road.number, s))
-        found.append(EdgePiece(np.c_[x, y, z], road.number, side, "inferred", number, float(a), float(b)))
+        pieces.append(EdgePiece(np.c_[x, y, z], road.number, side, "inferred", number, float(a), float(b)))
         number += 1
     return number

@@ -122,12 +122,12 @@ def _corners(lines, heights, rows, interval, candidates, settings):
             yield side, corners_of(samples.outward(SIDE_SIGNS[side]), of_side, settings)
 
 
-def merged_corners(found: Sequence[CurbCorners]) -> CurbCorners:
+def merged_corners(seen: Sequence[CurbCorners]) -> CurbCorners:
     """One corner where several passes or scanners measured the same one: their mean, weighted by support.
 
-    found : CurbCorners of each pass and scanner
+    seen : CurbCorners of each pass and scanner
     """
-    upright, sloped = (merged_passes([part[part.sloped == kind] for part in found]) for kind in (False, True))
+    upright, sloped = (merged_passes([part[part.sloped == kind] for part in seen]) for kind in (False, True))
     # where one pass or scanner shows an upright face, what others show less sharply is no other curb
     around = np.arange(-SCANLINE.neighbour_lines, SCANLINE.neighbour_lines + 1)[:, None]
     keys = ((upright.profile + around) * LINE_SEPARATION + upright.u).ravel()
@@ -135,13 +135,13 @@ def merged_corners(found: Sequence[CurbCorners]) -> CurbCorners:
     return CurbCorners.join([upright, sloped])
 
 
-def with_scanner_noise(found: dict[str, dict[tuple[int, str], SideSteps]]) -> dict[str, dict[tuple[int, str], SideSteps]]:
+def with_scanner_noise(steps: dict[str, dict[tuple[int, str], SideSteps]]) -> dict[str, dict[tuple[int, str], SideSteps]]:
     """The same, once the corners of each side of a road have the median noise there for `scanner_noise`."""
-    for side in found["scanlines"].values():
+    for side in steps["scanlines"].values():
         if side.steps is not None and len(side.steps):
             corners: Any = side.steps
             corners.scanner_noise = np.full(len(corners), np.clip(np.median(corners.noise), CURBS.min_scanner_noise, SCANLINE.max_usual_noise))
-    return found
+    return steps
 
 
 def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progress: Progress = Progress()) -> RoadEdges:

@@ -63,15 +63,15 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     Raises RoadExtractionError if no road surface is found.
     """
     road_points = RoadPoints.of_survey(survey)
-    stretches, margins, cubes, found = [], Margins(), [], {}
+    stretches, margins, cubes, carriageway_of_road = [], Margins(), [], {}
     for road, carriageway in carriageways(survey, edges, settings, progress.part(0.0, 0.5), ground):
         if carriageway is None:
             progress.warn(f"Road {road}: no ground was measured near the track, so this road has no surface.")
             cubes += [(counted_cubes(survey.section(road, number)), None) for number in survey.store.sections(road) if counted]
         else:
-            found[road] = carriageway
-    per_row = _take_points(survey, found, road_points, counted, cubes, progress.part(0.5, 1.0))
-    for road, carriageway in found.items():
+            carriageway_of_road[road] = carriageway
+    per_row = _take_points(survey, carriageway_of_road, road_points, counted, cubes, progress.part(0.5, 1.0))
+    for road, carriageway in carriageway_of_road.items():
         stretches += outlines(survey.frame, road, carriageway, per_row[road])
         margins.add(road, carriageway, *(rows_with_edge(edges, road, carriageway.cells.stations, curb) for curb in (True, False)))
     if not len(road_points):
@@ -154,23 +154,23 @@ def _has_road(ground, offsets):
     return np.convolve(measured, np.ones(11), "same") > 0
 
 
-def _take_points(survey, found, road_points, counted, cubes, progress):
+def _take_points(survey, carriageways, road_points, counted, cubes, progress):
     """Put the surface points into `road_points`, and what is counted of sections into `cubes`; {road: points in each row of cells}.
 
-    `found` : {road: Carriageway}
+    `carriageways` : {road: Carriageway}
     """
-    per_row = {road: np.zeros(len(carriageway.height), np.int64) for road, carriageway in found.items()}
+    per_row = {road: np.zeros(len(carriageway.height), np.int64) for road, carriageway in carriageways.items()}
     executor, length = survey.executor.passing(), survey.store.section_length
     phase = Phase(surface_points, road_points, (counted,), lambda item: survey.stretch(item[0][0], item[0][1] * length, item[0][2] * length),
                   state=lambda item: None)   # what is asked of a survey stays as it is
-    items = [(stretch, surface_about(found[stretch[0]], stretch, length)) for stretch in survey.store.stretches(list(found))]
+    items = [(stretch, surface_about(carriageways[stretch[0]], stretch, length)) for stretch in survey.store.stretches(list(carriageways))]
     seen: dict[int, list[Any]] = {}
     for (index, first_row, rows, of_scanners, of_sections, seen_there), ((road, *_), _) in zip(executor.run(phase, items, progress), items):
         road_points.store.adopt(index, executor.folder)
         seen.setdefault(road, []).extend(seen_there)
         cubes += of_sections
         road_points.of_scanners = of_scanners + (0 if road_points.of_scanners is None else road_points.of_scanners)
-        first = first_row - found[road].cells.first_row
+        first = first_row - carriageways[road].cells.first_row
         per_row[road][first:first + len(rows)] += rows
     road_points.seen = seen if counted else None
     return per_row
