@@ -110,6 +110,8 @@ class _CurbWeights:
     # lowered curb
     lowered_rows: int = 5   # rows of ground cells, 2.5 m along a curb, whose median step counts
     least_lowered_step: float = 0.005   # m of that median: along simulated lowered curbs it was 0.007 to 0.02, across mouths of streets 0.002 at most
+    least_climb: float = 0.02   # m from the road to the first ground cell behind, 0.25 to 0.5 m away, and
+    ramp_length: float = 1.0   # m behind a lowered curb within which the ground has climbed to the sidewalk by half the height of the full curb
     max_lowered_turn: float = 0.03   # radians that the curb on both sides turns off the line across: the step is measured on that line
     road_beside: float = 1.0   # m from the curb toward the road, where the same rows show what is no step
     # chains

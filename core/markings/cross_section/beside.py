@@ -44,25 +44,27 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
     room = np.where(np.isin(made, (CURB, PAVEMENT)), across, np.nan)
     # where a line lies on the other side farther on, it shows how wide the lane is
     lined = (made <= DOUBLE) & (across >= NEUTRAL.narrowest_lane) & (across <= NEUTRAL.widest_lane)
-    between = places.means(np.where(lined, across, np.nan), w.laid_out)
-    usual_there, like = np.where(np.isfinite(between), between, usual), w.like_lines * (shown | np.isfinite(between))
+    around, widths = _Along(np.zeros(len(i)), station, c.length[i]), np.where(lined, across, np.nan)
+    between, lined_there = places.means(widths, w.laid_out), around.means(widths, w.laid_out)
     # beside an island all room is the lane's
     offset = np.where(made == ISLAND, np.nan, step * (line - evidence.driven[:evidence.own, i]))
     near, passes = _driven_beside(offset, room, w)
     driven = places.means(np.where(passes > 0, near, np.nan), w.laid_out)
+    # a survey has streets of other lanes: where nobody drove, the lines there show best how wide they are
+    lined_there = np.where(np.isfinite(between) | np.isfinite(driven), between, lined_there)
+    usual_there, like = np.where(np.isfinite(lined_there), lined_there, usual), w.like_lines * (shown | np.isfinite(lined_there))
     sigma = w.track_sigma / np.sqrt(np.maximum(places.means(passes.astype(float), w.laid_out), 1e-9))
     share = np.array([[part] for _, _, part in w.left_over_beside])
     nats, width, spread = _readings(room, driven, sigma, usual_there, like, share, w)
     known = np.isfinite(room) & np.isfinite(driven) & np.isfinite(nats).any(axis=0)
     if known.any():
         # lanes nobody drove in are like those beside curbs that were driven on the same road near by
-        around = _Along(np.zeros(len(i)), station, c.length[i])
         fits, driven_width = np.full((len(share), len(i)), np.nan), np.where(known, width[nats.argmin(axis=0), np.arange(len(i))], np.nan)
         probable = np.exp(nats[:, known].min(axis=0) - nats[:, known])
         fits[:, known] = (probable / probable.sum(axis=0))[:-2].reshape(2, len(share), -1).sum(axis=0)
         *near_by, driven_width = (around.means(values, w.alike_within) for values in (*fits, driven_width))
         share = np.where(np.isfinite(driven_width), (share + w.alike_beside * np.array(near_by)) / (1 + w.alike_beside), share)
-        usual_there = np.where(np.isfinite(between), between, np.where(np.isfinite(driven_width), driven_width, usual))
+        usual_there = np.where(np.isfinite(between), between, np.where(np.isfinite(driven_width), driven_width, usual_there))
         alike = _readings(room, driven, sigma, usual_there, np.full(len(i), w.like_lines), share, w)
         nats, width, spread = (np.where(np.isnan(driven), *values) for values in zip(alike, (nats, width, spread)))
     chosen = _chosen(places, room, lined, across, nats, width, spread, w)

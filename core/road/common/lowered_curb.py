@@ -2,9 +2,10 @@
 
 At drives and crossings a curb is lowered to two or three centimetres. A profile has few points of such a face, and whether it shows a step
 depends on a millimetre. The ground cells of a row show it surely: the lines through the road before the curb and through the ground behind it
-are apart where the curb is. Their distance is taken along the line that leads from the curb before a gap to the curb behind it; where none does,
-along each curb's own line for some metres. The median of some rows counts. It must stand above what the same rows show on the road beside the
-curb, where nothing steps. Across the mouth of a street, and behind a curb that leaves its line for a bulb-out, the two lines are one.
+are apart where the curb is. Their distance is taken along the line that leads from the curb before a gap to the curb behind it. The median of some
+rows counts. It must stand above what the same rows show on the road beside the curb, where nothing steps. Across the mouth of a street, and behind a
+curb that leaves its line for a bulb-out, the two lines are one. Where no line leads across, nothing goes on: at a corner a lowered curb bends, and
+no line of its own says how.
 """
 
 from __future__ import annotations
@@ -13,7 +14,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.polynomial import Polynomial
 
 from ...common.arrays import mask_runs, stretch_of
 from ...survey.frame.road import Road
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def lowered_points(rows: list[dict], road: Road, look: SideLook) -> list[dict]:
-    """Places of lowered curb between the curb points of one side of a road, and where these end.
+    """Places of lowered curb between the curb points of one side of a road.
 
     rows : of the curb points, dicts as of `SideChains.points`
     look : SideLook of the side
@@ -40,22 +40,12 @@ def lowered_points(rows: list[dict], road: Road, look: SideLook) -> list[dict]:
     # where a curb is low its place is known to some centimetres only
     full = points[~is_lowered(points, s)]
     lowered = []
-    for before, behind in zip(np.append(s[:1] - CURBS.max_chain_gap, s), np.append(s, s[-1:] + CURBS.max_chain_gap)):
-        if behind - before <= CURBS.max_joined_gap:
-            continue
+    for k in np.flatnonzero(np.diff(s) > CURBS.max_joined_gap):
+        before, behind = s[k:k + 2]
         near = full[stretch_of(full["s"], before - CURBS.line_fit_length, behind + CURBS.line_fit_length)]
         line = _line_across(near, before, behind, road, look)
         if line is not None:
-            lowered += _seen_between(near, look, (before, behind), line)
-            continue
-        # where no line leads across, each curb may go on for some metres as it came, and where both would the nearer one does
-        nearest: dict[float, tuple[float, dict]] = {}
-        for part, tip, way in ((near[near["s"] <= before], before, 1), (near[near["s"] >= behind], behind, -1)):
-            if len(part) and np.ptp(part["s"]) >= CURBS.min_bend_length:
-                ends = tip, tip + way * min(CURBS.max_chain_gap, behind - before)
-                for row in _seen_between(near, look, ends, Polynomial.fit(part["s"], part["d"], 1), both=False):
-                    nearest[row["s"]] = min(nearest.get(row["s"], (np.inf, row)), (abs(row["s"] - tip), row), key=lambda of_side: of_side[0])
-        lowered += [row for _, row in nearest.values()]
+            lowered += _seen_between(near, look, before, behind, line)
     return lowered
 
 
@@ -75,20 +65,18 @@ def _line_across(near, before, behind, road, look):
     return partial(np.interp, xp=stations[order], fp=offsets[order])
 
 
-def _seen_between(near, look, ends, offsets, both=True):
-    """The places between two stations, m, at which the ground steps, as far as they lead on from the curb at the first one or at `both`.
+def _seen_between(near, look, first, last, offsets):
+    """The places between two stations, m, at which the ground steps, as far as they lead on from the curb at either of them.
 
     near : curb points about them
     offsets : function from stations to outward offsets, m, of the line on which the ground is looked at
     """
-    first, last = sorted(ends)
     s = look.row_size * (np.arange(np.floor(first / look.row_size), np.ceil(last / look.row_size)) + 0.5)
     s = s[(s > first) & (s < last)]
     u = offsets(s)
-    shown, height, bottom = look.steps_up(s, u)
-    lowered = shown & (height <= near["height"].max())
+    lowered, height, bottom = look.steps_up(s, u, near["height"].max())
     runs = [(a, b) for a, b in mask_runs(lowered) if b - a >= CURBS.min_piece_steps]
-    reached = {run for tip in ends[:1 + both] for run in _reached(runs[::1 if tip == first else -1], s, tip)}
+    reached = {*_reached(runs, s, first), *_reached(runs[::-1], s, last)}
     return [dict(s=float(s[k]), u=float(u[k]), h=float(bottom[k]),
                  fields=dict(status="bridged", height=round(float(height[k]), 4), part="bottom"))
             for run in sorted(reached) for k in range(*run)]

@@ -342,13 +342,14 @@ def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Seque
     """Selected intervals that make a curb: intervals in line with each other cover CURBS.min_curb_length together, faint ones CURBS.min_faint_length.
 
     A curb between parked cars is seen in pieces; a piece with nothing in line with it may be anything. A piece farther away, up to
-    CURBS.max_steady_gap, belongs to what is a curb by itself.
+    CURBS.max_steady_gap, belongs to what is a curb by itself. A short piece that is much higher than all curb about it is a thing at the curb.
 
     selected : result of `select_along_road`
     steps : CurbSteps to which they refer
 
     Returns list like `selected`
     """
+    selected = _without_things_at_the_curb(selected, chains, steps)
     members = [_between(steps, chains[chain].steps, a, b) for chain, a, b in selected]
     group, steady = np.zeros(len(selected), int), np.zeros(len(selected), bool)
     for k in range(1, len(selected)):
@@ -363,6 +364,19 @@ def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Seque
             if steady[k] and curb[group[k - 1]] != curb[group[k]]:
                 curb[group[k - 1:k + 1]] = True
     return [part for part, number in zip(selected, group) if curb[number]]
+
+
+def _without_things_at_the_curb(selected, chains, steps):
+    """The selected intervals but for short ones that are much higher than all curb within CURBS.line_fit_length before and behind them."""
+    height = np.array([median(steps.height[_between(steps, chains[chain].steps, a, b)]) for chain, a, b in selected])
+    start, end = np.array([part[1:] for part in selected]).reshape(-1, 2).T
+
+    def is_thing(k):
+        before = height[:k][end[:k] > start[k] - CURBS.line_fit_length]
+        behind = height[k + 1:][start[k + 1:] < end[k] + CURBS.line_fit_length]
+        return len(before) and len(behind) and height[k] > CURBS.max_height_ratio * max(before.max(), behind.max())
+
+    return [part for k, part in enumerate(selected) if end[k] - start[k] >= CURBS.min_curb_length or not is_thing(k)]
 
 
 def _in_line(steps, before, after):

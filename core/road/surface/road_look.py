@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ...curves.robust import MAD_TO_SIGMA
-from ..weights import CURBS, SURFACE
+from ..weights import CURBS, EDGE, SURFACE
 from .ground_change import follow_road, smooth_road
 from .ground_grid import MeasuredGround, known_median
 
@@ -93,10 +93,13 @@ class SideLook:
         """`RoadLook.road_height` at stations and outward offsets."""
         return self.look.road_height(s, self.sign * u)
 
-    def steps_up(self, s: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Whether the ground steps up outward at places in consecutive rows of cells, more than the same rows show on the road beside them.
+    def steps_up(self, s: np.ndarray, u: np.ndarray, full: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Whether the ground is that of a lowered curb at places in consecutive rows of cells.
 
-        s, u : (N,) m, stations of the middles of rows, and outward offsets
+        It steps up outward, more than the same rows show on the road beside them. Or it climbs from there to the sidewalk within a metre: where
+        a ramp bends, the line through it hides the step.
+
+        s, u : (N,) m, stations of the middles of rows, and outward offsets; full : m, height of the curb where it is not lowered
 
         Returns
             shown : (N,) bool
@@ -104,10 +107,12 @@ class SideLook:
         """
         step, height, bottom = self.look.step_at(s, self.sign * u, self.sign)
         beside = np.abs(self.look.step_at(s, self.sign * (u - CURBS.road_beside), self.sign)[0])
+        behind = self.look.off_road(s, self.sign * (u + CURBS.ramp_length))
         noise = MAD_TO_SIGMA * _median_about(beside) / np.sqrt(CURBS.lowered_rows)
         with np.errstate(invalid="ignore"):
             shown = _median_about(step) >= np.maximum(CURBS.least_lowered_step, CURBS.significant_sigmas * noise)
-            return shown & (step > 0.0) & (height > 0.0), height, bottom
+            climbs = (_median_about(height) >= CURBS.least_climb) & (_median_about(behind) >= EDGE.lowered_share * full)
+            return (shown & (step > 0.0) | climbs) & (height > 0.0) & (height <= full), height, bottom
 
     @property
     def row_size(self) -> float:

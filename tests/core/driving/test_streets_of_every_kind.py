@@ -356,3 +356,16 @@ def test_a_drive_on_another_road_far_beside_a_lane_says_nothing_against_it():
     other = street(again=(15.0,))
     assert len(other.frame.roads) == 2
     assert lanes(other) == lanes(street(again=())) == {0.0: 1, 3.5: 1}
+
+
+def test_beside_a_curb_lanes_are_like_those_between_lines_there_and_not_like_those_of_the_next_block():
+    """Lanes of the next block are narrower, where another 3 m beside the last line would leave half a metre up to the curb."""
+    street = Street(length=300.0, vehicle=0.0)
+    for first, last, width in ((5.0, 115.0, 3.5), (150.0, 295.0, 3.0)):
+        street.paint(width / 2, first, last, kind="edge")
+        for line in (-width / 2, -1.5 * width):
+            street.paint(line, first, last, pattern="dashed")
+    street.paint(-7.5, 150.0, 295.0, kind="edge")
+    lines, _ = street.lanes(edges=curbs(street, 3.0, -9.0))
+    beside = [street.offsets(line) for line, _ in lines if line.bounds[2] < EAST + 120.0 and np.median(street.offsets(line)) < -5.25]
+    assert beside and np.abs(np.concatenate(beside) + 5.25 + 3.75 / 2).max() < 0.1

@@ -61,11 +61,6 @@ def test_a_lowered_curb_goes_on_as_a_dropped_edge_whichever_way_it_is_driven(low
         assert max(off for *_, off, _ in pieces) < 0.05
 
 
-def test_a_curb_that_is_lowered_to_the_end_of_the_survey_goes_on_for_some_metres():
-    end = max(end for _, end, off, _ in edges_of(lowered(street(seed=1), 0.02, (30.0, 60.0))) if off < 0.06)
-    assert 34.0 < end < 44.0
-
-
 def test_a_side_without_curb_has_no_lowered_one():
     survey = survey_of(street())
     assert not lowered_points([], survey.frame.road(0), RoadLook(MeasuredGround(survey), 0).side(1))
