@@ -75,15 +75,20 @@ def rows(path):
 def assert_same_layers(feet, metres):
     (found, wkt), (expected, _) = rows(feet), rows(metres)
     assert len(found) == len(expected) > 0
+    apart = []
     for (places, fields), (there, other) in zip(found, expected):
         if places is not None:
             assert CRS(wkt).equals(CRS(FEET)) and "foot" in wkt
-            # coordinates are rounded to 0.1 mm, which puts a point of this thin cloud into the next cell here and there
-            assert np.mean(np.abs(places - there) < 1e-3) > 0.75 and np.abs(places - there).max() < 0.01, feet
+            apart.append(np.abs(places - there))
         for name, value in fields.items():
-            if name != "params" and isinstance(value, float):
+            if name == "radius_m" and value is not None:   # of a line that is nearly straight its curvature is sure, not its radius
+                assert 1 / value == pytest.approx(1 / other[name], abs=1e-6, rel=1e-3), name
+            elif name != "params" and isinstance(value, float):
                 in_feet = 1200 / 3937 if re.fullmatch(r"p[cti]_[xy]", name) else 1.0
-                assert value * in_feet == pytest.approx(other[name], abs=2e-3, rel=1e-3), name
+                assert value * in_feet == pytest.approx(other[name], abs=3e-3, rel=1e-3), name
+    if apart:
+        # coordinates are rounded to 0.1 mm, which puts a point of this thin cloud into the next cell here and there
+        assert np.mean(np.concatenate(apart) < 1e-3) > 0.9 and np.concatenate(apart).max() < 0.01, feet
 
 
 @pytest.mark.parametrize("layer", LAYERS)
