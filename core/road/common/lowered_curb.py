@@ -57,7 +57,7 @@ def _line_across(near, before, behind, road, look):
     turn, line, axes = line_across(near, np.ascontiguousarray(near["s"]), k)
     if line is None or turn > CURBS.max_lowered_turn:
         return None
-    stations, offsets = line.between(look.row_size, meets=False)
+    stations, offsets = line.between(look.row_size)
     if axes == "xy":
         stations, offsets = road.locate(stations, offsets)
         offsets = look.sign * offsets

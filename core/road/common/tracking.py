@@ -560,11 +560,11 @@ class GapLine:
         dx, dy = x - self.origin[0], y - self.origin[1]
         return dx * self.along[0] + dy * self.along[1], dy * self.along[0] - dx * self.along[1]
 
-    def between(self, spacing: float, meets: bool = True) -> np.ndarray:
-        """(2, N) m, x and y of places in the gap about so far apart on the line; `meets` : is it moved to the places next to the gap?"""
+    def between(self, spacing: float) -> np.ndarray:
+        """(2, N) m, x and y of places in the gap about so far apart on the line, moved to the places next to the gap."""
         t, off = self.place(*self.ends)[0], self.off(*self.ends)
         inner = np.linspace(t[0], t[1], max(int(np.ceil((t[1] - t[0]) / spacing)), 1) + 1)[1:-1]
-        v = self.line(inner) + meets * np.interp(inner, t, off)
+        v = self.line(inner) + np.interp(inner, t, off)
         return self.origin[:, None] + np.array([inner * self.along[0] - v * self.along[1], inner * self.along[1] + v * self.along[0]])
 
     def off(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
