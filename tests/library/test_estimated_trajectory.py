@@ -57,4 +57,5 @@ def test_a_road_map_without_a_trajectory_is_that_with_it_and_says_so(survey, tmp
         # the scanners are 2.45 m behind the place that the trajectory refers to, so both ends differ, and what is bridged there
         assert shorter.length > 0.75 * longer.length
         places = shapely.points(shapely.get_coordinates(shapely.segmentize(shorter, 0.5)))
-        assert np.mean(shapely.distance(places, longer) < 0.1) > 0.95
+        # a lowered curb, 6 of 80 m, is known to two decimetres alone
+        assert np.mean(shapely.distance(places, longer) < 0.1) > 0.9

@@ -112,12 +112,14 @@ def _pieces(rows, max_gap):
              if line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     inferred, low = points["status"] == "bridged", is_lowered(points, s)
-    inferred, low = inferred[:-1] | inferred[1:], low[:-1] & low[1:]
+    # what the ground shows in a gap may be a curb of full height as well; behind a lowered one the ramp to the sidewalk counts with its step
+    lowered = inferred & (points["height"] <= (1.0 + EDGE.lowered_share) / 2 * points["height"].max())
+    inferred, lowered, low = inferred[:-1] | inferred[1:], lowered[:-1] | lowered[1:], low[:-1] & low[1:]
     pieces = []
     for a, b in zip(np.r_[0, breaks], np.r_[breaks, len(points)]):
         if b - a >= 2 and s[b - 1] - s[a] >= EDGE.min_edge_length:
             gaps = slice(a, b - 1)
-            pieces.append((points[a:b], (bridged | inferred)[gaps], (inferred | low & ~bridged)[gaps]))
+            pieces.append((points[a:b], (bridged | inferred)[gaps], (lowered | low & ~bridged)[gaps]))
     return pieces
 
 
