@@ -2,6 +2,7 @@
 
 import shutil
 
+import numpy as np
 import pytest
 from osgeo import ogr
 
