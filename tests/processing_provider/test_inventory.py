@@ -28,8 +28,8 @@ def test_cross_sections_of_a_mapped_street(street, street_map, tmp_path):
     rows = rows_of(sections)
     assert found["SECTIONS"] == len({row["station_m"] for row in rows}) >= 5
     assert rows_of(table)[0]["width_m"] == pytest.approx(rows[0]["width_m"])
-    heights = [row["curb_l_m"] for row in rows if row["part"] == "carriageway" and row["curb_l_m"] is not None]
-    assert min(heights) > 0.01 and np.median(heights) > 0.1, "beside a drive the curb is lowered"
+    curbs = [row["curb_l_m"] for row in rows if row["part"] == "carriageway" and row["curb_l_m"] is not None]
+    assert min(curbs) > 0.01 and np.median(curbs) > 0.1, "beside a drive the curb is lowered"
     assert {row["Layer"] for row in rows_of(drawing)} >= {"SECTION_GROUND", "SECTION_TEXT"}
     assert "Cross-sections" in open(report, encoding="utf-8").read()
     assert open(landxml, encoding="utf-8").read().count("<CrossSect ") == found["SECTIONS"]
