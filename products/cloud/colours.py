@@ -13,7 +13,7 @@ from ...core.common.parallel import check_cancelled
 from ...core.common.progress import Progress
 from ...core.common.setting import Limited, setting
 from ...core.io.geotiff import GEOTIFF_TILE
-from ...core.io.local_files import gdal_exceptions, reading
+from ...core.io.local_files import gdal_exceptions, open_raster, reading
 from ...core.lazy import gdal
 from ...core.survey.las.point_fields import valid_points
 from ...core.survey.las.reader import CloudHeader, read_blocks
@@ -120,7 +120,7 @@ def add_pixels(colours: PaintColours, path: str, markings: Features, progress: P
 @gdal_exceptions()
 def _tiles(path):
     """[(window, box)] of an image: column, row, width and height in pixels, and the shapely polygon that they cover on the map."""
-    image = gdal.Open(path)
+    image = open_raster(path)
     transform = image.GetGeoTransform(can_return_null=True)
     if transform is None or image.RasterCount < 3:
         raise RoadExtractionError(f"{path} has no position or fewer than three bands, so it shows no colours on the map. Give an orthoimage with "
@@ -137,7 +137,7 @@ def _tiles(path):
 @gdal_exceptions()
 def _pixels(path, window):
     """Middles of the pixels of a window on the map, (N, 2), and their colours, (N, 3); those that the image leaves out are left out."""
-    image = gdal.Open(path)
+    image = open_raster(path)
     with reading(path):
         bands = [image.GetRasterBand(number).ReadAsArray(*window) for number in (1, 2, 3)]
         shown = image.GetRasterBand(1).GetMaskBand().ReadAsArray(*window) > 0
