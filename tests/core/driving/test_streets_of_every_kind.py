@@ -368,6 +368,18 @@ def test_a_drive_on_another_road_far_beside_a_lane_says_nothing_against_it():
     assert lanes(other) == lanes(street(again=())) == {0.0: 1, 3.5: 1}
 
 
+def test_a_lane_that_moves_aside_for_a_turning_lane_may_keep_its_direction():
+    """Before a stop line a lane opens between solid lines where the oncoming one lay, which nobody drove in and which a curb leads aside."""
+    def aside(station):
+        return 3.3 * np.clip((station - 60.0) / 10.0, 0.0, 1.0)
+
+    street = Street().paint(0.0, 5.0, 63.0, kind="", pattern="dashed").paint(0.0, 63.0, 112.0, kind="").paint(aside, 67.0, 112.0, kind="")
+    stop = painted(street, (112.0, 112.5, -3.4, 3.2, "stop"))
+    lines, _ = street.lanes(edges=curbs(street, lambda station: 3.5 + aside(station), -3.5), markings=stop)
+    before = [row for line, row in lines if line.bounds[2] < EAST + 65.0 and np.median(street.offsets(line)) > 0]
+    assert before and all(row["confidence"] <= 0.6 and '"direction": -1' in row["other"] for row in before if row["direction"] == 1)
+
+
 def test_beside_a_curb_lanes_are_like_those_between_lines_there_and_not_like_those_of_the_next_block():
     """Lanes of the next block are narrower, where another 3 m beside the last line would leave half a metre up to the curb."""
     street = Street(length=300.0, vehicle=0.0)
