@@ -164,7 +164,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
         # only where somebody drove is a lane known to be wider than lanes are built: elsewhere nothing tells its place in the strip
         built = (width_each >= NEUTRAL.narrowest_lane) & ((width_each <= NEUTRAL.widest_lane) | driven_there | loose)
         if beside_there is aside:
-            built &= loose & ~hidden & np.isnan(beside[..., BEYOND]) & (width - width_each > SAME_LANE)
+            built &= loose & ~hidden & np.isnan(beside[..., BEYOND]) & (width - width_each > w.driven_sigma)
         total = np.where(possible & scanned & built, total, np.inf)
         for split in range(number + 1):
             kind = SECOND if split == 0 else FIRST if split == number else TWO_WAY[1 + int(np.sign(number - 2 * split))]
