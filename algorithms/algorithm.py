@@ -12,7 +12,7 @@ from typing import Any
 
 from ..core.common.setting import limits_of
 from .map_layers import MAP_LAYERS
-from .texts import tr
+from .texts import help_texts, tr
 
 # In the order of the work
 GROUPS = ("Survey", "Road", "Markings", "Driving", "Road map", "Export", "Inventory", "Assessment", "Orthoimages")
@@ -21,7 +21,7 @@ TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "r
 
 
 class Algorithm:
-    """Base of every algorithm; subclasses set the texts below and write `declare` and `work`.
+    """Base of every algorithm; subclasses set the texts below and write `declare` and `work`; their help stands in help.txt.
 
     parameters : list of ParameterSpec, inputs and outputs in the order of the dialog
     numbers : list of NumberOutput
@@ -29,7 +29,6 @@ class Algorithm:
 
     ID = TITLE = GROUP = SUMMARY = ""
     TAGS = ()
-    HELP = ""
     LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
     NUMBERS = ()  # (name, label) of numbers among the results
     RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
@@ -63,7 +62,7 @@ class Algorithm:
 
     def help_paragraphs(self):
         """The explanation below the summary."""
-        return [tr(part) for part in self.HELP.split("\n\n") if part]
+        return [tr(part) for part in help_texts().get(self.ID, ())]
 
     def tags(self):
         """Search words in the user's language and in English, which the field speaks everywhere."""

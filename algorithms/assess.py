@@ -160,8 +160,6 @@ BOUNDARY_SETTINGS = (
 class AssessBoundaries(Algorithm):
     ID, TITLE, GROUP = "assessboundaries", "Assess road boundaries", "Assessment"
     SUMMARY = "Sets road boundaries against reference lines, side by side in intervals of 2 m: precision, recall, errors across and in height."
-    HELP = ("Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. "
-            "A layer in another CRS is reprojected. Where a layer tells tops from bottoms in a field part, bottoms count.")
     TAGS = ("accuracy", "precision", "recall", "validation", "curb", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_LINES"}
     NUMBERS = (
@@ -257,8 +255,6 @@ MARKING_SETTINGS = (
 class AssessMarkings(Algorithm):
     ID, TITLE, GROUP = "assessmarkings", "Assess markings", "Assessment"
     SUMMARY = "Sets road markings against a reference, cell by cell, by class and by object: precision, recall, F1 and intersection over union."
-    HELP = ("Polygons, lines or a raster mask (anything but 0 and no-data is paint), of other software too, on either side. A layer in another CRS "
-            "is reprojected.")
     TAGS = ("accuracy", "precision", "recall", "iou", "validation", "road marking", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_POLYGONS", "CELLS": "ASSESSED_CELLS"}
     NUMBERS = (
@@ -358,8 +354,6 @@ LINE_SETTINGS = (
 class AssessDrivingLines(Algorithm):
     ID, TITLE, GROUP = "assessdrivinglines", "Assess driving lines", "Assessment"
     SUMMARY = "Sets driving lines against reference lines within buffers: completeness, correctness, miscoding, errors and gaps."
-    HELP = ("Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. "
-            "A layer in another CRS is reprojected. Miscoding is the share of the result outside the buffer of the reference.")
     TAGS = ("accuracy", "miscoding", "completeness", "correctness", "buffer", "validation", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_LINES"}
     NUMBERS = (

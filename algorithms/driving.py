@@ -178,8 +178,6 @@ ESTIMATED = 0.2   # of the work, where the trajectory is estimated first
 class RoadMap(Algorithm):
     ID, TITLE, GROUP = "roadmap", "Road map", "Road map"
     SUMMARY = "From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements."
-    HELP = ("Point clouds, the trajectory, and where to save are enough: everything else has a default that suits most surveys. "
-            "The stages are those of the single algorithms, handed on in memory. Every output is optional.")
     TAGS = ("hd map", "lane", "driving line", "road marking", "curb", "kerb")
     WHOLE_MAP = True
     NUMBERS = NUMBERS

@@ -59,14 +59,6 @@ SECTION_SETTINGS = (
 class CrossSections(Algorithm):
     ID, TITLE, GROUP = "crosssections", "Cross-sections", "Inventory"
     SUMMARY = "Measures width, crossfall, grade, rut depth, curb heights and clearance of every lane at fixed stations against limits."
-    HELP = ("Steps between scanners and passes are estimated where they overlap and taken off first. An error in roll looks like crossfall: passes "
-            "in opposite directions distinguish the two, and where there are none the report says so and the sigma of the crossfall holds it.\n\n"
-            "Lanes are those of the layer Lanes, else of the driving lines between the marking lines, else of the marking lines alone; the "
-            "carriageway ends at the road edges, else at the outermost line. Rut depths are measured under a straight edge of 2 m laid over profiles "
-            "averaged over 1 m of road (over more where points are few), less what noise adds. Something that stands on the road does not "
-            "count as hanging above it.\n\n"
-            "Judged is what the rules of the country chosen say, and what you set a limit for. Field why gives value, limit and rule. A "
-            "crossfall is marked where twice its sigma does not explain it.")
     TAGS = ("profile", "rutting", "crossfall", "superelevation", "clearance", "road condition", "width")
     LOOKS = {"OUTPUT": "CROSS_SECTIONS"}
     NUMBERS = (("SECTIONS", tr("Sections")),
@@ -148,13 +140,6 @@ SURFACE_SETTINGS = (
 class SurfaceOfRoad(Algorithm):
     ID, TITLE, GROUP = "surfacemodel", "Surface model", "Inventory"
     SUMMARY = "Makes the ground of the road for design: breaklines, and triangles between them that keep to a tolerance, for CAD and as a raster."
-    HELP = ("Breaklines are the bottom of every edge and, where it has a step, its top; the flow line of a gutter; the crown of a road that falls to "
-            "both sides; and the borders of lanes. Their heights are measured across them; where the ground was hidden there is no line. The "
-            "triangles follow them, edges first, then gutter, crown and lanes. A line within 10 cm of a stronger one is in the layer alone.\n\n"
-            "Triangles get their vertices where they miss the ground most, until they keep to the tolerance. The ground is the median of the points "
-            "over 1 m along and 5 cm across the road, without vehicles and whatever else stands on it, and freed of the steps between scanners and "
-            "passes. The vertices are joined by constrained Delaunay triangles.\n\n"
-            "The file has breaklines and triangles as LandXML 1.2 (surface) or DXF (3DFACE and polylines), by its ending.")
     TAGS = ("TIN", "DTM", "DEM", "terrain", "breakline", "LandXML", "DXF", "triangulation")
     NUMBERS = (("VERTICES", tr("Vertices of the triangles")), ("TRIANGLES", tr("Triangles")),
                ("RMSE", tr("Ground of the carriageway against the triangles, root mean square (m)")),
@@ -230,15 +215,6 @@ ROADSIDE_SETTINGS = (
 class Roadside(Algorithm):
     ID, TITLE, GROUP = "roadside", "Roadside", "Inventory"
     SUMMARY = "Finds guard rails, concrete barriers, walls, fences, hedges and gutters as lines, and poles, signs and tree trunks as points."
-    HELP = ("What repeats along the road at a steady offset and height is a line; its kind follows from its section: a beam with free height "
-            "below, a face that leans back, an upright plane, something that is seen through, something rough. "
-            "Buildings and rows of parked cars are none. Where a scanner sees hardly higher than it rides, as heads of many beams do, "
-            "what is as high as it is left out: it may be a house front.\n\n"
-            "Status says which pieces of a line were measured. Where something stands before it, as parked cars before a wall, and what is seen "
-            "of it on both sides agrees in offset and height, it is one line, and the piece between them is bridged and drawn paler. Where the "
-            "scanner saw through a gap, as through a gate or a driveway, nothing is drawn.\n\n"
-            "Only what stands outside the carriageway counts: give the road edges, or the layers of lines or lanes. Gutters are the lowest points "
-            "along an edge that the road falls to; the higher side of a road has none.")
     TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")
     LOOKS = {"OUTPUT": "ROADSIDE", "OBJECTS": "ROADSIDE_OBJECTS"}
     NUMBERS = (("LENGTH", tr("Length of all lines but gutters (m)")), ("POLES", tr("Poles, signs and trunks")))

@@ -21,7 +21,6 @@ INTENSITY_SETTINGS = (
 class CorrectIntensity(Algorithm):
     ID, TITLE, GROUP = "correctintensity", "Correct intensity", "Markings"
     SUMMARY = "Evens out the fall of intensity with range and incidence, scanner by scanner, from the road's own asphalt."
-    HELP = "The raw intensity stays as it was; the corrected one is the extra field intensity_corrected, which later stages prefer."
     TAGS = ("intensity", "range correction", "calibration")
 
     def declare(self):
@@ -179,12 +178,6 @@ CLUSTER_SETTINGS = (
 class ClusterMarkings(Algorithm):
     ID, TITLE, GROUP = "clustermarkings", "Cluster markings", "Markings"
     SUMMARY = "Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest."
-    HELP = (
-        "The field class is edge, lane or centre for lines, and zebra, stop, give_way (a row of equal blocks across a lane), zigzag (a "
-        "line along the road that turns back again and again: no stopping), arrow, bicycle, bus (the word BUS, its letters one "
-        "marking), hatch or symbol for what is no line. A bicycle or a word that is not clearly seen stays symbol. Far from the "
-        "vehicle, points join over the distance between the tracks of the scan."
-    )
     TAGS = ("road marking", "lane marking", "cluster", "give-way line", "zigzag line", "zebra crossing", "stop line", "arrow",
             "bicycle symbol", "bus lane")
     RETIRED = ("MIN_POINTS",)
@@ -272,12 +265,6 @@ COLOUR_SETTINGS = (
 class ColoursOfPaint(Algorithm):
     ID, TITLE, GROUP = "paintcolours", "Colours of paint", "Markings"
     SUMMARY = "Tells yellow paint from white, from the colours of the points or from an orthoimage."
-    HELP = ("Intensity does not show colour, so the colours of a camera are needed: those that the points of the survey have, or those of an "
-            "orthoimage. The blue of the paint is compared with the asphalt about it, so that the light and the white balance of the camera do not "
-            "matter.\n\n"
-            "The field colour of every marking is white or yellow, and empty where too little was seen or where both are possible. A line has the "
-            "colour in which most of its length is painted. The road plan draws yellow paint yellow, and Export OpenDRIVE and Export Lanelet2 write "
-            "the colour of each line.")
     TAGS = ("yellow", "white", "colour", "color", "RGB", "orthoimage", "centre line")
     LOOKS = {"COLOURED_MARKINGS": "MARKINGS", "COLOURED_LINES": "MARKING_LINES"}
     NUMBERS = (("WHITE", tr("White markings")), ("YELLOW", tr("Yellow markings")), ("OPEN", tr("Markings whose colour stays open")))

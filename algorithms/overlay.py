@@ -56,15 +56,6 @@ PROPOSE_SETTINGS = (
 class ProposeControlPoints(Algorithm):
     ID, TITLE, GROUP = "proposecontrolpoints", "Propose control points", "Orthoimages"
     SUMMARY = "Finds the same paint in a UAV image and in the intensity image, as control points for Georeference image."
-    HELP = ("The image needs a rough position: two given points, or a world file, or the position tags of the drone, or the size of its "
-            "pixels. The paint of both images is laid over each other, the distortion of the camera followed, and about every "
-            "corner of paint (ends of dashes, arrows, bars, stop lines) the two cut-outs are compared.\n\n"
-            "A pair is accepted by default where its cut-outs look alike, nothing beside it looks the same, and the other pairs place it "
-            "where it is. Where the paint repeats so that the whole image fits elsewhere as well, no pair is accepted and a warning says so. "
-            "Look through the pairs with Control points from paint in the Lanewright menu, in the report, or in the table: points whose field "
-            "accepted is 1 are used by Georeference image, others are not.\n\n"
-            "The pairs tell how well the image fits the point cloud, not how well either fits the ground. They lie on the road, so that the "
-            "image is reliable there and less so beside it. Sun, shadow and dark paint do no harm; paint renewed between the two surveys does.")
     TAGS = ("UAV", "drone", "GCP", "control points", "matching", "registration", "orthoimage", "georeferencer")
     NUMBERS = (
         ("PROPOSED", tr("Pairs proposed")),
@@ -148,12 +139,6 @@ GEOREFERENCE_SETTINGS = (
 class GeoreferenceImage(Algorithm):
     ID, TITLE, GROUP = "georeferenceimage", "Georeference image", "Orthoimages"
     SUMMARY = "Places a UAV image on the map by ground control points, and reports its accuracy."
-    HELP = ("Control points come as a layer or as a file, each with pixel, line, easting and northing; pixel and line count from the "
-            "outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.\n\n"
-            "Spread the points over the whole image, its corners first: between them the polynomial is held, outside it runs away. Take twice "
-            "as many as the order needs. Judge the result by check points, or by the error of each point without itself (leave-one-out), not by "
-            "the residuals, which the polynomial was bent to make small. Control points taken from the point cloud tell how "
-            "well the image fits the cloud, not how well either fits the ground.")
     TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
     LOOKS = {"OUTPUT": "ORTHOIMAGE"}
     NUMBERS = (

@@ -30,9 +30,6 @@ LAYER_SETTINGS = (
 class NormalizedScanlines(Algorithm):
     ID, TITLE, GROUP = "normalizedscanlines", "Normalized scanlines", "Road"
     SUMMARY = "Cuts the measured surface by planes across the road, one scanline for every plane, pass and scanner."
-    HELP = ("The lines of a rotating scanner are distinguished by the times and places of the points alone; neighbouring lines make the "
-            "surface that is cut. Where it is interrupted, behind a car say, a new scanline begins. Points without times, or of a "
-            "head with many beams, have no such lines: there the points near each plane make the scanline, and the log says so.")
     TAGS = ("scanline", "profile", "cross section", "resample")
 
     def declare(self):
@@ -93,9 +90,6 @@ BOUNDARY_SETTINGS = (
 class BoundariesFromScanlines(Algorithm):
     ID, TITLE, GROUP = "boundariesfromscanlines", "Boundaries from scanlines", "Road"
     SUMMARY = "Bottom and top corners of curbs on normalized scanlines, and the boundary lines through them."
-    HELP = ("From the vehicle outward every scanline is searched for a step. About each step the points of the neighbouring scanlines "
-            "give three planes: road, curb face and sidewalk. Where they meet the scanline's own plane lie the corners. Lines are cut "
-            "by status: measured; bridged, a gap between corners; occluded, a gap that something hides.")
     TAGS = ("curb", "kerb", "boundary", "scanline", "ransac", "corner")
     LOOKS = {"CORNERS": "CURB_POINTS"}
 
@@ -153,9 +147,6 @@ CURB_SETTINGS = (
 class DetectCurbs(Algorithm):
     ID, TITLE, GROUP = "detectcurbs", "Detect curbs", "Road"
     SUMMARY = "Finds the curb nearest to the driven track on each side, on profiles across the road."
-    HELP = ("Where there is no curb none is made up; a curb hidden behind parked cars becomes a point of status occluded, and one "
-            "that is lowered a point of status bridged wherever the ground still steps up on its line. The field kind tells the road's own "
-            "curbs (main) from those of corners, side streets and islands, which are found in plan.")
     TAGS = ("curb", "kerb", "road edge")
 
     def declare(self):
@@ -228,9 +219,6 @@ OFFERED = ("BLOCK_LENGTH", "SLOPE", "MIN_HEIGHT", "MAX_HEIGHT")
 class DetectBoundaries(Algorithm):
     ID, TITLE, GROUP = "detectboundaries", "Detect road boundaries", "Road"
     SUMMARY = "Road edges straight from the point clouds, by profiles, by scanlines or by both."
-    HELP = ("Where there is no curb the edge of the pavement is drawn: where asphalt ends at gravel, grass or a ditch, which are rougher, brighter, "
-            "higher or lower than the road before them. The field edge distinguishes the two (curb, pavement). Where nothing separates the "
-            "road from what lies beside it, no edge is made up.")
     TAGS = ("curb", "kerb", "road edge", "boundary", "scanline")
     RETIRED = ("PROFILE_WIDTH", "POINT_SPACING", "LAYER_JUMP", "INTERVAL", "ROTATION_FREQUENCY", "SCANLINE_MIN_HEIGHT", "SEARCH_WIDTH",
                "SENSOR_HEIGHT", "CLIPPING_HEIGHT", "DISTANCE_ACROSS", "DISTANCE_ALONG", "RANSAC_DISTANCE", "VERTICAL_ANGLE", "HORIZONTAL_ANGLE")

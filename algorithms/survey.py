@@ -13,13 +13,6 @@ TIME_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "TIME")
 class ImportTrajectory(Algorithm):
     ID, TITLE, GROUP = "importtrajectory", "Import trajectory", "Survey"
     SUMMARY = "Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, a log or track of a receiver, or a point or line layer."
-    HELP = (
-        "Columns may come in any order, with or without a header, in degrees, radians or degrees with minutes and seconds. Rows are sorted by time; "
-        "repeated and unusable rows are dropped and counted. The dialog shows what was understood of a file, and lets you assign its columns.\n\n"
-        "Times are GPS seconds. Clock times are read where the file says what the clock shows: GPS time as it is, UTC with the leap seconds "
-        "of its date. Days (modified Julian, Julian, and those of spreadsheets) are read as dates with clocks. Other clock times, and seconds since "
-        "1970, are refused, as their leap seconds are unknown."
-    )
     TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time", "nmea", "gpx", "rtklib")
     NUMBERS = (("ROWS", tr("Positions")),)
 
@@ -63,20 +56,6 @@ SCANNER_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "SCANNE
 class EstimateTrajectory(Algorithm):
     ID, TITLE, GROUP = "estimatetrajectory", "Estimate trajectory", "Survey"
     SUMMARY = "Where the scanner was, from the point clouds alone, for surveys that come without a trajectory."
-    HELP = (
-        "Every return lies on the ray that the scanner's mirror had at its time. All rays together tell where the scanner was, how "
-        "it was turned and how it is mounted; what stands along the road does not matter. This takes clouds from vehicles with "
-        "rotating mirrors, whole, with the gps_time of every point; lines or points may be thinned out.\n\n"
-        "The positions are those of the scanner, of the middle between several: where the vehicle's own trajectory refers to another "
-        "place of the vehicle, the two differ by a constant arm. Heading, roll and pitch are relative to the way driven and the road. "
-        "What a cloud is displaced by as a whole does not show in it, nor in the uncertainty.\n\n"
-        "Heads of many beams that turn about an upright axis are known by their turns: their place is that from which every return lies in "
-        "the direction of its time. Their height above the road is that from which every beam has one elevation, on whatever it falls; where too "
-        "little stands beside the road to tell it, it is a usual one, known to 0.5 m, and the log says so.\n\n"
-        "Without gps_time, or where no mirror is seen to turn, the track follows the density of the points: it is rough, half a metre "
-        "off and with a height known to 0.3 m, and says so. Airborne, terrestrial and handheld clouds are refused, and so "
-        "are those that lack the road under the vehicle and files of drives whose clocks overlap."
-    )
     TAGS = ("trajectory", "no trajectory", "scanner position", "rotating mirror", "gps time")
     NUMBERS = (
         ("ROWS", tr("Positions")),
@@ -119,7 +98,6 @@ INSPECTION_SETTINGS = (
 class InspectSurvey(Algorithm):
     ID, TITLE, GROUP = "inspectsurvey", "Inspect survey", "Survey"
     SUMMARY = "Reports what point clouds and trajectory contain, and whether they fit together, before any processing."
-    HELP = "What the road map would stumble over, such as a geographic CRS or two clocks, is said with a way on."
     TAGS = ("density", "report", "las", "header", "overlap")
     NUMBERS = (
         ("POINTS", tr("Points")),
@@ -209,7 +187,6 @@ TRUTHS = (
 class SampleSurvey(Algorithm):
     ID, TITLE, GROUP = "samplesurvey", "Sample survey", "Survey"
     SUMMARY = "Simulates a mobile laser scanning survey of a street, motorway, junction or mountain road, together with its known truth."
-    HELP = "Every pulse of two scanners is followed to what it meets first. Figures reached on it are figures on simulated data."
     TAGS = ("sample", "simulation", "test data")
     NUMBERS = (("POINTS", tr("Points")),)
     RETIRED = ("MOUNT_YAW", "CURB_HEIGHT", "GUTTER")
