@@ -35,7 +35,7 @@ class CorrectIntensity(Algorithm):
         corrected, report = correct_intensity(road_points, frame, call.settings(INTENSITY_SETTINGS), progress.part(0.2, 0.8))
         write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
         for line in report.lines()[1:]:  # the first was said when it was found, as was a warning
-            if line != report.saturation_warning:
+            if line != report.saturation.warning:
                 progress.info(line)
         call.text("REPORT", html_page("intensity_correction", report=report))
 
