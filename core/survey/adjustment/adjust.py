@@ -112,9 +112,8 @@ def _report_offsets(road, offsets, corrections, progress):
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in separations)
         message = f"Road {road}: its passes lay {plan} beside and {up} above each other"
         if max((float(v.max()) for v in separations if len(v)), default=0.0) > REGISTER.max_offset:
-            progress.warn(f"{message}, which is more than navigation drifts within a survey. Drives of different years or datums lie so far apart. "
-                          "They were laid on each other, each moved by its share. Nothing shows which of them is right, so the map may be off by "
-                          "half of that distance. Process the files of each drive by itself, or measure control points.")
+            progress.warn(f"{message}, more than navigation drifts. Each was moved by its share, and nothing shows which is right. Process the files "
+                          "of each drive by itself, or measure control points.")
         else:
             progress.info(f"{message}, as navigation drifts between two drives. They were laid on each other, each moved by its share.")
     elif all(len(v) for v in _separations(offsets)):
@@ -334,15 +333,15 @@ def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> st
                  f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
                  else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:ADJUST.most_named]]
     more = _further(places)
-    return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: curbs and lines may be doubled or blurred there. "
-            "Adjust the trajectories of the drives to each other, or process the files of each drive by itself.")
+    return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: lines may be doubled there. Adjust the trajectories to "
+            "each other, or process each drive by itself.")
 
 
 def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
     if not places:
         return ""
-    return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved there as where it last "
-            "lay beside the others, and nothing shows how well that fits: measure a control point there if these centimetres matter.")
+    return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved as beside the others: "
+            "measure a control point there if these centimetres matter.")
 
 
 def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
@@ -405,10 +404,8 @@ def warnings_of_levels(frame: Any) -> list[str]:
         middle = float(np.median(rise[rows]))
         if np.quantile(np.abs(rise[rows] - middle), ADJUST.share_along) < ADJUST.even_rise:
             first, last = s[rows].min() - REGISTER.correction_step / 2, s[rows].max() + REGISTER.correction_step / 2
-            messages.append(f"Roads {road} and {other_road} run along each other at stations {first:.0f} to {last:.0f} m of road {road}, and one "
-                            f"lies {abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two "
-                            "kinds (above the ellipsoid and above sea level), and the map shows it twice. Bring the drives to one kind of heights, "
-                            "or process the files of each drive by itself.")
+            messages.append(f"Roads {road} and {other_road}: one lies {abs(middle):.2f} m above the other all along stations {first:.0f} to "
+                            f"{last:.0f} m, as no bridge does. They seem to be one road in two kinds of heights: bring the drives to one kind.")
     return messages
 
 
@@ -465,8 +462,7 @@ def _message_of_carriageways(pair: Beside) -> tuple[str, bool]:
     if far.any():
         return (f"{intro}. Their drives differ in height at "
                 f"{_named_places(_stretches_of(dict(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist()))), 'by up to {:.1f} cm')}. "
-                "They stay as they were measured, and nothing that both see shows how far they lie apart across: adjust the trajectories of the "
-                "drives to each other, or measure control points on both, if these centimetres matter.", True)
+                "They stay as measured: adjust the trajectories to each other, or measure control points on both, if these centimetres matter.", True)
     if not measured.any():
         return f"{intro}: nothing that both see shows how far they lie apart.", False
     return (f"{intro}: in height they agree within {100 * np.abs(pair.up[measured]).max():.1f} cm; "

@@ -97,14 +97,13 @@ def _said(survey, one, sigma):
     """The warning about a scanner that lies beside the first."""
     names = f"Scanner {survey.scanners[one.scanner]} and scanner {survey.scanners[0]}"
     if one.far:
-        return (f"{names} lie more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. "
-                "Calibrate the mounting of the scanners anew, or process the points of one scanner alone.")
+        return (f"{names} lie more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other. Calibrate their mounting anew, or "
+                "process the points of one scanner alone.")
     right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, MOVE_WORDS)
                              if abs(metres) > ADJUST.least_told_move)
                    or "nothing that is measurable" for side in np.nan_to_num(-one.moves))
-    return (f"{names} differ all along the survey, as with a wrong lever arm or boresight angles. On the left of the vehicle, points of the first "
-            f"are displaced from those of the other by {left}, on the right by {right}. Each was moved by its share. Nothing shows which of them is "
-            f"right, so the map may be off by {100 * sigma:.1f} cm (one sigma). Calibrate the mounting of the scanners anew.")
+    return (f"{names} differ all along: points of the first are displaced by {left} on the left, by {right} on the right. Each was moved by its share, "
+            f"which leaves {100 * sigma:.1f} cm (one sigma). Calibrate their mounting anew.")
 
 
 def _shares(offsets):

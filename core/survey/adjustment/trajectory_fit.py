@@ -85,14 +85,12 @@ def _other_heights(sample, trajectory, mountings, progress):
                 # from a trajectory that is stretched alike the scanners lie where they ride on the vehicle
                 cloud_alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
                 of = "the cloud alone" if cloud_alone else "cloud and trajectory"
-                progress.warn(f"The heights of {of} seem to be {phrase}: the laser beams meet in the scanner only if heights are "
-                              f"multiplied by {stretch:.4g}. Curbs are missed, and heights and slopes are wrong by that factor. Convert these "
-                              "heights, and run again.")
+                progress.warn(f"The heights of {of} seem to be {phrase}: the laser beams meet in the scanner only if heights are multiplied by "
+                              f"{stretch:.4g}. Convert these heights, and run again.")
                 return True
     if all(mounting.ground > 0 for mounting in mountings):
         progress.warn(f"The road lies {np.mean([mounting.ground for mounting in mountings]):.1f} m above the scanners, as if heights were counted "
-                      "downwards or turned upside down: curbs, slopes and heights are wrong. Export cloud and trajectory with heights that "
-                      "rise upwards.")
+                      "downwards. Export cloud and trajectory with heights that rise upwards.")
         return True
     return False
 
@@ -108,9 +106,8 @@ def _at_height(trajectory: Trajectory, mountings: Sequence[_Mounting], progress:
     worst = float(up[np.argmax(np.abs(up))])
     extent = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
     progress.warn(f"The trajectory lies {abs(worst):.2f} m {'below' if worst > 0 else 'above'} the scanners{extent}, as their laser beams "
-                  f"show: {'below the road' if worst > 0 else 'no vehicle is so high'}. Heights of cloud and trajectory seem to be of two kinds "
-                  "(above the ellipsoid and above sea level), or one of them is wrong. The trajectory was moved to the height of the scanners; the "
-                  "map has the heights of the cloud. Export both with one kind of heights.")
+                  f"show: {'below the road' if worst > 0 else 'no vehicle is so high'}. It was moved to their height. Export both with one kind of "
+                  "heights.")
     metres = np.full(len(trajectory), np.median(up)) if np.ptp(up) < VEHICLE.one_move * abs(worst) else np.interp(trajectory.time, times, up)
     return replace(trajectory, z=trajectory.z + metres)
 
@@ -128,8 +125,7 @@ def _on_way(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Pr
     x, y = (np.interp(times[np.argmax(far)], trajectory.time, getattr(trajectory, name)) for name in "xy")
     extent = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
     progress.warn(f"The trajectory runs {abs(worst):.2f} m to the {'right' if worst > 0 else 'left'} of the way that the scanners took{extent} "
-                  f"(first near x {x:.0f}, y {y:.0f}), as their laser beams show; no vehicle is so wide. It may belong to another lane or "
-                  "drive, or be in another datum than the cloud. It was moved to where the scanners were; check that both files belong together.")
+                  f"(first near x {x:.0f}, y {y:.0f}). It was moved there; check that both belong together and have one datum.")
     return _moved_aside(trajectory, mountings, times, lever[:, 1])
 
 
@@ -144,9 +140,8 @@ def _tell_jump(trajectory, times, lever, progress):
     if len(jumps):
         k = int(jumps[0])
         metres = float(np.hypot(*np.diff(lever[k:k + 2, :2], axis=0)[0]))
-        progress.warn(f"The scanners ride {metres:.1f} m elsewhere beside the trajectory at {times[k + 1]:.1f} s than at {times[k]:.1f} s, as their "
-                      "laser beams show, and nothing on a vehicle moves so. Files of one drive seem to be in two datums or adjustments, and the map "
-                      "has a step between them. Export all files and the trajectory from one solution, and run again.")
+        progress.warn(f"The scanners ride {metres:.1f} m elsewhere beside the trajectory at {times[k + 1]:.1f} s than at {times[k]:.1f} s. Files of one "
+                      "drive seem to be in two datums: export all of them and the trajectory from one solution.")
 
 
 def _windows(mountings):

@@ -250,8 +250,8 @@ def ridge_of(place: np.ndarray) -> np.ndarray:
     driven = np.r_[0.0, np.cumsum(np.hypot(*np.diff(track, axis=0).T))]
     if driven[-1] < TRACK.min_ridge:
         raise RoadExtractionError(
-            f"No track shows in the density of the points: the longest ridge is {driven[-1]:.0f} m long, and {TRACK.min_ridge:.0f} m are needed. "
-            "A terrestrial scan and an evenly thinned cloud have none, and these points have no times that would tell more.")
+            f"No track shows in the density of the points: the longest ridge is {driven[-1]:.0f} m long, and {TRACK.min_ridge:.0f} m are needed. Give "
+            "points with their times, or a trajectory.")
     even = np.arange(0.0, driven[-1], TRACK.ridge_spacing)
     flat = np.stack([np.interp(even, driven, axis) for axis in track.T], axis=1)
     flat = robustly_smoothed(flat, np.ones(len(flat)), TRACK.ridge_stiffness)

@@ -222,8 +222,8 @@ def in_one_scale(files: Sequence[CloudHeader], samples: Sequence[FileSample], wa
                 other.append(path)
     if other:
         times = usual[brightest] / usual[other[0]]
-        return list(files), (f"The intensities of {other[0]} are about {times:.0f} times weaker than those of {brightest}, as if they had another "
-                             "scale: paint is missed, or invented, where both are seen. Export all files with one scale of intensities.")
+        return list(files), (f"The intensities of {other[0]} are about {times:.0f} times weaker than those of {brightest}. Export all files with one "
+                             "scale of intensities.")
     note = ""
     if factors:
         path, factor = next(iter(factors.items()))
@@ -282,8 +282,8 @@ def check_coloured(files: Sequence[CloudHeader], taken_from: str) -> None:
     """Raise RoadExtractionError where intensity is taken from "rgb", and a file that has points holds no colours."""
     grey = [file for file in files if file.count and not file.has_colour]
     if grey and taken_from == "rgb":
-        raise RoadExtractionError(f"The points of {grey[0].path} have no colours (point format {grey[0].point_format}), from which the intensity was "
-                                  "to be taken. Set Intensity from to intensity, or export the points with red, green and blue.")
+        raise RoadExtractionError(f"The points of {grey[0].path} have no colours (point format {grey[0].point_format}). Set Intensity from to "
+                                  "intensity, or export the points with red, green and blue.")
 
 
 def without_intensity(files: Sequence[CloudHeader], taken_from: str, fields: Sequence[str] = ()) -> str:

@@ -162,7 +162,7 @@ def _overflow(header):
         held = least - LAS.bounds_tolerance <= low and high <= most + LAS.bounds_tolerance
         if -LAS.farthest_place < low < high < LAS.farthest_place and not held:
             return (f"its header says that {axis} runs from {low:.1f} to {high:.1f}, and its scale and offset can hold {least:.1f} to "
-                    f"{most:.1f} alone: points lie elsewhere than they were measured. Export it again with an offset near the survey",)
+                    f"{most:.1f} alone. Export it again with an offset near the survey",)
     return ()
 
 
