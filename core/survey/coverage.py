@@ -117,5 +117,5 @@ def _said_of_heights(stretches, metres):
 
 
 def _said_of_holes(stretches):
-    return (f"No point was kept under the vehicle along {_named(stretches)} of the drive, though there are some before and behind. Give all files: one "
-            "may be missing.")
+    return (f"No point was kept under the vehicle along {_named(stretches)} of the drive, though there are some before and behind. Give all files: "
+            "one may be missing.")

@@ -430,8 +430,8 @@ def _check_extent(files, frame, crs, trajectory_crs, progress):
     reach = FRAME.corridor
     away = [file for file in filled if not _runs_through(file.minimum, file.maximum, x, y, reach)]
     if len(away) == len(filled):
-        raise RoadExtractionError(f"The trajectory does not run through the point cloud: it covers x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to "
-                                  f"{y.max():.1f}, the cloud x {low[0]:.1f} to {high[0]:.1f}, y {low[1]:.1f} to {high[1]:.1f}. "
+        raise RoadExtractionError(f"The trajectory does not run through the point cloud: it covers x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} "
+                                  f"to {y.max():.1f}, the cloud x {low[0]:.1f} to {high[0]:.1f}, y {low[1]:.1f} to {high[1]:.1f}. "
                                   f"{_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
     for file in away:
         ends = np.array(file.minimum), np.array(file.maximum)
@@ -489,8 +489,8 @@ def _no_overlap(files, frame, reader, corridor):
     if reader.summary.without_time:
         return (f"No point was measured while the trajectory was driven: {reader.summary.without_time} points lie outside its time, "
                 f"{_said_of_times(frame)}. Set the trajectory's time system, or check that both belong to one survey.")
-    return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that cloud and trajectory belong to one survey and use "
-            "one CRS.")
+    return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that cloud and trajectory belong to one survey and "
+            "use one CRS.")
 
 
 # Check that points and trajectory use the same clock: the road on the own track is scanned when the vehicle is near it.

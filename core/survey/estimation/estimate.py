@@ -217,8 +217,8 @@ def _of_rays(samples, tracks, scanners, adjusted, crs):
         rows.append(np.column_stack([time, adjusted.poses.at(interval, share)[:, :YAW + 1], flat, up])[kept])
     time, x, y, z, roll, pitch, yaw, flat, up = np.concatenate(rows).T
     if not len(time):
-        raise RoadExtractionError(f"The places of the scanner could not be told to {ESTIMATE.max_sigma:g} m anywhere. Give the cloud as the scanner's "
-                                  "own program writes it, or a trajectory.")
+        raise RoadExtractionError(f"The places of the scanner could not be told to {ESTIMATE.max_sigma:g} m anywhere. Give the cloud as the "
+                                  "scanner's own program writes it, or a trajectory.")
     ox, oy, oz = samples.origin
     trajectory = Trajectory(time + samples.start, x + ox, y + oy, z + oz, np.degrees(roll), np.degrees(pitch), (90.0 - np.degrees(yaw)) % 360.0, crs)
     ground = np.interp(time, *(np.concatenate(column) for column in zip(*((track.time, track.foot[:, 2]) for track in tracks))))
@@ -265,8 +265,8 @@ def _without_time(samples, crs):
     step = np.gradient(place[:, :2], axis=0)
     trajectory = _rough(np.arange(len(place), dtype=float), place, np.arctan2(step[:, 1], step[:, 0]), samples.origin, crs, False)
     trajectory = replace(trajectory, way_known=False)
-    notes = [f"The points have no times, so the track is the longest ridge of their density: its place is known to about {ESTIMATE.density_sigma:g} m, "
-             f"its height above the road to {ESTIMATE.density_height_sigma:g} m, and which way was driven is not known."]
+    notes = [f"The points have no times, so the track is the rough ridge of their density: its place is known to about {ESTIMATE.density_sigma:g} "
+             f"m, its height above the road to {ESTIMATE.density_height_sigma:g} m, and which way was driven is not known."]
     return _with_density_sigma(trajectory, notes)
 
 
@@ -287,8 +287,8 @@ def _refuse_airborne(tracks: list[FirstTrack]) -> None:
     """Refuse a cloud whose points are spread so wide at any time that they were measured from high above."""
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     if reach > ESTIMATE.farthest_median:
-        raise RoadExtractionError(f"This looks like an airborne survey: half of its points lie more than {reach:.0f} m from where they are densest, and "
-                                  f"{ESTIMATE.farthest_median:.0f} m is what a vehicle on the road sees. Give a survey measured from the road.")
+        raise RoadExtractionError(f"This looks like an airborne survey: half of its points lie more than {reach:.0f} m from where they are densest, "
+                                  f"and {ESTIMATE.farthest_median:.0f} m is what a vehicle on the road sees. Give a survey measured from the road.")
 
 
 def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
@@ -334,7 +334,7 @@ def _refuse_without_road(tracks: list[FirstTrack]) -> None:
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     sharp = _usual_acceleration([track.foot for track in tracks], TRACK.window)
     if reach > ESTIMATE.max_road_reach or sharp > ESTIMATE.max_acceleration:
-        raise RoadExtractionError("No mirror is seen to turn, and the density of the points does not show the way either: half lie more than "
+        raise RoadExtractionError("No mirror is seen to turn, and the points' density does not show the way: half lie more than "
                                   f"{reach:.1f} m from where they are densest, which accelerates by {sharp:.0f} m/s². Give a trajectory.")
 
 
@@ -353,8 +353,8 @@ def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> N
     seconds = sum(float(np.ptp(track.time)) for track in tracks)
     if np.hypot(*(high - low)) < ESTIMATE.min_path and seconds > ESTIMATE.min_standing_time:
         raise RoadExtractionError(
-            f"This looks like a terrestrial scan: in {seconds:.0f} s the scanner stayed within {np.hypot(*(high - low)):.1f} m. Give a cloud measured "
-            "while driving, or the scanner's position as a trajectory.")
+            f"This looks like a terrestrial scan: in {seconds:.0f} s the scanner stayed within {np.hypot(*(high - low)):.1f} m. Give a cloud "
+            "measured while driving, or the scanner's position as a trajectory.")
 
 
 def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning], heads: Sequence[HeadTrack] = ()) -> None:
@@ -376,8 +376,8 @@ def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning], heads: S
         at_walking_pace = len(pace) > 0 and np.quantile(pace, 0.9) < ESTIMATE.walking_pace
     if at_walking_pace:
         raise RoadExtractionError(
-            f"This looks like a handheld or backpack survey: it moved at {np.median(pace):.1f} m/s, and no mirror turns steadily. Give the trajectory "
-            "that the scanner's own program has computed.")
+            f"This looks like a handheld or backpack survey: it moved at {np.median(pace):.1f} m/s, and no mirror turns steadily. Give the "
+            "trajectory that the scanner's own program has computed.")
 
 
 def _paces_of(head):

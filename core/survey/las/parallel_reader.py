@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,18 +29,6 @@ class ParallelCloudReader:
     def __exit__(self, *problem: object) -> None:
         for _, reader in self._readers.values():
             reader.close()
-
-    def blocks(self, files: Sequence[CloudHeader], size: int) -> Iterator[Callable[[], Any]]:
-        """Yield functions, in the order of the points, that return a laspy point record of about `size` points.
-
-        Any thread may call them; its next call may overwrite the record.
-        """
-        for number, first, count in self.ranges(files, size):
-            if _in_one_piece(files[number], size):
-                for points in read_blocks(files[number].path, size, self._layers, files[number].units):
-                    yield partial(_identity, points)
-            else:
-                yield partial(self._load, files[number], first, count)
 
     def ranges(self, files: Sequence[CloudHeader], size: int) -> Iterator[tuple[int, int, int]]:
         """Yield (number of a file, index of the first point, points) of ranges of about `size` points, in the order of the points.
@@ -100,22 +87,17 @@ class ParallelCloudReader:
 
     def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
         """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
-        for points in self._samples(file):
-            yield np.array(points["gps_time"], float)
-
-    def _samples(self, file):
-        """Yield a few points at several places of a file, its first and last among them, as laspy point records; the next may overwrite one."""
-        loads: list[Callable[[], Any]]
         if file.chunk:
             starts = np.linspace(0, max(file.count - LAS.points_per_sample, 0), LAS.sampled_places).astype(int)
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
-            loads = [partial(self._read_points, file, int(start), LAS.points_per_sample) for start in np.unique(starts)]
+            samples = (self._read_points(file, start, LAS.points_per_sample) for start in np.unique(starts).tolist())
         else:
             header, chunks = self._layout(file)
-            loads = [partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, 1, chunks)]
-            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, LAS.sampled_places).astype(int))]
-        for load in loads:
-            yield load()
+            runs = list(_chunk_runs(file, 1, chunks))
+            numbers = np.unique(np.linspace(0, len(runs) - 1, LAS.sampled_places).astype(int))
+            samples = (self._read_chunks(file.path, header, *runs[k]) for k in numbers)
+        for points in samples:
+            yield np.array(points["gps_time"], float)
 
     def chunk_start(self, file: CloudHeader, at: int) -> int:
         """Index of the first point of the chunk that holds the point `at`."""
@@ -218,7 +200,3 @@ def _chunk_runs(file, size, chunks):
         yield record, start, first, run
     if first + points < file.count:
         raise truncated_file_error(file.path, file.count, first + points)
-
-
-def _identity(points):
-    return points

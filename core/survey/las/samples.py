@@ -183,8 +183,8 @@ def check_measured_once(time: np.ndarray, place: np.ndarray) -> None:
         east, north, up = usual = np.median(apart, axis=0)
         alike = (np.abs(apart - usual) < LAS.coarse_coordinates).all(axis=1).sum()
         if alike > max(LAS.most_of_pairs * len(pairs), LAS.least_doubled * len(time)) and np.linalg.norm(usual) > LAS.coarse_coordinates:
-            raise RoadExtractionError(f"About {200 * alike / len(time):.0f} % of the points were given twice, {east:+.2f} m east, {north:+.2f} m north "
-                                      f"and {up:+.2f} m up of each other, as of one drive in two datums. Give one of its exports.")
+            raise RoadExtractionError(f"About {200 * alike / len(time):.0f} % of the points were given twice, {east:+.2f} m east, {north:+.2f} m "
+                                      f"north and {up:+.2f} m up of each other, as of one drive in two datums. Give one of its exports.")
 
 
 def _whole(places):

@@ -303,8 +303,8 @@ def _read_sbet(path, crs):
         notes.append(f"{path.name} ends within a record; the last, incomplete one was left out.")
     parsed = parse_crs(crs)
     if parsed is not None and not horizontal_part(parsed).is_geographic:
-        raise RoadExtractionError(f"{path} is an Applanix SBET file, which is geographic, but {horizontal_part(parsed).name} was given as its CRS. Leave "
-                                  "the CRS of the input empty.")
+        raise RoadExtractionError(f"{path} is an Applanix SBET file, which is geographic, but {horizontal_part(parsed).name} was given as its CRS. "
+                                  "Leave the CRS of the input empty.")
     true_heading = rows[:, 9] - rows[:, 10]
     columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],
                    roll=rows[:, 7], pitch=rows[:, 8], heading=true_heading)

@@ -151,8 +151,8 @@ def counted_days(values: np.ndarray, texts: Callable[[], Sequence[str]], what: s
         raise RoadExtractionError(f"{finding}but {first:.10g} is no day of a known count (MJD, Julian days, a spreadsheet). GPS seconds are needed: "
                                   "export the trajectory with these.")
     if last_decimal / 2 > TRAJECTORY.shortest_step:   # by half of it times are rounded
-        raise RoadExtractionError(f"{finding}and its last decimal is {last_decimal:.2g} s. Export the trajectory with GPS seconds, or with 8 decimals "
-                                  "of a day.")
+        raise RoadExtractionError(f"{finding}and its last decimal is {last_decimal:.2g} s. Export the trajectory with GPS seconds, or with 8 "
+                                  "decimals of a day.")
     seconds = (values - _days_from(DAY_COUNTS[kind], GPS_EPOCH)) * SECONDS_PER_DAY
     return ClockTimes(seconds, True, "", True, kind, f"{first:.10g}")
 
