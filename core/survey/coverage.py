@@ -113,7 +113,7 @@ def _named(stretches):
 def _said_of_heights(stretches, metres):
     up = float(np.median(metres))
     return (f"The trajectory does not keep to one height above the road: along {_named(stretches)} the road lies {up:+.2g} m from its usual height. "
-            "Export all files from one solution, with one kind of heights.")
+            "Heights may be in feet in one file, or of two kinds: export all from one solution.")
 
 
 def _said_of_holes(stretches):

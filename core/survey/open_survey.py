@@ -402,8 +402,8 @@ def _refuse_other_clocks(spans, time, offset, system):
             align_time(time, (first, last), system)
         except RoadExtractionError:
             continue   # of a drive that the trajectory does not hold
-        raise RoadExtractionError(f"The point clouds count time in two ways: {path} runs from {ends[0]:.1f} s to {ends[1]:.1f} s, and {other} from "
-                                  f"{first:.1f} s to {last:.1f} s. Export all of them with one kind of gps_time.")
+        raise RoadExtractionError(f"The point clouds count time in two ways: {path} runs from {ends[0]:.1f} s to {ends[1]:.1f} s, and {other}, of "
+                                  f"the same drive, from {first:.1f} s to {last:.1f} s. Export all of them with one kind of gps_time.")
 
 
 def _said_of_times(frame):
@@ -504,7 +504,7 @@ def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:
     distance, fast = float(np.median(ahead)), float(np.median(speed))
     seconds = f", about {abs(distance) / fast:.1f} s at its speed" if fast > 1.0 else ""
     progress.warn(f"The times of the points do not seem to fit the trajectory: the road on the vehicle's own way was scanned {abs(distance):.0f} m "
-                  f"{'before' if distance > 0 else 'past'} it{seconds}. Check that both are of one drive and count time alike.")
+                  f"{'before' if distance > 0 else 'past'} that place{seconds}. Check that both are of one drive and count time alike.")
 
 
 def _look_ahead(survey):

@@ -11,7 +11,7 @@ import numpy as np
 from ...lazy import laspy, lazrs
 from ..weights import LAS
 from .header import chunks_of
-from .reader import MAX_INTENSITY, CloudHeader, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error, wrap_read_error
+from .reader import MAX_INTENSITY, CloudHeader, damage_from, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error
 
 
 class ParallelCloudReader:
@@ -128,31 +128,23 @@ class ParallelCloudReader:
     def _read_chunks(self, path, header, record, place, first, table):
         """The points of chunks that begin at a byte; `table` has (points, bytes) of each."""
         buffer = self._buffer(header, sum(count for count, _ in table))
-
-        def read():
+        with damage_from(path, header.point_count, first):
             with open(path, "rb") as file:
                 file.seek(place)
                 compressed = file.read(sum(length for _, length in table))
             lazrs.decompress_points_with_chunk_table(compressed, record, buffer, table, layer_selection(self._layers).to_lazrs())
-
-        wrap_read_error(read, path, header.point_count, first)
         return _point_record(buffer, header)
 
     def _read_uncompressed(self, path, header, first, count):
         """`count` points of a LAS file from index `first` on."""
         buffer = self._buffer(header, count)
-
-        def read():
-            with open(path, "rb", buffering=0) as file:
-                file.seek(header.offset_to_point_data + first * header.point_format.size)
-                left = memoryview(buffer)
-                while len(left) and (size := file.readinto(left)):
-                    left = left[size:]
-                return (len(buffer) - len(left)) // header.point_format.size
-
-        points_read = wrap_read_error(read, path, header.point_count, first)
-        if points_read < count:
-            raise truncated_file_error(path, header.point_count, first + points_read)
+        left = memoryview(buffer)
+        with damage_from(path, header.point_count, first), open(path, "rb", buffering=0) as file:
+            file.seek(header.offset_to_point_data + first * header.point_format.size)
+            while len(left) and (size := file.readinto(left)):
+                left = left[size:]
+        if len(left):
+            raise truncated_file_error(path, header.point_count, first + (len(buffer) - len(left)) // header.point_format.size)
         return _point_record(buffer, header)
 
     def _buffer(self, header, count):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from math import gcd
 
 import numpy as np
@@ -133,14 +134,7 @@ def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> lis
     Only files with the same number of points and the same bounds are read; `warn` is told of every copy.
     """
     first: dict[tuple, CloudHeader] = {}
-    contents: dict[str, tuple[int, ...]] = {}
-
-    def content(file):
-        if file.path not in contents:
-            contents[file.path] = _content(file)
-        return contents[file.path]
-
-    kept = []
+    kept, content = [], cache(_content)
     for file in files:
         alike = (file.count, _whole(file.minimum), _whole(file.maximum))
         earlier = first.setdefault(alike, file)

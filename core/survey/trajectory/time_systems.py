@@ -331,8 +331,8 @@ def unix_time_found(seconds: float, what: str) -> str:
     """The sentence on a time that counts from 1970; `what` is its beginning, on who counts."""
     utc = seconds - UNIX_EPOCH
     leap = float(leap_seconds(np.array([utc]))[0])
-    return (f"{what} Unix time: {seconds:.0f} s since 1970 are GPS {utc + leap:.0f} s with {leap:.0f} leap seconds. Export GPS time, or write utc in "
-            "place of time in Columns of Import trajectory.")
+    return (f"{what} Unix time: {seconds:.0f} s since 1970 are GPS {utc + leap:.0f} s in UTC, which is behind by {leap:.0f} s. Export GPS time, or "
+            "write utc in place of time in Columns of Import trajectory.")
 
 
 def _unix_hint(first, last, cloud_first, cloud_last):

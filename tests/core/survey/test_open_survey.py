@@ -289,7 +289,7 @@ def test_heights_of_a_trajectory_in_feet_are_warned_of_where_the_road_climbs(tmp
     points = x, y, z + np.interp(time, driven.time, hill), time
     heard = Heard()
     open_survey([write_cloud(tmp_path / "hill.laz", *points, crs=CRS)], replace(driven, z=driven.z / unit), progress=heard)
-    assert [bool(re.search("does not keep to one height above the road.*one kind of heights", text)) for text in heard.warnings] == [True] * warned
+    assert [bool(re.search("does not keep to one height above the road.*may be in feet", text)) for text in heard.warnings] == [True] * warned
 
 
 @pytest.mark.parametrize("unit, crs, warned", [(0.3048, None, True), (0.3048, CRS, False), (1.0, None, False)])
