@@ -121,12 +121,7 @@ class _DrawnLine:
 
 
 def _lines_drawn(source: NoSource, courses: Sequence[_Course], curve: str, degree: int) -> list[_DrawnLine]:
-    """The phase that fits lines and draws their pieces; parameters as of `_shapes_of_lines`."""
-    return [shape.drawn(course.pieces) for shape, course in zip(_shapes_of_lines(courses, curve, degree), courses)]
-
-
-def _shapes_of_lines(courses: Sequence[_Course], curve: str, degree: int) -> list[_LineShape]:
-    """The shapes of some lines, with a curve of the wanted kind, where they can take it.
+    """The phase that fits lines, with a curve of the wanted kind where they can take it, and draws their pieces.
 
     curve, degree : as of MarkingLineSettings
     """
@@ -139,15 +134,16 @@ def _shapes_of_lines(courses: Sequence[_Course], curve: str, degree: int) -> lis
     for k, t, guided in zip(curved, along, fit_splines([(courses[k].x, courses[k].y) for k in curved], along)):
         fits[k], guesses[k] = guided, guided.curve.u_of(t)
     heights = smooth_profiles([(course.s[course.own], course.z) for course in courses], STRANDS.line_height_smoothing)
-    shapes = []
+    drawn = []
     for course, fit, guess, of_kind, height in zip(courses, fits, guesses, wanted, heights):
         u, e = fit.curve.project(course.x, course.y, guess)
         if guess is not None:
             fit = CurveFit(fit.curve, e[course.own], fit.parameters)
         rising = np.maximum.accumulate(u)
         keep = np.append(True, np.diff(rising) > 1e-6)
-        shapes.append(_LineShape(fit, of_kind, course.s[course.own], (course.s[keep], rising[keep]), height))
-    return shapes
+        shape = _LineShape(fit, of_kind, course.s[course.own], (course.s[keep], rising[keep]), height)
+        drawn.append(shape.drawn(course.pieces))
+    return drawn
 
 
 @dataclass(frozen=True)
@@ -178,7 +174,7 @@ def _courses(selected, places, road, track_height):
 
 def _places(line, trend, edges, span):
     """(N,) stations and offsets of a line, beyond its paint, too, whether they are its own, and the heights of those."""
-    s, d, z, weight = line.places()
+    s, d, z, weight = line.places
     strong = weight >= STRANDS.min_points_per_place
     if strong.sum() >= max(4, 0.5 * len(s)):
         s, d, z = s[strong], d[strong], z[strong]

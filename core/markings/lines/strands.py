@@ -61,14 +61,9 @@ class LinkedLine:
         return sum(strand.length for strand in self.strands)
 
     @cached_property
-    def middle(self) -> float:
-        """Metres across, the median offset of all places."""
-        return median(self._places[1])
-
-    @cached_property
     def by_station(self) -> tuple[np.ndarray, np.ndarray]:
         """s, d of all places in order of station."""
-        s, d, *_ = self._places
+        s, d, *_ = self.places
         order = np.argsort(s, kind="stable")
         return s[order], d[order]
 
@@ -93,23 +88,17 @@ class LinkedLine:
         inside = slice(np.searchsorted(s, first), np.searchsorted(s, last, side="right"))
         return s[inside], d[inside]
 
-    def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    @cached_property
+    def places(self) -> tuple[np.ndarray, ...]:
         """s, d, z, weight of all places."""
-        return self._places
-
-    def end_places(self, at_start: bool) -> tuple[np.ndarray, np.ndarray]:
-        """s, d of the places within LEVEL_REACH of the first or the last point, the outermost place at least."""
-        return self._end_places[at_start]
-
-    @cached_property
-    def _end_places(self):
-        s, d, *_ = self._places
-        distances = s.max() - s, s - s.min()
-        return [(s[at_end], d[at_end]) for at_end in (a <= STRANDS.level_reach for a in distances)]
-
-    @cached_property
-    def _places(self):
         return tuple(np.concatenate([getattr(strand, name) for strand in self.strands]) for name in ("s", "d", "z", "weight"))
+
+    @cached_property
+    def end_places(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
+        """s, d of the places within `level_reach` of the last, and of the first point, the outermost place at least."""
+        s, d, *_ = self.places
+        at_end, at_start = s.max() - s <= STRANDS.level_reach, s - s.min() <= STRANDS.level_reach
+        return (s[at_end], d[at_end]), (s[at_start], d[at_start])
 
 
 def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[Columns, np.ndarray]:
