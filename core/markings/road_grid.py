@@ -35,15 +35,13 @@ class RoadGrid:
     def shape(self) -> tuple[int, int]:
         return self.last - self.first, self.high - self.low
 
-    def stations(self) -> np.ndarray:
-        return (np.arange(self.first, self.last) + 0.5) * CELL_UNITS * COORDINATE_SCALE
-
     def offsets(self) -> np.ndarray:
         return (np.arange(self.low, self.high) + 0.5) * CELL_UNITS * COORDINATE_SCALE
 
     def read(self, image: IntensityImage, frame: RoadFrame, road: int) -> np.ndarray:
         """(rows, columns) float32 brightness, NaN where nothing was scanned."""
-        x, y = frame.road(road).to_map(self.stations()[:, None], self.offsets())
+        stations = (np.arange(self.first, self.last) + 0.5) * CELL_UNITS * COORDINATE_SCALE
+        x, y = frame.road(road).to_map(stations[:, None], self.offsets())
         return np.asarray(image.sample(x.ravel(), y.ravel(), frame.origin), np.float32).reshape(self.shape)
 
 
@@ -97,8 +95,11 @@ class PieceOfRoad:
 
 
 def cells_of_road(road_points: RoadPoints, road: int, first: int, last: int, step: int = 1) -> list[PieceOfRoad]:
-    """[PieceOfRoad] of the rows from `first` to before `last`."""
-    return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in _road_pieces(road_points, road, first, last)]
+    """[PieceOfRoad] of the rows from `first` to before `last`, in order; those without points are left out."""
+    cuts = [first, *range((first // ROWS_PER_PIECE + 1) * ROWS_PER_PIECE, last, ROWS_PER_PIECE), last]
+    pieces = ((begin, end, road_points.window(road, begin * CELL_UNITS * COORDINATE_SCALE, end * CELL_UNITS * COORDINATE_SCALE))
+              for begin, end in zip(cuts[:-1], cuts[1:]))
+    return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in pieces if len(points)]
 
 
 @dataclass(frozen=True)
@@ -128,15 +129,6 @@ class RoadCells:
             return None
         begin, end = int(columns[0]) - 1, int(columns[-1]) + 2
         return cls(RoadGrid(first, last, low + begin, low + end), np.ascontiguousarray(occupied[:, begin:end]), half_width)
-
-
-def _road_pieces(road_points: RoadPoints, road: int, first: int, last: int) -> Iterator[tuple[int, int, Points]]:
-    """Yield (first row, end, Points) of the rows of cells from `first` to before `last`, in order; those without points are left out."""
-    cuts = [first, *range((first // ROWS_PER_PIECE + 1) * ROWS_PER_PIECE, last, ROWS_PER_PIECE), last]
-    for begin, end in zip(cuts[:-1], cuts[1:]):
-        points = road_points.window(road, begin * CELL_UNITS * COORDINATE_SCALE, end * CELL_UNITS * COORDINATE_SCALE)
-        if len(points):
-            yield begin, end, points
 
 
 def cell_numbers(records: np.ndarray | Columns, grid: RoadGrid) -> Iterator[tuple[slice, np.ndarray]]:
@@ -247,6 +239,16 @@ def fill_gaps(mask: np.ndarray, limit: int, axis: int = 0) -> np.ndarray:
     grown = cv2.dilate(cv2.copyMakeBorder(mask.astype(np.uint8), *margin, cv2.BORDER_CONSTANT, value=0), kernel, anchor=(0, 0))
     closed = cv2.erode(grown, kernel, anchor=behind)
     return closed[margin[0]:margin[0] + mask.shape[0], margin[2]:margin[2] + mask.shape[1]].astype(bool)
+
+
+def closed_mask(cells: np.ndarray, gaps: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
+    """(A, B) bool mask of (K, 2) cells with gaps of so many cells along either axis closed, and the (2,) int cell of mask[0, 0]."""
+    first = cells.min(axis=0)
+    mask = np.zeros(cells.max(axis=0) - first + 1, bool)
+    mask[tuple((cells - first).T)] = True
+    for axis, limit in enumerate(gaps):
+        mask = fill_gaps(mask, limit, axis)
+    return mask, first
 
 
 def track_reach(spacing: np.ndarray) -> np.ndarray:

@@ -158,9 +158,6 @@ class _OtsuSplit:
     middle: float   # m, offset of the bin
     spread: float   # of asphalt's z, 1 where the background was even
     threshold: float
-    below: float   # means of the classes
-    above: float
-    share: float   # of the bright class
     accepted: bool   # whether the classes are two materials and not one cut in half
 
 
@@ -267,10 +264,9 @@ def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: li
 
 def _split(z, middle, separation, highest):
     if len(z) < ASPHALT.min_bin_cells:
-        return _OtsuSplit(middle, 1.0, 0.0, 0.0, 0.0, 0.0, False)
+        return _OtsuSplit(middle, 1.0, 0.0, False)
     dim = z[z <= highest]
     median, spread = asphalt_statistics(dim if len(dim) >= ASPHALT.min_asphalt_share * len(z) else z)
     z = np.clip((z - median) / spread, *ASPHALT.histogram_limits)
     threshold, below, above, share = otsu(z)
-    accepted = above - below > separation and threshold > 1.0 and share <= 0.5
-    return _OtsuSplit(middle, spread, threshold, below, above, share, accepted)
+    return _OtsuSplit(middle, spread, threshold, above - below > separation and threshold > 1.0 and share <= 0.5)
