@@ -334,11 +334,9 @@ def _slopes(strands):
 
 def weighted_medians(values: np.ndarray, weight: np.ndarray, starts: np.ndarray) -> np.ndarray:
     """(G,) weighted medians of groups of (N,) values, ascending within each group, that begin at `starts`."""
-    if not len(starts):
-        return np.empty(0)
     count = np.diff(np.append(starts, len(values)))
     # a row for every group, so that each sums its own weights and nothing else
-    table = np.zeros((len(starts), int(count.max())))
+    table = np.zeros((len(starts), int(count.max(initial=0))))
     column = np.arange(len(values)) - np.repeat(starts, count)
     table[np.repeat(np.arange(len(starts)), count), column] = weight
     share = np.cumsum(table, axis=1)

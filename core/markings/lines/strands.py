@@ -188,8 +188,6 @@ def _runs(bins, across, spacing):
     seen = (bins[after] == bins[before]) & (across[after] - across[before] > unseen)
     lasting = _lasting(bins[after], (across[after] + across[before]) / 2, seen)
     for _ in range(8):
-        if len(starts) < 2:
-            break
         last = np.r_[starts[1:], len(bins)] - 1
         joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= STRANDS.max_worn_line_width_units)
         joins &= ~lasting
@@ -360,12 +358,10 @@ def painted_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
 
     `records` : N points with `cluster` and `spacing`; `rank` : (N,) class of each as `line_paint` gives it.
     """
-    if not len(records):
-        return []
     cluster = records["cluster"]
     # most points of the marking, which is a line
     apart = (records["spacing"] >= STRANDS.few_tracks * 1e3) & (rank < len(LINE_KINDS))
-    sparse = (2 * np.bincount(cluster[apart], minlength=int(cluster.max()) + 1) > np.bincount(cluster))[cluster]
+    sparse = (2 * np.bincount(cluster[apart], minlength=int(cluster.max(initial=-1)) + 1) > np.bincount(cluster))[cluster]
     few = np.flatnonzero(sparse)
     check_cancelled()
     few = few[np.lexsort((records["s"][few], cluster[few]))]

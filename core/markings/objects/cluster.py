@@ -199,10 +199,8 @@ def _rectangle(records, bounds):
 
 def _with_rows_divided(records, labels):
     """Labels of clusters, rows of the blocks of give-way lines divided into these."""
-    if not len(labels):
-        return labels
     order = order_by(labels)
-    starts = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0])
+    starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
     along, across = ((np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts)) * COORDINATE_SCALE
                      for values in (records[name].take(order) for name in "sd"))
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
@@ -297,8 +295,6 @@ def _by_cluster(labels, fewest):
 
     Returns their order, the bounds of the clusters in it (one more than there are clusters), and the label of each.
     """
-    if not len(labels):
-        return np.empty(0, np.intp), np.zeros(1, np.int64), np.empty(0, np.int32)
     labels = labels.astype(np.int32, copy=False)
     large = (np.bincount(labels) >= fewest)[labels]
     order = order_by(labels, ~large)

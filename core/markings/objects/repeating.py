@@ -538,8 +538,6 @@ def _pairs_of_squares(sides, middle):
     """(P, 2) squares near each other, either way, (P, 2) m their sizes, and (P,) m between their middles."""
     square = np.flatnonzero((sides.min(axis=1, initial=np.inf) >= ROWS.block_size[0]) & (sides.max(axis=1, initial=0.0) <= ROWS.block_size[1])
                             & (sides.max(axis=1, initial=0.0) <= ROWS.max_block_ratio * np.maximum(sides.min(axis=1, initial=np.inf), 1e-3)))
-    if len(square) < 2:
-        return np.empty((0, 2), np.int64), np.empty((0, 2)), np.empty(0)
     pairs = square[cKDTree(middle[square]).query_pairs(ROWS.block_spacing[1] * ROWS.block_size[1], output_type="ndarray")].reshape(-1, 2)
     pairs = np.concatenate([pairs, pairs[:, ::-1]])
     pairs = pairs[np.lexsort(pairs.T[::-1])]

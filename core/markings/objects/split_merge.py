@@ -28,8 +28,6 @@ def are_compound(s: np.ndarray, d: np.ndarray, starts: np.ndarray) -> np.ndarray
 
     s, d : (N,) int, units of 0.1 mm, of points one cluster after the other; starts : (K,) int, where each begins
     """
-    if not len(starts):
-        return np.zeros(0, bool)
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (s, d)]
     length, breadth = (extent * COORDINATE_SCALE for extent in ranges)
     return _of_several(length, breadth) | (length >= COMPOUNDS.min_length_beside_bar) & (breadth >= COMPOUNDS.min_stop_line_piece)
@@ -106,8 +104,6 @@ def _in_lines(cells, longest_gap, window):
     Bars, letters and the stripes of a crossing are shorter than the window; the line itself may be worn and oblique.
     """
     result = np.zeros(len(cells), bool)
-    if not len(cells):
-        return result
     size = CELL_UNITS * COORDINATE_SCALE
     steps = int(COMPOUNDS.max_border_slope * window / COMPOUNDS.max_border_drift)
     gap, length, chunk = round(longest_gap / size) // 2 * 2, round(window / size) | 1, int(MORPHOLOGY_CHUNK / size)
@@ -176,8 +172,6 @@ def _number_strips(parts, count, cells, rows, gap, gap_across, least):
 
 def _in_runs(cells, longest_gap, shortest_run):
     """(K,) whether a cell lies in a run of paint along the first axis, across the road; gaps are closed, cells are sorted by the second axis."""
-    if not len(cells):
-        return np.zeros(0, bool)
     size = CELL_UNITS * COORDINATE_SCALE
     # OpenCV moves what an even number of cells closes or opens
     gap, run, chunk = round(longest_gap / size) // 2 * 2, round(shortest_run / size) | 1, int(MORPHOLOGY_CHUNK / size)
@@ -256,8 +250,6 @@ def _bars(column):
     s0, s1, d0, d1 = (column[name] for name in ("s0", "s1", "d0", "d1"))
     thick, broad = s1 - s0, d1 - d0
     rows = np.flatnonzero((thick >= CLASSES.stop_line_width[0]) & (thick <= CLASSES.stop_line_width[1]) & (broad >= COMPOUNDS.max_stop_line_gap))
-    if len(rows) < 2:
-        return np.empty((0, 2), np.int64)
     # nearly the same front and rear
     pairs = cKDTree(np.column_stack([s0, s1])[rows]).query_pairs(COMPOUNDS.max_side_shift, p=np.inf, output_type="ndarray").reshape(-1, 2)
     a, b = rows[pairs].T

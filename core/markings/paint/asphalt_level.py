@@ -105,11 +105,7 @@ def patch_level(z: np.ndarray, bright: float) -> np.ndarray:
     size = ASPHALT.patch_neighbourhood, ASPHALT.patch_neighbourhood
     share, scanned = (cv2.boxFilter(a.view(np.uint8), -1, size, normalize=False, borderType=cv2.BORDER_CONSTANT) for a in (above, finite))
     filled = (share > scanned // 2) & (scanned > 0.1 * ASPHALT.patch_neighbourhood**2)
-    if np.count_nonzero(filled) < ASPHALT.patch_side**2:
-        return level
     core = _morphed(cv2.erode, filled, ASPHALT.patch_side)
-    if not core.any():
-        return level
     patches = _morphed(cv2.dilate, core, ASPHALT.patch_side + 2 * ASPHALT.patch_rim) & (filled | above)
     labels, count = ndimage.label(patches)
     for number, box in enumerate(ndimage.find_objects(labels), start=1):

@@ -158,7 +158,7 @@ class _Window:
     def _from_averages(self, cells, settings):
         """Cells of paint where single points are noisy: bright pieces must have the shape of paint, too."""
         points = self._points(self.first, self.last)
-        cell = np.concatenate([cell for _, cell in cell_numbers(points.records, cells.grid)])
+        cell = cell_numbers(points.records, cells.grid)
         averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape, settings.lowest)
         samples = ViewSamples(cell, points.value, points.covered > 0, views(points, self.source.frame))
         return noisy_paint_cells(averages, rim_distance(cells.occupied), samples, settings.lowest), None
