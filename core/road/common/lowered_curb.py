@@ -18,7 +18,7 @@ import numpy as np
 from ...common.arrays import mask_runs, stretch_of
 from ...survey.frame.road import Road
 from ..weights import CURBS
-from .tracking import is_lowered, line_across, without_outliers
+from .tracking import IN_LINE_TURN, is_lowered, line_across, without_outliers
 
 if TYPE_CHECKING:
     from ..surface.road_look import SideLook
@@ -54,8 +54,10 @@ def _line_across(near, before, behind, road, look):
     k = int(np.searchsorted(near["s"], before, side="right")) - 1
     if not 0 <= k < len(near) - 1 or behind - before > CURBS.max_hidden_gap:
         return None
-    turn, line, axes = line_across(near, np.ascontiguousarray(near["s"]), k)
-    if line is None or turn > CURBS.max_lowered_turn:
+    # of less curb the direction is not known, and a bend through a single place may lead anywhere
+    bends = min(near["s"][k] - near["s"][0], near["s"][-1] - near["s"][k + 1]) >= CURBS.min_bend_length
+    turn, line, axes = line_across(near, np.ascontiguousarray(near["s"]), k, 1 + bends)
+    if line is None or turn > (CURBS.max_lowered_turn if bends else IN_LINE_TURN):
         return None
     stations, offsets = line.between(look.row_size)
     if axes == "xy":

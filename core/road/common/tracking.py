@@ -573,11 +573,12 @@ class GapLine:
         return v - self.line(t)
 
 
-def line_across(points: np.ndarray, s: np.ndarray, k: int) -> tuple[float, GapLine | None, str]:
+def line_across(points: np.ndarray, s: np.ndarray, k: int, max_degree: int = 2) -> tuple[float, GapLine | None, str]:
     """The even bend that leads best across a gap, which begins at point k, on the map or as seen from the road.
 
     points : (N,) structured array of curb points, by station, with the fields x, y, s and d in m
     s : (N,) m, their stations
+    max_degree : 1 of a straight line, 2 of an even bend
 
     Returns
         turn : radians that the curb on both sides turns off it
@@ -597,7 +598,7 @@ def line_across(points: np.ndarray, s: np.ndarray, k: int) -> tuple[float, GapLi
             break
         for axes in ("xy", "sd"):
             before, behind = (np.array([part[axis] for axis in axes]) for part in parts)
-            line = GapLine(before, behind, max_degree=2)
+            line = GapLine(before, behind, max_degree)
             best = min(best, (line.miss / reach, line, axes), key=lambda fitted: fitted[0])
     return best
 
