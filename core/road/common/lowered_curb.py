@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def lowered_points(rows: list[dict], road: Road, look: SideLook) -> list[dict]:
     """Places of lowered curb between the curb points of one side of a road.
 
-    rows : of the curb points, dicts as of `SideChains.points`
+    rows : of the curb points, dicts as of `points_of_rows`
     look : SideLook of the side
 
     Returns a list of dict like `rows`, one for each row of ground cells that shows the step
