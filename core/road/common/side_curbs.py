@@ -22,7 +22,7 @@ from .sides import SIDE_SIGNS, OutermostTrack, fixed_sections, hidden_points, jo
 from .tracking import StepChain, curb_chains, drop_short_curbs, is_road, link_steps, select_along_road, with_pieces_in_line
 
 if TYPE_CHECKING:
-    from ..surface.road_look import RoadLook, SideLook
+    from ..surface.road_look import RoadLook
 
 AnySteps = TypeVar("AnySteps", bound=CurbSteps)
 Section = tuple[str, int, int, int]   # method, number of a road, first and last + 1 number of its profiles or planes
@@ -126,8 +126,8 @@ class SideSteps:
     bounds: np.ndarray
     occlusion: OcclusionGrid
 
-    def chains(self, look: SideLook | None) -> list[StepChain]:
-        """The chains of the steps, upright and sloped ones apart. `look` : SideLook of the side, None where nothing is known of the ground."""
+    def chains(self, look: RoadLook | None) -> list[StepChain]:
+        """The chains of the steps, upright and sloped ones apart. `look` : RoadLook of the side, None where nothing is known of the ground."""
         steps = self.steps
         if steps is None or not len(steps):
             return []
@@ -205,12 +205,12 @@ def _has_road_before(steps, length, look):
 
 
 def points_of_side(source: Any, road: int, side: str, by_method: Sequence[tuple[SideSteps, list[StepChain]]], occlusion: OcclusionGrid,
-                   look: SideLook | None = None) -> CurbPoints:
+                   look: RoadLook | None = None) -> CurbPoints:
     """Curb points of one side of one road, measured and hidden, in order of station.
 
     source : Survey, or scanlines: what has `frame` and `road_height`
     by_method : SideSteps of every method, and their chains
-    look : SideLook of the side, None where nothing is known of the ground
+    look : RoadLook of the side, None where nothing is known of the ground
     """
     frame, sign, seen = source.frame, SIDE_SIGNS[side], [of_method.steps for of_method, _ in by_method]
     first = np.cumsum([0, *map(len, seen)])   # number of the first step of each method among all of them

@@ -26,7 +26,7 @@ from .curb_limits import CurbLimits
 from .pseudo_scanlines import expand_ranges
 
 if TYPE_CHECKING:
-    from ..surface.road_look import SideLook
+    from ..surface.road_look import RoadLook
 
 IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by more across shorter gaps
 
@@ -207,13 +207,13 @@ def _wander(steps, members):
 
 
 def select_along_road(chains: Sequence[StepChain], steps: CurbSteps, near: Callable[..., np.ndarray],
-                      look: SideLook | None = None) -> list[tuple[int, float, float]]:
+                      look: RoadLook | None = None) -> list[tuple[int, float, float]]:
     """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming, and what continues it.
 
     chains : list of StepChain of one side
     steps : CurbSteps to which they refer
     near : function, station in m -> outward offset of the outermost track on that side, m
-    look : SideLook of the side, None where nothing is known of the ground
+    look : RoadLook of the side, None where nothing is known of the ground
 
     Returns a list of (chain index, first station, last station), in order along the road
     """
