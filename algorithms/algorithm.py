@@ -6,6 +6,7 @@ implements `work(call, progress)`; `call` (see call.py) hands it the values.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, fields, replace
 from importlib import import_module
 from typing import Any
@@ -224,6 +225,18 @@ class SettingSpec:
             return None
         allowed = limits_of(owner, self.field)
         return allowed.lowest, allowed.maximum * self.times
+
+
+def settings_of(table, settings, names, **further):
+    """The SettingSpecs of a core Settings class, with the labels and helps that help.txt has for them under the name of the table.
+
+    names : of the parameters, with spaces between them, in the order of the dialog, which folds those with a star behind them away; a parameter
+        is the field of its name in small letters
+    further : name to a dict of other attributes of its SettingSpec
+    """
+    return tuple(SettingSpec(**{
+        "name": name, "settings": settings, "field": name.lower(), "advanced": star == "*", **dict(zip(("label", "help"), map(
+            tr, help_texts()[f"{table} {name}"]))), **further.get(name, {})}) for name, star in re.findall(r"(\w+)(\*?)", names))
 
 
 @dataclass(frozen=True)

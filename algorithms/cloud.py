@@ -5,23 +5,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, settings_of
 from .map_layers import MAP_LAYERS
 from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
-CLOUD = "products.cloud.classify:CloudSettings"
-
-CLOUD_SETTINGS = (
-    SettingSpec("GROUND_THICKNESS", CLOUD, "ground", tr("Ground and road lie within (m)"),
-                tr("Points so far above and below the ground are ground, road surface or paint. Larger for noisy scanners and passes that differ in "
-                   "height, but then low curbs and grass are taken for ground.")),
-    SettingSpec("CURB_WIDTH", CLOUD, "curb", tr("Curbs lie within, either side of the road edge (m)"),
-                tr("Wider takes more of the top of broad curb stones, narrower the upright face alone.")),
-    SettingSpec("REACH_BESIDE", CLOUD, "beside", tr("Rails, walls and poles lie within (m)"),
-                tr("So far either side of a line of the layer Roadside its points lie. Larger for deep guard rails and thick walls, but it takes in "
-                   "what stands close behind; hedges have twice as much, shafts of poles half of it.")),
-)
+CLOUD_SETTINGS = settings_of("cloud.CLOUD_SETTINGS", "products.cloud.classify:CloudSettings", "GROUND_THICKNESS CURB_WIDTH REACH_BESIDE",
+    GROUND_THICKNESS=dict(field="ground"), CURB_WIDTH=dict(field="curb"), REACH_BESIDE=dict(field="beside"))
 # parameter -> the fields that are read, help; in the order of CloudLayers
 CLOUD_LAYERS = {
     "ROAD_SURFACE": ("road station_m",

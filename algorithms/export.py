@@ -8,7 +8,7 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.features import COLOUR, LANES, MAP_FINDINGS, ROAD_ATTRIBUTES
 from ..core.common.setting import Limited, setting
 from ..core.lazy import shapely
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, settings_of
 from .call import existing_file
 from .map_layers import MAP_LAYERS
 from .survey_input import road_points_of
@@ -150,12 +150,7 @@ def fault_table(findings):
     return [(tr("Findings of the check"), (tr("Fault"), tr("Count")), counts)] if counts else []
 
 
-ATTRIBUTES = "products.export.road_attributes:AttributeSettings"
-ATTRIBUTE_SETTINGS = (
-    SettingSpec("CORRIDOR", ATTRIBUTES, "corridor", tr("Corridor either side of a way (m)"),
-                tr("How far the middle of a lane may lie from the way of its road. Raise it for roads of many lanes that are one way; lower it where "
-                   "side roads run beside the road.")),
-)
+ATTRIBUTE_SETTINGS = settings_of("export.ATTRIBUTE_SETTINGS", "products.export.road_attributes:AttributeSettings", "CORRIDOR")
 
 
 class RoadAttributes(Algorithm):
@@ -220,10 +215,7 @@ def _ways_of_layer(source, crs):
 
 ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
 VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
-ROAD_SETTINGS = (
-    SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
-                tr("How far borders may be missed, across and in height. Smaller follows the survey more closely with more and shorter elements.")),
-)
+ROAD_SETTINGS = settings_of("export.ROAD_SETTINGS", ROADS, "TOLERANCE")
 
 
 def add_road_choices(algorithm):
@@ -316,10 +308,7 @@ def _report(name, whole, network, shown, misses, notes):
 
 LANELETS = "products.export.lanelet_export:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
-LANELET_SETTINGS = (
-    SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
-                tr("Written to every lanelet for vehicles of whose road no limit is known. 0 writes none there.")),
-)
+LANELET_SETTINGS = settings_of("export.LANELET_SETTINGS", LANELETS, "SPEED_LIMIT")
 
 
 def add_lanelet_choices(algorithm):
@@ -391,10 +380,7 @@ def write_lanelet2(call, source, name, progress):
 
 
 SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}   # format -> endings
-CAD_SETTINGS = (
-    SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
-                tr("LandXML: how far a line may be missed by its elements, in plan and in height. DXF has every vertex.")),
-)
+CAD_SETTINGS = settings_of("export.CAD_SETTINGS", ROADS, "TOLERANCE")
 
 
 class ExportCad(Algorithm):
@@ -461,7 +447,6 @@ def _landxml(call, source, progress):
     return {"LINES": float(len(alignments)), "ALIGNMENTS": float(len(alignments)), "MISSED": missed}, tables
 
 
-SETTINGS = "algorithms.export:SheetSettings"
 PAPERS = ("A4", "A3", "A2", "A1", "A0")
 SCALES = ("1:100", "1:200", "1:250", "1:500", "1:1000", "1:2000", "1:2500", "1:5000")
 # Results that are drawn, from above
@@ -484,31 +469,9 @@ class SheetSettings(Limited):
     section_interval: float = setting(20.0, 0.0, 10_000.0, "Interval of the cross-sections", "m")
 
 
-SHEET_SETTINGS = (
-    SettingSpec("TITLE", SETTINGS, "title", tr("Title (project)"),
-                tr("Stands large in the title block and is the name of the layout. Empty takes the name of the survey.")),
-    SettingSpec("OFFICE", SETTINGS, "office", tr("Office"), tr("Who is responsible for the plan, for the title block. Save it with Presets.")),
-    SettingSpec("AUTHOR", SETTINGS, "author", tr("Author"), tr("Who made the plan, for the title block.")),
-    SettingSpec("PAPER", SETTINGS, "paper", tr("Paper"),
-                tr("Larger paper gives fewer sheets at the same scale, but needs a plotter from A2 on."), choices=PAPERS),
-    SettingSpec("ORIENTATION", SETTINGS, "orientation", tr("Orientation"),
-                tr("landscape shows more of the road along each sheet; portrait shows more beside it, as at a junction or on a winding road."),
-                choices=("landscape", "portrait")),
-    SettingSpec("SCALE", SETTINGS, "scale", tr("Scale"),
-                tr("automatic takes the largest of 1:250, 1:500, 1:1000, 1:2000 and 1:5000 that needs at most 20 sheets and on which the road is not "
-                   "wider than the sheet; a road that fits on one sheet may be drawn at 1:100 or 1:200. "
-                   "A larger scale shows curbs and paint better on more sheets; below 1:1000 lanes are thin bands."),
-                choices=("automatic", *SCALES)),
-    SettingSpec("PROFILE", SETTINGS, "profile", tr("Longitudinal profile"),
-                tr("Further pages with the height of the ground along the axis, stations and gradients. The layers need heights.")),
-    SettingSpec("SECTION_INTERVAL", SETTINGS, "section_interval", tr("Interval of the cross-sections, 0 = none (m)"),
-                tr("Further pages with a section at every such station of the axis. Lower shows more of the road on more pages; 0 leaves them out. "
-                   "Where a layer of sections is given, those in which a limit is not kept are shown in any case.")),
-    SettingSpec("HEIGHT_SYSTEM", SETTINGS, "heights", tr("Height system"),
-                tr("What the heights refer to, for the title block, such as DHHN2016. Empty takes the vertical part of the CRS."), advanced=True),
-    SettingSpec("CREDIT", SETTINGS, "credit", tr("Credit on the map"),
-                tr("Whose data lie below, as their licence wants it said; stands in the lower left corner of the map"), advanced=True),
-)
+SHEET_SETTINGS = settings_of("export.SHEET_SETTINGS", "algorithms.export:SheetSettings",
+    "TITLE OFFICE AUTHOR PAPER ORIENTATION SCALE PROFILE SECTION_INTERVAL HEIGHT_SYSTEM* CREDIT*", PAPER=dict(choices=PAPERS),
+    ORIENTATION=dict(choices=("landscape", "portrait")), SCALE=dict(choices=("automatic", *SCALES)), HEIGHT_SYSTEM=dict(field="heights"))
 
 
 class PrintSheets(Algorithm):

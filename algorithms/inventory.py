@@ -4,7 +4,7 @@ from datetime import datetime
 
 from ..core.common.features import BREAKLINES, CROSS_SECTIONS, ROADSIDE, ROADSIDE_OBJECTS, SURFACE_FACES
 from ..core.countries.catalogue import COUNTRIES
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, settings_of
 from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
@@ -33,27 +33,8 @@ def survey_with_borders(call, progress, above_road):
 SECTIONS = "products.inventory.borders:CrossSectionSettings"
 ABOVE_SECTIONS = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
 
-SECTION_SETTINGS = (
-    SettingSpec("INTERVAL", SECTIONS, "interval", tr("Interval of the sections (m)"),
-                tr("Smaller shows where a rut or a change of crossfall begins, but takes longer; below 10 m grade and ruts are measured over that "
-                   "length only.")),
-    SettingSpec("COUNTRY", SECTIONS, "country", tr("Country"),
-                tr("Whose rules give the limits that are left at 0; neutral has none, and nothing is judged. Also whose usual lane is measured about "
-                   "the track where no layer of the road map is given. It is never guessed."), choices=tuple(COUNTRIES)),
-    SettingSpec("MAX_RUT", SECTIONS, "max_rut", tr("Rut depth at most, 0 = of the country (mm)"),
-                tr("Deeper ruts under a straight edge of 2 m are marked. Lower finds shallow ones, down to what noise leaves, about 2 mm.")),
-    SettingSpec("MIN_CROSSFALL", SECTIONS, "min_crossfall", tr("Crossfall at least, 0 = of the country (%)"),
-                tr("Lanes that fall less to either side are marked: water stands there. Lower leaves the places where the crossfall changes sides "
-                   "unmarked."), advanced=True),
-    SettingSpec("MAX_CROSSFALL", SECTIONS, "max_crossfall", tr("Crossfall at most, 0 = of the country (%)"),
-                tr("Steeper lanes are marked. Lower marks the superelevation of bends too."), advanced=True),
-    SettingSpec("MAX_GRADE", SECTIONS, "max_grade", tr("Grade at most, 0 = of the country (%)"),
-                tr("Steeper sections are marked, climbing or falling. Lower marks ramps too."), advanced=True),
-    SettingSpec("MIN_WIDTH", SECTIONS, "min_width", tr("Lane width at least, 0 = of the country (m)"),
-                tr("Narrower driving lanes are marked. Higher marks turning lanes too."), advanced=True),
-    SettingSpec("MIN_CLEARANCE", SECTIONS, "min_clearance", tr("Clearance at least, 0 = of the country (m)"),
-                tr("Sections with something hanging lower are marked. Higher finds branches above the traffic too."), advanced=True),
-)
+SECTION_SETTINGS = settings_of("inventory.SECTION_SETTINGS", SECTIONS,
+    "INTERVAL COUNTRY MAX_RUT MIN_CROSSFALL* MAX_CROSSFALL* MAX_GRADE* MIN_WIDTH* MIN_CLEARANCE*", COUNTRY=dict(choices=tuple(COUNTRIES)))
 
 
 class CrossSections(Algorithm):
@@ -119,22 +100,9 @@ def _numbers(table, count):
     return {**counts, **({"LARGEST_RUT": max(ruts)} if ruts else {}), **({"LEAST_CLEARANCE": min(clear)} if clear else {})}
 
 
-SURFACE = "products.surface.model:SurfaceSettings"
 ABOVE_SURFACE = 3.0  # m of height above the road that are read: banks beside it, and what stands on it, which is told from the ground
 
-SURFACE_SETTINGS = (
-    SettingSpec("TOLERANCE", SURFACE, "tolerance", tr("Tolerance (m)"),
-                tr("By how much the triangles may miss the ground of the carriageway (root mean square). Smaller shows ruts and settlements "
-                   "with more triangles, down to what noise leaves, 2 to 3 mm; 0.01 or more is enough for volumes.")),
-    SettingSpec("REACH", SURFACE, "reach", tr("Ground beside the carriageway (m)"),
-                tr("How far beyond the road edges the surface reaches. Farther takes in sidewalk, verge and ditch, but also walls and hedges "
-                   "whose foot looks like a bank.")),
-    SettingSpec("CELL_SIZE", SURFACE, "cell_size", tr("Cell size of the heights (m)"),
-                tr("Of the raster alone. Smaller shows curbs more sharply in a larger file.")),
-    SettingSpec("MAX_GAP", SURFACE, "max_gap", tr("Longest gap bridged (m)"),
-                tr("Stretches of road that nobody saw up to this length are covered by triangles of status bridged; longer ones are left out. Higher "
-                   "closes the surface under long shadows, but nothing was measured there."), advanced=True),
-)
+SURFACE_SETTINGS = settings_of("inventory.SURFACE_SETTINGS", "products.surface.model:SurfaceSettings", "TOLERANCE REACH CELL_SIZE MAX_GAP*")
 
 
 class SurfaceOfRoad(Algorithm):
@@ -189,27 +157,10 @@ class SurfaceOfRoad(Algorithm):
         return {"VERTICES": float(model.vertices), "TRIANGLES": float(len(faces)), "RMSE": model.rmse, "SHARE": share}
 
 
-ROADSIDE_OF = "products.inventory.borders:RoadsideSettings"
 ABOVE_ROADSIDE = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
 
-ROADSIDE_SETTINGS = (
-    SettingSpec("INTERVAL", ROADSIDE_OF, "interval", tr("Longest interval between vertices (m)"),
-                tr("Lines have a vertex wherever they bend, and at least one every so many metres. Smaller gives more of them."), advanced=True),
-    SettingSpec("COUNTRY", ROADSIDE_OF, "country", tr("Country"),
-                tr("Whose lane widths tell two marking lines that bound a lane, where there are no road edges. It is never guessed."),
-                choices=tuple(COUNTRIES), advanced=True),
-    SettingSpec("REACH", ROADSIDE_OF, "reach", tr("Reach beyond the carriageway's edge (m)"),
-                tr("Farther finds what stands behind verge and sidewalk, but also what belongs to the land beside the road.")),
-    SettingSpec("MIN_LENGTH", ROADSIDE_OF, "min_length", tr("Shortest line (m)"),
-                tr("Shorter finds short pieces of rail and wall, but also cars and bins that stand in a row.")),
-    SettingSpec("MIN_HEIGHT", ROADSIDE_OF, "min_height", tr("Lowest line (m)"),
-                tr("Lower finds low walls, but also high grass and steps."), advanced=True),
-    SettingSpec("MAX_GAP", ROADSIDE_OF, "max_gap", tr("Longest gap bridged (m)"),
-                tr("Longer joins what follows in line; shorter distinguishes more lines. What vehicles hide is bridged up to 12 m whatever this is, "
-                   "and an opening of 1.5 m or more through which the scanner saw is left open."), advanced=True),
-    SettingSpec("MIN_POLE_HEIGHT", ROADSIDE_OF, "min_pole_height", tr("Lowest pole, sign or trunk (m)"),
-                tr("Lower finds bollards and delineator posts, but also people."), advanced=True),
-)
+ROADSIDE_SETTINGS = settings_of("inventory.ROADSIDE_SETTINGS", "products.inventory.borders:RoadsideSettings",
+    "INTERVAL* COUNTRY* REACH MIN_LENGTH MIN_HEIGHT* MAX_GAP* MIN_POLE_HEIGHT*", COUNTRY=dict(choices=tuple(COUNTRIES)))
 
 
 class Roadside(Algorithm):

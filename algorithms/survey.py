@@ -2,7 +2,7 @@
 
 from ..core.common.features import CONTROL_POINTS, ESTIMATED_TRAJECTORY, TRAJECTORY
 from ..core.lazy import np
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, settings_of
 from .survey_files import trajectory_features
 from .survey_input import SURVEY_SETTINGS, imported_trajectory
 from .texts import tr
@@ -87,12 +87,7 @@ class EstimateTrajectory(Algorithm):
         return {name: value for (name, _), value in zip(self.NUMBERS, values)}
 
 
-INSPECTION = "products.inspection:InspectionSettings"
-
-INSPECTION_SETTINGS = (
-    SettingSpec("CELL_SIZE", INSPECTION, "cell_size", tr("Cell of the density raster (m)"),
-                tr("Smaller shows single scan lines, larger the broad picture."), advanced=True),
-)
+INSPECTION_SETTINGS = settings_of("survey.INSPECTION_SETTINGS", "products.inspection:InspectionSettings", "CELL_SIZE*")
 
 
 class InspectSurvey(Algorithm):
@@ -147,32 +142,10 @@ def _percent(share):
     return None if share is None else 100.0 * share
 
 
-SAMPLE = "simulator.survey:SampleSettings"
-
-SAMPLE_SETTINGS = (
-    SettingSpec(
-        "SCENE", SAMPLE, "scene", tr("Scene"),
-        tr("street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. one-lane "
-           "and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line between them. "
-           "hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, and an exit. serpentine: "
-           "a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. roundabout: a ring with splitter islands, "
-           "driven straight on and to the left. outskirts: two lanes with guard rail, concrete barrier, walls, fences and a hedge beside them, "
-           "driven both ways. cycle-lanes: two lanes with the word BUS, and cycle lanes with bicycles."),
-        choices=("street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine",
-                 "crossing", "roundabout", "outskirts", "cycle-lanes")),
-    SettingSpec("LENGTH", SAMPLE, "length", tr("Length of the road, 0: as usual for the scene (m)"),
-                tr("Longer takes longer to make and to work through, in proportion. Streets are usually 120 m long, a motorway 240 m (600 m at the "
-                   "most), a serpentine 200 m (1000 m), a crossing and a roundabout 110 m from end to end (300 m).")),
-    SettingSpec("SEED", SAMPLE, "seed", tr("Seed of the random numbers (whole number)"),
-                tr("Another seed gives another street with other cars, wear and noise; the same seed gives the same points.")),
-    SettingSpec("SPEED", SAMPLE, "speed_kmh", tr("Speed of the vehicle (km/h)"), tr("Faster spreads the scan lines wider apart."), advanced=True),
-    SettingSpec("PULSE_RATE", SAMPLE, "pulse_rate", tr("Pulses of each scanner (per second)"), tr("More gives a denser cloud and a larger file."),
-                advanced=True),
-    SettingSpec("ROTATION_RATE", SAMPLE, "rotation_rate", tr("Scan lines of each scanner (per second)"),
-                tr("More brings the lines closer together, with fewer points on each."), advanced=True),
-    SettingSpec("RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"),
-                tr("Smaller makes sharper bends; motorway, serpentine, crossing and roundabout have bends of their own."), advanced=True),
-)
+SAMPLE_SETTINGS = settings_of("survey.SAMPLE_SETTINGS", "simulator.survey:SampleSettings",
+    "SCENE LENGTH SEED SPEED* PULSE_RATE* ROTATION_RATE* RADIUS*", SPEED=dict(field="speed_kmh"), SCENE=dict(choices=(
+        "street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine", "crossing",
+        "roundabout", "outskirts", "cycle-lanes")))
 
 TRUTHS = (
     ("TRUTH_BOUNDARIES", "truth_boundaries", "LineStringZ", tr("True road boundaries")),

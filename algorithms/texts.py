@@ -38,8 +38,8 @@ def speak(language="en"):
 
 @cache
 def help_texts():
-    """{id of an algorithm: paragraphs of its help, in English} of help.txt."""
-    _, *parts = re.split(r"^\[(\w+)\]$", Path(__file__).with_name("help.txt").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    """{id of an algorithm, or table and name of a setting: its paragraphs, in English} of help.txt."""
+    _, *parts = re.split(r"^\[(.+)\]$", Path(__file__).with_name("help.txt").read_text(encoding="utf-8"), flags=re.MULTILINE)
     return {ID: [" ".join(part.split()) for part in text.split("\n\n") if part.strip()] for ID, text in zip(parts[::2], parts[1::2])}
 
 

@@ -68,9 +68,9 @@ def table(path):
 
 
 def help_texts():
-    """The paragraphs of the help of the algorithms."""
-    parts = re.split(r"\n\n|^\[\w+\]$", HELP.read_text(encoding="utf-8"), flags=re.MULTILINE)
-    return [" ".join(part.split()) for part in parts[1:] if part.strip()]
+    """The paragraphs of the help of the algorithms and their settings."""
+    parts = re.split(r"\n\n|^\[.+\]$|^#.*$", HELP.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    return [" ".join(part.split()) for part in parts if part.strip()]
 
 
 def texts_of(tree):
