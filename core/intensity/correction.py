@@ -120,8 +120,6 @@ class _IntensityReport:
     scale: str = ""   # "linear", "logarithmic", or "" where nothing was corrected
     reference: float = float("nan")   # the intensity that asphalt was brought to
     scanners: list[dict[str, Any]] = field(default_factory=list)
-    between_before: float = float("nan")   # between_before, between_after: highest over lowest scanner's asphalt
-    between_after: float = float("nan")
     spread_before: float = float("nan")   # spread_before, spread_after: coefficient of variation of asphalt over distances and scanners, %
     spread_after: float = float("nan")
     beams: int = 0   # how many beams of spinning scanners were equalised, 0 where there are none
@@ -349,10 +347,7 @@ def _report(before, after, table, points_by_scanner):
             row.update({f"asphalt_{name}": mean, f"spread_{name}": variation,
                         f"fall_{name}": float(levels[scanner, use].max() / max(levels[scanner, use].min(), 1e-9))})
         report.scanners.append(row)
-    for name, levels in zip(("before", "after"), medians):
-        means = [row[f"asphalt_{name}"] for row in report.scanners]
-        setattr(report, f"between_{name}", max(means) / max(min(means), 1e-9))
-        setattr(report, f"spread_{name}", _variation(levels[usable], weight[usable])[1])
+    report.spread_before, report.spread_after = (_variation(levels[usable], weight[usable])[1] for levels in medians)
     return report
 
 

@@ -66,8 +66,7 @@ class PieceOfRoad:
 
     def within(self, grid: RoadGrid) -> tuple[slice, slice]:
         """Where this piece lies in a larger grid: slices of its rows and columns."""
-        own_grid = self.grid
-        return slice(own_grid.first - grid.first, own_grid.last - grid.first), slice(own_grid.low - grid.low, own_grid.high - grid.low)
+        return slice(self.grid.first - grid.first, self.grid.last - grid.first), slice(self.grid.low - grid.low, self.grid.high - grid.low)
 
     def numbers_in(self, grid: RoadGrid, cell: np.ndarray) -> np.ndarray:
         """Flat numbers in a larger grid of some cells of this one, by their flat numbers here; (N,) int32 each."""

@@ -63,8 +63,8 @@ def relative_contrast(value: np.ndarray, s: np.ndarray, starts: np.ndarray) -> n
 
 
 def classify_markings(shapes: list[Shape], half_widths: Sequence[float], settings: ClassSettings = ClassSettings(),
-                      covered: float | Sequence[float] = 0.0, blocks: bool | np.ndarray = False) -> list[tuple[str, str]]:
-    """Class and use of every cluster of one road: class "" for what is not paint, use "keep" for lines, else "other".
+                      covered: float | Sequence[float] = 0.0, blocks: bool | np.ndarray = False) -> list[str]:
+    """Class of every cluster of one road, "" for what is not paint.
 
     half_widths : (N,) m from the reference line to the road edge on each cluster's side
     covered : (N,) share of each cluster's points that lie beneath or right beside something standing on the road
@@ -85,13 +85,12 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     refused = outside | covered_feet | curb
     kinds = [_kind(*of_one) for of_one in zip(shapes, clearance, line, zigzag, np.broadcast_to(blocks, len(shapes)), doubles, covered_feet, refused,
                                               repeat(settings.margin))]
-    classes = [(kind, "keep" if kind in LINE_KINDS else "other") for kind in kinds]
-    for k in _outlines(column, [kind for kind, _ in classes]):
-        classes[k] = "hatch", "other"
-    for k in _single_bars(column, [kind for kind, _ in classes]):
+    for k in _outlines(column, kinds):
+        kinds[k] = "hatch"
+    for k in _single_bars(column, kinds):
         corner = clearance[k] < CLASSES.curb_corner_clearance and shapes[k].length < CLASSES.max_curb_corner_length
-        classes[k] = NOT_PAINT if corner else "symbol", "other"
-    return classes
+        kinds[k] = NOT_PAINT if corner else "symbol"
+    return kinds
 
 
 def _kind(shape, clearance, line, zigzag, block, double, covered_feet, refused, margin):
