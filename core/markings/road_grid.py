@@ -273,13 +273,8 @@ def _fill(mask, row, column, gaps, longest):
     sparse[row[inside] + longest, column[inside]] = gaps[inside]
     on_track = fill_gaps(sparse > 0, longest, 0)
     inner = slice(longest, longest + len(mask))
-    widest = np.where(on_track & (sparse == 0), _carried(sparse), sparse)[inner]
+    met = np.maximum.accumulate(np.where(sparse > 0, np.arange(len(sparse))[:, None], 0), axis=0)   # row of the value last met
+    widest = np.where(on_track & (sparse == 0), np.take_along_axis(sparse, met, axis=0), sparse)[inner]
     mask |= on_track[inner]
     for gap in np.unique(gaps).tolist():
         mask |= fill_gaps(widest >= gap, gap, 1)
-
-
-def _carried(values):
-    """(A, B) the value last met along the first axis."""
-    row = np.maximum.accumulate(np.where(values > 0, np.arange(len(values))[:, None], 0), axis=0)
-    return np.take_along_axis(values, row, axis=0)

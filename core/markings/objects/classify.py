@@ -76,7 +76,10 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     clearance = np.asarray(half_widths) - np.abs(column["offset"])
     curb = np.array([_curb(shape, r) for shape, r in zip(shapes, clearance)])
     zigzag = np.array([shape.legs > 0 for shape in shapes])
-    line = _is_line(column, settings) & ~curb & ~zigzag
+    # of a line far off each scan line may show one point only, and no width
+    broad = (column["width"] >= settings.min_width) | (column["length"] >= CLASSES.min_solid_length)
+    line = column["along"] & broad & (column["width"] <= settings.max_width) & (column["length"] >= settings.min_length) \
+        & (column["elongation"] >= settings.min_elongation) & ~curb & ~zigzag
     line |= _dashes_in_rows(shapes, column, clearance, settings)
     line &= ~zigzag
     outside = _beyond_the_edge_line(column, line, clearance)
@@ -114,13 +117,6 @@ def columns_of(shapes: Sequence[Shape]) -> dict[str, np.ndarray]:
     """dict of (N,) arrays, what the Shapes have."""
     return {name: np.array([getattr(shape, name) for shape in shapes])
             for name in ("s0", "s1", "d0", "d1", "offset", "length", "width", "elongation", "direction", "area", "along")}
-
-
-def _is_line(column, settings):
-    # of a line far off each scan line may show one point only, and no width
-    width, thin = column["width"], column["length"] >= CLASSES.min_solid_length
-    return column["along"] & ((width >= settings.min_width) | thin) & (width <= settings.max_width) \
-        & (column["length"] >= settings.min_length) & (column["elongation"] >= settings.min_elongation)
 
 
 def _dashes_in_rows(shapes, column, clearance, settings):
