@@ -60,11 +60,11 @@ class IntensityPeaks:
             records = _records_between(road_points, road, window * count * profile, (window + 1) * count * profile)
             return records, (records["s"] // profile).astype(np.int64)
 
-        peaks = list(ordered_map(lambda window: profile_peaks(*records_of(window), self), windows, progress.part(0.0, 0.6)))
+        peaks = list(ordered_map(lambda window: profile_peaks(*records_of(window), settings=self), windows, progress.part(0.0, 0.6)))
         row, left, right = (np.concatenate([f[k] for f in peaks]) for k in range(3))
         kept = in_chains(row, (left + right) / 2, self)
         row, left, right = row[kept], left[kept], right[kept]
-        yield from ordered_map(lambda window: _between(*records_of(window), row, left, right), windows, progress.part(0.6, 1.0))
+        yield from ordered_map(lambda window: _between(*records_of(window), peak_row=row, left=left, right=right), windows, progress.part(0.6, 1.0))
 
 
 def _records_between(road_points, road, first, last):

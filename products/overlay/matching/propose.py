@@ -36,7 +36,7 @@ _SAME = 0.6             # m at most corners of paint, within which two placement
 AMBIGUOUS = "all of it fits elsewhere too"
 
 
-def propose_control_points(image: SourceImage, intensity: IntensityImage, rough: RoughPlace, settings: ProposalSettings,
+def propose_control_points(image: SourceImage, intensity: IntensityImage, rough: RoughPlace, settings: ProposalSettings | None = None,
                            progress: Progress = Progress()) -> Proposal:
     """Find corners of paint in an image and in the intensity image, and pair them.
 
@@ -48,6 +48,7 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     rough : RoughPlace in that CRS
     Raises RoadExtractionError if the image does not lie over the intensity image, covers too much ground, or shows other paint.
     """
+    settings = settings or ProposalSettings()
     paint, bounds = paint_about(image, intensity, rough)
     photo = read_photo(image, rough.size, paint.cell)
     progress.report(0.1)
