@@ -56,7 +56,7 @@ class IntensityPeaks:
         start, end = road_points.store.span(road)
         windows = list(range(int(np.floor(start / COORDINATE_SCALE / profile / count)), int(np.floor(end / COORDINATE_SCALE / profile / count)) + 1))
 
-        def records_of(window):
+        def records_of(window: int) -> tuple[Columns, np.ndarray]:
             records = _records_between(road_points, road, window * count * profile, (window + 1) * count * profile)
             return records, (records["s"] // profile).astype(np.int64)
 
