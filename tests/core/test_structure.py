@@ -26,7 +26,7 @@ NUMBERS = {
     "core/survey": 78,
     "core/road": 18,
     "core/intensity": 12,
-    "core/markings": 62,
+    "core/markings": 61,
     "core/driving": 5,
     "core/corrections": 2,
     "core/pipeline": 2,
