@@ -6,13 +6,15 @@ implements `work(call, progress)`; `call` (see call.py) hands it the values.
 
 from __future__ import annotations
 
+import re
+from collections import namedtuple
 from dataclasses import dataclass, fields, replace
 from importlib import import_module
 from typing import Any
 
 from ..core.common.setting import limits_of
 from .map_layers import MAP_LAYERS
-from .texts import tr
+from .texts import help_texts, tr
 
 # In the order of the work
 GROUPS = ("Survey", "Road", "Markings", "Driving", "Road map", "Export", "Inventory", "Assessment", "Orthoimages")
@@ -21,7 +23,8 @@ TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "r
 
 
 class Algorithm:
-    """Base of every algorithm; subclasses set the texts below and write `declare` and `work`.
+    """Base of every algorithm. Subclasses set the texts below, add parameters and outputs in `declare()`, and do the work in `work(call, progress)`,
+    which returns further results (numbers) by output name; their help stands in help.txt.
 
     parameters : list of ParameterSpec, inputs and outputs in the order of the dialog
     numbers : list of NumberOutput
@@ -29,7 +32,6 @@ class Algorithm:
 
     ID = TITLE = GROUP = SUMMARY = ""
     TAGS = ()
-    HELP = ""
     LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
     NUMBERS = ()  # (name, label) of numbers among the results
     RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
@@ -40,14 +42,6 @@ class Algorithm:
         self.parameters = []
         self.declare()
         self.numbers = [NumberOutput(name, tr(label)) for name, label in (*self.NUMBERS, (WARNINGS, tr("Warnings")))]
-
-    def declare(self):
-        """Add the parameters and outputs."""
-        raise NotImplementedError
-
-    def work(self, call, progress):
-        """Do the work; returns further results (numbers) by output name."""
-        raise NotImplementedError
 
     # -- what others ask --------------------------------------------------------------------
 
@@ -63,7 +57,7 @@ class Algorithm:
 
     def help_paragraphs(self):
         """The explanation below the summary."""
-        return [tr(part) for part in self.HELP.split("\n\n") if part]
+        return [tr(part) for part in help_texts().get(self.ID, ())]
 
     def tags(self):
         """Search words in the user's language and in English, which the field speaks everywhere."""
@@ -227,12 +221,19 @@ class SettingSpec:
         return allowed.lowest, allowed.maximum * self.times
 
 
-@dataclass(frozen=True)
-class NumberOutput:
-    """A number among the results."""
+def settings_of(table, settings, names, **further):
+    """The SettingSpecs of a core Settings class, with the labels and helps that help.txt has for them under the name of the table.
 
-    name: str
-    label: str
+    names : of the parameters, with spaces between them, in the order of the dialog, which folds those with a star behind them away; a parameter
+        is the field of its name in small letters
+    further : name to a dict of other attributes of its SettingSpec
+    """
+    return tuple(SettingSpec(**{
+        "name": name, "settings": settings, "field": name.lower(), "advanced": star == "*", **dict(zip(("label", "help"), map(
+            tr, help_texts()[f"{table} {name}"]))), **further.get(name, {})}) for name, star in re.findall(r"(\w+)(\*?)", names))
+
+
+NumberOutput = namedtuple("NumberOutput", "name label")   # a number among the results
 
 
 def number_refused(label, name, value, least, most):

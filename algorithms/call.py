@@ -13,12 +13,13 @@ from pathlib import Path
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_memory, out_of_memory
 from ..core.common.progress import RememberedMessages
+from ..core.io.local_files import gdal_exceptions, open_raster
 from ..core.lazy import gdal
 from .algorithm import WARNINGS, settings_class
 from .destinations import Unfinished, check_folder, check_suffix, check_writable, destination_path
 from .map_layers import MAP_LAYERS
 from .provenance import provenance_now, run_facts, sign_file, sign_report
-from .survey_files import cloud_files, survey_name
+from .survey_files import cloud_files, read_trajectory_source, survey_name, trajectory_path
 from .texts import tr
 from .vector_source import in_file_units, read_features
 
@@ -30,6 +31,24 @@ class Call:
 
     algorithm : Algorithm
     parameters : dict, parameter name to what was given
+
+    Each program adds these in its own way, most of them by the name of a parameter or result:
+
+    files : the paths given for a parameter of several files
+    file : the path given for a file parameter, "" for none; it need not be there
+    value : a number, a flag, a word of a choice, or a text as it was given
+    crs : WKT, or "" where none was chosen; raises RoadExtractionError where it is not known
+    connection : how libpq connects to a database that was chosen; it may hold a password, and nobody is shown it
+    raster : the file of a raster input
+    source : a vector input as VectorSource; None where the optional parameter is empty
+    painted : (VectorSource, "", "") or, of a raster, (None, path, WKT of its CRS)
+    rows_where(name, source) : whether the expression of a parameter holds, for every row of a VectorSource; None where the expression is empty
+    layer_name : what the user calls a layer that was given
+    destination : where a result is to be written, as text; "" where it is not wanted
+    output_path : the file that a wanted file or raster result goes to
+    read_as(value, path) : the label of the input whose file or table a destination would replace, or ""
+    values() : what the user gave or left at its default for every input, in types that JSON has
+    finish(numbers) : write the layers, give files their names, and return all results by name
     """
 
     VECTOR_SUFFIXES = ()  # endings of the vector formats that can be written
@@ -46,64 +65,6 @@ class Call:
 
     def label(self, name):
         return self.algorithm.parameter(name).label
-
-    # -- what each program does its own way ---------------------------------------------------
-
-    def files(self, name):
-        """The paths given for a parameter of several files."""
-        raise NotImplementedError
-
-    def file(self, name):
-        """The path given for a file parameter, "" for none; it need not be there."""
-        raise NotImplementedError
-
-    def value(self, name):
-        """A number, a flag, a word of a choice, or a text as it was given."""
-        raise NotImplementedError
-
-    def crs(self, name="CRS"):
-        """WKT, or "" where none was chosen; raises RoadExtractionError where it is not known."""
-        raise NotImplementedError
-
-    def connection(self, name):
-        """How libpq connects to a database that was chosen; it may hold a password, and nobody is shown it."""
-        raise NotImplementedError
-
-    def raster(self, name):
-        """The file of a raster input."""
-        raise NotImplementedError
-
-    def source(self, name):
-        """A vector input as VectorSource; None where the optional parameter is empty."""
-        raise NotImplementedError
-
-    def painted(self, name):
-        """(VectorSource, "", "") or, of a raster, (None, path, WKT of its CRS)."""
-        raise NotImplementedError
-
-    def rows_where(self, name, source):
-        """Whether the expression of a parameter holds, for every row of a VectorSource; None where the expression is empty."""
-        raise NotImplementedError
-
-    def layer_name(self, name):
-        """What the user calls a layer that was given."""
-        raise NotImplementedError
-
-    def destination(self, name):
-        """Where a result is to be written, as text; "" where it is not wanted."""
-        raise NotImplementedError
-
-    def output_path(self, name):
-        """The file that a wanted file or raster result goes to."""
-        raise NotImplementedError
-
-    def read_as(self, value, path):
-        """The label of the input whose file or table a destination would replace, or ""."""
-        raise NotImplementedError
-
-    def finish(self, numbers):
-        """Write the layers, give files their names, and return all results by name."""
-        raise NotImplementedError
 
     @property
     def names_only(self):
@@ -145,8 +106,6 @@ class Call:
 
     def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True, columns=""):
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` and the `columns` of a file overrule what it says."""
-        from .survey_files import read_trajectory_source, trajectory_path
-
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
             from ..core.survey.trajectory.reader import read_trajectory
@@ -165,7 +124,6 @@ class Call:
             return None
 
         from ..core.io.crs import parse_crs, place_of_raster, same_crs
-        from ..core.io.local_files import gdal_exceptions, open_raster
 
         path = self.raster(name)
         with gdal_exceptions():
@@ -227,8 +185,8 @@ class Call:
             target = str(path.absolute()) if value == str(path) else value
             if target in label_by_target:
                 raise RoadExtractionError(
-                    tr("{first} and {second} would both be written to {path}, and one would be lost. Give each a file of its own, "
-                       "or name the layers in one GeoPackage: ogr:dbname='map.gpkg' table=\"road_edges\" (geom).").format(
+                    tr("{first} and {second} would both be written to {path}, and one would be lost. Give each its own file, "
+                       "or a table of one GeoPackage: ogr:dbname='map.gpkg' table=\"road_edges\" (geom).").format(
                         first=label_by_target[target], second=spec.label, path=path))
             label_by_target[target] = spec.label
             check_writable(path, spec.label)
@@ -283,10 +241,6 @@ class Call:
     def layers(self):
         """[(name, Features)] of the vector results so far."""
         return self._layers
-
-    def values(self):
-        """What the user gave or left at its default for every input, in types that JSON has."""
-        raise NotImplementedError
 
     def sign_files(self):
         """Note in every file where it comes from; that note, for the layers."""

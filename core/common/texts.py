@@ -95,17 +95,14 @@ def places_in(text: str) -> list[RoadPlace]:
 class CoreMessages:
     """Sentences of the core and their translations; `{}` stands for a number, a name or a phrase that is a text of the core itself.
 
-    translations : {English: translation}, with as many places in the same order; an empty one is none
+    path : JSON, {English: translation}, with as many places in the same order; an empty one is none, as is a file that is not there
     word : from a single word that is put in, such as a side, to that of the language
     """
 
-    def __init__(self, translations: dict[str, str], word: Callable[[str], str] = str):
+    def __init__(self, path: Path, word: Callable[[str], str] = str):
+        translations = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
         self.word = word
         self._known = {source.strip(): target.strip() for source, target in translations.items() if target}
-
-    @classmethod
-    def load(cls, path: Path, word: Callable[[str], str] = str) -> CoreMessages:
-        return cls(json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}, word)
 
     def told(self, text: str) -> str:
         """A message in the user's language, sentence by sentence where it is not known as a whole; as it is where none of it is known."""
@@ -127,7 +124,7 @@ class CoreMessages:
             match = pattern.fullmatch(text)
             if match:
                 values = [self._value(value) for value in match.groups()]
-                translated = _filled(target, values)
+                translated = "".join(text for pair in zip(target.split(BRACES), [*values, ""]) for text in pair)
                 # a sentence of which a phrase stays unknown may be another one, whose phrases are all known
                 if not any(value == before and before.count(" ") >= PHRASE for value, before in zip(values, match.groups())):
                     return translated
@@ -156,13 +153,5 @@ class CoreMessages:
         """(pattern, translation) of what has places; made when something is said first, since starting QGIS need not wait for it."""
         with_places = [source for source in self._known if BRACES in source]
         # the most words first: a short sentence may begin as a long one does
-        return [(_pattern(source), self._known[source]) for source in sorted(with_places, key=lambda source: -len(source.replace(BRACES, "")))]
-
-
-def _filled(target, values):
-    parts = target.split(BRACES)
-    return "".join(text for pair in zip(parts, [*values, ""]) for text in pair)
-
-
-def _pattern(source):
-    return re.compile("(.*?)".join(re.escape(part) for part in source.split(BRACES)), re.DOTALL)
+        return [(re.compile("(.*?)".join(map(re.escape, source.split(BRACES))), re.DOTALL), self._known[source])
+                for source in sorted(with_places, key=lambda source: -len(source.replace(BRACES, "")))]

@@ -84,22 +84,22 @@ class Curve:
         """The curve shifted by (dx, dy) metres: from local to map coordinates."""
         return replace(self, x=self.x + dx, y=self.y + dy)  # type: ignore[type-var, attr-defined]
 
-    def reversed(self) -> Curve:
-        """The curve in the opposite direction."""
-        raise NotImplementedError
-
 
 class TabulatedCurve(Curve):
     """A curve of a parameter t, with a table of arc lengths.
 
-    Subclasses define `_span` (t at start and end), `_place`, `_slope` and `_bend` (position and its first and second derivative by t, (N, 2)).
+    Subclasses define `_place`, `_slope` and `_bend` (position and its first and second derivative by t, (N, 2)).
     """
 
-    _span: Callable[[], tuple[float, float]]
+    first: float   # first, last: t at start and end, of those that have no knots
+    last: float
     _place: Callable[[np.ndarray], np.ndarray]
     _slope: Callable[[np.ndarray], np.ndarray]
     _bend: Callable[[np.ndarray], np.ndarray]
     tilt: float   # radians, direction of the axis of those that have one
+
+    def _span(self):
+        return self.first, self.last
 
     @cached_property
     def _table(self):
@@ -168,13 +168,6 @@ def _rising(t, values):
     return (t, values) if t[-1] >= t[0] else (t[::-1], values[::-1])
 
 
-def _arc_step(turn):
-    """sin(a)/a and (1 - cos(a))/a, also at a = 0."""
-    small = np.abs(turn) < 1e-5
-    safe = np.where(small, 1.0, turn)
-    return np.where(small, 1.0 - turn**2 / 6, np.sin(safe) / safe), np.where(small, turn / 2, (1 - np.cos(safe)) / safe)
-
-
 @dataclass(frozen=True)
 class Arc(Curve):
     """A circular arc, or a straight line where `bend` is 0.
@@ -196,14 +189,13 @@ class Arc(Curve):
     def radius(self) -> float:
         return abs(1.0 / self.bend) if self.bend else float("nan")
 
-    @property
-    def centre(self) -> tuple[float, float]:
-        """(x, y) of the circle's centre, metres; only where `bend` is not 0."""
-        return self.x - np.sin(self.direction) / self.bend, self.y + np.cos(self.direction) / self.bend
-
     def at(self, u: np.ndarray) -> np.ndarray:
         u = np.asarray(u, float)
-        along, across = (f * u for f in _arc_step(self.bend * u))
+        turn = self.bend * u
+        small = np.abs(turn) < 1e-5
+        safe = np.where(small, 1.0, turn)
+        along = np.where(small, 1.0 - turn**2 / 6, np.sin(safe) / safe) * u
+        across = np.where(small, turn / 2, (1 - np.cos(safe)) / safe) * u
         c, s = np.cos(self.direction), np.sin(self.direction)
         return np.c_[self.x + along * c - across * s, self.y + along * s + across * c]
 
@@ -229,7 +221,8 @@ class Arc(Curve):
     def params(self) -> dict[str, Any]:
         numbers = super().params()
         if self.bend:
-            numbers["centre"], numbers["radius"] = [float(c) for c in self.centre], self.radius
+            centre = self.x - np.sin(self.direction) / self.bend, self.y + np.cos(self.direction) / self.bend
+            numbers["centre"], numbers["radius"] = [float(c) for c in centre], self.radius
         return numbers
 
     def reversed(self) -> Arc:
@@ -265,15 +258,11 @@ class CurveFit:
         return percentiles(np.abs(self.residuals), (95.0,))[0]
 
     @cached_property
-    def _information(self) -> float:
-        n = len(self.residuals)
-        mean_loss = 2 * FITS.soft_l1_scale**2 * np.sum(np.sqrt(1 + (self.residuals / FITS.soft_l1_scale) ** 2) - 1) / n
-        return n * np.log(max(mean_loss, FITS.noise_floor**2))
-
-    @property
     def bic(self) -> float:
         """Bayesian information criterion ``n ln(RSS/n) + p ln n``, with the soft L1 loss that was minimised as RSS."""
-        return float(self._information + self.parameters * np.log(len(self.residuals)))
+        n = len(self.residuals)
+        mean_loss = 2 * FITS.soft_l1_scale**2 * np.sum(np.sqrt(1 + (self.residuals / FITS.soft_l1_scale) ** 2) - 1) / n
+        return float(n * np.log(max(mean_loss, FITS.noise_floor**2)) + self.parameters * np.log(n))
 
 
 def bic_lower_bound(points: int, parameters: float) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -165,13 +165,8 @@ class Spline(TabulatedCurve):
     def moved(self, dx: float, dy: float) -> Spline:
         return Spline(self.knots, tuple(v + dx for v in self.control_x), tuple(v + dy for v in self.control_y))
 
-    def reversed(self) -> Spline:
-        turn = self.knots[0] + self.knots[-1]
-        return Spline(tuple(turn - k for k in self.knots[::-1]), self.control_x[::-1], self.control_y[::-1])
 
-
-def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[np.ndarray | None] | None = None,
-                bandwidth: float | None = None) -> list[CurveFit]:
+def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[np.ndarray | None] | None = None) -> list[CurveFit]:
     """Fit a penalised cubic B-spline to each line, from its first point to its last, by robust least squares.
 
     The penalty is on the third derivative: arcs are not affected, only changes of
@@ -181,14 +176,13 @@ def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[
 
     lines : list of (x, y), each (N,) metres, N >= 4, ordered along the line; gaps are allowed
     along : for each line its (N,) rising distances, metres, such as stations, or None for the chord lengths of its points
-    bandwidth : metres, or None to select it for each line
 
     References
     ----------
     .. [1] Eilers and Marx (1996), Statistical Science 11, 89-121; the effective
        dimension is the integral of 1 / (1 + (w b)^6).
     """
-    selections = [_SplineSelection(*checked_points(x, y, 4), distances, bandwidth) for (x, y), distances in zip(lines, along or [None] * len(lines))]
+    selections = [_SplineSelection(*checked_points(x, y, 4), distances) for (x, y), distances in zip(lines, along or [None] * len(lines))]
     waiting = [line for line in selections if line.waiting]
     while waiting:
         check_cancelled()
@@ -215,11 +209,11 @@ def _next_batch(waiting):
 class _SplineSelection:
     """A line to which a spline is fitted: the bandwidths still to be tried, and the best fit so far."""
 
-    def __init__(self, x, y, along, bandwidth):
+    def __init__(self, x, y, along):
         self.x, self.y = x, y
         self.t = _chord_lengths(x, y) if along is None else np.asarray(along, float) - along[0]
         self.length = float(self.t[-1])
-        self.waiting = [bandwidth] if bandwidth else [b for b in FITS.bandwidths[::-1] if b < max(self.length, 2.5)]
+        self.waiting = [b for b in FITS.bandwidths[::-1] if b < max(self.length, 2.5)]
         self.best = None
 
     def take(self, fitted):
@@ -254,10 +248,9 @@ def _chord_lengths(x, y):
 
 
 def _smoothed(values, reach=4):
-    padded = np.r_[2 * values[0] - values[reach:0:-1], values, 2 * values[-1] - values[-2:-reach - 2:-1]] \
-        if len(values) > reach else values
-    if len(padded) == len(values):
+    if len(values) <= reach:
         return values
+    padded = np.r_[2 * values[0] - values[reach:0:-1], values, 2 * values[-1] - values[-2:-reach - 2:-1]]
     return np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
 
 
@@ -294,37 +287,13 @@ class Profile:
 
 def smooth_profiles(profiles: Sequence[tuple[np.ndarray, np.ndarray]], bandwidth: float) -> list[Profile]:
     """Robust smoothing splines of profiles, such as heights along lines, (t, values) with (N,) metres and t rising; `bandwidth` in metres."""
-    profiles = [(np.asarray(t, float), np.asarray(values, float)) for t, values in profiles]
-    functions: list[Any] = [None] * len(profiles)
-    smoothable = []
-    for k, (t, values) in enumerate(profiles):
-        if len(t) < 4 or t[-1] - t[0] < 1.0:
-            functions[k] = Profile(np.empty(0), np.empty(0), median(values), 0.0)
-        else:
-            smoothable.append(k)
-    for first, end in _batches([len(profiles[k][0]) for k in smoothable], FITS.spline_points_per_batch):
-        check_cancelled()
-        batch = smoothable[first:end]
-        for k, smooth in zip(batch, _smooth([profiles[k] for k in batch], bandwidth)):
-            functions[k] = smooth
+    functions = [Profile(np.empty(0), np.empty(0), median(values), 0.0) for _, values in profiles]
+    smoothable = [k for k, (t, _) in enumerate(profiles) if len(t) >= 4 and t[-1] - t[0] >= 1.0]
+    if smoothable:
+        basis = _SplineBasis([(profiles[k][0] - profiles[k][0][0], [bandwidth]) for k in smoothable])
+        places = np.concatenate([profiles[k][1] - functions[k].level for k in smoothable])
+        solved = basis.robustly_solved(places[:, None], lambda at, slope: places - at[:, 0], FITS.max_profile_reweightings)
+        for k, knots, (control, _) in zip(smoothable, basis.knots, solved):
+            functions[k] = replace(functions[k], knots=knots, control=control[:, 0], start=float(profiles[k][0][0]))
     return functions
-
-
-def _batches(counts: Sequence[int], max_points: int) -> list[tuple[int, int]]:
-    """[(first, end)] of successive lines with at most `max_points` points together; a single line may have more."""
-    ranges, first, size = [], 0, 0
-    for k, count in enumerate(counts):
-        if k > first and size + count > max_points:
-            ranges.append((first, k))
-            first, size = k, 0
-        size += count
-    return [*ranges, (first, len(counts))] if len(counts) else []
-
-
-def _smooth(profiles, bandwidth):
-    basis = _SplineBasis([(t - t[0], [bandwidth]) for t, _ in profiles])
-    levels = [median(values) for _, values in profiles]
-    places = np.concatenate([values - level for (_, values), level in zip(profiles, levels)])
-    solved = basis.robustly_solved(places[:, None], lambda at, slope: places - at[:, 0], FITS.max_profile_reweightings)
-    return [Profile(knots, control[:, 0], level, float(t[0])) for knots, (control, _), level, (t, _) in zip(basis.knots, solved, levels, profiles)]
 

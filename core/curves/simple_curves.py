@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -110,9 +110,6 @@ class Ellipse(TabulatedCurve):
 
     kind = "ellipse"
 
-    def _span(self):
-        return self.first, self.last
-
     def _place(self, t):
         return self._turned(self.a * np.cos(t), self.b * np.sin(t)) + [self.x, self.y]
 
@@ -122,9 +119,6 @@ class Ellipse(TabulatedCurve):
 
     def _bend(self, t):
         return self._turned(-self.a * np.cos(t), -self.b * np.sin(t))
-
-    def reversed(self) -> Ellipse:
-        return replace(self, first=self.last, last=self.first)
 
 
 def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> CurveFit:
@@ -232,9 +226,6 @@ class Polynomial(TabulatedCurve):
 
     kind = "polynomial"
 
-    def _span(self):
-        return self.first, self.last
-
     def _value(self, t, order):
         series = np.polynomial.Polynomial(self.coefficients)
         return series.deriv(order)(t / self.scale) / self.scale**order if order else series(t / self.scale)
@@ -247,10 +238,6 @@ class Polynomial(TabulatedCurve):
 
     def _bend(self, t):
         return self._turned(np.zeros_like(t), self._value(t, 2))
-
-    def reversed(self) -> Polynomial:
-        turned = tuple(-c * (-1) ** k for k, c in enumerate(self.coefficients))
-        return Polynomial(self.x, self.y, self.tilt + np.pi, self.scale, turned, -self.last, -self.first)
 
 
 def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:

@@ -11,7 +11,6 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
-from ..execution.phase import Phase
 from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
@@ -30,7 +29,7 @@ from .asphalt_model import (
     to_intensity,
     to_level,
 )
-from .beams import Beams
+from .beams import Beams, run_stretches
 from .weights import ASPHALT
 
 # Saturated intensities: values that a scanner or an export cut off at an end of their range.
@@ -58,9 +57,8 @@ class _Saturation:
         levels = levels[levels.any(axis=1)]
         if not len(levels):
             return cls()
-        ends = [[_accumulated(row[way]) for row in levels] for way in (slice(None), slice(None, None, -1))]
         total, used = levels.sum(), np.flatnonzero(levels.any(axis=0))
-        at_lowest, at_highest = (float(sum(side) / total) for side in ends)
+        at_lowest, at_highest = (float(sum(map(_accumulated, side)) / total) for side in (levels, levels[:, ::-1]))
         low, high = np.rint(to_intensity(used[[0, -1]])).tolist()
         return cls(low, at_lowest, high if highest is None else float(highest), at_highest)
 
@@ -70,10 +68,10 @@ class _Saturation:
         texts = []
         if self.at_highest >= ASPHALT.max_share_at_highest:
             texts.append(f"{100 * self.at_highest:.0f} % of the road's points have the highest intensity, {self.highest:.0f}: brighter values "
-                         "were cut off, so that paint there may be no brighter than asphalt and be missed.")
+                         "were cut off, and paint there may be missed.")
         if self.at_lowest >= MAX_SHARE_AT_LOWEST:
             texts.append(f"{100 * self.at_lowest:.0f} % of the road's points have the lowest intensity, {self.lowest:.0f}: darker values "
-                         "were cut off, so that asphalt seems to be of one tone and its bright spots may be taken for paint.")
+                         "were cut off, and bright spots of asphalt may be taken for paint.")
         return " ".join([*texts, REMEDY]) if texts else ""
 
 
@@ -121,18 +119,11 @@ class _IntensityReport:
     scale: str = ""   # "linear", "logarithmic", or "" where nothing was corrected
     reference: float = float("nan")   # the intensity that asphalt was brought to
     scanners: list[dict[str, Any]] = field(default_factory=list)
-    between_before: float = float("nan")   # between_before, between_after: highest over lowest scanner's asphalt
-    between_after: float = float("nan")
     spread_before: float = float("nan")   # spread_before, spread_after: coefficient of variation of asphalt over distances and scanners, %
     spread_after: float = float("nan")
     beams: int = 0   # how many beams of spinning scanners were equalised, 0 where there are none
     saturation: _Saturation = _Saturation()   # whether intensities were cut off at an end
     reason: str = ""   # why nothing was corrected, "" where it was
-
-    @property
-    def saturation_warning(self) -> str:
-        """A warning of intensities that were cut off, "" where they were not."""
-        return self.saturation.warning
 
     def lines(self) -> list[str]:
         """Sentences for a log."""
@@ -142,7 +133,7 @@ class _IntensityReport:
                  f"{self.spread_after:.1f} % over distances and scanners, {self.spread_before:.1f} % before."]
         if self.beams:
             texts[0] += f" {self.beams} beams of unequal brightness were equalised."
-        texts += [self.saturation_warning] if self.saturation_warning else []
+        texts += [self.saturation.warning] if self.saturation.warning else []
         for row in self.scanners:
             texts.append(f"Scanner {row['scanner']}: asphalt varies by {row['spread_after']:.1f} % from {row['nearest']:.0f} to "
                          f"{row['farthest']:.0f} m, {row['spread_before']:.1f} % before.")
@@ -176,7 +167,7 @@ class AsphaltLook:
         # points without a position of the vehicle, and all points
         without_vehicle, highest = np.zeros(2, np.int64), 0
         arguments = list(frame.passes), beams, scanners, step
-        for raw, equal, brightest, lost in _run(levels_of_stretch, road_points, arguments, progress.part(0.4, 1.0)):
+        for raw, equal, brightest, lost in run_stretches(levels_of_stretch, road_points, arguments, progress.part(0.4, 1.0)):
             before.add(raw, step)
             modelled.add(equal, step)
             without_vehicle += lost
@@ -215,21 +206,13 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
         return road_points, _IntensityReport(reason=asphalt.reason)
     store, after = _corrected_store(road_points, frame, asphalt, progress.part(0.5, 1.0))
     report = _report(asphalt.counts, after, asphalt.table, asphalt.points_by_scanner)
-    report.beams = asphalt.beams.count if asphalt.beams else 0
+    report.beams = sum(map(len, asphalt.beams.corrections.values())) if asphalt.beams else 0
     report.saturation = _Saturation.from_levels(asphalt.counts[ACROSS_TRACK].sum(axis=1), asphalt.highest)
-    if report.saturation_warning:
-        progress.warn(report.saturation_warning)
+    if report.saturation.warning:
+        progress.warn(report.saturation.warning)
     for line in report.lines()[:1]:
         progress.info(line)
     return replace(road_points, store=store, has_corrected=True), report
-
-
-def _run(function, road_points, arguments, progress, source=None):
-    """Yield the results of a phase, a function of stretches of the road points, that reads from these or from a `source`."""
-    length, source = road_points.store.section_length, road_points if source is None else source
-    phase = Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length),
-                  state=road_points.store.state)
-    return road_points.executor.run(phase, road_points.stretches(), progress)
 
 
 def _reason_of_counts(table, lost, points):
@@ -247,7 +230,7 @@ def _corrected_store(road_points, frame, asphalt, progress):
     kinds = np.unique(table.distance_kind[asphalt.points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
     store = road_points.store.with_column("corrected", road_points.store.folder)
     arguments = list(frame.passes), asphalt.beams, table, table.lookup(), kinds, asphalt.step
-    for index, counts in _run(corrected_of_stretch, road_points, arguments, progress, replace(road_points, store=store)):
+    for index, counts in run_stretches(corrected_of_stretch, road_points, arguments, progress, replace(road_points, store=store)):
         store.adopt(index, store.folder)
         after.add(counts, asphalt.step)
     return store, after.counts
@@ -355,10 +338,7 @@ def _report(before, after, table, points_by_scanner):
             row.update({f"asphalt_{name}": mean, f"spread_{name}": variation,
                         f"fall_{name}": float(levels[scanner, use].max() / max(levels[scanner, use].min(), 1e-9))})
         report.scanners.append(row)
-    for name, levels in zip(("before", "after"), medians):
-        means = [row[f"asphalt_{name}"] for row in report.scanners]
-        setattr(report, f"between_{name}", max(means) / max(min(means), 1e-9))
-        setattr(report, f"spread_{name}", _variation(levels[usable], weight[usable])[1])
+    report.spread_before, report.spread_after = (_variation(levels[usable], weight[usable])[1] for levels in medians)
     return report
 
 

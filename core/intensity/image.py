@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import lru_cache
 from os import PathLike
 from typing import Any
 
 import numpy as np
 from scipy import sparse
 
-from ..common.arrays import order_by, quantiles
+from ..common.arrays import order_by
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ScratchBuffers, check_cancelled
 from ..common.progress import Progress
 from ..common.setting import Limited, setting
-from ..execution.phase import THREADS, Executor, Phase, digest
+from ..execution.phase import THREADS, Phase, digest
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
 from ..lazy import cv2
 from ..survey.consistency import sample_road_points
@@ -33,7 +33,7 @@ from .weights import IMAGE
 PRODUCTS_AT_ONCE = 1 << 18
 
 
-_thread = threading.local()   # the kernels of each thread
+Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,12 @@ def _reach_of(settings: ImageSettings) -> int:
     return int(np.ceil(settings.radius_cells))
 
 
-def _lattice_cell(units: np.ndarray | int, origin: float, cell_size: float) -> Any:
-    """Column or row of the lattice in which coordinates lie, whole float64; `units` of 0.1 mm from `origin`, m."""
-    return np.floor((units * COORDINATE_SCALE + origin) / cell_size)
+def _extent_of(points: Points, origin: np.ndarray, settings: ImageSettings) -> Extent:
+    """The Extent of the cells that points reach; origin : as of `_interpolation_sums`."""
+    reach = _reach_of(settings)
+    (left, right), (bottom, top) = ([int(np.floor((int(end) * COORDINATE_SCALE + o) / settings.cell_size)) for end in (c.min(), c.max())]
+                                    for c, o in ((points.records[name], o) for name, o in zip("xy", origin)))
+    return left - reach, right + reach, bottom - reach, top + reach
 
 
 def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.ndarray], origin: np.ndarray, settings: ImageSettings,
@@ -89,12 +92,9 @@ def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nd
     origin : (2,) or more, map coordinates that x and y of the points leave out, m
     step : one of `step` points stands for all of them on cells farther than the next
     """
-    x, y, values = points.records["x"], points.records["y"], points.value
-    reach, cell = _reach_of(settings), settings.cell_size
-    (left, right), (bottom, top) = ([int(_lattice_cell(int(end), o, cell)) for end in (c.min(), c.max())]
-                                    for c, o in ((x, origin[0]), (y, origin[1])))
-    left, top = left - reach, top + reach
-    width, height = right + reach + 1 - left, top - (bottom - reach) + 1
+    x, y, values, cell = points.records["x"], points.records["y"], points.value, settings.cell_size
+    left, right, bottom, top = _extent_of(points, origin, settings)
+    width, height = right + 1 - left, top + 1 - bottom
     sums = np.zeros(width * height, np.complex64)   # weights and weighted values, which are added to the same cells
     whole, near, far = _kernels(settings)
     at_once = near.at_once if step > 1 else whole.at_once
@@ -129,16 +129,14 @@ def _in_cell(units, origin, cell_size):
     return cell, position.astype(np.float32)
 
 
+@lru_cache(maxsize=1)
 def _kernels(settings: ImageSettings) -> list[_Kernel]:
-    """The thread's own kernels: of all cells around a point, of the nearest nine, and of those beyond."""
-    if getattr(_thread, "settings", None) != settings:
-        radius, reach = settings.radius_cells, _reach_of(settings)
-        offsets = [(right, up) for up in range(-reach, reach + 1) for right in range(-reach, reach + 1)
-                   if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < radius]
-        near = [offset for offset in offsets if max(map(abs, offset)) <= 1]
-        _thread.settings = settings
-        _thread.kernels = [_Kernel(settings, cells) for cells in (offsets, near, [offset for offset in offsets if offset not in near])]
-    return _thread.kernels
+    """The kernels of all cells around a point, of the nearest nine, and of those beyond; several threads may use them."""
+    reach = _reach_of(settings)
+    offsets = [(right, up) for up in range(-reach, reach + 1) for right in range(-reach, reach + 1)
+               if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < settings.radius_cells]
+    near = [offset for offset in offsets if max(map(abs, offset)) <= 1]
+    return [_Kernel(settings, cells) for cells in (offsets, near, [offset for offset in offsets if offset not in near])]
 
 
 class _Kernel:
@@ -204,7 +202,6 @@ class _Kernel:
 MAX_TILES = 2**24       # source: of an image, most of them empty: GDAL keeps 16 bytes of each
 
 PIECE_LENGTH = IMAGE.ranking_window / IMAGE.pieces_per_window
-Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice
 Tile = tuple[int, int]   # column and row of tiles
 FilledTile = tuple[int, int, np.ndarray]   # column and row of the first of the (H, W) float32 pixels of a tile about those with data, and these
 
@@ -239,13 +236,17 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     with image.new_file(path, before) if path else nullcontext() as file:
         # a few are made before workers would have started
         executor = THREADS if 2 * len(new) < len(work) else road_points.executor
-        for column, row, values in _tiles(grid, new, road_points, settings, progress.part(0.3, 1.0), executor):
-            image.put(column, row, values)
-            if file is not None:
-                file.write(column, row, values)
-                # compressed by another thread while the next tiles are made
-                file.flush()
-    progress.info(grid.summary)
+        tasks = [new[k:k + IMAGE.tiles_per_task] for k in range(0, len(new), IMAGE.tiles_per_task)]
+        phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
+            *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)))
+        for tiles in executor.run(phase, tasks, progress.part(0.3, 1.0)):
+            for tile in filter(None, tiles):
+                image.put(*tile)
+                if file is not None:
+                    file.write(*tile)
+                    # compressed by another thread while the next tiles are made
+                    file.flush()
+    progress.info(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {grid.cell:g} m.")
     return image
 
 
@@ -292,7 +293,8 @@ def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress
     """The grid of the image, and the pieces of road that touch each tile."""
     if not len(road_points):
         raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
-    windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
+    spans = [(road, *(end / IMAGE.ranking_window for end in road_points.store.span(road))) for road in road_points.roads()]
+    windows = [(road, k) for road, start, end in spans for k in range(int(np.floor(start)), int(np.ceil(end)))]
     phase = Phase(windows_of_image, road_points, (settings,), lambda task: road_points.survey.stretch(*_span(IMAGE.ranking_window, *task[0])),
                   state=lambda task: [road_points.state(*_span(IMAGE.ranking_window, *window)) for window in task])
     looked = road_points.executor.run_together(phase, windows, IMAGE.looked_windows, progress.part(0.0, 0.3))
@@ -303,16 +305,6 @@ def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress
     check_fits((c1 - c0) * settings.cell_size, (r1 - r0) * settings.cell_size, settings)
     grid = _Grid(settings, c0, r1 - 1, c1 - c0, r1 - r0)
     return grid, _pieces_by_tile(grid, pieces)
-
-
-def _tiles(grid: _Grid, work: list[tuple[Tile, list[_Piece]]], road_points: RoadPoints, settings: ImageSettings,
-           progress: Progress, executor: Executor) -> Iterator[FilledTile]:
-    """Yield every tile with data, in the order of the road."""
-    tasks = [work[k:k + IMAGE.tiles_per_task] for k in range(0, len(work), IMAGE.tiles_per_task)]
-    phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
-        *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)))
-    for tiles in executor.run(phase, tasks, progress):
-        yield from (tile for tile in tiles if tile is not None)
 
 
 def _span(length, road, number):
@@ -329,35 +321,22 @@ def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, l
     return sorted(pieces_of_tile.items(), key=lambda item: (item[1][0].road, item[1][0].number, item[0]))
 
 
-def _window_numbers(road_points, road):
-    start, end = road_points.store.span(road)
-    return range(int(np.floor(start / IMAGE.ranking_window)), int(np.ceil(end / IMAGE.ranking_window)))
-
-
 def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]], settings: ImageSettings) -> list[list[_Piece]]:
     """The phase that looks what there is to interpolate in some windows, each a road and a number along it: the pieces with points of each."""
     return [_pieces_of_window(road_points, *window, settings) for window in windows]
 
 
 def _pieces_of_window(road_points, road, number, settings):
-    reach, cell = _reach_of(settings), settings.cell_size
     pieces, values = [], []
     for piece in range(number * IMAGE.pieces_per_window, (number + 1) * IMAGE.pieces_per_window):
-        points = _points_of(road_points, road, piece)
+        points = road_points.window(*_span(PIECE_LENGTH, road, piece))
         if len(points):
             step = _sampling_step(points, settings)
-            (c0, c1), (r0, r1) = ([int(_lattice_cell(int(end), o, cell)) for end in (c.min(), c.max())]
-                                  for c, o in ((points.records[name], o) for name, o in zip("xy", road_points.origin)))
             d = points.records["d"]
-            pieces.append((road, piece, (c0 - reach, c1 + reach, r0 - reach, r1 + reach), (int(d.min()), int(d.max())), step))
+            pieces.append((road, piece, _extent_of(points, road_points.origin, settings), (int(d.min()), int(d.max())), step))
             values.append(points[::max(step, len(points) // IMAGE.max_ranked_points)].value)
-    limits = tuple(quantiles(np.concatenate(values), [0.01, 0.99]).tolist()) if values else ()
+    limits = tuple(np.quantile(np.concatenate(values).astype(float), [0.01, 0.99]).tolist()) if values else ()
     return [_Piece(*piece, limits) for piece in pieces]
-
-
-def _points_of(road_points, road, number):
-    """The points of one piece."""
-    return road_points.window(road, number * PIECE_LENGTH, (number + 1) * PIECE_LENGTH)
 
 
 def _sampling_step(points: Points, settings: ImageSettings) -> int:
@@ -385,15 +364,11 @@ def _sums_of_piece(road_points, piece, settings):
     low, high = piece.limits
 
     def brightness(value):
-        scaled = value - np.float32(low)
-        scaled /= np.float32(max(high - low, 1e-9))
-        np.maximum(scaled, np.float32(0.0), out=scaled)
-        np.minimum(scaled, np.float32(1.0), out=scaled)
-        scaled *= np.float32(settings.beta)
-        scaled += np.float32(1.0 - settings.beta)
-        return scaled
+        share = np.clip((value - np.float32(low)) / np.float32(max(high - low, 1e-9)), np.float32(0.0), np.float32(1.0))
+        return share * np.float32(settings.beta) + np.float32(1.0 - settings.beta)
 
-    return _interpolation_sums(_points_of(road_points, piece.road, piece.number), brightness, road_points.origin, settings, piece.step)
+    points = road_points.window(*_span(PIECE_LENGTH, piece.road, piece.number))
+    return _interpolation_sums(points, brightness, road_points.origin, settings, piece.step)
 
 
 class _Grid:
@@ -406,10 +381,6 @@ class _Grid:
     @property
     def geotransform(self) -> tuple[float, ...]:
         return self.column * self.cell, self.cell, 0.0, (self.row + 1) * self.cell, 0.0, -self.cell
-
-    @property
-    def summary(self) -> str:
-        return f"Intensity image: {self.width:,} x {self.height:,} cells of {self.cell:g} m."
 
     def tiles_of(self, extent: Extent) -> list[Tile]:
         """(column, row) of every tile that an extent touches."""
@@ -465,10 +436,9 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     if not places:
         return
     x, y = (np.concatenate(part) for part in zip(*places))
-    left, size, _, top, _, _ = image.geotransform
-    shown = np.isfinite(image.sample(x, y))
-    if shown.mean() < IMAGE.min_shown_share:
+    share = np.isfinite(image.sample(x, y)).mean()
+    if share < IMAGE.min_shown_share:
+        left, size, _, top, _, _ = image.geotransform
         raise RoadExtractionError(
-            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, y "
-            f"{top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to {y.max():.1f}, "
-            f"and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that was made from these points.")
+            f"{image.path} does not show these road points, of which {100 * share:.0f} % lie on it. It covers x {left:.1f} to "
+            f"{left + size * image.width:.1f} and y {top - size * image.height:.1f} to {top:.1f}. Give the image made from these points.")

@@ -52,9 +52,8 @@ def check_metric(crs: Any, what: str) -> None:
     """
     flat = horizontal_part(crs)
     if flat.is_geocentric or flat.is_vertical:
-        coordinates = "geocentric coordinates, counted from the centre of the earth" if flat.is_geocentric else "heights alone"
-        raise RoadExtractionError(f"{what} is in {flat.name}, a CRS of {coordinates}. Road geometry needs x and y on a map: reproject it to a "
-                                  "projected CRS, such as the UTM zone of the survey, and run again.")
+        raise RoadExtractionError(f"{what} is in {flat.name}, a CRS of {'geocentric coordinates' if flat.is_geocentric else 'heights alone'}. "
+                                  "Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
     if flat.is_geographic:
         raise RoadExtractionError(f"{what} is in the geographic CRS {flat.name} (degrees). Road geometry needs metres: reproject it to a projected "
                                   "CRS, such as the UTM zone of the survey, and run again.")
@@ -79,8 +78,8 @@ def same_crs(a: Any, b: Any) -> bool:
     if a.equals(b, ignore_axis_order=True):
         return True
     # The WKT of LAS files has rounded parameters and other names: the projections themselves are compared.
-    first, second = (_projection(crs) for crs in (a, b))
-    return bool(first) and first == second
+    first, second = ({name: value for name, value in crs.to_dict().items() if name not in ("title", "type", "no_defs")} for crs in (a, b))
+    return bool(first) and first == second   # empty where PROJ has no words for a projection
 
 
 def moved_by(a: Any, b: Any, place: tuple[float, float]) -> float:
@@ -104,12 +103,6 @@ def check_same_crs(layer_crs: str, other: str, place: tuple[float, float], label
     if layer is not None and clouds is not None and not moved_by(layer, clouds, place) < IO.same_coordinates:
         raise RoadExtractionError(f"{label} is in {layer.name}, the point clouds are in {clouds.name}. "
                                   "Reproject the layer to their CRS and run again.")
-
-
-def _projection(crs):
-    """The projection and its parameters by name, without what is only said about them; empty where PROJ has no words for it."""
-    words = crs.to_dict()
-    return {key: value for key, value in words.items() if key not in ("title", "type", "no_defs")}
 
 
 # The CRS of a survey: projected, true to scale, and the same for all its files.
@@ -166,11 +159,11 @@ def _refuse_degrees(files, trajectory_crs):
     """Refuse clouds without a CRS where that of the trajectory does not help: it is geographic and they are not, or there is none and they are."""
     crs = horizontal_part(parse_crs(trajectory_crs))
     if crs is not None and crs.is_geographic and not _in_degrees(files):
-        raise RoadExtractionError(f"The point cloud carries no CRS, and the trajectory is in {crs.name} (degrees), so the position of one relative "
-                                  "to the other is unknown. Give the CRS of the point cloud by the parameter CRS.")
+        raise RoadExtractionError(
+            f"The point cloud carries no CRS, and the trajectory is in {crs.name} (degrees). Give the CRS of the point cloud by the parameter CRS.")
     if crs is None and _in_degrees(files):
-        raise RoadExtractionError("The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees: it is less than "
-                                  "1 m wide if they are metres. Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
+        raise RoadExtractionError("The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees. "
+                                  "Reproject it to a projected CRS, such as its UTM zone, and run again.")
 
 
 def _bounds(files):
@@ -188,8 +181,8 @@ def _in_degrees(files):
 def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
     """Sentences for the user about the CRS (WKT, "" where unknown) in which a survey is processed, and the one that was given; "" for none."""
     if not crs:
-        return ("The point cloud carries no CRS, and neither do the results: they lie in its own coordinates. Where these are "
-                "map coordinates, give their CRS by the parameter CRS (such as EPSG:25832) and run again.")
+        return ("The point cloud carries no CRS, and neither do the results. Where its coordinates are those of a map, give their CRS by the "
+                "parameter CRS and run again.")
     notes = [check_extent(crs, _bounds(files), "The point cloud")]
     stated = next((file.crs for file in files if file.crs), "")
     if given and stated and not same_crs(parse_crs(given), parse_crs(stated)):
@@ -198,7 +191,7 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
     notes += [f"What {file.path} says about its coordinates was not used, but the parameter CRS: {file.crs_problem}."
               for file in files if file.crs_problem][:1]
     if (units := as_in_file(crs)[1]).across != units.up:
-        across, *_, up = _unit_names(as_in_file(crs)[0])
+        across, *_, up = (axis.unit_name for axis in pyproj.CRS(as_in_file(crs)[0]).axis_info)
         notes.append(f"The point cloud says that the unit of its heights is the {up}, and that of its x and y the {across}: what is not in "
                      "metres was converted.")
     return " ".join(note for note in notes if note)
@@ -208,9 +201,8 @@ def unit_note(height: float, crs: str) -> str:
     """A note for the user where a cloud without CRS is in feet, as it seems by the height of the sensor above the road, m; "" for none."""
     if crs or not IO.suspicious_sensor_height[0] < height < IO.suspicious_sensor_height[1]:
         return ""
-    return (f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
-            "unit: everything is measured in metres, so curbs and markings would be missed. Set the parameter CRS to the CRS that they are "
-            "in, such as a zone of State Plane in feet.")
+    return (f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet. Set the parameter CRS to theirs, "
+            "such as State Plane in feet.")
 
 
 # Whether a survey lies where its CRS holds, and lengths on the map there are lengths on the ground.
@@ -275,16 +267,16 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
         turned = place_on_ground(crs, y, x)
         if turned.true_to_scale and _beside(turned, area) == 0:
             raise RoadExtractionError(
-                f"{what} has x and y exchanged: x is about {x:.0f} and y about {y:.0f}, and in its CRS {crs.name} only the place with y as the "
-                f"easting lies in the area of this CRS ({_named(area)}). Export it with the easting as x and the northing as y, and run again.")
+                f"{what} has x and y exchanged: only with y (about {y:.0f}) as the easting it lies in the area of {crs.name} ({_named(area)}). "
+                "Export the easting as x and run again.")
     if outside > IO.max_outside_area and max(abs(x), abs(y)) < IO.max_local:
-        return (f"{what} says that it is in {crs.name}, but its coordinates (about {x:.0f}, {y:.0f}) are those of a local system, or lack their "
-                "leading digits. They are taken as metres as they are; the results lie elsewhere on a map until the coordinates are complete.")
+        return (f"{what} says it is in {crs.name}; its coordinates (about {x:.0f}, {y:.0f}) are those of a local system or lack leading digits. "
+                "They are taken as metres; the map lies elsewhere.")
     if not location.true_to_scale:
         raise _not_true_to_scale(what, crs, place, location, area if outside > IO.min_exchanged else None)
     if outside > IO.max_outside_area:
-        return (f"{what} lies at {_degrees(location)}, outside the area of its CRS {crs.name} ({_named(area)}): if the survey was not made there, "
-                "its CRS is wrong, and so is that of the results. Correct it in the data.")
+        return (f"{what} lies at {_degrees(location)}, outside the area of its CRS {crs.name} ({_named(area)}). If the survey was not made there, "
+                "correct the CRS in the data.")
     return ""
 
 
@@ -297,7 +289,7 @@ def _not_true_to_scale(what, crs, place, there, area):
         lengths, zone = f"Lengths in it are {there.scale:.3f} times those on the ground", ""
     else:
         lengths = f"Lengths in it are {there.scale:.3f} times those on the ground at {_degrees(there)}"
-        zone = f", such as UTM zone {_utm_zone(there)},"
+        zone = f", such as UTM zone {min((there.longitude + 180) // 6 + 1, 60):.0f}{'N' if there.latitude >= 0 else 'S'},"
     return RoadExtractionError(f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that "
                                f"is made for this place{zone} or correct the CRS.")
 
@@ -358,10 +350,6 @@ def _degrees(place):
     return (f"{abs(place.latitude):.2f}° {'N' if place.latitude >= 0 else 'S'} {abs(place.longitude):.2f}° {'E' if place.longitude >= 0 else 'W'}")
 
 
-def _utm_zone(place):
-    return f"{int(min((place.longitude + 180) // 6 + 1, 60))}{'N' if place.latitude >= 0 else 'S'}"
-
-
 # Files in feet: inside all is metres, in a CRS that differs from the file's in its units alone; the doors of files convert.
 #
 # Such a *metric* CRS carries the WKT of the file's CRS in its remark, so that whatever is made from a survey is written in the survey's own CRS
@@ -415,7 +403,10 @@ def in_metres(wkt: str) -> tuple[str, FileUnits]:
     if crs is None:
         return "", METRES
     units = _units_of(crs)
-    return (wkt if units.metric or file_wkt else _metric_form(crs).to_wkt()), units
+    if units.metric or file_wkt:
+        return wkt, units
+    # with the same name and without the code, which is that of the original
+    return pyproj.CRS.from_json_dict({**_with_metres(crs.to_json_dict()), "remarks": MARK + crs.to_wkt()}).to_wkt(), units
 
 
 @lru_cache(maxsize=64)
@@ -453,12 +444,6 @@ def place_raster(dataset: Any, geotransform: Any, crs: str) -> None:
         dataset.SetProjection(wkt)
 
 
-def _unit_names(wkt: str) -> list[str]:
-    """The names of the units of x, y and, where a CRS says it, z."""
-    crs = parse_crs(wkt)
-    return [] if crs is None else [axis.unit_name for axis in crs.axis_info]
-
-
 def plane_wkt(wkt: str) -> str:
     """WKT of the horizontal part of a CRS that is worked in."""
     return in_metres(horizontal_part(parse_crs(as_in_file(wkt)[0])).to_wkt())[0]
@@ -476,13 +461,6 @@ def _units_of(crs):
     heights = [axis for axis in (crs.sub_crs_list[-1] if crs.is_compound else flat).axis_info if axis.direction.lower() in ("up", "down")]
     up = heights[0].unit_conversion_factor if heights else across
     return FileUnits(*(1.0 if abs(factor - 1.0) < IO.same_unit else float(factor) for factor in (across, up)))
-
-
-def _metric_form(crs):
-    """A pyproj.CRS with its lengths in metres and the same name, without the code, which is that of the original."""
-    content = _with_metres(crs.to_json_dict())
-    content["remarks"] = MARK + crs.to_wkt()
-    return pyproj.CRS.from_json_dict(content)
 
 
 def _with_metres(content):
