@@ -67,11 +67,11 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     return np.where(apart, np.where(open_left, left - beside[..., BEYOND], right + beside[..., BEYOND] + each_width), begin), each_width
 
 
-def beside_of(c: Candidates, strips: LaneStrips, rows: np.ndarray | slice = slice(None)) -> np.ndarray:
-    """(N, 4) of `lanes_beside` for some strips, on the inner side of their boundary that is painted; a lane beside the other has no room beyond it."""
-    interval, left, right, aside = (values[rows] for values in (strips.interval, strips.left, strips.right, strips.aside))
+def beside_of(c: Candidates, strips: LaneStrips) -> np.ndarray:
+    """(S, 4) of `lanes_beside` for some strips, on the inner side of their boundary that is painted; beyond one aside is no room."""
+    interval, left, right = strips.interval, strips.left, strips.right
     beside = np.where(UNPAINTED[c.made_of[interval, left]][:, None], c.beside[interval, right, 0], c.beside[interval, left, 1])
-    beside[aside, BEYOND] = 0.0
+    beside[strips.aside, BEYOND] = 0.0
     return beside
 
 
