@@ -115,7 +115,7 @@ def _inferred(track):
 
 
 def _driven_on(estimate, s, ahead, d, width, direction):
-    """(N,) m, how far aside those who drove in a lane at `d` at the first of the stations `ahead` drove at each; NaN beyond them, None without any."""
+    """(N,) m, how far aside those who drove in a lane at `d` at the first of the stations `ahead` drove at each; NaN beyond, None without any."""
     evidence = estimate.evidence
     there = np.isfinite(evidence.driven[:evidence.own, np.searchsorted(estimate.candidates.first, ahead, side="right") - 1])
     passes = np.flatnonzero((evidence.directions[:evidence.own] == direction) & there[:, 0])
