@@ -15,12 +15,12 @@ from ...common.progress import Progress
 from ...common.setting import Limited, setting
 from ...curves.robust import median
 from ...execution.in_step import Asked, Work, in_step
-from ...execution.phase import THREADS, Executor, Items, NoSource
+from ...execution.phase import THREADS, Executor, Items, NoSource, Phase
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points
-from ...survey.store.road_points import RoadPoints
+from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..road_grid import CELL_UNITS, occupied, track_reach
 from ..weights import CLASSES, ROWS, SHAPES
 from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, filled, relative_contrast, too_pale
@@ -43,6 +43,8 @@ from .shape import Shape, drawn_outline, lifted, measure, smallest_rectangle
 from .split_merge import are_compound, join_fragments, parts_of_compound
 
 STRIP_KINDS = LINE_KINDS + ("stop",)  # drawn as even strips, the others cell by cell
+# of a point of paint that clustering looks at
+PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
                      progress: Progress = Progress(), executor: Executor = THREADS) -> tuple[MarkingObjects, RoadPoints]:
     """Group road points on paint into markings with class, size and outline.
 
-    executor : who links points, looks for crossings, divides compound clusters and measures clusters
+    executor : who links points, looks for crossings and divides compound clusters
 
     Returns
         markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has several, with one `cluster` number
@@ -70,15 +72,18 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
     roads = marking_points.roads()
     lines = [frame.road(road) for road in roads]
-    connected = connected_points(marking_points, settings.distance, progress.part(0.0, 0.1), executor)
-    counts = [len(records) for records, _ in connected]
-    works = [_apart(*of_road, line, settings) for of_road, line in zip(connected, lines)]
+    executor = marking_points.store.readers(executor)
+    paint = [columns_of_roads(marking_points.store, [road], PAINT_COLUMNS) for road in roads]
+    connected, *striped = in_step([connected_points(marking_points, settings.distance), *map(_striped, paint, lines)], executor,
+                                  progress.part(0.0, 0.4))
+    counts = [len(labels) for labels in connected]
+    works = [_apart(*of_road, settings) for of_road in zip(paint, connected, striped)]
     # the labels of the points of all roads are in memory as long as anybody has them
-    del connected
-    apart = in_step(works, executor, PLACE, progress.part(0.1, 0.7))
+    del connected, striped
+    apart = in_step(works, executor, progress.part(0.4, 0.7))
     blocks = _blocks_of_all([pieces for _, pieces in apart])
     named = in_step([_markings(stripes, pieces, of_road, k, lines, settings, marking_points.has_corrected)
-                     for k, ((stripes, pieces), of_road) in enumerate(zip(apart, blocks))], executor, PLACE, progress.part(0.7, 1.0))
+                     for k, ((stripes, pieces), of_road) in enumerate(zip(apart, blocks))], executor, progress.part(0.7, 1.0))
     rows, polygons = [], []
     cluster = [np.zeros(count, np.int32) for count in counts]
     number = 0
@@ -107,63 +112,75 @@ class _Pieces(NamedTuple):
     shapes: list[Shape]
 
 
-def _apart(records: Columns, labels: np.ndarray, road: Road, settings: ClusterSettings) -> Work:
-    """The work on one road that gives the stripes of its crossings as [_Marking], and its _Pieces.
-
-    Stripes are set apart, compound clusters divided, and what wear has parted is joined.
-    """
+def _striped(records: Columns, road: Road) -> Work:
+    """The work on one road that finds the stripes of its crossings, [Stripe], and (N,) int32 the number of the stripe of each point, else -1."""
     cells, member = occupied(records["x"] // CELL_UNITS, records["y"] // CELL_UNITS)
     station = np.zeros(len(cells))
     station[member] = records["s"] * COORDINATE_SCALE
     places, way = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE, road.heading(station)
     del cells, station
     spots, windows = spots_by_place(places)
-    crossings = crossings_of(spots, windows, (yield combs_asked(places, windows, 0.35)))
+    crossings = crossings_of(spots, windows, (yield combs_asked(places, windows, 0.7)))
     del spots, windows
-    stripes = stripes_apart(places, way, crossings, (yield _stripes_asked(places, way, crossings, 0.45)))
+    stripes = stripes_apart(places, way, crossings, (yield _stripes_asked(places, way, crossings, 1.0)))
     stripe_of = np.full(len(places), -1, np.int32)
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
-    of_point = stripe_of[member]
-    del places, way, member
-    striped, rows = list(members_of(of_point)), np.flatnonzero(of_point < 0)
+    return stripes, stripe_of[member]
+
+
+def _apart(records: Columns, labels: np.ndarray, striped: tuple[list[Stripe], np.ndarray], settings: ClusterSettings) -> Work:
+    """The work on one road that gives the stripes of its crossings as [_Marking], and its _Pieces.
+
+    Stripes are set apart, compound clusters divided, and what wear has parted is joined.
+
+    labels, striped : as of `connected_points` and `_striped`
+    """
+    stripes, of_point = striped
+    members, rows = list(members_of(of_point)), np.flatnonzero(of_point < 0)
     paint, labels = records.take(rows), labels[rows]
-    split, pieces = yield from _divided(paint, _with_rows_divided(paint, labels))
+    stripe_rows = [of_stripe for _, of_stripe in members]
+    split, pieces, of_stripes = yield from _divided(paint, _with_rows_divided(paint, labels), _columns_at(records, _all_rows(stripe_rows), MEASURED),
+                                                    [*map(len, stripe_rows)])
     joins = join_fragments(pieces, settings.classes.max_width)
     order, starts, _ = _by_cluster(split, 1)
     again, starts, labels = _by_cluster(_relabelled(len(paint), starts, joins), settings.min_points)
     order = rows[order[again]]
     clusters, bounds = records.take(order), list(zip(starts[:-1].tolist(), starts[1:].tolist()))
     unjoined = _alone(pieces, joins)
-    # clusters that were joined, then stripes
-    measured = [order[first:end] for label, (first, end) in zip(labels.tolist(), bounds) if label not in unjoined]
-    shapes = iter((yield shapes_asked(records, [*measured, *(of_stripe for _, of_stripe in striped)], 1.0)))
-    of_clusters = [unjoined[label] if label in unjoined else next(shapes) for label in labels.tolist()]
-    return _stripe_markings(records, stripes, striped, shapes), _Pieces(records, clusters, order, bounds, of_clusters)
+    columns = _columns_at(records, order, MEASURED)
+    shapes = [unjoined[label] if label in unjoined else measure(*(column[slice(*ends)] for column in columns))
+              for label, ends in zip(labels.tolist(), bounds)]
+    return _stripe_markings(records, stripes, members, of_stripes), _Pieces(records, clusters, order, bounds, shapes)
 
 
-def _divided(paint, labels):
-    """Part of a work: (N,) labels in which parts of compound clusters have labels of their own, and the Shape of each cluster in their order."""
+def _divided(paint, labels, striped, counts):
+    """Part of a work: (N,) labels in which parts of compound clusters have labels of their own, and the Shape of each cluster in their order.
+
+    Also the Shape of each stripe; striped, counts : columns MEASURED of the points of stripes, one after the other, and how many each has
+    """
     order = order_by(labels)
     starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
     columns = tuple(paint[name].take(order) for name in MEASURED)
-    bounds = np.r_[starts, len(order)]
-    divided = yield pieces_asked(columns, bounds, are_compound(*columns[:2], starts), 0.9)
+    compound = are_compound(*columns[:2], starts)
+    bounds = np.r_[starts, len(order) + np.cumsum([0, *counts])]
+    columns = tuple(map(np.append, columns, striped))
+    divided = yield pieces_asked(columns, bounds, np.append(compound, np.zeros(len(counts), bool)), 1.0)
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
     alone, of_parts = [], []
-    for first, end, (parts, shapes) in zip(bounds[:-1].tolist(), bounds[1:].tolist(), divided):
+    for first, end, (parts, shapes) in zip(bounds.tolist(), bounds[1:len(starts) + 1].tolist(), divided):
         if parts is None:
             alone += shapes
         else:
             labels[order[first:end]] = following + parts
             following += len(shapes)
             of_parts += shapes
-    return labels, alone + of_parts
+    return labels, alone + of_parts, [shape for _, (shape,) in divided[len(starts):]]
 
 
 def _stripe_markings(records, stripes, striped, shapes):
     """[_Marking] of stripes of crossings, with points of each and its Shape."""
-    painted = records.take(np.concatenate([np.empty(0, np.intp), *(rows for _, rows in striped)])).load_all()
+    painted = records.take(_all_rows(rows for _, rows in striped)).load_all()
     markings, first = [], 0
     for (k, rows), shape in zip(striped, shapes):
         corners = stripes[k].corners
@@ -337,7 +354,6 @@ def _scanning_distance(records, line, frame):
 
 MEASURED = "s", "d", "spacing"   # columns of points, in 0.1 mm and mm, by which a cluster is measured
 DRAWN = "s", "d", "x", "y", "z", "spacing"   # by which a marking is drawn
-PLACE = "the markings of all roads"   # names the stretch of road in messages
 TASK_POINTS = 20_000   # derived: of paint, that a worker process is given together on average: about a tenth of a second of its time
 
 
@@ -374,11 +390,6 @@ def _pieces_of_cluster(s, d, spacing, divisible):
     return parts, [measure(s[rows], d[rows], spacing[rows]) for _, rows in members_of(parts)]
 
 
-def shapes_of_clusters(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]) -> list[Shape]:
-    """The phase that measures clusters; item : columns MEASURED of the points, and the bounds of the clusters."""
-    return [measure(*columns) for columns in _clusters(item)]
-
-
 def outlines_of_markings(source: NoSource, item: tuple[Any, ...], roads: Sequence[Road]) -> tuple[np.ndarray, ...]:
     """The phase that draws markings.
 
@@ -401,13 +412,13 @@ def _clusters(item):
 
 def combs_asked(places: np.ndarray, windows: Sequence[np.ndarray], until: float) -> Asked:
     """Asks for the Comb of each window, None where it has no stripes; places : (N, 2) m, windows : rows of the spots of each."""
-    rows = np.concatenate([np.empty(0, np.int32), *windows])
+    rows = _all_rows(windows)
     return _asked(combs_of_windows, lambda a, b: (places[rows[a:b]],), np.cumsum([0, *map(len, windows)]), until)
 
 
 def _stripes_asked(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], until: float) -> Asked:
     """Asks for the stripes of each crossing, their spots by number among those of the crossing; (N,) radians `way` : of the road at each place."""
-    rows = np.concatenate([np.empty(0, np.intp), *(spots for spots, _ in crossings)])
+    rows = _all_rows(spots for spots, _ in crossings)
     return _asked(_zebra_stripes, lambda a, b: (places[rows[a:b]], way[rows[a:b]]), np.cumsum([0, *(len(spots) for spots, _ in crossings)]), until,
                   [comb for _, comb in crossings])
 
@@ -417,15 +428,9 @@ def pieces_asked(columns: Sequence[np.ndarray], bounds: np.ndarray, compound: np
     return _asked(pieces_of_clusters, lambda a, b: tuple(column[a:b] for column in columns), bounds, until, compound.tolist())
 
 
-def shapes_asked(records: Columns, rows: Sequence[np.ndarray], until: float) -> Asked:
-    """Asks for the Shape of each cluster; rows : in the records, of each."""
-    together = np.concatenate([np.empty(0, np.intp), *rows])
-    return _asked(shapes_of_clusters, lambda a, b: _columns_at(records, together[a:b], MEASURED), np.cumsum([0, *map(len, rows)]), until)
-
-
 def _outlines_asked(paint: Columns, markings: Sequence[_Marking], number: int, roads: Sequence[Road]) -> Asked:
     """Asks for [Polygon] of each marking, of `drawn_outline`, on the road of that number among all."""
-    together = np.concatenate([np.empty(0, np.intp), *(marking.rows for marking in markings)])
+    together = _all_rows(marking.rows for marking in markings)
     return _asked(outlines_of_markings, lambda a, b: (number, *_columns_at(paint, together[a:b], DRAWN)),
                   np.cumsum([0, *(len(marking.rows) for marking in markings)]), 1.0,
                   [(marking.shape, marking.kind in STRIP_KINDS) for marking in markings], (list(roads),), _polygons)
@@ -440,7 +445,8 @@ def _asked(function: Callable[..., Any], columns: Callable[[int, int], tuple[Any
         a, b = cuts[k:k + 2]
         return *columns(bounds[a], bounds[b]), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
 
-    return Asked(function, Items(len(cuts) - 1 if len(bounds) > 1 else 0, item), until, arguments, read)
+    phase = Phase(function, NoSource(), arguments, lambda item: "the markings of all roads")
+    return Asked(phase, Items(len(cuts) - 1 if len(bounds) > 1 else 0, item), until, read=read)
 
 
 def _lasting_cuts(bounds, points):
@@ -453,6 +459,11 @@ def _lasting_cuts(bounds, points):
     # a hash of two sizes is below a share of its range in as many cases: Knuth's multiplicative one, by 2**32 over the golden ratio
     mixed = (size[1:] * np.uint64(31) + size[:-1]) * np.uint64(2654435761) % np.uint64(2**32)
     return np.unique(np.r_[0, np.flatnonzero(mixed * float(points) < size[1:] * 2.0**32) + 1, len(bounds) - 1])
+
+
+def _all_rows(rows):
+    """The rows of several, one after the other."""
+    return np.concatenate([np.empty(0, np.intp), *rows])
 
 
 def _columns_at(records, rows, names):

@@ -9,6 +9,7 @@ from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_
 from lanewright.core.driving.lane_areas import follow
 from lanewright.core.driving.lane_track import LaneTrack, connect
 from lanewright.core.driving.lanes import laid_out
+from lanewright.core.execution.in_step import in_step
 from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.remembered import RememberedResults
 from lanewright.core.markings.cross_section.candidates import boundary_candidates, gather_boundaries
@@ -121,7 +122,7 @@ def test_lanes_are_compared_with_those_beside_them():
     sections = sections_of_lines(lines)[0]
     work = dict(
         joined=lambda tracks: connect(tracks, 20.0), tapers=laid_out,
-        curves=lambda tracks: fitted_lanes([LanesOfRoad(tracks, sections.s, frame.roads[0])], Threads(1)))
+        curves=lambda tracks: in_step([fitted_lanes([LanesOfRoad(tracks, sections.s, frame.roads[0])])], Threads(1)))
     for name, function in work.items():
         few, many = (calls(lambda tracks=lanes_of(blocks): function(tracks)) for blocks in (FEW // 2, MANY // 2))
         assert many < 1.2 * MANY / FEW * few, name
