@@ -54,12 +54,12 @@ def in_step(works: Sequence[Work], executor: Executor, progress: Progress = Prog
 
 def _answered(asked, executor, progress):
     """The answers to each of those who ask."""
-    parts = {name_of(one.phase.function): one for one in asked if len(one.items)}
+    parts = {one.phase.function: one for one in asked if len(one.items)}
     places = [(one, k) for one in asked for k in range(len(one.items))]
     if len(parts) > 1:
         items = Items(len(places), lambda n: (name_of(places[n][0].phase.function), places[n][0].items[places[n][1]]))
         together = min(one.together or EXECUTION.items_per_task for one in parts.values())
-        results = executor.run_together(_joined(parts), items, together, progress)
+        results = executor.run_together(_joined({name_of(function): one for function, one in parts.items()}), items, together, progress)
     else:
         items = Items(len(places), lambda n: places[n][0].items[places[n][1]])
         results = iter(())

@@ -11,6 +11,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from ..execution.in_step import Asked, Work, in_step
 from ..execution.phase import Phase
 from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
@@ -176,7 +177,8 @@ class AsphaltLook:
         # points without a position of the vehicle, and all points
         without_vehicle, highest = np.zeros(2, np.int64), 0
         arguments = list(frame.passes), beams, scanners, step
-        for raw, equal, brightest, lost in _run(levels_of_stretch, road_points, arguments, progress.part(0.4, 1.0)):
+        phase = _phase(levels_of_stretch, road_points, arguments)
+        for raw, equal, brightest, lost in road_points.executor.run(phase, road_points.stretches(), progress.part(0.4, 1.0)):
             before.add(raw, step)
             modelled.add(equal, step)
             without_vehicle += lost
@@ -210,10 +212,15 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     _IntensityReport; its `reason` says why nothing was corrected
     """
     asphalt = asphalt or AsphaltLook.of(road_points, frame, settings, progress.part(0.0, 0.5))
+    return in_step([intensity_corrected(road_points, frame, asphalt, progress)], road_points.executor, progress.part(0.5, 1.0))[0]
+
+
+def intensity_corrected(road_points: RoadPoints, frame: RoadFrame, asphalt: AsphaltLook, progress: Progress) -> Work:
+    """The work of the second round of `correct_intensity`; `progress` is told what was done."""
     if asphalt.reason or asphalt.table is None:
         progress.warn(asphalt.reason)
         return road_points, _IntensityReport(reason=asphalt.reason)
-    store, after = _corrected_store(road_points, frame, asphalt, progress.part(0.5, 1.0))
+    store, after = yield from _corrected_store(road_points, frame, asphalt)
     report = _report(asphalt.counts, after, asphalt.table, asphalt.points_by_scanner)
     report.beams = asphalt.beams.count if asphalt.beams else 0
     report.saturation = _Saturation.from_levels(asphalt.counts[ACROSS_TRACK].sum(axis=1), asphalt.highest)
@@ -224,12 +231,11 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     return replace(road_points, store=store, has_corrected=True), report
 
 
-def _run(function, road_points, arguments, progress, source=None):
-    """Yield the results of a phase, a function of stretches of the road points, that reads from these or from a `source`."""
+def _phase(function, road_points, arguments, source=None):
+    """The phase, a function of stretches of the road points, that reads from these or from a `source`."""
     length, source = road_points.store.section_length, road_points if source is None else source
-    phase = Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length),
-                  state=road_points.store.state)
-    return road_points.executor.run(phase, road_points.stretches(), progress)
+    return Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length),
+                 state=road_points.store.state)
 
 
 def _reason_of_counts(table, lost, points):
@@ -241,15 +247,20 @@ def _reason_of_counts(table, lost, points):
     return ""
 
 
-def _corrected_store(road_points, frame, asphalt, progress):
-    """The points with `corrected`, and the counts of their IntensityHistograms."""
+def _corrected_store(road_points, frame, asphalt):
+    """Part of a work: the points with `corrected`, and the counts of their IntensityHistograms."""
     table, after = asphalt.table, IntensityHistograms(asphalt.counts.shape[1])
     kinds = np.unique(table.distance_kind[asphalt.points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
     store = road_points.store.with_column("corrected", road_points.store.folder)
     arguments = list(frame.passes), asphalt.beams, table, table.lookup(), kinds, asphalt.step
-    for index, counts in _run(corrected_of_stretch, road_points, arguments, progress, replace(road_points, store=store)):
+
+    def take(result):
+        index, counts = result
         store.adopt(index, store.folder)
         after.add(counts, asphalt.step)
+        return []
+
+    yield Asked(_phase(corrected_of_stretch, road_points, arguments, replace(road_points, store=store)), road_points.stretches(), 1.0, read=take)
     return store, after.counts
 
 

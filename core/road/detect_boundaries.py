@@ -12,9 +12,10 @@ import numpy as np
 from ..common.arrays import mask_runs, stretch_of
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
+from ..execution.in_step import in_step
 from ..execution.phase import THREADS, NoSource, Phase
 from ..survey.frame.road_frame import RoadFrame
-from ..survey.lattice.scan_lattice import find_lattice
+from ..survey.lattice.scan_lattice import lattice_of
 from ..survey.open_survey import Survey
 from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
@@ -86,15 +87,18 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
     with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing)) as decimation:
-        return _find_curb_points(decimation, settings, progress, ground or MeasuredGround(survey))
+        return _find_curb_points(decimation, settings, progress, ground)
 
 
-def _find_curb_points(decimation, settings, progress, ground):
+def _find_curb_points(decimation, settings, progress, kept_ground):
     """`find_curb_points` with the points of a PointDecimation."""
-    survey = decimation.survey
+    survey, ground = decimation.survey, kept_ground or MeasuredGround(decimation.survey)
     if settings.method == "profiles":
         return {"profiles": detect_curbs(survey, settings.curbs, progress, True, decimation, None, ground)}
-    lattice = find_lattice(survey, settings.planes.rotation_frequency, progress.part(0.0, BOUNDARY.lattice_progress))
+    part = progress.part(0.0, BOUNDARY.lattice_progress)
+    # a later stage looks for edges of the pavement in the profiles of a ground that is kept
+    lattice, _ = in_step([lattice_of(survey, settings.planes.rotation_frequency, part), ground.measured_all(kept_ground is not None)],
+                         survey.executor.passing(), part)
     source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice,
                              decimation=decimation if settings.method == "both" else None)
     searches = {"scanlines": planes_of(source, settings.scanlines, settings.curbs.block_length)}

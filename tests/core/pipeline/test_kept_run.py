@@ -21,7 +21,7 @@ pytestmark = pytest.mark.slow
 
 LAYERS = ("edges", "surface", "markings", "marking_lines", "driving_lines", "lanes", "curve_elements")
 READING = ("open_survey", "find_curb_points", "draw_boundaries")
-SURFACE = (*READING, "extract_road_surface", "correct_intensity", "make_intensity_image", "extract_markings", "remove_outliers", "cluster_markings")
+SURFACE = (*READING, "extract_road_surface", "intensity_corrected", "make_intensity_image", "extract_markings", "remove_outliers", "cluster_markings")
 
 
 @pytest.fixture(scope="module")
