@@ -13,7 +13,6 @@ from ..common.arrays import mask_runs, stretch_of
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.in_step import in_step
-from ..execution.phase import THREADS, NoSource, Phase
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import lattice_of
 from ..survey.open_survey import Survey
@@ -24,7 +23,7 @@ from .common.occlusion import OcclusionGrid
 from .common.side_curbs import Section, curbs_along, grids_beside, steps_of_roads
 from .common.sides import SIDE_SIGNS
 from .curb_returns.detect import with_curb_returns
-from .edges.fit import EdgeSettings, edges_through, tell_edges
+from .edges.fit import EdgeSettings, fit_road_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from .profiles.detect import detect_curbs, profiles_of, steps_of_section, tell_points
 from .scanlines.candidates import ScanlineBoundarySettings
@@ -133,19 +132,17 @@ def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, s
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
     ground : MeasuredGround of it that an earlier stage kept, or None
     """
-    executor = THREADS if survey is None else survey.executor.passing()
-    boundaries = _drawn(points_by_method, frame, settings, executor, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
+    boundaries = _drawn(points_by_method, frame, settings, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
     if survey is not None:
         boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress.part(BOUNDARY.curb_edges_progress, 1.0),
                                                ground=ground)
     return boundaries
 
 
-def _drawn(points_by_method, frame, settings, executor, progress):
+def _drawn(points_by_method, frame, settings, progress):
     """The edges at curbs alone."""
     points = points_by_method["both"] if "both" in points_by_method else next(iter(points_by_method.values()))
-    edges, = executor.run(Phase(edges_through, NoSource(), (frame, settings), lambda item: "the edges of all roads"), [points])
-    tell_edges(edges, progress)
+    edges = fit_road_edges(points, frame, settings, progress)
     if "both" not in points_by_method:
         return _RoadBoundaries(points, edges)
     edges, differences = measure_agreement(edges, *(points_by_method[method] for method in METHODS), frame)
