@@ -6,13 +6,14 @@ implements `work(call, progress)`; `call` (see call.py) hands it the values.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, fields, replace
 from importlib import import_module
 from typing import Any
 
 from ..core.common.setting import limits_of
 from .map_layers import MAP_LAYERS
-from .texts import tr
+from .texts import help_texts, tr
 
 # In the order of the work
 GROUPS = ("Survey", "Road", "Markings", "Driving", "Road map", "Export", "Inventory", "Assessment", "Orthoimages")
@@ -21,7 +22,7 @@ TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "r
 
 
 class Algorithm:
-    """Base of every algorithm; subclasses set the texts below and write `declare` and `work`.
+    """Base of every algorithm; subclasses set the texts below and write `declare` and `work`; their help stands in help.txt.
 
     parameters : list of ParameterSpec, inputs and outputs in the order of the dialog
     numbers : list of NumberOutput
@@ -29,7 +30,6 @@ class Algorithm:
 
     ID = TITLE = GROUP = SUMMARY = ""
     TAGS = ()
-    HELP = ""
     LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
     NUMBERS = ()  # (name, label) of numbers among the results
     RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
@@ -63,7 +63,7 @@ class Algorithm:
 
     def help_paragraphs(self):
         """The explanation below the summary."""
-        return [tr(part) for part in self.HELP.split("\n\n") if part]
+        return [tr(part) for part in help_texts().get(self.ID, ())]
 
     def tags(self):
         """Search words in the user's language and in English, which the field speaks everywhere."""
@@ -225,6 +225,18 @@ class SettingSpec:
             return None
         allowed = limits_of(owner, self.field)
         return allowed.lowest, allowed.maximum * self.times
+
+
+def settings_of(table, settings, names, **further):
+    """The SettingSpecs of a core Settings class, with the labels and helps that help.txt has for them under the name of the table.
+
+    names : of the parameters, with spaces between them, in the order of the dialog, which folds those with a star behind them away; a parameter
+        is the field of its name in small letters
+    further : name to a dict of other attributes of its SettingSpec
+    """
+    return tuple(SettingSpec(**{
+        "name": name, "settings": settings, "field": name.lower(), "advanced": star == "*", **dict(zip(("label", "help"), map(
+            tr, help_texts()[f"{table} {name}"]))), **further.get(name, {})}) for name, star in re.findall(r"(\w+)(\*?)", names))
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS
 from ..core.lazy import shapely
-from .algorithm import Algorithm, SettingSpec, settings_class
+from .algorithm import Algorithm, settings_class, settings_of
 from .texts import tr
 
 NOT_THERE = ("dropped", "none")  # values of the field `edge` or `kind` of a reference that mean: no curb to be found here
@@ -147,21 +147,12 @@ def shares_of(numbers, names):
 BOUNDARY = "products.assess.lines:BoundaryAccuracySettings"
 
 EDGES = ("automatic", "all", "curbs")
-BOUNDARY_SETTINGS = (
-    SettingSpec("TOLERANCE", BOUNDARY, "tolerance", tr("Tolerance of the layer and of the numbers (m)"),
-                tr("The tolerance for which intervals are drawn and numbers returned; the report has all of them.")),
-    SettingSpec("INTERVAL", BOUNDARY, "interval", tr("Length of an interval (m)"),
-                tr("Longer lets a short error pass or spoil more of the road; published figures use 2."), advanced=True),
-    SettingSpec("CORRIDOR", BOUNDARY, "corridor", tr("Corridor either side of the trajectory (m)"),
-                tr("What lies farther out belongs to no road and is left out; the report tells how much."), advanced=True),
-)
+BOUNDARY_SETTINGS = settings_of("assess.BOUNDARY_SETTINGS", BOUNDARY, "TOLERANCE INTERVAL* CORRIDOR*")
 
 
 class AssessBoundaries(Algorithm):
     ID, TITLE, GROUP = "assessboundaries", "Assess road boundaries", "Assessment"
     SUMMARY = "Sets road boundaries against reference lines, side by side in intervals of 2 m: precision, recall, errors across and in height."
-    HELP = ("Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. "
-            "A layer in another CRS is reprojected. Where a layer tells tops from bottoms in a field part, bottoms count.")
     TAGS = ("accuracy", "precision", "recall", "validation", "curb", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_LINES"}
     NUMBERS = (
@@ -244,21 +235,12 @@ def _boundary_numbers(accuracy):
 
 MARKINGS = "products.assess.markings:MarkingAccuracySettings"
 
-MARKING_SETTINGS = (
-    SettingSpec("TOLERANCE", MARKINGS, "tolerance", tr("Tolerance of objects and of the layer (cells)"),
-                tr("Objects are judged and numbers ending in TOLERANT returned with this tolerance; the report has all of them.")),
-    SettingSpec("CELL_SIZE", MARKINGS, "cell_size", tr("Cell size (m)"),
-                tr("Smaller weighs the rims of markings more and takes longer; published figures use 0.04."), advanced=True),
-    SettingSpec("LINE_WIDTH", MARKINGS, "line_width", tr("Width of lines (m)"),
-                tr("How wide paint is where a layer of lines has no field width_m or width."), advanced=True),
-)
+MARKING_SETTINGS = settings_of("assess.MARKING_SETTINGS", MARKINGS, "TOLERANCE CELL_SIZE* LINE_WIDTH*")
 
 
 class AssessMarkings(Algorithm):
     ID, TITLE, GROUP = "assessmarkings", "Assess markings", "Assessment"
     SUMMARY = "Sets road markings against a reference, cell by cell, by class and by object: precision, recall, F1 and intersection over union."
-    HELP = ("Polygons, lines or a raster mask (anything but 0 and no-data is paint), of other software too, on either side. A layer in another CRS "
-            "is reprojected.")
     TAGS = ("accuracy", "precision", "recall", "iou", "validation", "road marking", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_POLYGONS", "CELLS": "ASSESSED_CELLS"}
     NUMBERS = (
@@ -343,23 +325,12 @@ def _marking_numbers(accuracy):
 LINES = "products.assess.lines:LineAccuracySettings"
 WIDTHS = ("half-width", "total-width")
 
-LINE_SETTINGS = (
-    SettingSpec(
-        "TOLERANCE", LINES, "tolerance", tr("Tolerance of the layer and of the numbers (m)"),
-        tr("The tolerance for which pieces are drawn and numbers returned, of the same kind as the others; the report has all of them."),
-        times=2.0,  # total widths are halved
-    ),
-    SettingSpec("MAX_ANGLE", LINES, "max_angle", tr("Largest angle between lines that match (°)"),
-                tr("Smaller keeps lines that cross from matching; 90 lets any direction match. The way a line is drawn does not matter."),
-                advanced=True),
-)
+LINE_SETTINGS = settings_of("assess.LINE_SETTINGS", LINES, "TOLERANCE MAX_ANGLE*", TOLERANCE=dict(times=2.0))
 
 
 class AssessDrivingLines(Algorithm):
     ID, TITLE, GROUP = "assessdrivinglines", "Assess driving lines", "Assessment"
     SUMMARY = "Sets driving lines against reference lines within buffers: completeness, correctness, miscoding, errors and gaps."
-    HELP = ("Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. "
-            "A layer in another CRS is reprojected. Miscoding is the share of the result outside the buffer of the reference.")
     TAGS = ("accuracy", "miscoding", "completeness", "correctness", "buffer", "validation", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_LINES"}
     NUMBERS = (

@@ -30,6 +30,24 @@ class Call:
 
     algorithm : Algorithm
     parameters : dict, parameter name to what was given
+
+    Each program adds these in its own way, most of them by the name of a parameter or result:
+
+    files : the paths given for a parameter of several files
+    file : the path given for a file parameter, "" for none; it need not be there
+    value : a number, a flag, a word of a choice, or a text as it was given
+    crs : WKT, or "" where none was chosen; raises RoadExtractionError where it is not known
+    connection : how libpq connects to a database that was chosen; it may hold a password, and nobody is shown it
+    raster : the file of a raster input
+    source : a vector input as VectorSource; None where the optional parameter is empty
+    painted : (VectorSource, "", "") or, of a raster, (None, path, WKT of its CRS)
+    rows_where(name, source) : whether the expression of a parameter holds, for every row of a VectorSource; None where the expression is empty
+    layer_name : what the user calls a layer that was given
+    destination : where a result is to be written, as text; "" where it is not wanted
+    output_path : the file that a wanted file or raster result goes to
+    read_as(value, path) : the label of the input whose file or table a destination would replace, or ""
+    values() : what the user gave or left at its default for every input, in types that JSON has
+    finish(numbers) : write the layers, give files their names, and return all results by name
     """
 
     VECTOR_SUFFIXES = ()  # endings of the vector formats that can be written
@@ -46,64 +64,6 @@ class Call:
 
     def label(self, name):
         return self.algorithm.parameter(name).label
-
-    # -- what each program does its own way ---------------------------------------------------
-
-    def files(self, name):
-        """The paths given for a parameter of several files."""
-        raise NotImplementedError
-
-    def file(self, name):
-        """The path given for a file parameter, "" for none; it need not be there."""
-        raise NotImplementedError
-
-    def value(self, name):
-        """A number, a flag, a word of a choice, or a text as it was given."""
-        raise NotImplementedError
-
-    def crs(self, name="CRS"):
-        """WKT, or "" where none was chosen; raises RoadExtractionError where it is not known."""
-        raise NotImplementedError
-
-    def connection(self, name):
-        """How libpq connects to a database that was chosen; it may hold a password, and nobody is shown it."""
-        raise NotImplementedError
-
-    def raster(self, name):
-        """The file of a raster input."""
-        raise NotImplementedError
-
-    def source(self, name):
-        """A vector input as VectorSource; None where the optional parameter is empty."""
-        raise NotImplementedError
-
-    def painted(self, name):
-        """(VectorSource, "", "") or, of a raster, (None, path, WKT of its CRS)."""
-        raise NotImplementedError
-
-    def rows_where(self, name, source):
-        """Whether the expression of a parameter holds, for every row of a VectorSource; None where the expression is empty."""
-        raise NotImplementedError
-
-    def layer_name(self, name):
-        """What the user calls a layer that was given."""
-        raise NotImplementedError
-
-    def destination(self, name):
-        """Where a result is to be written, as text; "" where it is not wanted."""
-        raise NotImplementedError
-
-    def output_path(self, name):
-        """The file that a wanted file or raster result goes to."""
-        raise NotImplementedError
-
-    def read_as(self, value, path):
-        """The label of the input whose file or table a destination would replace, or ""."""
-        raise NotImplementedError
-
-    def finish(self, numbers):
-        """Write the layers, give files their names, and return all results by name."""
-        raise NotImplementedError
 
     @property
     def names_only(self):
@@ -283,10 +243,6 @@ class Call:
     def layers(self):
         """[(name, Features)] of the vector results so far."""
         return self._layers
-
-    def values(self):
-        """What the user gave or left at its default for every input, in types that JSON has."""
-        raise NotImplementedError
 
     def sign_files(self):
         """Note in every file where it comes from; that note, for the layers."""

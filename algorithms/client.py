@@ -16,19 +16,6 @@ TEMPLATE_LAYERS = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "D
 class ExportTemplate(Algorithm):
     ID, TITLE, GROUP = "exporttemplate", "Export by template", "Export"
     SUMMARY = "Writes the road map with a client's own layers, feature codes, fields and units, as a table of the client's says it."
-    HELP = ("The template is a table that any spreadsheet saves as CSV in UTF-8. Each row says what becomes what: from is the name of a "
-            "layer below, where its conditions (class=zebra,stop & width_m>0.2), layer the client's layer (- leaves it out), geometry "
-            "what it becomes (point, line or polygon; empty as it is), and all further columns are the client's fields. WIDTH:int in "
-            "the first line makes whole numbers; real and text are the other types.\n\n"
-            "A cell holds a code as it stands, or one of our fields in braces: {width_m}, {width_m:mm} in another unit, "
-            "{side:left=L,right=R} by a list of values (what it lacks stays empty), {number} the number of the feature; texts may stand around "
-            "them. Of the rows "
-            "about one layer of the client, the first that fits counts. Lines that begin with # are left out. The folder "
-            "resources/templates of the plugin holds two, for public catalogues of Germany and the Netherlands.\n\n"
-            "The template is checked before anything is read: what is not known is named with its line. With the client's own "
-            "GeoPackage the layers are filled in a copy of it, and must have the fields that the template names. Features that no row "
-            "takes are counted in the log. DXF has layers but no fields: points stand as texts. In a schema of PostGIS, tables that are there are "
-            "filled and must have the fields, others are made, and either all features are added or none.")
     TAGS = ("client", "feature code", "catalogue", "schema", "mapping", "GeoPackage", "DXF", "PostGIS")
     NUMBERS = (("FEATURES", tr("Features")), ("LAYERS", tr("Layers")), ("LEFT_OUT", tr("Features that no row takes")))
 

@@ -5,23 +5,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, settings_of
 from .map_layers import MAP_LAYERS
 from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
-CLOUD = "products.cloud.classify:CloudSettings"
-
-CLOUD_SETTINGS = (
-    SettingSpec("GROUND_THICKNESS", CLOUD, "ground", tr("Ground and road lie within (m)"),
-                tr("Points so far above and below the ground are ground, road surface or paint. Larger for noisy scanners and passes that differ in "
-                   "height, but then low curbs and grass are taken for ground.")),
-    SettingSpec("CURB_WIDTH", CLOUD, "curb", tr("Curbs lie within, either side of the road edge (m)"),
-                tr("Wider takes more of the top of broad curb stones, narrower the upright face alone.")),
-    SettingSpec("REACH_BESIDE", CLOUD, "beside", tr("Rails, walls and poles lie within (m)"),
-                tr("So far either side of a line of the layer Roadside its points lie. Larger for deep guard rails and thick walls, but it takes in "
-                   "what stands close behind; hedges have twice as much, shafts of poles half of it.")),
-)
+CLOUD_SETTINGS = settings_of("cloud.CLOUD_SETTINGS", "products.cloud.classify:CloudSettings", "GROUND_THICKNESS CURB_WIDTH REACH_BESIDE",
+    GROUND_THICKNESS=dict(field="ground"), CURB_WIDTH=dict(field="curb"), REACH_BESIDE=dict(field="beside"))
 # parameter -> the fields that are read, help; in the order of CloudLayers
 CLOUD_LAYERS = {
     "ROAD_SURFACE": ("road station_m",
@@ -40,23 +30,6 @@ CLOUD_LAYERS = {
 class ClassifyCloud(Algorithm):
     ID, TITLE, GROUP = "classifycloud", "Classify point cloud", "Export"
     SUMMARY = "Gives the survey's point clouds back: every point with its class and its station, offset and height above the road."
-    HELP = ("Every input file is written to a file of the same name with all of its points in their order, and all that they had: "
-            "coordinates, times, intensity, colours, returns, extra fields and CRS. Classes are those of ASPRS (LAS 1.4): 2 ground, 3 "
-            "to 5 low, medium (from 0.5 m) and high (from 2 m) vegetation, 7 noise below the road, 11 road surface. Where users may "
-            "define them, they are: 64 paint, 65 curb, 66 guard rail, 67 concrete barrier, 68 wall, 69 fence, 70 pole, 71 sign. The "
-            "files name these classes themselves.\n\n"
-            "The layers of the map decide, so that a map that was corrected by hand can be given back. Of the rest only the ground is "
-            "known, and no ground is looked for far above or below the road. Vegetation is what hedges and trunks of the layers show. "
-            "Whatever is not known keeps its class, or is 1 where it had none. Noise (7, 18) and withheld points are in the files too, with the "
-            "class that they had; ground and paint are measured without them. "
-            "Within a marking those points are paint that are brighter than the asphalt about it; where it is not brighter, all of them "
-            "are.\n\n"
-            "Further fields of each point are road, station, offset (left positive) and height_above_road (above the surface below the "
-            "reference line), in metres; beyond the corridor they have no value. Files whose points have room for 31 classes alone "
-            "(formats 0 to 5) become LAS 1.4 with the format 6, 7, 9 or 10 that holds the same; what were their classes 8 and 12 are flags "
-            "there, key point and overlap. A COPC file is written as LAZ, in the "
-            "order of its points; QGIS makes a COPC of it (Processing, Create COPC). Points are compared with the map where their "
-            "scanner measured them.")
     TAGS = ("classification", "ASPRS", "LAS", "LAZ", "unroll", "straighten", "station", "offset")
     NUMBERS = (("FILES", tr("Files")), ("POINTS", tr("Points")), ("ROAD_POINTS", tr("Points of the road surface")),
                ("PAINT_POINTS", tr("Points of paint")), ("CURB_POINTS", tr("Points of curbs")))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
 from ..core.countries.catalogue import COUNTRIES
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, settings_of
 from .map_layers import MAP_LAYERS
 from .markings import CLUSTER_SETTINGS, IMAGE_SETTINGS, INTENSITY_SETTINGS, LINE_SETTINGS, MARKING_METHOD, OUTLIER_SETTINGS, marking_settings
 from .road import CURB_SETTINGS, EDGE_SETTINGS, METHOD_SETTING, SCANLINE_METHOD_SETTINGS, SURFACE_SETTINGS
@@ -30,24 +30,8 @@ from .texts import tr
 if TYPE_CHECKING:
     from ..core.corrections.corrections import Corrections
 
-DRIVING = "core.driving.settings:DrivingSettings"
-
-DRIVING_SETTINGS = (
-    SettingSpec("COUNTRY", DRIVING, "country", tr("Country"),
-                tr("Whose dashes are looked for, whose usual lane is assumed where the data do not decide, and whose design code curves are checked "
-                   "against. It is never guessed; neutral holds for roads of all countries of the catalogue and checks curves against CJJ 37-2012."),
-                choices=tuple(COUNTRIES), advanced=True),
-    SettingSpec("LANE_WIDTH", DRIVING, "lane_width", tr("Lane width, 0 = as seen on the road (m)"),
-                tr("0 takes the width that is seen between lines. A width named here is held to: where only the outer lines are painted, their "
-                   "distance and this width give the number of lanes. Wider makes fewer lanes.")),
-    SettingSpec("LINE_DISTANCE", DRIVING, "line_distance", tr("Distance from a line without partner, 0 = half a lane (m)"),
-                tr("How far beside a painted line the driving line runs where the lane has no second line."), advanced=True),
-    SettingSpec("TRAFFIC_SIDE", DRIVING, "traffic_side", tr("Side of traffic"),
-                tr("The side one drives on; it gives lanes that nobody drove their direction. Automatic goes by where and which way the vehicle "
-                   "drove, by lines that part the directions, and a little by the country where the survey lies. A driven lane leads the way it "
-                   "was driven, whatever is named here."),
-                choices=("automatic", "right", "left")),
-)
+DRIVING_SETTINGS = settings_of("driving.DRIVING_SETTINGS", "core.driving.settings:DrivingSettings", "COUNTRY* LANE_WIDTH LINE_DISTANCE* TRAFFIC_SIDE",
+    COUNTRY=dict(choices=tuple(COUNTRIES)), TRAFFIC_SIDE=dict(choices=("automatic", "right", "left")))
 
 
 class DrivingLines(Algorithm):
@@ -178,8 +162,6 @@ ESTIMATED = 0.2   # of the work, where the trajectory is estimated first
 class RoadMap(Algorithm):
     ID, TITLE, GROUP = "roadmap", "Road map", "Road map"
     SUMMARY = "From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements."
-    HELP = ("Point clouds, the trajectory, and where to save are enough: everything else has a default that suits most surveys. "
-            "The stages are those of the single algorithms, handed on in memory. Every output is optional.")
     TAGS = ("hd map", "lane", "driving line", "road marking", "curb", "kerb")
     WHOLE_MAP = True
     NUMBERS = NUMBERS

@@ -8,7 +8,7 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.features import COLOUR, LANES, MAP_FINDINGS, ROAD_ATTRIBUTES
 from ..core.common.setting import Limited, setting
 from ..core.lazy import shapely
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, settings_of
 from .call import existing_file
 from .map_layers import MAP_LAYERS
 from .survey_input import road_points_of
@@ -150,23 +150,12 @@ def fault_table(findings):
     return [(tr("Findings of the check"), (tr("Fault"), tr("Count")), counts)] if counts else []
 
 
-ATTRIBUTES = "products.export.road_attributes:AttributeSettings"
-ATTRIBUTE_SETTINGS = (
-    SettingSpec("CORRIDOR", ATTRIBUTES, "corridor", tr("Corridor either side of a way (m)"),
-                tr("How far the middle of a lane may lie from the way of its road. Raise it for roads of many lanes that are one way; lower it where "
-                   "side roads run beside the road.")),
-)
+ATTRIBUTE_SETTINGS = settings_of("export.ATTRIBUTE_SETTINGS", "products.export.road_attributes:AttributeSettings", "CORRIDOR")
 
 
 class RoadAttributes(Algorithm):
     ID, TITLE, GROUP = "roadattributes", "Attributes of OpenStreetMap", "Export"
     SUMMARY = "Gives lanes the name, number, speed limit, surface and number of lanes of the OpenStreetMap way that they lie along."
-    HELP = ("The ways come from a file of yours, in the XML of OpenStreetMap (.osm) or as a layer of lines with the tags as fields; nothing is "
-            "fetched from the network. A lane belongs to the nearest way within the corridor that runs as the lane does; a one-way road counts "
-            "for lanes in its direction of travel alone. A value that holds along more than half of a lane becomes the lane's; what no way says "
-            "stays empty, or as it was.\n\n"
-            "The exports write the names and speed limits of such lanes into OpenDRIVE and Lanelet2. Limits that a way names by a law, such as "
-            "DE:urban, are not taken for numbers. Data of OpenStreetMap are under the ODbL: name the source.")
     TAGS = ("OpenStreetMap", "OSM", "speed limit", "maxspeed", "street name", "surface", "HD map")
     LOOKS = {"OUTPUT": "LANES"}
     NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("KNOWN", tr("Lanes of which something is known")),
@@ -226,10 +215,7 @@ def _ways_of_layer(source, crs):
 
 ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
 VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
-ROAD_SETTINGS = (
-    SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
-                tr("How far borders may be missed, across and in height. Smaller follows the survey more closely with more and shorter elements.")),
-)
+ROAD_SETTINGS = settings_of("export.ROAD_SETTINGS", ROADS, "TOLERANCE")
 
 
 def add_road_choices(algorithm):
@@ -243,14 +229,6 @@ def add_road_choices(algorithm):
 class ExportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "exportopendrive", "Export OpenDRIVE", "Export"
     SUMMARY = "Writes lanes as an OpenDRIVE map for simulators: roads with a reference line, lane sections, heights, road marks and junctions."
-    HELP = ("The reference line is made of lines, arcs and spirals, where the tolerance allows none of them of parametric cubics. Lanes beside each "
-            "other are one road; a section begins where a lane begins or ends, and a junction where lanes part. Beside a double line lanes reach to "
-            "its middle, where the mark of both stripes is. Widths are cubics, heights an elevation with superelevation or, on a crowned road, the "
-            "shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra crossings, stop "
-            "lines, arrows and hatched areas are objects. What was inferred or bridged, and the uncertainty of every lane, is said in userData.\n\n"
-            "The file is read back and checked before it is handed over: the report says how far its borders lie from the survey's. OpenDRIVE "
-            "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Speed limits and "
-            "names of roads are written where the lanes have these fields, signals and poles where their layer is given.")
     TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
     NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
                ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
@@ -330,10 +308,7 @@ def _report(name, whole, network, shown, misses, notes):
 
 LANELETS = "products.export.lanelet_export:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
-LANELET_SETTINGS = (
-    SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
-                tr("Written to every lanelet for vehicles of whose road no limit is known. 0 writes none there.")),
-)
+LANELET_SETTINGS = settings_of("export.LANELET_SETTINGS", LANELETS, "SPEED_LIMIT")
 
 
 def add_lanelet_choices(algorithm):
@@ -348,14 +323,6 @@ def add_lanelet_choices(algorithm):
 class ExportLanelet2(Algorithm):
     ID, TITLE, GROUP = "exportlanelet2", "Export Lanelet2", "Export"
     SUMMARY = "Writes lanes as a Lanelet2 map for planners such as Autoware: lanelets that share their borders, with heights and centre lines."
-    HELP = ("Lanes that are driven, their connectors, bicycle lanes and shoulders become lanelets; parking, hatched areas and medians do not. Where "
-            "a lane begins beside another one, both are cut, so that neighbours share their border. Curbs are curbstone high or low, painted borders "
-            "line_thin or line_thick, other edges road_border, and what is neither is virtual. Zebra crossings and stop lines come from the "
-            "markings. What was inferred or bridged has the tags lanewright:status and lanewright:confidence, and "
-            "lanewright:sigma_m is the uncertainty of the lane.\n\n"
-            "The file is read back and checked before it is handed over; the report names the transformation to latitude and longitude and what "
-            "the heights are. Speed limits and names of roads are written where the lanes have these fields. Traffic lights and signs, where their "
-            "layer is given, are regulatory elements of the lanelets that they hold for; right of way is not there.")
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
     NUMBERS = (("LANELETS", tr("Lanelets")), ("WAYS", tr("Ways")), ("NODES", tr("Nodes")), ("SUCCESSORS", tr("Links from one lane to the next")),
                ("FINDINGS", tr("Findings of the check")))
@@ -413,20 +380,12 @@ def write_lanelet2(call, source, name, progress):
 
 
 SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}   # format -> endings
-CAD_SETTINGS = (
-    SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
-                tr("LandXML: how far a line may be missed by its elements, in plan and in height. DXF has every vertex.")),
-)
+CAD_SETTINGS = settings_of("export.CAD_SETTINGS", ROADS, "TOLERANCE")
 
 
 class ExportCad(Algorithm):
     ID, TITLE, GROUP = "exportcad", "Export CAD", "Export"
     SUMMARY = "Writes the road map for the design office: 3D polylines as DXF, or alignments of lines, curves and spirals with profile as LandXML."
-    HELP = ("DXF: lane borders, driving lines, marking lines, road edges and outlines of markings as 3D polylines, each class in a layer of its own "
-            "with a colour. LandXML 1.2: the axis of every road and every driving line as an alignment of the fitted lines, curves and spirals, "
-            "with a profile of tangents; a line that no elements follow within the tolerance is an irregular line.\n\n"
-            "DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US "
-            "survey feet. Surface model writes the surface, Cross-sections the sections.")
     TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
     NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
 
@@ -488,7 +447,6 @@ def _landxml(call, source, progress):
     return {"LINES": float(len(alignments)), "ALIGNMENTS": float(len(alignments)), "MISSED": missed}, tables
 
 
-SETTINGS = "algorithms.export:SheetSettings"
 PAPERS = ("A4", "A3", "A2", "A1", "A0")
 SCALES = ("1:100", "1:200", "1:250", "1:500", "1:1000", "1:2000", "1:2500", "1:5000")
 # Results that are drawn, from above
@@ -511,41 +469,14 @@ class SheetSettings(Limited):
     section_interval: float = setting(20.0, 0.0, 10_000.0, "Interval of the cross-sections", "m")
 
 
-SHEET_SETTINGS = (
-    SettingSpec("TITLE", SETTINGS, "title", tr("Title (project)"),
-                tr("Stands large in the title block and is the name of the layout. Empty takes the name of the survey.")),
-    SettingSpec("OFFICE", SETTINGS, "office", tr("Office"), tr("Who is responsible for the plan, for the title block. Save it with Presets.")),
-    SettingSpec("AUTHOR", SETTINGS, "author", tr("Author"), tr("Who made the plan, for the title block.")),
-    SettingSpec("PAPER", SETTINGS, "paper", tr("Paper"),
-                tr("Larger paper gives fewer sheets at the same scale, but needs a plotter from A2 on."), choices=PAPERS),
-    SettingSpec("ORIENTATION", SETTINGS, "orientation", tr("Orientation"),
-                tr("landscape shows more of the road along each sheet; portrait shows more beside it, as at a junction or on a winding road."),
-                choices=("landscape", "portrait")),
-    SettingSpec("SCALE", SETTINGS, "scale", tr("Scale"),
-                tr("automatic takes the largest of 1:250, 1:500, 1:1000, 1:2000 and 1:5000 that needs at most 20 sheets and on which the road is not "
-                   "wider than the sheet; a road that fits on one sheet may be drawn at 1:100 or 1:200. "
-                   "A larger scale shows curbs and paint better on more sheets; below 1:1000 lanes are thin bands."),
-                choices=("automatic", *SCALES)),
-    SettingSpec("PROFILE", SETTINGS, "profile", tr("Longitudinal profile"),
-                tr("Further pages with the height of the ground along the axis, stations and gradients. The layers need heights.")),
-    SettingSpec("SECTION_INTERVAL", SETTINGS, "section_interval", tr("Interval of the cross-sections, 0 = none (m)"),
-                tr("Further pages with a section at every such station of the axis. Lower shows more of the road on more pages; 0 leaves them out. "
-                   "Where a layer of sections is given, those in which a limit is not kept are shown in any case.")),
-    SettingSpec("HEIGHT_SYSTEM", SETTINGS, "heights", tr("Height system"),
-                tr("What the heights refer to, for the title block, such as DHHN2016. Empty takes the vertical part of the CRS."), advanced=True),
-    SettingSpec("CREDIT", SETTINGS, "credit", tr("Credit on the map"),
-                tr("Whose data lie below, as their licence wants it said; stands in the lower left corner of the map"), advanced=True),
-)
+SHEET_SETTINGS = settings_of("export.SHEET_SETTINGS", "algorithms.export:SheetSettings",
+    "TITLE OFFICE AUTHOR PAPER ORIENTATION SCALE PROFILE SECTION_INTERVAL HEIGHT_SYSTEM* CREDIT*", PAPER=dict(choices=PAPERS),
+    ORIENTATION=dict(choices=("landscape", "portrait")), SCALE=dict(choices=("automatic", *SCALES)), HEIGHT_SYSTEM=dict(field="heights"))
 
 
 class PrintSheets(Algorithm):
     ID, TITLE, GROUP = "printsheets", "Sheets along the road", "Export"
     SUMMARY = "Draws the road map on sheets of paper that follow the road, with longitudinal profile and cross-sections, as one PDF."
-    HELP = ("Every sheet is turned so that the road runs from left to right, overlaps its neighbours, and has match lines with their numbers, the "
-            "axis with stations, a grid with coordinates, a key map and a title block. An overview of all sheets with the legend comes "
-            "first.\n\nThe axis lies amid the driving lines (else the marking lines, else the road edges); its stations are those of the layers.\n\n"
-            "Layers are drawn as they are styled in the project, layers from files as Lanewright styles them. Texts in the title block are printed "
-            "as they stand. The accuracy is the median of sigma_m along the lines.")
     TAGS = ("print", "plan", "sheet", "PDF", "layout", "atlas", "profile", "title block", "map")
     NUMBERS = (("SHEETS", tr("Plan sheets")), ("PAGES", tr("Pages")), ("SCALE_NUMBER", tr("Denominator of the scale")))
     DRAWS = True
@@ -578,12 +509,6 @@ class PrintSheets(Algorithm):
 class ImportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "importopendrive", "Import OpenDRIVE", "Export"
     SUMMARY = "Reads an OpenDRIVE map (1.1 to 1.8) into layers like those of the road map, to lay it over a survey and assess it."
-    HELP = ("Lines, arcs, spirals and polynomials of the reference line, elevation, superelevation and shape, lane offsets, widths and borders, road "
-            "marks, heights of curbs and the links of lanes are read; signals with the lanes that they hold for, poles, crossings, stop lines, "
-            "arrows and hatched areas, speed limits and names of roads too. What is not read, such as buildings, is counted in the log.\n\n"
-            "Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one "
-            "begins, with the height of its curb. Gaps of reference lines, borders that fold back in a tight curve, and widths below 0 are named "
-            "with their road; folds are cut off. Files that declare entities, or are not what a map can be, are refused.")
     TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
     NUMBERS = MAP_NUMBERS
 
@@ -600,11 +525,6 @@ class ImportOpenDrive(Algorithm):
 class ImportLanelet2(Algorithm):
     ID, TITLE, GROUP = "importlanelet2", "Import Lanelet2", "Export"
     SUMMARY = "Reads a Lanelet2 map into layers like those of the road map, to lay it over a survey and assess it."
-    HELP = ("Every lanelet becomes a lane between its two borders, with the lanelets that begin where it ends as successors. Traffic "
-            "lights and signs with the lanes that obey them, poles, crosswalks, stop lines and speed limits are read. Footways, areas and "
-            "right of way are not read and counted in the log. Heights are the tag ele of the nodes, as they stand in the file.\n\n"
-            "Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone, or whose latitudes and longitudes are all about 0, "
-            "gets layers in local coordinates, without CRS.")
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
     NUMBERS = MAP_NUMBERS
 
@@ -620,11 +540,6 @@ class ImportLanelet2(Algorithm):
 class ConvertMap(Algorithm):
     ID, TITLE, GROUP = "converthdmap", "Convert HD map", "Export"
     SUMMARY = "Writes an OpenDRIVE map as Lanelet2, or a Lanelet2 map as OpenDRIVE, with its signals, crossings, poles and speed limits."
-    HELP = ("The map is read as by Import OpenDRIVE or Import Lanelet2 and written as by the export of the other format; the endings of the files "
-            "say which. Borders come out within the tolerance of where they came in, and every lane leads to the same lanes.\n\n"
-            "Carried over are lanes with their borders, paint, curbs and heights, traffic lights and signs with the lanes that obey them, poles, "
-            "crossings, stop lines, speed limits and names of roads; to OpenDRIVE arrows and hatched areas too. Lanelet2 has no lanes for parking "
-            "and no medians. What is not carried over, such as buildings or the controllers of lights, is counted in one line of the log.")
     TAGS = ("OpenDRIVE", "Lanelet2", "xodr", "osm", "HD map", "conversion", "Autoware", "CARLA", "esmini")
     NUMBERS = (("SUCCESSORS", tr("Links from one lane to the next")), ("FINDINGS", tr("Findings of the check")),
                ("SIGNAL_COUNT", tr("Signals and poles")), ("LEFT_OUT", tr("What is not carried over")))
@@ -658,14 +573,6 @@ ROWS_IN_LOG, PLACES_IN_LOG = 50, 3   # of findings that the log tells, and of th
 class CheckMap(Algorithm):
     ID, TITLE, GROUP = "checkhdmap", "Check HD map", "Export"
     SUMMARY = "Looks for faults of an OpenDRIVE or Lanelet2 map that other validators pass over, and puts them on the map."
-    HELP = ("OpenDRIVE: gaps, kinks and steps between geometries, profiles and linked lanes, wrong lengths, lanes narrower than nothing, borders "
-            "that fold back in curves, numbering, types, links that lead nowhere or one way only, lanes that end though the road goes on, roads on "
-            "one another, words, numbers and orders of records that the standard does not have, a geoReference that is none.\n\n"
-            "Lanelet2: missing nodes and members, types and tags that no reader knows, borders that cross, swap sides or lie there twice, lanelets "
-            "that meet without sharing their nodes or meet head on, nodes that lie aside, rules of traffic that are not whole or that nobody "
-            "obeys.\n\n"
-            "The same finding at many places is one row of the report and one line of the log, with its count, its places and the largest; those at "
-            "the fewest places come first. A schema validator looks at other things; use both.")
     TAGS = ("OpenDRIVE", "Lanelet2", "HD map", "validation", "topology", "routing")
     LOOKS = {"OUTPUT": "FINDINGS"}
     NUMBERS = (("FINDINGS", tr("Findings")), ("FAULTS", tr("Kinds of faults")), ("LANES", tr("Driven lanes and pieces")),

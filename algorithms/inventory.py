@@ -4,7 +4,7 @@ from datetime import datetime
 
 from ..core.common.features import BREAKLINES, CROSS_SECTIONS, ROADSIDE, ROADSIDE_OBJECTS, SURFACE_FACES
 from ..core.countries.catalogue import COUNTRIES
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, settings_of
 from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
@@ -33,40 +33,13 @@ def survey_with_borders(call, progress, above_road):
 SECTIONS = "products.inventory.borders:CrossSectionSettings"
 ABOVE_SECTIONS = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
 
-SECTION_SETTINGS = (
-    SettingSpec("INTERVAL", SECTIONS, "interval", tr("Interval of the sections (m)"),
-                tr("Smaller shows where a rut or a change of crossfall begins, but takes longer; below 10 m grade and ruts are measured over that "
-                   "length only.")),
-    SettingSpec("COUNTRY", SECTIONS, "country", tr("Country"),
-                tr("Whose rules give the limits that are left at 0; neutral has none, and nothing is judged. Also whose usual lane is measured about "
-                   "the track where no layer of the road map is given. It is never guessed."), choices=tuple(COUNTRIES)),
-    SettingSpec("MAX_RUT", SECTIONS, "max_rut", tr("Rut depth at most, 0 = of the country (mm)"),
-                tr("Deeper ruts under a straight edge of 2 m are marked. Lower finds shallow ones, down to what noise leaves, about 2 mm.")),
-    SettingSpec("MIN_CROSSFALL", SECTIONS, "min_crossfall", tr("Crossfall at least, 0 = of the country (%)"),
-                tr("Lanes that fall less to either side are marked: water stands there. Lower leaves the places where the crossfall changes sides "
-                   "unmarked."), advanced=True),
-    SettingSpec("MAX_CROSSFALL", SECTIONS, "max_crossfall", tr("Crossfall at most, 0 = of the country (%)"),
-                tr("Steeper lanes are marked. Lower marks the superelevation of bends too."), advanced=True),
-    SettingSpec("MAX_GRADE", SECTIONS, "max_grade", tr("Grade at most, 0 = of the country (%)"),
-                tr("Steeper sections are marked, climbing or falling. Lower marks ramps too."), advanced=True),
-    SettingSpec("MIN_WIDTH", SECTIONS, "min_width", tr("Lane width at least, 0 = of the country (m)"),
-                tr("Narrower driving lanes are marked. Higher marks turning lanes too."), advanced=True),
-    SettingSpec("MIN_CLEARANCE", SECTIONS, "min_clearance", tr("Clearance at least, 0 = of the country (m)"),
-                tr("Sections with something hanging lower are marked. Higher finds branches above the traffic too."), advanced=True),
-)
+SECTION_SETTINGS = settings_of("inventory.SECTION_SETTINGS", SECTIONS,
+    "INTERVAL COUNTRY MAX_RUT MIN_CROSSFALL* MAX_CROSSFALL* MAX_GRADE* MIN_WIDTH* MIN_CLEARANCE*", COUNTRY=dict(choices=tuple(COUNTRIES)))
 
 
 class CrossSections(Algorithm):
     ID, TITLE, GROUP = "crosssections", "Cross-sections", "Inventory"
     SUMMARY = "Measures width, crossfall, grade, rut depth, curb heights and clearance of every lane at fixed stations against limits."
-    HELP = ("Steps between scanners and passes are estimated where they overlap and taken off first. An error in roll looks like crossfall: passes "
-            "in opposite directions distinguish the two, and where there are none the report says so and the sigma of the crossfall holds it.\n\n"
-            "Lanes are those of the layer Lanes, else of the driving lines between the marking lines, else of the marking lines alone; the "
-            "carriageway ends at the road edges, else at the outermost line. Rut depths are measured under a straight edge of 2 m laid over profiles "
-            "averaged over 1 m of road (over more where points are few), less what noise adds. Something that stands on the road does not "
-            "count as hanging above it.\n\n"
-            "Judged is what the rules of the country chosen say, and what you set a limit for. Field why gives value, limit and rule. A "
-            "crossfall is marked where twice its sigma does not explain it.")
     TAGS = ("profile", "rutting", "crossfall", "superelevation", "clearance", "road condition", "width")
     LOOKS = {"OUTPUT": "CROSS_SECTIONS"}
     NUMBERS = (("SECTIONS", tr("Sections")),
@@ -127,34 +100,14 @@ def _numbers(table, count):
     return {**counts, **({"LARGEST_RUT": max(ruts)} if ruts else {}), **({"LEAST_CLEARANCE": min(clear)} if clear else {})}
 
 
-SURFACE = "products.surface.model:SurfaceSettings"
 ABOVE_SURFACE = 3.0  # m of height above the road that are read: banks beside it, and what stands on it, which is told from the ground
 
-SURFACE_SETTINGS = (
-    SettingSpec("TOLERANCE", SURFACE, "tolerance", tr("Tolerance (m)"),
-                tr("By how much the triangles may miss the ground of the carriageway (root mean square). Smaller shows ruts and settlements "
-                   "with more triangles, down to what noise leaves, 2 to 3 mm; 0.01 or more is enough for volumes.")),
-    SettingSpec("REACH", SURFACE, "reach", tr("Ground beside the carriageway (m)"),
-                tr("How far beyond the road edges the surface reaches. Farther takes in sidewalk, verge and ditch, but also walls and hedges "
-                   "whose foot looks like a bank.")),
-    SettingSpec("CELL_SIZE", SURFACE, "cell_size", tr("Cell size of the heights (m)"),
-                tr("Of the raster alone. Smaller shows curbs more sharply in a larger file.")),
-    SettingSpec("MAX_GAP", SURFACE, "max_gap", tr("Longest gap bridged (m)"),
-                tr("Stretches of road that nobody saw up to this length are covered by triangles of status bridged; longer ones are left out. Higher "
-                   "closes the surface under long shadows, but nothing was measured there."), advanced=True),
-)
+SURFACE_SETTINGS = settings_of("inventory.SURFACE_SETTINGS", "products.surface.model:SurfaceSettings", "TOLERANCE REACH CELL_SIZE MAX_GAP*")
 
 
 class SurfaceOfRoad(Algorithm):
     ID, TITLE, GROUP = "surfacemodel", "Surface model", "Inventory"
     SUMMARY = "Makes the ground of the road for design: breaklines, and triangles between them that keep to a tolerance, for CAD and as a raster."
-    HELP = ("Breaklines are the bottom of every edge and, where it has a step, its top; the flow line of a gutter; the crown of a road that falls to "
-            "both sides; and the borders of lanes. Their heights are measured across them; where the ground was hidden there is no line. The "
-            "triangles follow them, edges first, then gutter, crown and lanes. A line within 10 cm of a stronger one is in the layer alone.\n\n"
-            "Triangles get their vertices where they miss the ground most, until they keep to the tolerance. The ground is the median of the points "
-            "over 1 m along and 5 cm across the road, without vehicles and whatever else stands on it, and freed of the steps between scanners and "
-            "passes. The vertices are joined by constrained Delaunay triangles.\n\n"
-            "The file has breaklines and triangles as LandXML 1.2 (surface) or DXF (3DFACE and polylines), by its ending.")
     TAGS = ("TIN", "DTM", "DEM", "terrain", "breakline", "LandXML", "DXF", "triangulation")
     NUMBERS = (("VERTICES", tr("Vertices of the triangles")), ("TRIANGLES", tr("Triangles")),
                ("RMSE", tr("Ground of the carriageway against the triangles, root mean square (m)")),
@@ -204,41 +157,15 @@ class SurfaceOfRoad(Algorithm):
         return {"VERTICES": float(model.vertices), "TRIANGLES": float(len(faces)), "RMSE": model.rmse, "SHARE": share}
 
 
-ROADSIDE_OF = "products.inventory.borders:RoadsideSettings"
 ABOVE_ROADSIDE = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
 
-ROADSIDE_SETTINGS = (
-    SettingSpec("INTERVAL", ROADSIDE_OF, "interval", tr("Longest interval between vertices (m)"),
-                tr("Lines have a vertex wherever they bend, and at least one every so many metres. Smaller gives more of them."), advanced=True),
-    SettingSpec("COUNTRY", ROADSIDE_OF, "country", tr("Country"),
-                tr("Whose lane widths tell two marking lines that bound a lane, where there are no road edges. It is never guessed."),
-                choices=tuple(COUNTRIES), advanced=True),
-    SettingSpec("REACH", ROADSIDE_OF, "reach", tr("Reach beyond the carriageway's edge (m)"),
-                tr("Farther finds what stands behind verge and sidewalk, but also what belongs to the land beside the road.")),
-    SettingSpec("MIN_LENGTH", ROADSIDE_OF, "min_length", tr("Shortest line (m)"),
-                tr("Shorter finds short pieces of rail and wall, but also cars and bins that stand in a row.")),
-    SettingSpec("MIN_HEIGHT", ROADSIDE_OF, "min_height", tr("Lowest line (m)"),
-                tr("Lower finds low walls, but also high grass and steps."), advanced=True),
-    SettingSpec("MAX_GAP", ROADSIDE_OF, "max_gap", tr("Longest gap bridged (m)"),
-                tr("Longer joins what follows in line; shorter distinguishes more lines. What vehicles hide is bridged up to 12 m whatever this is, "
-                   "and an opening of 1.5 m or more through which the scanner saw is left open."), advanced=True),
-    SettingSpec("MIN_POLE_HEIGHT", ROADSIDE_OF, "min_pole_height", tr("Lowest pole, sign or trunk (m)"),
-                tr("Lower finds bollards and delineator posts, but also people."), advanced=True),
-)
+ROADSIDE_SETTINGS = settings_of("inventory.ROADSIDE_SETTINGS", "products.inventory.borders:RoadsideSettings",
+    "INTERVAL* COUNTRY* REACH MIN_LENGTH MIN_HEIGHT* MAX_GAP* MIN_POLE_HEIGHT*", COUNTRY=dict(choices=tuple(COUNTRIES)))
 
 
 class Roadside(Algorithm):
     ID, TITLE, GROUP = "roadside", "Roadside", "Inventory"
     SUMMARY = "Finds guard rails, concrete barriers, walls, fences, hedges and gutters as lines, and poles, signs and tree trunks as points."
-    HELP = ("What repeats along the road at a steady offset and height is a line; its kind follows from its section: a beam with free height "
-            "below, a face that leans back, an upright plane, something that is seen through, something rough. "
-            "Buildings and rows of parked cars are none. Where a scanner sees hardly higher than it rides, as heads of many beams do, "
-            "what is as high as it is left out: it may be a house front.\n\n"
-            "Status says which pieces of a line were measured. Where something stands before it, as parked cars before a wall, and what is seen "
-            "of it on both sides agrees in offset and height, it is one line, and the piece between them is bridged and drawn paler. Where the "
-            "scanner saw through a gap, as through a gate or a driveway, nothing is drawn.\n\n"
-            "Only what stands outside the carriageway counts: give the road edges, or the layers of lines or lanes. Gutters are the lowest points "
-            "along an edge that the road falls to; the higher side of a road has none.")
     TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")
     LOOKS = {"OUTPUT": "ROADSIDE", "OBJECTS": "ROADSIDE_OBJECTS"}
     NUMBERS = (("LENGTH", tr("Length of all lines but gutters (m)")), ("POLES", tr("Poles, signs and trunks")))

@@ -5,23 +5,17 @@ from dataclasses import replace
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import COLOUR, MARKING_LINES, MARKINGS
 from ..core.countries.catalogue import COUNTRIES
-from .algorithm import Algorithm, ParameterSpec, SettingSpec
+from .algorithm import Algorithm, ParameterSpec, settings_of
 from .survey_input import bright_road_points_of, check_layers_on_roads, frame_of, paint_of, road_points_of
 from .texts import tr
 
-INTENSITY = "core.intensity.correction:IntensitySettings"
-
-INTENSITY_SETTINGS = (
-    SettingSpec("SCALE", INTENSITY, "scale", tr("Scale of the intensities"),
-                tr("Linear ones are multiplied, logarithmic ones added to. Automatic goes by the spread of asphalt; choose one when the report names "
-                   "the wrong one."), choices=("automatic", "linear", "logarithmic"), advanced=True),
-)
+INTENSITY_SETTINGS = settings_of("markings.INTENSITY_SETTINGS", "core.intensity.correction:IntensitySettings", "SCALE*",
+    SCALE=dict(choices=("automatic", "linear", "logarithmic")))
 
 
 class CorrectIntensity(Algorithm):
     ID, TITLE, GROUP = "correctintensity", "Correct intensity", "Markings"
     SUMMARY = "Evens out the fall of intensity with range and incidence, scanner by scanner, from the road's own asphalt."
-    HELP = "The raw intensity stays as it was; the corrected one is the extra field intensity_corrected, which later stages prefer."
     TAGS = ("intensity", "range correction", "calibration")
 
     def declare(self):
@@ -41,17 +35,14 @@ class CorrectIntensity(Algorithm):
         corrected, report = correct_intensity(road_points, frame, call.settings(INTENSITY_SETTINGS), progress.part(0.2, 0.8))
         write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
         for line in report.lines()[1:]:  # the first was said when it was found, as was a warning
-            if line != report.saturation_warning:
+            if line != report.saturation.warning:
                 progress.info(line)
         call.text("REPORT", html_page("intensity_correction", report=report))
 
 
 IMAGE = "core.intensity.image:ImageSettings"
 
-IMAGE_SETTINGS = (
-    SettingSpec("CELL_SIZE", IMAGE, "cell_size", tr("Cell size (m)"),
-                tr("Smaller shows narrow lines more sharply while the cloud is dense enough; larger fills gaps and makes smaller files.")),
-)
+IMAGE_SETTINGS = settings_of("markings.IMAGE_SETTINGS", IMAGE, "CELL_SIZE")
 
 
 class IntensityImage(Algorithm):
@@ -80,8 +71,6 @@ class IntensityImage(Algorithm):
             write_display_image(path, call.new_file("DISPLAY_IMAGE"), progress.part(0.9, 1.0))
 
 
-EXTRACTION = "core.markings.paint.settings:MarkingSettings"
-
 MARKING_METHOD = ParameterSpec(
     "choice", "METHOD", tr("Method"),
     tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The other two are published "
@@ -89,11 +78,7 @@ MARKING_METHOD = ParameterSpec(
        "thresholds on the points and keeps the dense ones. Neither tells concrete gutters from paint."),
     default="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"))
 
-MARKING_SETTINGS = (
-    SettingSpec("SEPARATION", EXTRACTION, "separation", tr("Multi-threshold: least distance of paint from asphalt (σ)"),
-                tr("How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower finds fainter "
-                   "paint, but also gutters, patches and noise."), advanced=True),
-)
+MARKING_SETTINGS = settings_of("markings.MARKING_SETTINGS", "core.markings.paint.settings:MarkingSettings", "SEPARATION*")
 
 
 def marking_settings(call):
@@ -135,17 +120,8 @@ class ExtractMarkings(Algorithm):
         write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))
 
 
-OUTLIERS = "core.markings.outliers:OutlierSettings"
-
-OUTLIER_SETTINGS = (
-    SettingSpec("NEIGHBOURS", OUTLIERS, "neighbours", tr("Nearest points looked at (points)"),
-                tr("More judges by a wider neighbourhood and removes small clumps too; fewer removes single points only.")),
-    SettingSpec("STD_RATIO", OUTLIERS, "std_ratio", tr("Allowed distance above the mean (σ)"),
-                tr("Smaller removes more, first where points are sparse; larger keeps far paint, and some noise with it.")),
-    SettingSpec("SCOPE", OUTLIERS, "scope", tr("Statistics over"),
-                tr("All compares every point with the whole file, as PCL does, and eats sparse paint far from the scanner; windows compares it with "
-                   "its own stretch of the road."), choices=("all", "windows")),
-)
+OUTLIER_SETTINGS = settings_of("markings.OUTLIER_SETTINGS", "core.markings.outliers:OutlierSettings", "NEIGHBOURS STD_RATIO SCOPE",
+    SCOPE=dict(choices=("all", "windows")))
 
 
 class RemoveOutliers(Algorithm):
@@ -168,23 +144,12 @@ class RemoveOutliers(Algorithm):
         write_road_points(kept, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
 
 
-CLUSTERS = "core.markings.objects.cluster:ClusterSettings"
-
-CLUSTER_SETTINGS = (
-    SettingSpec("DISTANCE", CLUSTERS, "distance", tr("Distance that joins points (m)"),
-                tr("Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart.")),
-)
+CLUSTER_SETTINGS = settings_of("markings.CLUSTER_SETTINGS", "core.markings.objects.cluster:ClusterSettings", "DISTANCE")
 
 
 class ClusterMarkings(Algorithm):
     ID, TITLE, GROUP = "clustermarkings", "Cluster markings", "Markings"
     SUMMARY = "Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest."
-    HELP = (
-        "The field class is edge, lane or centre for lines, and zebra, stop, give_way (a row of equal blocks across a lane), zigzag (a "
-        "line along the road that turns back again and again: no stopping), arrow, bicycle, bus (the word BUS, its letters one "
-        "marking), hatch or symbol for what is no line. A bicycle or a word that is not clearly seen stays symbol. Far from the "
-        "vehicle, points join over the distance between the tracks of the scan."
-    )
     TAGS = ("road marking", "lane marking", "cluster", "give-way line", "zigzag line", "zebra crossing", "stop line", "arrow",
             "bicycle symbol", "bus lane")
     RETIRED = ("MIN_POINTS",)
@@ -207,18 +172,8 @@ class ClusterMarkings(Algorithm):
         call.layer("MARKINGS", markings.to_features(frame))
 
 
-LINES = "core.markings.lines.fit:MarkingLineSettings"
-
-LINE_SETTINGS = (
-    SettingSpec("COUNTRY", LINES, "country", tr("Country"),
-                tr("Whose dashes are looked for. It is never guessed; neutral holds for roads of all countries of the catalogue."),
-                choices=tuple(COUNTRIES), advanced=True),
-    SettingSpec("CURVE", LINES, "curve", tr("Curve fitted to marking lines"),
-                tr("Automatic takes the simplest curve that fits (Bayesian information criterion). Choose one to force it on every line."),
-                choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")),
-    SettingSpec("DEGREE", LINES, "degree", tr("Degree of the polynomial (0-9)"),
-                tr("Used with polynomial only. Higher follows more bends, but swings between its points.")),
-)
+LINE_SETTINGS = settings_of("markings.LINE_SETTINGS", "core.markings.lines.fit:MarkingLineSettings", "COUNTRY* CURVE DEGREE",
+    COUNTRY=dict(choices=tuple(COUNTRIES)), CURVE=dict(choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")))
 
 
 class FitMarkingLines(Algorithm):
@@ -260,24 +215,12 @@ class FitMarkingLines(Algorithm):
             call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines), frame))
 
 
-COLOURS = "products.cloud.colours:ColourSettings"
-
-COLOUR_SETTINGS = (
-    SettingSpec("AROUND", COLOURS, "around", tr("Width of asphalt about a marking (m)"),
-                tr("Its colour is what paint is compared with. Wider where colours lie some centimetres beside the paint, narrower where grass or "
-                   "other paint is near."), advanced=True),
-)
+COLOUR_SETTINGS = settings_of("markings.COLOUR_SETTINGS", "products.cloud.colours:ColourSettings", "AROUND*")
 
 
 class ColoursOfPaint(Algorithm):
     ID, TITLE, GROUP = "paintcolours", "Colours of paint", "Markings"
     SUMMARY = "Tells yellow paint from white, from the colours of the points or from an orthoimage."
-    HELP = ("Intensity does not show colour, so the colours of a camera are needed: those that the points of the survey have, or those of an "
-            "orthoimage. The blue of the paint is compared with the asphalt about it, so that the light and the white balance of the camera do not "
-            "matter.\n\n"
-            "The field colour of every marking is white or yellow, and empty where too little was seen or where both are possible. A line has the "
-            "colour in which most of its length is painted. The road plan draws yellow paint yellow, and Export OpenDRIVE and Export Lanelet2 write "
-            "the colour of each line.")
     TAGS = ("yellow", "white", "colour", "color", "RGB", "orthoimage", "centre line")
     LOOKS = {"COLOURED_MARKINGS": "MARKINGS", "COLOURED_LINES": "MARKING_LINES"}
     NUMBERS = (("WHITE", tr("White markings")), ("YELLOW", tr("Yellow markings")), ("OPEN", tr("Markings whose colour stays open")))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import PROPOSED_POINTS, RESIDUALS
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, settings_of
 from .texts import tr
 from .vector_source import LINE, POINT, POLYGON, vertices_of
 
@@ -35,36 +35,13 @@ def _row(wkb, values, placed):
     return [*values, x, y, z if z == z else None]
 
 
-PROPOSE = "products.overlay.matching.propose:ProposalSettings"
-
-PROPOSE_SETTINGS = (
-    SettingSpec("PIXEL_SIZE", PROPOSE, "pixel_size", tr("Pixel size of the image on the ground (m)"),
-                tr("Roughly, to a tenth; 0 takes it from the image's position, or from the height and focal length in its tags. With it alone the "
-                   "whole intensity image is searched, in every direction.")),
-    SettingSpec("SEARCH", PROPOSE, "search", tr("How far the rough position may be off (m)"),
-                tr("Larger finds images with poor tags, takes longer, and meets more places that look alike on a road of equal dashes.")),
-    SettingSpec("TOLERANCE", PROPOSE, "tolerance", tr("Largest distance from the other pairs (m)"),
-                tr("A pair is accepted where the others place it, to so much. Larger keeps pairs of an oblique image that a polynomial follows "
-                   "badly."), advanced=True),
-    SettingSpec("MIN_SCORE", PROPOSE, "min_score", tr("Smallest likeness of two cut-outs (0-1)"),
-                tr("Correlation, 1 for the same picture. Lower accepts worn paint and shadows, higher only what looks the same."), advanced=True),
-    SettingSpec("COUNT", PROPOSE, "count", tr("Most pairs that are accepted (points)"),
-                tr("They are spread over the image. Half as many doubtful ones are listed besides."), advanced=True),
-)
+PROPOSE_SETTINGS = settings_of("overlay.PROPOSE_SETTINGS", "products.overlay.matching.propose:ProposalSettings",
+    "PIXEL_SIZE SEARCH TOLERANCE* MIN_SCORE* COUNT*")
 
 
 class ProposeControlPoints(Algorithm):
     ID, TITLE, GROUP = "proposecontrolpoints", "Propose control points", "Orthoimages"
     SUMMARY = "Finds the same paint in a UAV image and in the intensity image, as control points for Georeference image."
-    HELP = ("The image needs a rough position: two given points, or a world file, or the position tags of the drone, or the size of its "
-            "pixels. The paint of both images is laid over each other, the distortion of the camera followed, and about every "
-            "corner of paint (ends of dashes, arrows, bars, stop lines) the two cut-outs are compared.\n\n"
-            "A pair is accepted by default where its cut-outs look alike, nothing beside it looks the same, and the other pairs place it "
-            "where it is. Where the paint repeats so that the whole image fits elsewhere as well, no pair is accepted and a warning says so. "
-            "Look through the pairs with Control points from paint in the Lanewright menu, in the report, or in the table: points whose field "
-            "accepted is 1 are used by Georeference image, others are not.\n\n"
-            "The pairs tell how well the image fits the point cloud, not how well either fits the ground. They lie on the road, so that the "
-            "image is reliable there and less so beside it. Sun, shadow and dark paint do no harm; paint renewed between the two surveys does.")
     TAGS = ("UAV", "drone", "GCP", "control points", "matching", "registration", "orthoimage", "georeferencer")
     NUMBERS = (
         ("PROPOSED", tr("Pairs proposed")),
@@ -122,38 +99,16 @@ def _rough_points(call, image, crs):
     return replace(points, easting=easting, northing=northing, crs=crs)
 
 
-GEOREFERENCE = "products.overlay.georeference:GeoreferenceSettings"
 POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
 
-GEOREFERENCE_SETTINGS = (
-    SettingSpec("ORDER", GEOREFERENCE, "order", tr("Order of the polynomial (0-3)"),
-                tr("0 only shifts an image that already has a rough position; 1 also turns, scales and shears it (3 points or more), 2 also bends it "
-                   "(6), 3 bends it twice (10). Higher follows the points more closely and runs away faster outside them: watch the leave-one-out "
-                   "error, which falls only as long as the order is worth it.")),
-    SettingSpec("PIXEL_SIZE", GEOREFERENCE, "pixel_size", tr("Pixel size (m)"),
-                tr("Of the result; 0 keeps that of the image. Smaller makes a larger file, not a sharper image. A shift (order 0) of an image "
-                   "without position takes this as the image's own pixel size, north up.")),
-    SettingSpec("EXTRAPOLATION", GEOREFERENCE, "extrapolation", tr("Outside the control points"),
-                tr("What becomes of the image outside the hull of the control points, where the polynomial extrapolates: automatic draws it up to "
-                   "order 2 and leaves it out at order 3."), choices=("automatic", "draw", "leave-out"), advanced=True),
-    SettingSpec("RESAMPLING", GEOREFERENCE, "resampling", tr("Resampling"),
-                tr("Bilinear is smooth and safe, cubic a little sharper, nearest keeps the values as they are (for classes and temperatures)."),
-                choices=("bilinear", "nearest", "cubic"), advanced=True),
-    SettingSpec("CHECK_DISABLED", GEOREFERENCE, "check_disabled", tr("Disabled points are check points"),
-                tr("Points that are switched off in the georeferencer, or have 0 in a column enable, judge the result instead of being passed over. "
-                   "A layer or CSV may name check points in a column role."), advanced=True),
-)
+GEOREFERENCE_SETTINGS = settings_of("overlay.GEOREFERENCE_SETTINGS", "products.overlay.georeference:GeoreferenceSettings",
+    "ORDER PIXEL_SIZE EXTRAPOLATION* RESAMPLING* CHECK_DISABLED*", EXTRAPOLATION=dict(choices=("automatic", "draw", "leave-out")),
+    RESAMPLING=dict(choices=("bilinear", "nearest", "cubic")))
 
 
 class GeoreferenceImage(Algorithm):
     ID, TITLE, GROUP = "georeferenceimage", "Georeference image", "Orthoimages"
     SUMMARY = "Places a UAV image on the map by ground control points, and reports its accuracy."
-    HELP = ("Control points come as a layer or as a file, each with pixel, line, easting and northing; pixel and line count from the "
-            "outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.\n\n"
-            "Spread the points over the whole image, its corners first: between them the polynomial is held, outside it runs away. Take twice "
-            "as many as the order needs. Judge the result by check points, or by the error of each point without itself (leave-one-out), not by "
-            "the residuals, which the polynomial was bent to make small. Control points taken from the point cloud tell how "
-            "well the image fits the cloud, not how well either fits the ground.")
     TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
     LOOKS = {"OUTPUT": "ORTHOIMAGE"}
     NUMBERS = (

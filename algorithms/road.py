@@ -3,36 +3,19 @@
 from contextlib import nullcontext
 
 from ..core.common.features import CURB_POINTS, ROAD_EDGES
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, SettingSpec, settings_of
 from .survey_input import SURVEY_SETTINGS, add_execution, check_layers_on_roads, frame_of, open_survey_of
 from .texts import tr
 
-PLANES = "core.road.scanlines.section_planes:ScanlineSettings"
-
-SCANLINE_SETTINGS = (
-    SettingSpec("INTERVAL", PLANES, "interval", tr("Interval of section planes along the road (m)"),
-                tr("Smaller gives more scanlines, and more of them than were measured where scan lines lie far apart; larger is quicker.")),
-    SettingSpec("CORRIDOR", PLANES, "corridor", tr("Corridor either side of the road's reference line (m)"),
-                tr("Wider reaches the far side of a broad avenue, but takes longer.")),
-    SettingSpec("ROTATION_FREQUENCY", PLANES, "rotation_frequency", tr("Scan lines of each scanner, 0 = from the data (per second)"),
-                tr("The data know it well. Give it where they are said to show no regular scan lines although the scanner has a rotating mirror; the "
-                   "direction of rotation is found anyway."), advanced=True),
-)
-LAYER = "products.scanline_layer:ScanlineLayerSettings"
-LAYER_SETTINGS = (
-    SettingSpec("SIMPLIFY", LAYER, "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
-                tr("Larger draws and writes faster and shows less of the surface; 0 keeps every vertex.")),
-    SettingSpec("RESAMPLED_SPACING", LAYER, "spacing", tr("Spacing of resampled points along a scanline (m)"),
-                tr("Smaller gives more points, without more being known of the surface."), advanced=True),
-)
+SCANLINE_SETTINGS = settings_of("road.SCANLINE_SETTINGS", "core.road.scanlines.section_planes:ScanlineSettings",
+    "INTERVAL CORRIDOR ROTATION_FREQUENCY*")
+LAYER_SETTINGS = settings_of("road.LAYER_SETTINGS", "products.scanline_layer:ScanlineLayerSettings", "SIMPLIFY RESAMPLED_SPACING*",
+    RESAMPLED_SPACING=dict(field="spacing"))
 
 
 class NormalizedScanlines(Algorithm):
     ID, TITLE, GROUP = "normalizedscanlines", "Normalized scanlines", "Road"
     SUMMARY = "Cuts the measured surface by planes across the road, one scanline for every plane, pass and scanner."
-    HELP = ("The lines of a rotating scanner are distinguished by the times and places of the points alone; neighbouring lines make the "
-            "surface that is cut. Where it is interrupted, behind a car say, a new scanline begins. Points without times, or of a "
-            "head with many beams, have no such lines: there the points near each plane make the scanline, and the log says so.")
     TAGS = ("scanline", "profile", "cross section", "resample")
 
     def declare(self):
@@ -60,42 +43,14 @@ class NormalizedScanlines(Algorithm):
         call.layer("SCANLINES", scanlines)
 
 
-SCANLINES_OF = "core.road.scanlines.detect:ScanlineBoundarySettings"
-
-BOUNDARY_SETTINGS = (
-    SettingSpec("MIN_HEIGHT", SCANLINES_OF, "min_height", tr("Least height of a step, 0 = as the data allow (m)"),
-                tr("As the data allow, 3 cm count, and less, down to 2 cm, where a step stands out from the noise and continues for 5 m. A number is "
-                   "your own limit: lower finds dropped curbs, but also tar seams and the edges of manholes.")),
-    SettingSpec("SEARCH_WIDTH", SCANLINES_OF, "search_width", tr("Search width across a step (m)"),
-                tr("The height must change within this width. Wider finds rounded and bevelled curbs, but also ramps."), advanced=True),
-    SettingSpec("SENSOR_HEIGHT", SCANLINES_OF, "sensor_height", tr("Trajectory above the road, 0 = from the data (m)"),
-                tr("Give it where little road was scanned under the vehicle; otherwise the data know better."), advanced=True),
-    SettingSpec("CLIPPING_HEIGHT", SCANLINES_OF, "clipping_height", tr("Height above the road that is looked at (m)"),
-                tr("Higher keeps curbs on steeply banked roads, but also low walls and the sills of cars."), advanced=True),
-    SettingSpec("DISTANCE_ACROSS", SCANLINES_OF, "distance_across", tr("Reach of a plane across the road (m)"),
-                tr("Points this far to either side of a step give its planes. Longer is steadier, shorter keeps to narrow gutters and curb stones."),
-                advanced=True),
-    SettingSpec("DISTANCE_ALONG", SCANLINES_OF, "distance_along", tr("Reach of a plane along the road (m)"),
-                tr("Longer is steadier where points are sparse, shorter follows sharp corners."), advanced=True),
-    SettingSpec("RANSAC_DISTANCE", SCANLINES_OF, "ransac_distance", tr("Points of a plane lie within (m)"),
-                tr("Larger for noisy scanners; where points scatter more, 1.5 sigma of the plane is taken anyway."), advanced=True),
-    SettingSpec("VERTICAL_ANGLE", SCANLINES_OF, "vertical_angle",
-                tr("Least angle of a curb face's normal from the vertical, 0 = as the data allow (°)"),
-                tr("90 is upright. As the data allow, 60 counts, and less, down to 25, where the face keeps its line for 10 m. A number is your own "
-                   "limit: lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks."), advanced=True),
-    SettingSpec("HORIZONTAL_ANGLE", SCANLINES_OF, "horizontal_angle", tr("Largest angle of road's and sidewalk's normal from the vertical (°)"),
-                tr("Larger accepts sloping ground behind the curb."), advanced=True),
-    SettingSpec("MAX_GAP", SCANLINES_OF, "max_gap", tr("Longest gap connected (m)"),
-                tr("Corners farther apart along the road are not joined. Longer passes driveways and parked cars, and says so.")),
-)
+BOUNDARY_SETTINGS = settings_of("road.BOUNDARY_SETTINGS", "core.road.scanlines.detect:ScanlineBoundarySettings",
+    "MIN_HEIGHT SEARCH_WIDTH* SENSOR_HEIGHT* CLIPPING_HEIGHT* DISTANCE_ACROSS* DISTANCE_ALONG* RANSAC_DISTANCE* VERTICAL_ANGLE* HORIZONTAL_ANGLE* "
+    "MAX_GAP")
 
 
 class BoundariesFromScanlines(Algorithm):
     ID, TITLE, GROUP = "boundariesfromscanlines", "Boundaries from scanlines", "Road"
     SUMMARY = "Bottom and top corners of curbs on normalized scanlines, and the boundary lines through them."
-    HELP = ("From the vehicle outward every scanline is searched for a step. About each step the points of the neighbouring scanlines "
-            "give three planes: road, curb face and sidewalk. Where they meet the scanline's own plane lie the corners. Lines are cut "
-            "by status: measured; bridged, a gap between corners; occluded, a gap that something hides.")
     TAGS = ("curb", "kerb", "boundary", "scanline", "ransac", "corner")
     LOOKS = {"CORNERS": "CURB_POINTS"}
 
@@ -126,36 +81,13 @@ class BoundariesFromScanlines(Algorithm):
         call.layer("BOUNDARIES", lines.to_features(frame))
 
 
-CURBS = "core.road.profiles.detect:CurbSettings"
-
-CURB_SETTINGS = (
-    SettingSpec("BLOCK_LENGTH", CURBS, "block_length", tr("Block length along the road, 0 = automatic (m)"),
-                tr("Automatic takes 0.5 m in sharp curves and up to 2 m on straights. Shorter follows a bend more closely but has fewer points to go "
-                   "by.")),
-    SettingSpec("PROFILE_WIDTH", CURBS, "profile_width", tr("Profile width along the road (m)"),
-                tr("Wider finds curbs far from the scanner, where points are sparse, but blurs them in bends.")),
-    SettingSpec("POINT_SPACING", CURBS, "point_spacing", tr("Cell across the road (m)"),
-                tr("Finer places the curb more exactly; coarser fills gaps in sparse clouds, but misses low curbs."), advanced=True),
-    SettingSpec("LAYER_JUMP", CURBS, "layer_jump", tr("Height gap between layers (m)"),
-                tr("Points of a cell this far apart in height belong to different things: the road and a car above it. Smaller cuts the curb off "
-                   "grass and cars, but also splits noisy ground."), advanced=True),
-    SettingSpec("SLOPE", CURBS, "slope", tr("Smallest slope of the curb face, 0 = as the data allow (°)"),
-                tr("As the data allow, faces of 60° count, and less steep ones, down to 25°, where they keep their line for 10 m. A number is your "
-                   "own limit: lower accepts short bevelled and worn curbs, but also verges and ramps.")),
-    SettingSpec("MIN_HEIGHT", CURBS, "min_height", tr("Minimum curb height, 0 = as the data allow (m)"),
-                tr("As the data allow, curbs of 5 cm count, and lower ones, down to 2 cm, where they stand out from the noise and continue for 5 m. "
-                   "With a noisy scanner, curbs dropped to 1 cm are followed from the end of a sure one. A number is your own limit: lower finds "
-                   "dropped curbs at driveways, but also tar seams and gutters.")),
-    SettingSpec("MAX_HEIGHT", CURBS, "max_height", tr("Maximum curb height (m)"), tr("Higher accepts platforms and low walls as the road's edge.")),
-)
+CURB_SETTINGS = settings_of("road.CURB_SETTINGS", "core.road.profiles.detect:CurbSettings",
+    "BLOCK_LENGTH PROFILE_WIDTH POINT_SPACING* LAYER_JUMP* SLOPE MIN_HEIGHT MAX_HEIGHT")
 
 
 class DetectCurbs(Algorithm):
     ID, TITLE, GROUP = "detectcurbs", "Detect curbs", "Road"
     SUMMARY = "Finds the curb nearest to the driven track on each side, on profiles across the road."
-    HELP = ("Where there is no curb none is made up; a curb hidden behind parked cars becomes a point of status occluded, and one "
-            "that is lowered a point of status bridged wherever the ground still steps up on its line. The field kind tells the road's own "
-            "curbs (main) from those of corners, side streets and islands, which are found in plan.")
     TAGS = ("curb", "kerb", "road edge")
 
     def declare(self):
@@ -180,17 +112,7 @@ class DetectCurbs(Algorithm):
         call.layer("CURB_POINTS", points.to_features(survey.frame))
 
 
-EDGES = "core.road.edges.fit:EdgeSettings"
-
-EDGE_SETTINGS = (
-    SettingSpec("MAX_GAP", EDGES, "max_gap", tr("Longest gap bridged (m)"),
-                tr("Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there. Where both parts of the curb lie "
-                   "in one line, gaps up to twice as long are bridged. Where the ground shows that the curb is lowered, a dropped edge goes "
-                   "on for up to 30 m, whatever this length is.")),
-    SettingSpec("FALLBACK_WIDTH", EDGES, "fallback_width", tr("Assumed road width where no curb is seen, 0 = none (m)"),
-                tr("0 draws no edge where none was found. A width draws one at half of it either side of the road's reference line, flagged as "
-                   "inferred."), advanced=True),
-)
+EDGE_SETTINGS = settings_of("road.EDGE_SETTINGS", "core.road.edges.fit:EdgeSettings", "MAX_GAP FALLBACK_WIDTH*")
 
 
 class FitRoadEdges(Algorithm):
@@ -228,9 +150,6 @@ OFFERED = ("BLOCK_LENGTH", "SLOPE", "MIN_HEIGHT", "MAX_HEIGHT")
 class DetectBoundaries(Algorithm):
     ID, TITLE, GROUP = "detectboundaries", "Detect road boundaries", "Road"
     SUMMARY = "Road edges straight from the point clouds, by profiles, by scanlines or by both."
-    HELP = ("Where there is no curb the edge of the pavement is drawn: where asphalt ends at gravel, grass or a ditch, which are rougher, brighter, "
-            "higher or lower than the road before them. The field edge distinguishes the two (curb, pavement). Where nothing separates the "
-            "road from what lies beside it, no edge is made up.")
     TAGS = ("curb", "kerb", "road edge", "boundary", "scanline")
     RETIRED = ("PROFILE_WIDTH", "POINT_SPACING", "LAYER_JUMP", "INTERVAL", "ROTATION_FREQUENCY", "SCANLINE_MIN_HEIGHT", "SEARCH_WIDTH",
                "SENSOR_HEIGHT", "CLIPPING_HEIGHT", "DISTANCE_ACROSS", "DISTANCE_ALONG", "RANSAC_DISTANCE", "VERTICAL_ANGLE", "HORIZONTAL_ANGLE")
@@ -256,13 +175,7 @@ class DetectBoundaries(Algorithm):
         call.layer("ROAD_EDGES", boundaries.edges.to_features(survey.frame))
 
 
-SURFACE = "core.road.surface.extract:SurfaceSettings"
-
-SURFACE_SETTINGS = (
-    SettingSpec("MAX_WIDTH", SURFACE, "max_width", tr("Farthest surface from the trajectory (m)"),
-                tr("On a side without an edge the surface grows outward while it stays smooth, at most this far. Wider reaches the far lanes of a "
-                   "broad road, but also yards and forecourts.")),
-)
+SURFACE_SETTINGS = settings_of("road.SURFACE_SETTINGS", "core.road.surface.extract:SurfaceSettings", "MAX_WIDTH")
 
 
 class ExtractRoadSurface(Algorithm):

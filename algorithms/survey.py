@@ -2,7 +2,7 @@
 
 from ..core.common.features import CONTROL_POINTS, ESTIMATED_TRAJECTORY, TRAJECTORY
 from ..core.lazy import np
-from .algorithm import Algorithm, SettingSpec
+from .algorithm import Algorithm, settings_of
 from .survey_files import trajectory_features
 from .survey_input import SURVEY_SETTINGS, imported_trajectory
 from .texts import tr
@@ -13,13 +13,6 @@ TIME_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "TIME")
 class ImportTrajectory(Algorithm):
     ID, TITLE, GROUP = "importtrajectory", "Import trajectory", "Survey"
     SUMMARY = "Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, a log or track of a receiver, or a point or line layer."
-    HELP = (
-        "Columns may come in any order, with or without a header, in degrees, radians or degrees with minutes and seconds. Rows are sorted by time; "
-        "repeated and unusable rows are dropped and counted. The dialog shows what was understood of a file, and lets you assign its columns.\n\n"
-        "Times are GPS seconds. Clock times are read where the file says what the clock shows: GPS time as it is, UTC with the leap seconds "
-        "of its date. Days (modified Julian, Julian, and those of spreadsheets) are read as dates with clocks. Other clock times, and seconds since "
-        "1970, are refused, as their leap seconds are unknown."
-    )
     TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time", "nmea", "gpx", "rtklib")
     NUMBERS = (("ROWS", tr("Positions")),)
 
@@ -63,20 +56,6 @@ SCANNER_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "SCANNE
 class EstimateTrajectory(Algorithm):
     ID, TITLE, GROUP = "estimatetrajectory", "Estimate trajectory", "Survey"
     SUMMARY = "Where the scanner was, from the point clouds alone, for surveys that come without a trajectory."
-    HELP = (
-        "Every return lies on the ray that the scanner's mirror had at its time. All rays together tell where the scanner was, how "
-        "it was turned and how it is mounted; what stands along the road does not matter. This takes clouds from vehicles with "
-        "rotating mirrors, whole, with the gps_time of every point; lines or points may be thinned out.\n\n"
-        "The positions are those of the scanner, of the middle between several: where the vehicle's own trajectory refers to another "
-        "place of the vehicle, the two differ by a constant arm. Heading, roll and pitch are relative to the way driven and the road. "
-        "What a cloud is displaced by as a whole does not show in it, nor in the uncertainty.\n\n"
-        "Heads of many beams that turn about an upright axis are known by their turns: their place is that from which every return lies in "
-        "the direction of its time. Their height above the road is that from which every beam has one elevation, on whatever it falls; where too "
-        "little stands beside the road to tell it, it is a usual one, known to 0.5 m, and the log says so.\n\n"
-        "Without gps_time, or where no mirror is seen to turn, the track follows the density of the points: it is rough, half a metre "
-        "off and with a height known to 0.3 m, and says so. Airborne, terrestrial and handheld clouds are refused, and so "
-        "are those that lack the road under the vehicle and files of drives whose clocks overlap."
-    )
     TAGS = ("trajectory", "no trajectory", "scanner position", "rotating mirror", "gps time")
     NUMBERS = (
         ("ROWS", tr("Positions")),
@@ -108,18 +87,12 @@ class EstimateTrajectory(Algorithm):
         return {name: value for (name, _), value in zip(self.NUMBERS, values)}
 
 
-INSPECTION = "products.inspection:InspectionSettings"
-
-INSPECTION_SETTINGS = (
-    SettingSpec("CELL_SIZE", INSPECTION, "cell_size", tr("Cell of the density raster (m)"),
-                tr("Smaller shows single scan lines, larger the broad picture."), advanced=True),
-)
+INSPECTION_SETTINGS = settings_of("survey.INSPECTION_SETTINGS", "products.inspection:InspectionSettings", "CELL_SIZE*")
 
 
 class InspectSurvey(Algorithm):
     ID, TITLE, GROUP = "inspectsurvey", "Inspect survey", "Survey"
     SUMMARY = "Reports what point clouds and trajectory contain, and whether they fit together, before any processing."
-    HELP = "What the road map would stumble over, such as a geographic CRS or two clocks, is said with a way on."
     TAGS = ("density", "report", "las", "header", "overlap")
     NUMBERS = (
         ("POINTS", tr("Points")),
@@ -169,32 +142,10 @@ def _percent(share):
     return None if share is None else 100.0 * share
 
 
-SAMPLE = "simulator.survey:SampleSettings"
-
-SAMPLE_SETTINGS = (
-    SettingSpec(
-        "SCENE", SAMPLE, "scene", tr("Scene"),
-        tr("street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. one-lane "
-           "and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line between them. "
-           "hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, and an exit. serpentine: "
-           "a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. roundabout: a ring with splitter islands, "
-           "driven straight on and to the left. outskirts: two lanes with guard rail, concrete barrier, walls, fences and a hedge beside them, "
-           "driven both ways. cycle-lanes: two lanes with the word BUS, and cycle lanes with bicycles."),
-        choices=("street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine",
-                 "crossing", "roundabout", "outskirts", "cycle-lanes")),
-    SettingSpec("LENGTH", SAMPLE, "length", tr("Length of the road, 0: as usual for the scene (m)"),
-                tr("Longer takes longer to make and to work through, in proportion. Streets are usually 120 m long, a motorway 240 m (600 m at the "
-                   "most), a serpentine 200 m (1000 m), a crossing and a roundabout 110 m from end to end (300 m).")),
-    SettingSpec("SEED", SAMPLE, "seed", tr("Seed of the random numbers (whole number)"),
-                tr("Another seed gives another street with other cars, wear and noise; the same seed gives the same points.")),
-    SettingSpec("SPEED", SAMPLE, "speed_kmh", tr("Speed of the vehicle (km/h)"), tr("Faster spreads the scan lines wider apart."), advanced=True),
-    SettingSpec("PULSE_RATE", SAMPLE, "pulse_rate", tr("Pulses of each scanner (per second)"), tr("More gives a denser cloud and a larger file."),
-                advanced=True),
-    SettingSpec("ROTATION_RATE", SAMPLE, "rotation_rate", tr("Scan lines of each scanner (per second)"),
-                tr("More brings the lines closer together, with fewer points on each."), advanced=True),
-    SettingSpec("RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"),
-                tr("Smaller makes sharper bends; motorway, serpentine, crossing and roundabout have bends of their own."), advanced=True),
-)
+SAMPLE_SETTINGS = settings_of("survey.SAMPLE_SETTINGS", "simulator.survey:SampleSettings",
+    "SCENE LENGTH SEED SPEED* PULSE_RATE* ROTATION_RATE* RADIUS*", SPEED=dict(field="speed_kmh"), SCENE=dict(choices=(
+        "street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine", "crossing",
+        "roundabout", "outskirts", "cycle-lanes")))
 
 TRUTHS = (
     ("TRUTH_BOUNDARIES", "truth_boundaries", "LineStringZ", tr("True road boundaries")),
@@ -209,7 +160,6 @@ TRUTHS = (
 class SampleSurvey(Algorithm):
     ID, TITLE, GROUP = "samplesurvey", "Sample survey", "Survey"
     SUMMARY = "Simulates a mobile laser scanning survey of a street, motorway, junction or mountain road, together with its known truth."
-    HELP = "Every pulse of two scanners is followed to what it meets first. Figures reached on it are figures on simulated data."
     TAGS = ("sample", "simulation", "test data")
     NUMBERS = (("POINTS", tr("Points")),)
     RETIRED = ("MOUNT_YAW", "CURB_HEIGHT", "GUTTER")

@@ -5,53 +5,17 @@ from dataclasses import replace
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import CORRECTIONS, Features
 from ..core.lazy import shapely
-from .algorithm import SettingSpec
+from .algorithm import settings_of
 from .texts import tr
 
-SURVEY = "core.survey.open_survey:SurveySettings"
-
-SURVEY_SETTINGS = (
-    SettingSpec("CORRIDOR", SURVEY, "corridor", tr("Corridor either side of the trajectory (m)"),
-                tr("Points farther out are left unread. Wider reaches the far side of a broad avenue, but takes longer and brings in the "
-                   "neighbouring street."), advanced=True),
-    SettingSpec("SCANNER_FIELD", SURVEY, "scanner_field", tr("Field that distinguishes the scanners"),
-                tr("Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time, or along the road where the "
-                   "points have no times; where no field distinguishes them, they are distinguished by their scan lines. Name one when the report "
-                   "counts the wrong number of scanners."), choices=("automatic", "scanner_channel", "point_source_id"), advanced=True),
-    SettingSpec("TIME", SURVEY, "time", tr("Time of the trajectory"),
-                tr("How its clock counts: gps (since 1980), adjusted (the same less a billion), week or day. Automatic compares with the point "
-                   "clouds and says what it chose."), choices=("automatic", "gps", "adjusted", "week", "day"), advanced=True),
-    SettingSpec("INTENSITY_FROM", SURVEY, "intensity_from", tr("Intensity from"),
-                tr("Where the points have no intensity but colours, rgb takes the brightness of their colours in its place (0.2126 red, 0.7152 "
-                   "green, 0.0722 blue). It is a substitute: shadows and vehicles on the photographs darken and cover paint, and what the camera saw "
-                   "is displaced where it was not well aligned with the scanner."), choices=("intensity", "rgb"), advanced=True),
-    SettingSpec("FIT_PASSES", SURVEY, "fit_passes", tr("Lay passes over one road on each other"),
-                tr("Where two drives over a road measurably lie centimetres apart, as navigation drifts between them, each is moved by its share "
-                   "until curbs and paint agree, and the log says how far. Off keeps every point where it was measured, for surveys adjusted to "
-                   "control points already; what the passes differ by then blurs curbs and doubles lines."), advanced=True),
-    SettingSpec("TRAJECTORY_SIGMA", SURVEY, "trajectory_sigma", tr("Accuracy of the trajectory across, one sigma, 0 = unknown (m)"),
-                tr("How far the survey as a whole may lie beside its true place, as the processing of GNSS and INS reports it or check points show; "
-                   "0.02 is usual. It goes into sigma_m of road edges and driving lines, which then tells how far they may lie beside their true "
-                   "place. With 0 it tells how well they fit the survey's own points, and what passes differ by; what the survey is off as a whole, "
-                   "which one drive does not show, comes on top."), advanced=True),
-)
+SURVEY_SETTINGS = settings_of("survey_input.SURVEY_SETTINGS", "core.survey.open_survey:SurveySettings",
+    "CORRIDOR* SCANNER_FIELD* TIME* INTENSITY_FROM* FIT_PASSES* TRAJECTORY_SIGMA*",
+    SCANNER_FIELD=dict(choices=("automatic", "scanner_channel", "point_source_id")),
+    TIME=dict(choices=("automatic", "gps", "adjusted", "week", "day")), INTENSITY_FROM=dict(choices=("intensity", "rgb")))
 # of those who draw no lines
 READING_SETTINGS = tuple(spec for spec in SURVEY_SETTINGS if spec.name != "TRAJECTORY_SIGMA")
 
-EXECUTION_SETTINGS = (
-    SettingSpec("WORKERS", "core.execution.choice:ExecutionSettings", "workers", tr("Worker processes, 0 = automatic (whole number)"),
-                tr("So many further processes of Python read the points, find curbs and do most of what is done point by point, with the same "
-                   "results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic "
-                   "takes one for every 5 million points, one per core and GB of memory at most, and none for less than 10 million "
-                   "points. Where no Python can be started, this program does their work, and the log says so."), advanced=True),
-    SettingSpec("SCHEDULER", "core.execution.choice:ExecutionSettings", "scheduler", tr("Address of a Dask scheduler"),
-                tr("The workers of a Dask cluster that is running already do what worker processes would, with the same results: tls://host:8786, or "
-                   "tcp://127.0.0.1:8786 on this computer. They need the same Python, packages and Lanewright, no QGIS, and a work folder that all "
-                   "machines see. The manual's page on large surveys tells how to start one. Worker processes are not used then."), advanced=True),
-    SettingSpec("INSECURE", "core.execution.choice:ExecutionSettings", "insecure", tr("Connect without encryption"),
-                tr("Whoever can reach an unencrypted cluster can run programs on it. Set this only in a network that is yours alone; on this "
-                   "computer it is not needed."), advanced=True),
-)
+EXECUTION_SETTINGS = settings_of("survey_input.EXECUTION_SETTINGS", "core.execution.choice:ExecutionSettings", "WORKERS* SCHEDULER* INSECURE*")
 
 
 WITHOUT_TRAJECTORY = tr("Left out, it is estimated from the points (see Estimate trajectory).")

@@ -1,6 +1,8 @@
 """What users read, in their language: texts of the code and sentences of the core, each with its translation, from resources/i18n."""
 
 import json
+import re
+from functools import cache
 from pathlib import Path
 
 from ..core.common.texts import CoreMessages, set_translation, told, tr
@@ -32,6 +34,13 @@ def speak(language="en"):
 
     set_translation(translated, CoreMessages.load(TRANSLATIONS / f"core_{short}.json", translated).told, short)
     return True
+
+
+@cache
+def help_texts():
+    """{id of an algorithm, or table and name of a setting: its paragraphs, in English} of help.txt."""
+    _, *parts = re.split(r"^\[(.+)\]$", Path(__file__).with_name("help.txt").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    return {ID: [" ".join(part.split()) for part in text.split("\n\n") if part.strip()] for ID, text in zip(parts[::2], parts[1::2])}
 
 
 # The words of choices in the user's language; commands and models keep those that are written here.

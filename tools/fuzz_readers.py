@@ -51,8 +51,9 @@ def _clouds(folder):
         for block in read_blocks(path, 1000):
             np.asarray(block.array["X"])
         with ParallelCloudReader() as readers:  # as a survey is read
-            for load in readers.blocks([header], 100):
-                np.asarray(load().array["X"])
+            for part in readers.ranges([header], 100):
+                for points in readers.points(header, *part[1:], 100):
+                    np.asarray(points.array["X"])
             for times in readers.times(header) if header.has_time and header.count else ():
                 np.asarray(times)
 

@@ -20,6 +20,7 @@ TEMPLATES = ROOT / "products" / "report" / "templates"
 SCHEMAS = ROOT / "core" / "common" / "features.py"
 COUNTRIES = ROOT / "core" / "countries" / "countries.json"
 VOCABULARY, FAULTS = ROOT / "core" / "common" / "words.txt", ROOT / "products" / "export" / "check" / "faults.txt"   # lines of name: text
+HELP = ROOT / "algorithms" / "help.txt"
 FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "products", "simulator", "library")
 FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
 FEWEST_WORDS = 3  # of a phrase of the core that is put into a sentence elsewhere
@@ -33,7 +34,7 @@ NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
 NAMED = {"title", "signed"}  # attributes of the core whose shortest texts are shown too
 UNSAID = {"_WORDS"}  # tables of the core that hold what other software says
 # Texts that stand in a class or a table and are translated where they are shown
-IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS", "CHOICES"}
+IN_A_CLASS = {"TITLE", "SUMMARY", "GROUP", "TAGS", "GROUPS", "CHOICES"}
 
 
 def texts():
@@ -50,6 +51,8 @@ def texts():
         found.setdefault(text, SCHEMAS.relative_to(ROOT).as_posix())
     for _, text in table(VOCABULARY):
         found.setdefault(text, VOCABULARY.relative_to(ROOT).as_posix())
+    for text in help_texts():
+        found.setdefault(text, HELP.relative_to(ROOT).as_posix())
     for recipe in RECIPES:
         found.setdefault(recipe.name, "tools/models.py")
         found.setdefault(recipe.description, "tools/models.py")
@@ -64,6 +67,12 @@ def table(path):
     return [line.split(": ", 1) for line in path.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
 
 
+def help_texts():
+    """The paragraphs of the help of the algorithms and their settings."""
+    parts = re.split(r"\n\n|^\[.+\]$|^#.*$", HELP.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    return [" ".join(part.split()) for part in parts if part.strip()]
+
+
 def texts_of(tree):
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "tr" and node.args:
@@ -76,9 +85,7 @@ def texts_of(tree):
 def in_a_class(target, value):
     """The texts of `TITLE = ...` and of `ID, TITLE, GROUP = ...`."""
     if isinstance(target, ast.Name) and target.id in IN_A_CLASS:
-        for text in constants(value):
-            # HELP is shown paragraph by paragraph
-            yield from (text.split("\n\n") if target.id == "HELP" else [text])
+        yield from constants(value)
     elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
         for part, text in zip(target.elts, value.elts):
             yield from in_a_class(part, text)

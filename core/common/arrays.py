@@ -1,4 +1,4 @@
-"""Sorting, ranks and quantiles of many 32-bit numbers in linear time, and decimation of crowded cells."""
+"""Sorting of many 32-bit numbers in linear time, decimation of crowded cells, groups, runs and stretches."""
 
 from __future__ import annotations
 
@@ -69,37 +69,6 @@ def decimate_cells(cell: np.ndarray, most: int) -> np.ndarray:
     return order
 
 
-def ranked(values: np.ndarray, ranks: np.ndarray | Sequence[int]) -> np.ndarray:
-    """The values, (N,) int32 or float32 without NaN, at (R,) ranks 0 to N - 1 of the ascending order, found by counting."""
-    key = above_least(_sortable_bits(values))
-    digit = key >> max(int(key.max()).bit_length() - RADIX_BITS, 0)
-    below = np.cumsum(np.bincount(digit))
-    ranked_values = np.empty(len(ranks), values.dtype)
-    digits = np.searchsorted(below, ranks, side="right")
-    for d in np.unique(digits):
-        members = np.sort(values[digit == d])
-        of_digit = digits == d
-        ranked_values[of_digit] = members[np.asarray(ranks)[of_digit] - (below[d - 1] if d else 0)]
-    return ranked_values
-
-
-def ascending(values: np.ndarray) -> np.ndarray:
-    """(N,) sorted values without NaN; int32 and float32 in linear time."""
-    return values[order_by(_sortable_bits(values))] if values.dtype in (np.int32, np.float32) else np.sort(values)
-
-
-def _sortable_bits(values: np.ndarray) -> np.ndarray:
-    """(N,) int32 in the same order as the int32 or float32 values."""
-    bits = values.view(np.int32)
-    # the bit patterns of negative floats ascend in reverse order
-    return bits ^ ((bits >> 31) & np.int32(0x7FFFFFFF)) if values.dtype.kind == "f" else bits
-
-
-def quantiles(values: np.ndarray, shares: np.ndarray | Sequence[float]) -> np.ndarray:
-    """(S,) quantiles of (N,) int32 or float32 without NaN, N > 0, in linear time, interpolated as by `numpy.quantile`."""
-    return _interpolated(shares, len(values), lambda ranks: ranked(values, ranks))
-
-
 def quantile_in_order(values: np.ndarray, count: int, share: float) -> float:
     """One quantile of the first `count` of sorted values, interpolated as by `numpy.quantile`."""
     rank = share * (count - 1)
@@ -107,14 +76,6 @@ def quantile_in_order(values: np.ndarray, count: int, share: float) -> float:
     a, b = float(values[k]), float(values[min(k + 1, count - 1)])
     share = rank - k
     return a + (b - a) * share if share < 0.5 else b - (b - a) * (1.0 - share)
-
-
-def _interpolated(shares: np.ndarray | Sequence[float], count: int, at_ranks: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    rank = np.asarray(shares) * (count - 1)
-    before = np.floor(rank).astype(np.int64)
-    a, b = at_ranks(np.r_[before, np.minimum(before + 1, count - 1)]).astype(float).reshape(2, -1)
-    share = rank - before
-    return np.where(share < 0.5, a + (b - a) * share, b - (b - a) * (1.0 - share))
 
 
 def round_step(least: float) -> float:

@@ -127,7 +127,7 @@ class CoreMessages:
             match = pattern.fullmatch(text)
             if match:
                 values = [self._value(value) for value in match.groups()]
-                translated = _filled(target, values)
+                translated = "".join(text for pair in zip(target.split(BRACES), [*values, ""]) for text in pair)
                 # a sentence of which a phrase stays unknown may be another one, whose phrases are all known
                 if not any(value == before and before.count(" ") >= PHRASE for value, before in zip(values, match.groups())):
                     return translated
@@ -156,13 +156,5 @@ class CoreMessages:
         """(pattern, translation) of what has places; made when something is said first, since starting QGIS need not wait for it."""
         with_places = [source for source in self._known if BRACES in source]
         # the most words first: a short sentence may begin as a long one does
-        return [(_pattern(source), self._known[source]) for source in sorted(with_places, key=lambda source: -len(source.replace(BRACES, "")))]
-
-
-def _filled(target, values):
-    parts = target.split(BRACES)
-    return "".join(text for pair in zip(parts, [*values, ""]) for text in pair)
-
-
-def _pattern(source):
-    return re.compile("(.*?)".join(re.escape(part) for part in source.split(BRACES)), re.DOTALL)
+        return [(re.compile("(.*?)".join(map(re.escape, source.split(BRACES))), re.DOTALL), self._known[source])
+                for source in sorted(with_places, key=lambda source: -len(source.replace(BRACES, "")))]

@@ -84,10 +84,6 @@ class Curve:
         """The curve shifted by (dx, dy) metres: from local to map coordinates."""
         return replace(self, x=self.x + dx, y=self.y + dy)  # type: ignore[type-var, attr-defined]
 
-    def reversed(self) -> Curve:
-        """The curve in the opposite direction."""
-        raise NotImplementedError
-
 
 class TabulatedCurve(Curve):
     """A curve of a parameter t, with a table of arc lengths.
@@ -168,13 +164,6 @@ def _rising(t, values):
     return (t, values) if t[-1] >= t[0] else (t[::-1], values[::-1])
 
 
-def _arc_step(turn):
-    """sin(a)/a and (1 - cos(a))/a, also at a = 0."""
-    small = np.abs(turn) < 1e-5
-    safe = np.where(small, 1.0, turn)
-    return np.where(small, 1.0 - turn**2 / 6, np.sin(safe) / safe), np.where(small, turn / 2, (1 - np.cos(safe)) / safe)
-
-
 @dataclass(frozen=True)
 class Arc(Curve):
     """A circular arc, or a straight line where `bend` is 0.
@@ -203,7 +192,11 @@ class Arc(Curve):
 
     def at(self, u: np.ndarray) -> np.ndarray:
         u = np.asarray(u, float)
-        along, across = (f * u for f in _arc_step(self.bend * u))
+        turn = self.bend * u
+        small = np.abs(turn) < 1e-5
+        safe = np.where(small, 1.0, turn)
+        along = np.where(small, 1.0 - turn**2 / 6, np.sin(safe) / safe) * u
+        across = np.where(small, turn / 2, (1 - np.cos(safe)) / safe) * u
         c, s = np.cos(self.direction), np.sin(self.direction)
         return np.c_[self.x + along * c - across * s, self.y + along * s + across * c]
 
@@ -265,15 +258,11 @@ class CurveFit:
         return percentiles(np.abs(self.residuals), (95.0,))[0]
 
     @cached_property
-    def _information(self) -> float:
-        n = len(self.residuals)
-        mean_loss = 2 * FITS.soft_l1_scale**2 * np.sum(np.sqrt(1 + (self.residuals / FITS.soft_l1_scale) ** 2) - 1) / n
-        return n * np.log(max(mean_loss, FITS.noise_floor**2))
-
-    @property
     def bic(self) -> float:
         """Bayesian information criterion ``n ln(RSS/n) + p ln n``, with the soft L1 loss that was minimised as RSS."""
-        return float(self._information + self.parameters * np.log(len(self.residuals)))
+        n = len(self.residuals)
+        mean_loss = 2 * FITS.soft_l1_scale**2 * np.sum(np.sqrt(1 + (self.residuals / FITS.soft_l1_scale) ** 2) - 1) / n
+        return float(n * np.log(max(mean_loss, FITS.noise_floor**2)) + self.parameters * np.log(n))
 
 
 def bic_lower_bound(points: int, parameters: float) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -165,10 +165,6 @@ class Spline(TabulatedCurve):
     def moved(self, dx: float, dy: float) -> Spline:
         return Spline(self.knots, tuple(v + dx for v in self.control_x), tuple(v + dy for v in self.control_y))
 
-    def reversed(self) -> Spline:
-        turn = self.knots[0] + self.knots[-1]
-        return Spline(tuple(turn - k for k in self.knots[::-1]), self.control_x[::-1], self.control_y[::-1])
-
 
 def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[np.ndarray | None] | None = None,
                 bandwidth: float | None = None) -> list[CurveFit]:
@@ -294,37 +290,13 @@ class Profile:
 
 def smooth_profiles(profiles: Sequence[tuple[np.ndarray, np.ndarray]], bandwidth: float) -> list[Profile]:
     """Robust smoothing splines of profiles, such as heights along lines, (t, values) with (N,) metres and t rising; `bandwidth` in metres."""
-    profiles = [(np.asarray(t, float), np.asarray(values, float)) for t, values in profiles]
-    functions: list[Any] = [None] * len(profiles)
-    smoothable = []
-    for k, (t, values) in enumerate(profiles):
-        if len(t) < 4 or t[-1] - t[0] < 1.0:
-            functions[k] = Profile(np.empty(0), np.empty(0), median(values), 0.0)
-        else:
-            smoothable.append(k)
-    for first, end in _batches([len(profiles[k][0]) for k in smoothable], FITS.spline_points_per_batch):
-        check_cancelled()
-        batch = smoothable[first:end]
-        for k, smooth in zip(batch, _smooth([profiles[k] for k in batch], bandwidth)):
-            functions[k] = smooth
+    functions = [Profile(np.empty(0), np.empty(0), median(values), 0.0) for _, values in profiles]
+    smoothable = [k for k, (t, _) in enumerate(profiles) if len(t) >= 4 and t[-1] - t[0] >= 1.0]
+    if smoothable:
+        basis = _SplineBasis([(profiles[k][0] - profiles[k][0][0], [bandwidth]) for k in smoothable])
+        places = np.concatenate([profiles[k][1] - functions[k].level for k in smoothable])
+        solved = basis.robustly_solved(places[:, None], lambda at, slope: places - at[:, 0], FITS.max_profile_reweightings)
+        for k, knots, (control, _) in zip(smoothable, basis.knots, solved):
+            functions[k] = replace(functions[k], knots=knots, control=control[:, 0], start=float(profiles[k][0][0]))
     return functions
-
-
-def _batches(counts: Sequence[int], max_points: int) -> list[tuple[int, int]]:
-    """[(first, end)] of successive lines with at most `max_points` points together; a single line may have more."""
-    ranges, first, size = [], 0, 0
-    for k, count in enumerate(counts):
-        if k > first and size + count > max_points:
-            ranges.append((first, k))
-            first, size = k, 0
-        size += count
-    return [*ranges, (first, len(counts))] if len(counts) else []
-
-
-def _smooth(profiles, bandwidth):
-    basis = _SplineBasis([(t - t[0], [bandwidth]) for t, _ in profiles])
-    levels = [median(values) for _, values in profiles]
-    places = np.concatenate([values - level for (_, values), level in zip(profiles, levels)])
-    solved = basis.robustly_solved(places[:, None], lambda at, slope: places - at[:, 0], FITS.max_profile_reweightings)
-    return [Profile(knots, control[:, 0], level, float(t[0])) for knots, (control, _), level, (t, _) in zip(basis.knots, solved, levels, profiles)]
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..common.parallel import check_cancelled
 from .base import CurveFit, bic_lower_bound
 from .bspline import fit_splines
 from .clothoid import fit_clothoids
@@ -62,16 +62,12 @@ def fit_curves(lines: Sequence[tuple[np.ndarray, np.ndarray]], elements: bool = 
 
 def _ellipses(lines):
     """Fits, None where the points are not on an ellipse or miss it by more than MAX_MISFIT."""
-    return [_ellipse(x, y) for x, y in lines]
-
-
-def _ellipse(x, y):
-    check_cancelled()
-    try:
-        fit = fit_ellipse(x, y, MAX_MISFIT)
-        return fit if fit.residual_p95 <= MAX_MISFIT else None
-    except RoadExtractionError:
-        return None
+    fits: list[CurveFit | None] = [None] * len(lines)
+    for k, line in enumerate(lines):
+        with suppress(RoadExtractionError):
+            fit = fit_ellipse(*line, MAX_MISFIT)
+            fits[k] = fit if fit.residual_p95 <= MAX_MISFIT else None
+    return fits
 
 
 # (name, minimum number of points, function of a list of lines) of the elements of a road alignment, simplest first

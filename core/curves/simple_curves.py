@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -122,9 +122,6 @@ class Ellipse(TabulatedCurve):
 
     def _bend(self, t):
         return self._turned(-self.a * np.cos(t), -self.b * np.sin(t))
-
-    def reversed(self) -> Ellipse:
-        return replace(self, first=self.last, last=self.first)
 
 
 def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> CurveFit:
@@ -247,10 +244,6 @@ class Polynomial(TabulatedCurve):
 
     def _bend(self, t):
         return self._turned(np.zeros_like(t), self._value(t, 2))
-
-    def reversed(self) -> Polynomial:
-        turned = tuple(-c * (-1) ** k for k, c in enumerate(self.coefficients))
-        return Polynomial(self.x, self.y, self.tilt + np.pi, self.scale, turned, -self.last, -self.first)
 
 
 def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.arrays import ascending, quantile_in_order
+from ..common.arrays import quantile_in_order
 from ..survey.frame.passes import Pass
 from ..survey.store.records import COORDINATE_SCALE, Points
 from .weights import ASPHALT
@@ -116,7 +116,7 @@ def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
     Paint is at the bright end, so values brighter than three spreads above the median are left out; so are those four standard deviations below it,
     of dark repairs and water. How much that is, the 30 % quantile tells, which they move less than the lower spread. Three rounds are enough.
     """
-    values = ascending(values)
+    values = np.sort(values)
     for _ in range(ASPHALT.cleaning_rounds):
         count = len(values)
         low, inner, median = (quantile_in_order(values, count, q) for q in (LOWER_QUANTILE, INNER_QUANTILE, 0.5))

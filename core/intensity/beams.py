@@ -30,61 +30,46 @@ SAMPLE_COLUMNS = "time", "x", "y", "z", "source", "pass_number"   # needed for t
 ANGLE_SIGNS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # sign conventions of roll and pitch that are tried; 0 ignores them
 
 
-@dataclass
-class _ScannerTurns:
-    """Turns of a spinning scanner, numbered in point_source_id; a cloud without such numbers has none."""
+def _middles_of_turns(road_points, samples):
+    """(65536,) s, the time in the middle of each turn of a spinning scanner, numbered in point_source_id; NaN where the number is no turn.
 
-    middle: np.ndarray   # (65536,) s, the time in the middle of each turn; NaN where the number is no turn
+    samples : [Points] from all over the road: where each number occurs for longer than a turn in them, there are no turns
+    """
+    middle = np.full(SOURCE_IDS, np.nan)
+    first, last = _occurrences(samples)
+    if not (last - first < BEAMS.max_turn_time)[np.isfinite(first)].any():
+        return middle
+    first, last = _occurrences(road_points.section(*key) for key in road_points.all_sections())
+    number = np.flatnonzero(np.isfinite(first))
+    number = number[np.argsort(first[number], kind="stable")]
+    begin, end = first[number], last[number]
+    # not every turn begins and ends over the road: two consecutive turns share the time between them
+    follows = begin[1:] - end[:-1] < BEAMS.max_turn_time / 2
+    between = (end[:-1] + begin[1:]) / 2
+    begin[1:][follows], end[:-1][follows] = between[follows], between[follows]
+    # a turn without a predecessor or a successor is as long as the others
+    turn = np.r_[False, follows] & np.r_[follows, False]
+    if turn.any():
+        length = float(np.median((end - begin)[turn]))
+        begin = np.where(np.r_[False, follows] | ~np.r_[follows, False], begin, end - length)
+        end = np.where(np.r_[follows, False] | ~np.r_[False, follows], end, begin + length)
+    turn = (end - begin < BEAMS.max_turn_time) & (end > begin)
+    middle[number[turn]] = (begin[turn] + end[turn]) / 2
+    return middle
 
-    @classmethod
-    def of(cls, road_points: RoadPoints) -> _ScannerTurns:
-        """The turns by which points are numbered."""
-        first, last = np.full(SOURCE_IDS, np.inf), np.full(SOURCE_IDS, -np.inf)
-        for key in road_points.all_sections():
-            points = road_points.section(*key)
-            source, time = points.source, points.time
-            if not len(source):
-                continue
-            order = np.argsort(source, kind="stable")
-            source, time = source[order], time[order]
+
+def _occurrences(parts):
+    """(65536,) s, when each point_source_id occurs first and last among Points; infinite where it does not."""
+    first, last = np.full(SOURCE_IDS, np.inf), np.full(SOURCE_IDS, -np.inf)
+    for points in parts:
+        if len(points):
+            order = np.argsort(points.source, kind="stable")
+            source, time = points.source[order], points.time[order]
             begins = np.flatnonzero(np.r_[True, source[1:] != source[:-1]])
-            first[source[begins]] = np.minimum(first[source[begins]], np.minimum.reduceat(time, begins))
-            last[source[begins]] = np.maximum(last[source[begins]], np.maximum.reduceat(time, begins))
-        number = np.flatnonzero(np.isfinite(first))
-        number = number[np.argsort(first[number], kind="stable")]
-        begin, end = first[number], last[number]
-        # not every turn begins and ends over the road: two consecutive turns share the time between them
-        follows = begin[1:] - end[:-1] < BEAMS.max_turn_time / 2
-        between = (end[:-1] + begin[1:]) / 2
-        begin[1:][follows], end[:-1][follows] = between[follows], between[follows]
-        # a turn without a predecessor or a successor is as long as the others
-        turn = np.r_[False, follows] & np.r_[follows, False]
-        if turn.any():
-            length = float(np.median((end - begin)[turn]))
-            begin = np.where(np.r_[False, follows] | ~np.r_[follows, False], begin, end - length)
-            end = np.where(np.r_[follows, False] | ~np.r_[False, follows], end, begin + length)
-        middle = np.full(SOURCE_IDS, np.nan)
-        turn = (end - begin < BEAMS.max_turn_time) & (end > begin)
-        middle[number[turn]] = (begin[turn] + end[turn]) / 2
-        return cls(middle)
-
-    @classmethod
-    def none(cls) -> _ScannerTurns:
-        return cls(np.full(SOURCE_IDS, np.nan))
-
-    @property
-    def known(self) -> bool:
-        """Whether there are any turns."""
-        return bool(np.isfinite(self.middle).any())
-
-
-def _may_be_turns(samples):
-    """Whether any point_source_id of points from all over the road occurs for no longer than a turn."""
-    source, time = (np.concatenate([getattr(points, name) for points in samples]) for name in ("source", "time"))
-    order = np.argsort(source, kind="stable")
-    source, time = source[order], time[order]
-    begins = np.flatnonzero(np.r_[True, source[1:] != source[:-1]])
-    return bool((np.maximum.reduceat(time, begins) - np.minimum.reduceat(time, begins) < BEAMS.max_turn_time).any())
+            number = source[begins]
+            first[number] = np.minimum(first[number], np.minimum.reduceat(time, begins))
+            last[number] = np.maximum(last[number], np.maximum.reduceat(time, begins))
+    return first, last
 
 
 @dataclass
@@ -92,7 +77,7 @@ class _ElevationModel:
     """How the elevation of a point seen from the scanner is computed."""
 
     passes: Sequence[Pass]   # of the road frame
-    turns: _ScannerTurns
+    turns: np.ndarray   # of `_middles_of_turns`
     by_turn: bool = False   # at the middle of the point's turn, to which its whole turn was moved; else at the point's own time
     signs: tuple[int, int] = (0, 0)   # of roll and pitch
 
@@ -107,7 +92,7 @@ class _ElevationModel:
         """Yield (indices, _BeamGeometry) of the points of each pass, the same for all signs."""
         time, number = points.time, points.pass_number
         if self.by_turn:
-            middle = self.turns.middle[points.source]
+            middle = self.turns[points.source]
             time = np.where(np.isfinite(middle), middle, time)
         for p in self.passes:
             rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - ASPHALT.pass_margin) & (time <= p.time[-1] + ASPHALT.pass_margin))
@@ -158,8 +143,7 @@ class Beams:
         samples = _samples(road_points, frame, scanners)
         if not samples:
             return None
-        turns = _ScannerTurns.of(road_points) if _may_be_turns([points for beams in samples.values() for points in beams]) \
-            else _ScannerTurns.none()
+        turns = _middles_of_turns(road_points, [points for beams in samples.values() for points in beams])
         models = {scanner: model for scanner, beams in samples.items() if (model := _sharpest(beams, frame.passes, turns)) is not None}
         if not models:
             return None
@@ -261,22 +245,19 @@ def _samples_of_window(road_points, road, s, scanners):
     return result
 
 
-def _sharpest(samples: list[Points], passes: Sequence[Pass], turns: _ScannerTurns) -> _ElevationModel | None:
+def _sharpest(samples: list[Points], passes: Sequence[Pass], turns: np.ndarray) -> _ElevationModel | None:
     """The _ElevationModel in which points form the clearest rings; None where they do in none."""
     all_signs = ANGLE_SIGNS if any(p.attitude is not None for p in passes) else ANGLE_SIGNS[:1]
     best, sharpest = BEAMS.min_sharpness, None
-    for by_turn in (False, True) if turns.known else (False,):
+    for by_turn in (False, True) if np.isfinite(turns).any() else (False,):
         model = _ElevationModel(passes, turns, by_turn)
         geometries = [geometry for points in samples for _, geometry in model.geometries(points)]
         for signs in all_signs:
-            value = sharpness(sum((_histogram(geometry.elevation_bin(signs)) for geometry in geometries), np.zeros(ELEVATION_BINS)))
+            places = (geometry.elevation_bin(signs) for geometry in geometries)
+            value = sharpness(sum((np.bincount(place[place >= 0], minlength=ELEVATION_BINS) for place in places), np.zeros(ELEVATION_BINS)))
             if value > best:
                 best, sharpest = value, replace(model, signs=signs)
     return sharpest
-
-
-def _histogram(place):
-    return np.bincount(place[place >= 0], minlength=ELEVATION_BINS).astype(float)
 
 
 def sharpness(counts: np.ndarray) -> float:

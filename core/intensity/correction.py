@@ -59,9 +59,8 @@ class _Saturation:
         levels = levels[levels.any(axis=1)]
         if not len(levels):
             return cls()
-        ends = [[_accumulated(row[way]) for row in levels] for way in (slice(None), slice(None, None, -1))]
         total, used = levels.sum(), np.flatnonzero(levels.any(axis=0))
-        at_lowest, at_highest = (float(sum(side) / total) for side in ends)
+        at_lowest, at_highest = (float(sum(map(_accumulated, side)) / total) for side in (levels, levels[:, ::-1]))
         low, high = np.rint(to_intensity(used[[0, -1]])).tolist()
         return cls(low, at_lowest, high if highest is None else float(highest), at_highest)
 
@@ -130,11 +129,6 @@ class _IntensityReport:
     saturation: _Saturation = _Saturation()   # whether intensities were cut off at an end
     reason: str = ""   # why nothing was corrected, "" where it was
 
-    @property
-    def saturation_warning(self) -> str:
-        """A warning of intensities that were cut off, "" where they were not."""
-        return self.saturation.warning
-
     def lines(self) -> list[str]:
         """Sentences for a log."""
         if self.reason:
@@ -143,7 +137,7 @@ class _IntensityReport:
                  f"{self.spread_after:.1f} % over distances and scanners, {self.spread_before:.1f} % before."]
         if self.beams:
             texts[0] += f" {self.beams} beams of unequal brightness were equalised."
-        texts += [self.saturation_warning] if self.saturation_warning else []
+        texts += [self.saturation.warning] if self.saturation.warning else []
         for row in self.scanners:
             texts.append(f"Scanner {row['scanner']}: asphalt varies by {row['spread_after']:.1f} % from {row['nearest']:.0f} to "
                          f"{row['farthest']:.0f} m, {row['spread_before']:.1f} % before.")
@@ -224,8 +218,8 @@ def intensity_corrected(road_points: RoadPoints, frame: RoadFrame, asphalt: Asph
     report = _report(asphalt.counts, after, asphalt.table, asphalt.points_by_scanner)
     report.beams = asphalt.beams.count if asphalt.beams else 0
     report.saturation = _Saturation.from_levels(asphalt.counts[ACROSS_TRACK].sum(axis=1), asphalt.highest)
-    if report.saturation_warning:
-        progress.warn(report.saturation_warning)
+    if report.saturation.warning:
+        progress.warn(report.saturation.warning)
     for line in report.lines()[:1]:
         progress.info(line)
     return replace(road_points, store=store, has_corrected=True), report

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from ..common.arrays import order_by, quantiles
+from ..common.arrays import order_by
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ScratchBuffers, check_cancelled
 from ..common.progress import Progress
@@ -35,6 +35,7 @@ PRODUCTS_AT_ONCE = 1 << 18
 
 
 _thread = threading.local()   # the kernels of each thread
+Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice
 
 
 @dataclass(frozen=True)
@@ -72,9 +73,12 @@ def _reach_of(settings: ImageSettings) -> int:
     return int(np.ceil(settings.radius_cells))
 
 
-def _lattice_cell(units: np.ndarray | int, origin: float, cell_size: float) -> Any:
-    """Column or row of the lattice in which coordinates lie, whole float64; `units` of 0.1 mm from `origin`, m."""
-    return np.floor((units * COORDINATE_SCALE + origin) / cell_size)
+def _extent_of(points: Points, origin: np.ndarray, settings: ImageSettings) -> Extent:
+    """The Extent of the cells that points reach; origin : as of `_interpolation_sums`."""
+    reach = _reach_of(settings)
+    (left, right), (bottom, top) = ([int(np.floor((int(end) * COORDINATE_SCALE + o) / settings.cell_size)) for end in (c.min(), c.max())]
+                                    for c, o in ((points.records[name], o) for name, o in zip("xy", origin)))
+    return left - reach, right + reach, bottom - reach, top + reach
 
 
 def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.ndarray], origin: np.ndarray, settings: ImageSettings,
@@ -90,12 +94,9 @@ def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nd
     origin : (2,) or more, map coordinates that x and y of the points leave out, m
     step : one of `step` points stands for all of them on cells farther than the next
     """
-    x, y, values = points.records["x"], points.records["y"], points.value
-    reach, cell = _reach_of(settings), settings.cell_size
-    (left, right), (bottom, top) = ([int(_lattice_cell(int(end), o, cell)) for end in (c.min(), c.max())]
-                                    for c, o in ((x, origin[0]), (y, origin[1])))
-    left, top = left - reach, top + reach
-    width, height = right + reach + 1 - left, top - (bottom - reach) + 1
+    x, y, values, cell = points.records["x"], points.records["y"], points.value, settings.cell_size
+    left, right, bottom, top = _extent_of(points, origin, settings)
+    width, height = right + 1 - left, top + 1 - bottom
     sums = np.zeros(width * height, np.complex64)   # weights and weighted values, which are added to the same cells
     whole, near, far = _kernels(settings)
     at_once = near.at_once if step > 1 else whole.at_once
@@ -205,7 +206,6 @@ class _Kernel:
 MAX_TILES = 2**24       # source: of an image, most of them empty: GDAL keeps 16 bytes of each
 
 PIECE_LENGTH = IMAGE.ranking_window / IMAGE.pieces_per_window
-Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice
 Tile = tuple[int, int]   # column and row of tiles
 FilledTile = tuple[int, int, np.ndarray]   # column and row of the first of the (H, W) float32 pixels of a tile about those with data, and these
 
@@ -299,7 +299,8 @@ def check_fits(width: float, height: float, settings: ImageSettings) -> None:
 
 def pieces_of_image(road_points: RoadPoints, settings: ImageSettings) -> Work:
     """The work that looks what there is to interpolate: the pieces of road with points. Intensities may be corrected later."""
-    windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
+    spans = [(road, *(end / IMAGE.ranking_window for end in road_points.store.span(road))) for road in road_points.roads()]
+    windows = [(road, k) for road, start, end in spans for k in range(int(np.floor(start)), int(np.ceil(end)))]
     phase = Phase(windows_of_image, road_points, (settings,), lambda task: road_points.survey.stretch(*_span(IMAGE.ranking_window, *task[0])),
                   state=lambda task: [road_points.state(*_span(IMAGE.ranking_window, *window)) for window in task])
     return (yield Asked(phase, windows, 1.0, IMAGE.looked_windows, list))
@@ -341,39 +342,30 @@ def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, l
     return sorted(pieces_of_tile.items(), key=lambda item: (item[1][0].road, item[1][0].number, item[0]))
 
 
-def _window_numbers(road_points, road):
-    start, end = road_points.store.span(road)
-    return range(int(np.floor(start / IMAGE.ranking_window)), int(np.ceil(end / IMAGE.ranking_window)))
-
-
 def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]], settings: ImageSettings) -> list[list[_Piece]]:
     """The phase that looks what there is to interpolate in some windows, each a road and a number along it: the pieces with points of each."""
-    return [_pieces_of_window(road_points, *window, settings) for window in windows]
-
-
-def _pieces_of_window(road_points, road, number, settings):
-    reach, cell = _reach_of(settings), settings.cell_size
-    pieces = []
-    for piece, points in _filled_pieces(road_points, road, number):
-        (c0, c1), (r0, r1) = ([int(_lattice_cell(int(end), o, cell)) for end in (c.min(), c.max())]
-                              for c, o in ((points.records[name], o) for name, o in zip("xy", road_points.origin)))
-        d = points.records["d"]
-        pieces.append(_Piece(road, piece, (c0 - reach, c1 + reach, r0 - reach, r1 + reach), (int(d.min()), int(d.max())),
-                             _sampling_step(points, settings)))
-    return pieces
+    result = []
+    for road, number in windows:
+        pieces = []
+        for piece, points in _filled_pieces(road_points, road, number):
+            d = points.records["d"]
+            pieces.append(_Piece(road, piece, _extent_of(points, road_points.origin, settings), (int(d.min()), int(d.max())),
+                                 _sampling_step(points, settings)))
+        result.append(pieces)
+    return result
 
 
 def _limits_of_window(road_points, road, number, settings):
     """1 % and 99 % of the intensities of a window with points."""
     values = [points[::max(_sampling_step(points, settings), len(points) // IMAGE.max_ranked_points)].value
               for _, points in _filled_pieces(road_points, road, number)]
-    return quantiles(np.concatenate(values), [0.01, 0.99]).tolist()
+    return np.quantile(np.concatenate(values).astype(float), [0.01, 0.99]).tolist()
 
 
 def _filled_pieces(road_points, road, number):
     """(number, Points) of the pieces of a window that have points."""
-    pieces = ((piece, _points_of(road_points, road, piece)) for piece in range(number * IMAGE.pieces_per_window, (number + 1) * IMAGE.pieces_per_window))
-    return ((piece, points) for piece, points in pieces if len(points))
+    pieces = range(number * IMAGE.pieces_per_window, (number + 1) * IMAGE.pieces_per_window)
+    return ((piece, points) for piece in pieces if len(points := _points_of(road_points, road, piece)))
 
 
 def _points_of(road_points, road, number):

@@ -106,19 +106,12 @@ class TiledImage(IntensityImage):
         self._tiles[column // GEOTIFF_TILE, row // GEOTIFF_TILE] = _StoredTile(
             column + int(columns[0]), row + int(rows[0]), pixels.shape[0], pixels.shape[1], self._file.put([pixels], pixels.nbytes))
 
-    def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
-        """(height, width) float32 from a first pixel on, which may lie outside the image; NaN where there is no data or no image."""
-        values = np.full((height, width), np.nan, np.float32)
-        c0, c1 = max(column, 0), min(column + width, self.width)
-        r0, r1 = max(row, 0), min(row + height, self.height)
-        if c0 >= c1 or r0 >= r1:
-            return values
-        for tile_row in range(r0 // GEOTIFF_TILE, (r1 - 1) // GEOTIFF_TILE + 1):
-            for tile_column in range(c0 // GEOTIFF_TILE, (c1 - 1) // GEOTIFF_TILE + 1):
-                tile = self._tiles.get((tile_column, tile_row))
-                if tile is not None:
-                    self._copy(tile, column, row, values)
-        return values
+    def _fill(self, values: np.ndarray, column: int, row: int) -> None:
+        height, width = values.shape
+        for tile_row in range(row // GEOTIFF_TILE, (row + height - 1) // GEOTIFF_TILE + 1):
+            for tile_column in range(column // GEOTIFF_TILE, (column + width - 1) // GEOTIFF_TILE + 1):
+                if (tile_column, tile_row) in self._tiles:
+                    self._copy(self._tiles[tile_column, tile_row], column, row, values)
 
     def _copy(self, tile: _StoredTile, column: int, row: int, values: np.ndarray) -> None:
         """Fill what a tile covers of a window whose first pixel is given."""

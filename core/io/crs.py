@@ -79,8 +79,8 @@ def same_crs(a: Any, b: Any) -> bool:
     if a.equals(b, ignore_axis_order=True):
         return True
     # The WKT of LAS files has rounded parameters and other names: the projections themselves are compared.
-    first, second = (_projection(crs) for crs in (a, b))
-    return bool(first) and first == second
+    first, second = ({name: value for name, value in crs.to_dict().items() if name not in ("title", "type", "no_defs")} for crs in (a, b))
+    return bool(first) and first == second   # empty where PROJ has no words for a projection
 
 
 def moved_by(a: Any, b: Any, place: tuple[float, float]) -> float:
@@ -104,12 +104,6 @@ def check_same_crs(layer_crs: str, other: str, place: tuple[float, float], label
     if layer is not None and clouds is not None and not moved_by(layer, clouds, place) < IO.same_coordinates:
         raise RoadExtractionError(f"{label} is in {layer.name}, the point clouds are in {clouds.name}. "
                                   "Reproject the layer to their CRS and run again.")
-
-
-def _projection(crs):
-    """The projection and its parameters by name, without what is only said about them; empty where PROJ has no words for it."""
-    words = crs.to_dict()
-    return {key: value for key, value in words.items() if key not in ("title", "type", "no_defs")}
 
 
 # The CRS of a survey: projected, true to scale, and the same for all its files.
@@ -198,7 +192,7 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
     notes += [f"What {file.path} says about its coordinates was not used, but the parameter CRS: {file.crs_problem}."
               for file in files if file.crs_problem][:1]
     if (units := as_in_file(crs)[1]).across != units.up:
-        across, *_, up = _unit_names(as_in_file(crs)[0])
+        across, *_, up = (axis.unit_name for axis in pyproj.CRS(as_in_file(crs)[0]).axis_info)
         notes.append(f"The point cloud says that the unit of its heights is the {up}, and that of its x and y the {across}: what is not in "
                      "metres was converted.")
     return " ".join(note for note in notes if note)
@@ -297,7 +291,7 @@ def _not_true_to_scale(what, crs, place, there, area):
         lengths, zone = f"Lengths in it are {there.scale:.3f} times those on the ground", ""
     else:
         lengths = f"Lengths in it are {there.scale:.3f} times those on the ground at {_degrees(there)}"
-        zone = f", such as UTM zone {_utm_zone(there)},"
+        zone = f", such as UTM zone {min((there.longitude + 180) // 6 + 1, 60):.0f}{'N' if there.latitude >= 0 else 'S'},"
     return RoadExtractionError(f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that "
                                f"is made for this place{zone} or correct the CRS.")
 
@@ -358,10 +352,6 @@ def _degrees(place):
     return (f"{abs(place.latitude):.2f}° {'N' if place.latitude >= 0 else 'S'} {abs(place.longitude):.2f}° {'E' if place.longitude >= 0 else 'W'}")
 
 
-def _utm_zone(place):
-    return f"{int(min((place.longitude + 180) // 6 + 1, 60))}{'N' if place.latitude >= 0 else 'S'}"
-
-
 # Files in feet: inside all is metres, in a CRS that differs from the file's in its units alone; the doors of files convert.
 #
 # Such a *metric* CRS carries the WKT of the file's CRS in its remark, so that whatever is made from a survey is written in the survey's own CRS
@@ -415,7 +405,10 @@ def in_metres(wkt: str) -> tuple[str, FileUnits]:
     if crs is None:
         return "", METRES
     units = _units_of(crs)
-    return (wkt if units.metric or file_wkt else _metric_form(crs).to_wkt()), units
+    if units.metric or file_wkt:
+        return wkt, units
+    # with the same name and without the code, which is that of the original
+    return pyproj.CRS.from_json_dict({**_with_metres(crs.to_json_dict()), "remarks": MARK + crs.to_wkt()}).to_wkt(), units
 
 
 @lru_cache(maxsize=64)
@@ -453,12 +446,6 @@ def place_raster(dataset: Any, geotransform: Any, crs: str) -> None:
         dataset.SetProjection(wkt)
 
 
-def _unit_names(wkt: str) -> list[str]:
-    """The names of the units of x, y and, where a CRS says it, z."""
-    crs = parse_crs(wkt)
-    return [] if crs is None else [axis.unit_name for axis in crs.axis_info]
-
-
 def plane_wkt(wkt: str) -> str:
     """WKT of the horizontal part of a CRS that is worked in."""
     return in_metres(horizontal_part(parse_crs(as_in_file(wkt)[0])).to_wkt())[0]
@@ -476,13 +463,6 @@ def _units_of(crs):
     heights = [axis for axis in (crs.sub_crs_list[-1] if crs.is_compound else flat).axis_info if axis.direction.lower() in ("up", "down")]
     up = heights[0].unit_conversion_factor if heights else across
     return FileUnits(*(1.0 if abs(factor - 1.0) < IO.same_unit else float(factor) for factor in (across, up)))
-
-
-def _metric_form(crs):
-    """A pyproj.CRS with its lengths in metres and the same name, without the code, which is that of the original."""
-    content = _with_metres(crs.to_json_dict())
-    content["remarks"] = MARK + crs.to_wkt()
-    return pyproj.CRS.from_json_dict(content)
 
 
 def _with_metres(content):

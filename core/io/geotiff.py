@@ -59,21 +59,23 @@ class IntensityImage:
         eight_bit = dataset.GetRasterBand(1).DataType == 1  # GDT_Byte
         return cls(path, transform, dataset.RasterXSize, dataset.RasterYSize, crs, eight_bit)
 
-    @gdal_exceptions()
     def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
         """(height, width) float32 pixels from (column, row) on; NaN where there is no data or no image, beyond which the window may reach."""
         values = np.full((height, width), np.nan, np.float32)
         c0, c1 = max(column, 0), min(column + width, self.width)
         r0, r1 = max(row, 0), min(row + height, self.height)
-        if c0 >= c1 or r0 >= r1:
-            return values
-        band = self._dataset((c1 - c0) * (r1 - r0)).GetRasterBand(1)
-        with reading(self.path):
-            data = np.frombuffer(band.ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=_float32()), np.float32).reshape(r1 - r0, c1 - c0)
-        nodata = band.GetNoDataValue()
-        filled = np.isfinite(data) if nodata is None else np.isfinite(data) & (data != np.float32(nodata))
-        values[r0 - row:r1 - row, c0 - column:c1 - column] = np.where(filled, data, np.nan)
+        if c0 < c1 and r0 < r1:
+            self._fill(values[r0 - row:r1 - row, c0 - column:c1 - column], c0, r0)
         return values
+
+    @gdal_exceptions()
+    def _fill(self, values: np.ndarray, column: int, row: int) -> None:
+        """Put the pixels with data from (column, row) on into a window of NaN that lies within the image."""
+        band = self._dataset(values.size).GetRasterBand(1)
+        with reading(self.path):
+            data = np.frombuffer(band.ReadRaster(column, row, *values.shape[::-1], buf_type=gdal.GDT_Float32), np.float32).reshape(values.shape)
+        nodata = band.GetNoDataValue()
+        np.copyto(values, data, where=np.isfinite(data) if nodata is None else np.isfinite(data) & (data != np.float32(nodata)))
 
     @gdal_exceptions()
     def tiles(self) -> list[tuple[int, int]]:
@@ -136,12 +138,7 @@ class IntensityImage:
         return self._own.dataset
 
 
-def _float32():
-    return gdal.GDT_Float32
-
-
 def _open_raster(path):
-
     if not Path(path).is_file():
         raise RoadExtractionError(f"There is no file {path}. Give the intensity image written by “Intensity image”.")
     return open_raster(path, "Give the GeoTIFF written by “Intensity image”.")

@@ -11,6 +11,7 @@ import io
 import os
 import re
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -132,20 +133,12 @@ def _text_bytes(path):
 
 def _in_utf8(data):
     """The text in UTF-8 where all of its words beyond ASCII are words of East Asia or in Cyrillic in the encoding of these."""
-    if data.isascii() or _decodes(data, "utf-8"):
-        return data
-    for encoding, words in ENCODINGS:
-        if _decodes(data, encoding) and all(map(words.fullmatch, re.findall(r"[a-z]?[^\0-\x7f]+[a-z]?", data.decode(encoding)))):
-            return data.decode(encoding).encode()
+    for encoding, words in () if data.isascii() else (("utf-8", re.compile(".+", re.DOTALL)), *ENCODINGS):
+        with suppress(UnicodeDecodeError):
+            text = data.decode(encoding)
+            if all(map(words.fullmatch, re.findall(r"[a-z]?[^\0-\x7f]+[a-z]?", text))):
+                return text.encode()
     return data
-
-
-def _decodes(data, encoding):
-    try:
-        data.decode(encoding)
-    except UnicodeDecodeError:
-        return False
-    return True
 
 
 def _without_quotes(data):

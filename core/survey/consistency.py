@@ -19,6 +19,7 @@ from .frame.road_frame import RoadFrame
 from .store.road_points import RoadPoints
 from .weights import FRAME, MIRROR, VEHICLE
 
+WITH_ANOTHER = "they were made with another one, or one moved to the scanners. Run Road map, which makes all layers with the moved trajectory."
 CHECKED_SECTIONS, CHECKED_POINTS_PER_SECTION = 50, 200  # cost: evenly over the file
 
 
@@ -141,12 +142,8 @@ def _refuse_moved(beside, above, label):
     beside, above = np.asarray(beside, float), np.asarray(above, float)
     above = above[np.isfinite(above)]
     if np.count_nonzero(np.abs(beside) > FRAME.offset_tolerance) > 0.5 * len(beside):
-        raise RoadExtractionError(f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry from the trajectory. They were made "
-                                  "with another trajectory, or with one that was moved to the scanners, as a warning said then. Run Road map, which "
-                                  "makes all layers with the moved trajectory, or give every stage the trajectory that belongs to the cloud.")
+        raise RoadExtractionError(f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry: {WITH_ANOTHER}")
     if np.count_nonzero((above < -VEHICLE.lowest_sensor) | (above > MIRROR.heights[1])) > 0.5 * len(above):
         depth = float(np.median(above))
-        raise RoadExtractionError(
-            f"{label} lie {abs(depth):.2f} m {'below' if depth > 0 else 'above'} the trajectory, where its vehicle cannot have driven. They were "
-            "made with another trajectory, or with one that was moved to the height of the scanners, as a warning said then. Run Road map, which "
-            "makes all layers with the moved trajectory, or give every stage a trajectory with the heights of the cloud.")
+        raise RoadExtractionError(f"{label} lie {abs(depth):.2f} m {'below' if depth > 0 else 'above'} the trajectory, where its vehicle cannot have "
+                                  f"driven: {WITH_ANOTHER}")

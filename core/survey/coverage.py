@@ -112,11 +112,10 @@ def _named(stretches):
 
 def _said_of_heights(stretches, metres):
     up = float(np.median(metres))
-    return (f"The trajectory does not keep to one height above the road: along {_named(stretches)} the road lies {up:+.2g} m from its usual height "
-            "below it, where most points are. Curbs and paint are missed there. Heights may be in feet in one file and in metres in another, or of "
-            "two kinds (above the ellipsoid and above sea level): export all from one solution.")
+    return (f"The trajectory does not keep to one height above the road: along {_named(stretches)} the road lies {up:+.2g} m from its usual height. "
+            "Heights may be in feet in one file, or of two kinds: export all from one solution.")
 
 
 def _said_of_holes(stretches):
-    return (f"No point was kept under the vehicle along {_named(stretches)} of the drive, though there are some before and behind. A file may be "
-            "missing, or its points are withheld or without time. The map is bridged or broken off there: give all files, and run again.")
+    return (f"No point was kept under the vehicle along {_named(stretches)} of the drive, though there are some before and behind. Give all files: "
+            "one may be missing.")

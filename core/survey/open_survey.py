@@ -168,7 +168,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if time_note:
         progress.info(time_note)
     fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
-    frame = _frame_of(files, fitted.trajectory, crs, has_time, progress)
+    frame = _frame_of(files, fitted.trajectory, crs, has_time, time_note, progress)
     samples = sample_files(files)
     files, one_scale = in_one_scale(files, samples, settings.intensity_from)
     intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
@@ -264,7 +264,7 @@ def _metric_crs(files, trajectory, settings, progress):
     return crs
 
 
-def _frame_of(files, trajectory, crs, has_time, progress):
+def _frame_of(files, trajectory, crs, has_time, time_note, progress):
     """The road frame of a trajectory, which the clouds must lie at."""
     frame = build_frame(trajectory)
     frame.crs = crs
@@ -274,9 +274,8 @@ def _frame_of(files, trajectory, crs, has_time, progress):
     for doubt in trajectory.doubts:
         progress.warn(doubt)
     if not has_time and len(frame.passes) > len(frame.roads):
-        progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
-                      "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
-                      "the files of each drive with its own part of the trajectory.")
+        progress.warn(f"{time_note} Driven {len(frame.passes)} times over {len(frame.roads)} road(s), the passes are mixed, which blurs the map. "
+                      "Export points and trajectory with their time.")
     _check_extent(files, frame, crs, trajectory.crs, progress)
     return frame
 
@@ -291,7 +290,7 @@ def _say_left_out(files, frame, reader, settings, progress):
         tell(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if left.without_time:
         progress.warn(f"{left.without_time:,} of {total:,} points were left out: the trajectory, which runs {_said_of_times(frame)}, has no position "
-                      "at their gps_time. If they are part of this survey, give its whole trajectory, and points with their time.")
+                      "at their gps_time. Give the whole trajectory.")
     for doubt in filter(None, (reader.moved, reader.holes)):
         progress.warn(doubt)
 
@@ -299,16 +298,13 @@ def _say_left_out(files, frame, reader, settings, progress):
 def _check_height(height, crs, explained, progress):
     """Refuse or doubt a trajectory by its height above the road, m; a word where that is in feet, otherwise ""."""
     if abs(height) < VEHICLE.lowest_sensor:
-        raise RoadExtractionError(
-            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {VEHICLE.lowest_sensor} m above it. "
-            "It seems to be a line on the road, such as a driving line of a map, and not where the scanner was: choose the "
-            "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
+        raise RoadExtractionError(f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {VEHICLE.lowest_sensor} m above it. "
+                                  "It seems to be a line on the road: choose the trajectory of the scanner.")
     if feet := unit_note(height, crs):
         progress.warn(feet)
     elif not any(explained) and not 0.0 < height < READING.highest_sensor:
         progress.warn(f"The trajectory lies {abs(height):.1f} m {'above' if height > 0 else 'below'} the road; scanners ride up to "
-                      f"{READING.highest_sensor:g} m above it. Heights of cloud and trajectory seem to be of two kinds (above the ellipsoid and "
-                      "above sea level), in feet, or upside down. Export both anew with one kind of heights in metres.")
+                      f"{READING.highest_sensor:g} m above it. Export cloud and trajectory with one kind of heights in metres.")
     return feet
 
 
@@ -407,8 +403,7 @@ def _refuse_other_clocks(spans, time, offset, system):
         except RoadExtractionError:
             continue   # of a drive that the trajectory does not hold
         raise RoadExtractionError(f"The point clouds count time in two ways: {path} runs from {ends[0]:.1f} s to {ends[1]:.1f} s, and {other}, of "
-                                  f"the same drive, from {first:.1f} s to {last:.1f} s. Export all of them with one kind of gps_time, such as "
-                                  "adjusted standard GPS time, and run again.")
+                                  f"the same drive, from {first:.1f} s to {last:.1f} s. Export all of them with one kind of gps_time.")
 
 
 def _said_of_times(frame):
@@ -418,15 +413,6 @@ def _said_of_times(frame):
     gaps.sort(key=lambda gap: gap[0] - gap[1])
     named = "".join(f", not from {last:.1f} s to {first:.1f} s" for last, first in gaps[:READING.told_stretches])
     return f"from {spans[0][0]:.1f} s to {spans[-1][1]:.1f} s{named}{', …' if len(gaps) > READING.told_stretches else ''}"
-
-
-def _without_time(files, trajectory):
-    """What lacks the time that would distinguish the passes."""
-    if not trajectory.has_time:
-        return "the trajectory has no time"
-    if not all(file.has_time for file in files):
-        return "the points have no gps_time"
-    return "all points have the same gps_time"
 
 
 def _sampled_times(files):
@@ -444,9 +430,9 @@ def _check_extent(files, frame, crs, trajectory_crs, progress):
     reach = FRAME.corridor
     away = [file for file in filled if not _runs_through(file.minimum, file.maximum, x, y, reach)]
     if len(away) == len(filled):
-        raise RoadExtractionError(f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, y "
-                                  f"{low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to "
-                                  f"{y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
+        raise RoadExtractionError(f"The trajectory does not run through the point cloud: it covers x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} "
+                                  f"to {y.max():.1f}, the cloud x {low[0]:.1f} to {high[0]:.1f}, y {low[1]:.1f} to {high[1]:.1f}. "
+                                  f"{_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
     for file in away:
         ends = np.array(file.minimum), np.array(file.maximum)
         if _runs_through(*ends, y, x, reach) or _advice_on_units(*ends, x, y, crs, reach):
@@ -464,13 +450,11 @@ def _runs_through(low, high, x, y, reach):
 def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     """The advice of the error message, where cloud and trajectory do not overlap."""
     if _runs_through(low, high, y, x, reach):
-        return ("In one of them x and y are exchanged: where the trajectory's x is its easting or it is in longitude and latitude, export the cloud "
-                "with the easting as x; otherwise name the trajectory's columns the other way round, or swap them.")
+        return "In one of them x and y are exchanged: export the cloud with the easting as x, or name the trajectory's columns the other way round."
     if advice := _advice_on_units(low, high, x, y, crs, reach):
         return advice
     if crs and _runs_through(low, high, *_angles_exchanged(x, y, crs), reach):
-        return ("The trajectory's longitude and latitude are exchanged: it runs through the cloud where each is taken for the other. Name its "
-                "columns the other way round, and run again.")
+        return "The trajectory's longitude and latitude are exchanged: name its columns the other way round, and run again."
     if trajectory_crs:
         return f"Both were taken to be in {crs_name(crs)}. Check that they belong to one survey, and the CRS of the trajectory."
     cloud = f"The cloud is in {crs_name(crs)}, the trajectory" if crs else "The trajectory"
@@ -482,16 +466,13 @@ def _advice_on_units(low, high, x, y, crs, reach):
     if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         if not as_in_file(crs)[1].metric:
             return "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does."
-        return ("The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in (the parameter CRS is that of clouds that "
-                "carry none), or convert the cloud to metres.")
+        return "The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in, or convert the cloud to metres."
     if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in (FOOT, US_SURVEY_FOOT)):
-        return ("The trajectory's coordinates are the cloud's in feet: give it the CRS in feet that it is in, as Import trajectory does, or convert "
-                "it to metres.")
+        return "The trajectory's coordinates are the cloud's in feet: give it its CRS, as Import trajectory does, or convert it to metres."
     if np.abs([low[:2], high[:2]]).max() <= 180 and (high - low)[:2].max() < 1.0:
         return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
     if EARTH_RADIUS[0] < np.linalg.norm((low + high) / 2) < EARTH_RADIUS[1]:
-        return ("The cloud's coordinates are as far from 0, 0, 0 as the ground is from the centre of the earth: reproject it from those "
-                "earth-centred coordinates to a projected CRS, such as the UTM zone of the survey.")
+        return "The cloud's coordinates are earth-centred: reproject it to a projected CRS, such as the UTM zone of the survey."
     return ""
 
 
@@ -504,15 +485,12 @@ def _angles_exchanged(x, y, crs):
 
 def _no_overlap(files, frame, reader, corridor):
     if reader.summary.excluded == sum(file.count for file in files):
-        return ("All points are withheld or classified as noise (LAS classes 7 and 18), which are left out. Give the cloud as it was before its "
-                "classification, or with these classes corrected.")
+        return "All points are withheld or classified as noise (LAS classes 7 and 18). Give the cloud as it was before its classification."
     if reader.summary.without_time:
-        starts, ends = [p.time[0] for p in frame.passes], [p.time[-1] for p in frame.passes]
-        times = f"{min(starts):.1f} s to {max(ends):.1f} s"
-        return (f"No point was measured while the trajectory was driven: {reader.summary.without_time} points lie outside "
-                f"its time, {times}. Set the trajectory's time system, or check that both belong to one survey.")
-    return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that "
-            "cloud and trajectory belong to one survey and use one CRS.")
+        return (f"No point was measured while the trajectory was driven: {reader.summary.without_time} points lie outside its time, "
+                f"{_said_of_times(frame)}. Set the trajectory's time system, or check that both belong to one survey.")
+    return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that cloud and trajectory belong to one survey and "
+            "use one CRS.")
 
 
 # Check that points and trajectory use the same clock: the road on the own track is scanned when the vehicle is near it.
@@ -525,10 +503,8 @@ def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:
         return
     distance, fast = float(np.median(ahead)), float(np.median(speed))
     seconds = f", about {abs(distance) / fast:.1f} s at its speed" if fast > 1.0 else ""
-    progress.warn(f"The times of the points do not seem to fit the trajectory: the road on the vehicle's own way was scanned when it was "
-                  f"{abs(distance):.0f} m {'before' if distance > 0 else 'past'} that place{seconds}, and scanners see road nearer than that in "
-                  "every turn. The map is blurred where passes are mixed up for it. Check that cloud and trajectory are of one drive and count time "
-                  "alike (leap seconds, a lag of the recorder).")
+    progress.warn(f"The times of the points do not seem to fit the trajectory: the road on the vehicle's own way was scanned {abs(distance):.0f} m "
+                  f"{'before' if distance > 0 else 'past'} that place{seconds}. Check that both are of one drive and count time alike.")
 
 
 def _look_ahead(survey):

@@ -34,7 +34,7 @@ def scale_for(farthest: float) -> float:
         if farthest * per_metre <= MAX_LAS_INTEGER:
             return COORDINATE_SCALE if per_metre == 10_000 else 1 / per_metre
     raise RoadExtractionError(f"The points lie up to {farthest / 1000:,.0f} km from the start of the survey, farther than a LAS file can hold. "
-                              "Check the coordinates of the trajectory, or process the files of each region separately.")
+                              "Process the files of each region separately.")
 
 
 def place_in_file(header: Any, origin: np.ndarray, crs: str, farthest: float) -> None:

@@ -90,8 +90,12 @@ def add_legend(layout: QgsPrintLayout, classes: dict[QgsMapLayer, set[str]], roo
     legend.setEqualColumnWidth(False)
     legend.setBackgroundColor(QColor(186, 191, 196))  # white paint is seen on it, and letters can be read
     legend.setColumnSpace(3)
-    for sizes in SIZES:
-        _set_sizes(legend, *sizes)
+    for title, entry, symbol in SIZES:
+        legend.setSymbolHeight(symbol)
+        for style in STYLES:
+            legend_style = legend.style(style)
+            legend_style.setTextFormat(text_format(entry if style == QgsLegendStyle.Style.SymbolLabel else title))
+            legend.setStyle(style, legend_style)
         for columns in range(1, max(1, len(classes)) + 1):
             legend.setColumnCount(columns)
             size = _size(layout, legend)
@@ -131,11 +135,3 @@ def _print_as_it_stands(legend, node, layer):
         if "[%" in label:
             QgsMapLayerLegendUtils.setLegendNodeUserLabel(node, row, as_it_stands(label))
             legend.model().refreshLayerLegend(node)
-
-
-def _set_sizes(legend, title, entry, symbol):
-    legend.setSymbolHeight(symbol)
-    for style in STYLES:
-        legend_style = legend.style(style)
-        legend_style.setTextFormat(text_format(entry if style == QgsLegendStyle.Style.SymbolLabel else title))
-        legend.setStyle(style, legend_style)

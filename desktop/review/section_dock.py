@@ -30,12 +30,11 @@ class SectionDock(QDockWidget):
     """The window; `show_at` shows a place."""
 
     def __init__(self, iface):
-        super().__init__(tr("Cross-section"), iface.mainWindow())
-        self.setObjectName("LanewrightCrossSection")
+        super().__init__(tr("Cross-section"), iface.mainWindow(), objectName="LanewrightCrossSection")
         self.iface = iface
         self.view = SectionView()
-        self.tool = QgsMapToolEmitPoint(iface.mapCanvas())
-        self.tool.canvasClicked.connect(lambda point, button: self.show_at(point, iface.mapCanvas().mapSettings().destinationCrs()))
+        self.tool = QgsMapToolEmitPoint(iface.mapCanvas(), canvasClicked=lambda point, button: self.show_at(
+            point, iface.mapCanvas().mapSettings().destinationCrs()))
         self.band = None
         self.section = self.road_map = self.task = None
         self._asked: set[str] = set()  # road maps whose user was asked where the point clouds are
@@ -45,13 +44,8 @@ class SectionDock(QDockWidget):
         ahead = button("▶", lambda: self.step(STEP), tr("A metre ahead along the road"))
         for arrow in (back, ahead):
             arrow.setFixedWidth(34)
-        self.thickness = QDoubleSpinBox()
-        self.thickness.setRange(0.02, 5.0)
-        self.thickness.setSingleStep(0.05)
-        self.thickness.setValue(THICKNESS)
-        self.thickness.setSuffix(" m")
-        self.thickness.setToolTip(tr("Length of road from which points are shown"))
-        self.thickness.valueChanged.connect(lambda value: self._draw())
+        self.thickness = QDoubleSpinBox(minimum=0.02, maximum=5.0, singleStep=0.05, value=THICKNESS, suffix=" m", toolTip=tr(
+            "Length of road from which points are shown"), valueChanged=lambda value: self._draw())
         self.setWidget(column(QWidget(), row(self.pick, back, ahead, QLabel(tr("Thickness")), self.thickness, None), (self.view, 1), rim=4))
         iface.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)
         iface.mainWindow().resizeDocks([self], [int(SHARE * iface.mainWindow().height())], Qt.Orientation.Vertical)

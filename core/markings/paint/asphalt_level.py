@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from ...common.arrays import quantiles
 from ...intensity.asphalt_model import asphalt_statistics
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
@@ -174,7 +173,7 @@ def bin_edges(d: np.ndarray, low: float, high: float) -> np.ndarray:
     """
     if not len(d):
         return np.array([low, high])
-    first, middle, third = (quantiles(d, [0.25, 0.5, 0.75]) * COORDINATE_SCALE).tolist()
+    first, middle, third = (np.quantile(d, [0.25, 0.5, 0.75]) * COORDINATE_SCALE).tolist()
     # the Gaussian that has the quartiles of the density: far stray points do not widen it
     width = float(np.clip((third - first) / 1.349, ASPHALT.min_bin_width, ASPHALT.max_bin_width))
     left, right = int(max(high - middle, 0) / width) + 1, int(max(middle - low, 0) / width) + 1

@@ -27,7 +27,7 @@ from ..common.sides import SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden
 from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, RETURN
-from .classify import CurbReturn, classify_curbs, has_road_before, is_curb_like
+from .classify import classify_curbs, has_road_before, is_curb_like
 from .extended_curbs import FollowedEnds, followed_steps, with_led_on
 from .ground_raster import averaged, driven_ground, ground_raster, ground_slopes
 from .islands import are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands

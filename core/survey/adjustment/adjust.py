@@ -6,7 +6,7 @@ changes along the road and small corrections as prior. Two passes meet in their 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -26,7 +26,7 @@ from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
 from ..weights import ADJUST, FRAME, REGISTER
-from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
+from .register import AXES, PLAN_AXES, WINDOW_LENGTH, MovedPoints, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 
@@ -57,7 +57,10 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
         for road in survey.store.roads():
             if warning := warning_of_one_drive(road, places_of_one_drive(survey.frame.passes_of(road), compared, corrections)):
                 progress.warn(warning)
-        _replace_points(survey, corrections, progress.part(0.5, 1.0), folder)
+        frame = survey.frame
+        replace_points(survey, corrections.of_points, progress.part(0.5, 1.0), folder)
+        survey.moves = corrections
+        survey.frame = replace(frame, passes=[_moved_track(frame, corrections, p) for p in frame.passes])
 
 
 def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray, np.ndarray]]:
@@ -112,9 +115,8 @@ def _report_offsets(road, offsets, corrections, progress):
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in separations)
         message = f"Road {road}: its passes lay {plan} beside and {up} above each other"
         if max((float(v.max()) for v in separations if len(v)), default=0.0) > REGISTER.max_offset:
-            progress.warn(f"{message}, which is more than navigation drifts within a survey. Drives of different years or datums lie so far apart. "
-                          "They were laid on each other, each moved by its share. Nothing shows which of them is right, so the map may be off by "
-                          "half of that distance. Process the files of each drive by itself, or measure control points.")
+            progress.warn(f"{message}, more than navigation drifts. Each was moved by its share, and nothing shows which is right. Process the files "
+                          "of each drive by itself, or measure control points.")
         else:
             progress.info(f"{message}, as navigation drifts between two drives. They were laid on each other, each moved by its share.")
     elif all(len(v) for v in _separations(offsets)):
@@ -135,56 +137,41 @@ def _map_corrections(frame, corrections):
     return PassCorrections(moves)
 
 
-def _coordinate_changes(frame, moves, number, s, d):
-    """Changes of x, y, z, s and d, (N,) metres each, at stations and offsets of a pass."""
-    east, north, up = moves.metres(number, s)
-    road = frame.road(frame.passes[number].road)
+def _changes(road, s, d, metres):
+    """Changes of x, y, z, s and d, (N,) metres each, of places on a road that are moved by (N,) metres east, north and up."""
+    east, north, up = metres
     heading = road.heading(s)
     c, n = np.cos(heading), np.sin(heading)
-    return east, north, up, (east * c + north * n) / np.clip(1.0 - road.curvature(s) * d, 0.4, 2.5), north * c - east * n
-
-
-def _moved_points(frame, moves, records):
-    """The Columns of a section with corrected coordinates."""
-    moved = {name: np.array(records[name]) for name in MOVED_COLUMNS}
-    numbers = records["pass_number"]
-    for number in np.unique(numbers).tolist():
-        if number in moves.by_pass:
-            rows = np.flatnonzero(numbers == number)
-            change = _coordinate_changes(frame, moves, number, *(records[name].take(rows) * COORDINATE_SCALE for name in ("s", "d")))
-            for name, metres in zip(MOVED_COLUMNS, change):
-                moved[name][rows] += to_units(metres)
-    return records.with_columns(**moved)
+    return east, north, up, (east * c + north * n) / np.clip(1.0 - road.curvature(s) * d, *FRAME.bend_stretch), north * c - east * n
 
 
 def _moved_track(frame, moves, p):
     """A pass with a corrected track."""
     if p.number not in moves.by_pass:
         return p
-    change = _coordinate_changes(frame, moves, p.number, p.s, p.d)
+    change = _changes(frame.road(p.road), p.s, p.d, moves.metres(p.number, p.s))
     return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(MOVED_COLUMNS, change)},
                    _by_station=None, _progress=None, _span=None, _by_tick={})
 
 
-def _replace_points(survey, moves, progress, folder):
-    """Replace the store by one of corrected points, and the passes of the frame by corrected ones."""
-    frame = survey.frame
-    replace_points(survey, lambda records: _moved_points(frame, moves, records), progress, folder)
-    survey.moves = moves
-    survey.frame = replace(frame, passes=[_moved_track(frame, moves, p) for p in frame.passes])
+def replace_points(survey: Any, moves: Callable[[Columns], Iterator[MovedPoints]], progress: Progress = Progress(),
+                   folder: Path | None = None) -> None:
+    """Replace the store of a Survey by one of moved points.
 
-
-def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: Progress = Progress(), folder: Path | None = None) -> None:
-    """Replace the store of a Survey by one of points that `moved` gives, the Columns of a section with other coordinates.
-
+    moves : gives those of the Columns of a section
     folder : of the moved points; None for a temporary file
     """
-    before = survey.store
+    before, frame = survey.store, survey.frame
     store = SectionStore(before.dtype, before.section_length, folder)
 
     def part(key):
-        records = moved(before.section(*key))
-        return store.partition(key[0], records) if len(records) else None
+        records = before.section(*key)
+        moved = {name: np.array(records[name]) for name in MOVED_COLUMNS}
+        for number, rows, metres in moves(records):
+            s, d = (records[name].take(rows) * COORDINATE_SCALE for name in "sd")
+            for name, change in zip(MOVED_COLUMNS, _changes(frame.road(frame.passes[number].road), s, d, metres)):
+                moved[name][rows] += to_units(change)
+        return store.partition(key[0], records.with_columns(**moved)) if len(records) else None
 
     try:
         for points in ordered_map(part, [(road, number) for road in before.numbers() for number in before.sections(road)], progress):
@@ -262,7 +249,7 @@ def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np
 
     Returns list of (start, end, metres that they differ by at most), by station; infinite where they lie farther apart than can be measured.
     """
-    places: dict[float, float] = {}
+    places: list[tuple[float, float]] = []
     for pair in offsets:
         rest = np.zeros(len(pair.stations))
         for axis in PLAN_AXES:
@@ -271,8 +258,7 @@ def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np
             left = np.abs(np.nan_to_num(getattr(pair, axis) - applied))
             rest = np.hypot(rest, np.maximum(left, _evened_out(pair.stations, applied)))
         remains = rest > ADJUST.max_remaining
-        for station, metres in (*zip(pair.stations[remains], rest[remains]), *((station, np.inf) for station in pair.far)):
-            places[float(station)] = max(places.get(float(station), 0.0), float(metres))
+        places += [*zip(pair.stations[remains].tolist(), rest[remains].tolist()), *((station, np.inf) for station in pair.far.tolist())]
     return _stretches_of(places)
 
 
@@ -281,7 +267,7 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
 
     Returns list of (start, end, metres that the pass was moved by at most), by station.
     """
-    places: dict[float, float] = {}
+    places: list[tuple[float, float]] = []
     for p in passes:
         if p.number not in corrections.by_pass:
             continue
@@ -292,8 +278,7 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
         distance = np.abs(stations[:, None] - compared).min(axis=1, initial=np.inf)
         moved = np.hypot(*corrections.metres(p.number, stations)[:2])
         uncompared = (distance > REGISTER.pooling_sigma) & (moved > ADJUST.max_remaining)
-        for station, metres in zip(stations[uncompared].tolist(), moved[uncompared].tolist()):
-            places[station] = max(places.get(station, 0.0), metres)
+        places += zip(stations[uncompared].tolist(), moved[uncompared].tolist())
     return _stretches_of(places)
 
 
@@ -306,10 +291,10 @@ def _evened_out(stations, applied):
     return remaining
 
 
-def _stretches_of(places: dict[float, float]) -> list[tuple[float, float, float]]:
-    """[(start, end, largest metres)] of {middle of a window: metres}, windows that touch in one; infinite ones apart from the others."""
+def _stretches_of(places: Iterable[tuple[float, float]]) -> list[tuple[float, float, float]]:
+    """[(start, end, largest metres)] of (middle of a window, metres), windows that touch in one; infinite ones apart from the others."""
     stretches: list[tuple[float, float, float]] = []
-    for station, metres in sorted(places.items()):
+    for station, metres in dict(sorted(places)).items():   # of each window the largest, which comes last
         start, end = station - WINDOW_LENGTH / 2, station + WINDOW_LENGTH / 2
         if stretches and start <= stretches[-1][1] and np.isinf(metres) == np.isinf(stretches[-1][2]):
             stretches[-1] = stretches[-1][0], end, max(metres, stretches[-1][2])
@@ -322,8 +307,7 @@ def _applied(pair, corrections, axis):
     """(N,) metres along an axis by which the second pass of a pair was moved against the first."""
     if pair.one not in corrections:
         return np.zeros(len(pair.stations))
-    row = ("along", "left", "up").index(axis)
-    first, second = (np.interp(pair.stations, stations, moved[row]) for stations, moved in (corrections[pair.one], corrections[pair.other]))
+    first, second = (np.interp(pair.stations, corrections[number][0], corrections[number][1][AXES.index(axis)]) for number in (pair.one, pair.other))
     return second - first
 
 
@@ -334,15 +318,15 @@ def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> st
                  f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
                  else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:ADJUST.most_named]]
     more = _further(places)
-    return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: curbs and lines may be doubled or blurred there. "
-            "Adjust the trajectories of the drives to each other, or process the files of each drive by itself.")
+    return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: lines may be doubled there. Adjust the trajectories to "
+            "each other, or process each drive by itself.")
 
 
 def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
     if not places:
         return ""
-    return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved there as where it last "
-            "lay beside the others, and nothing shows how well that fits: measure a control point there if these centimetres matter.")
+    return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved as beside the others: "
+            "measure a control point there if these centimetres matter.")
 
 
 def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
@@ -405,10 +389,8 @@ def warnings_of_levels(frame: Any) -> list[str]:
         middle = float(np.median(rise[rows]))
         if np.quantile(np.abs(rise[rows] - middle), ADJUST.share_along) < ADJUST.even_rise:
             first, last = s[rows].min() - REGISTER.correction_step / 2, s[rows].max() + REGISTER.correction_step / 2
-            messages.append(f"Roads {road} and {other_road} run along each other at stations {first:.0f} to {last:.0f} m of road {road}, and one "
-                            f"lies {abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two "
-                            "kinds (above the ellipsoid and above sea level), and the map shows it twice. Bring the drives to one kind of heights, "
-                            "or process the files of each drive by itself.")
+            messages.append(f"Roads {road} and {other_road}: one lies {abs(middle):.2f} m above the other all along stations {first:.0f} to "
+                            f"{last:.0f} m, as no bridge does. They seem to be one road with heights of two kinds: bring them to one.")
     return messages
 
 
@@ -464,9 +446,8 @@ def _message_of_carriageways(pair: Beside) -> tuple[str, bool]:
              f"{pair.stations.max() + REGISTER.correction_step / 2:.0f} m, and no drive measured both")
     if far.any():
         return (f"{intro}. Their drives differ in height at "
-                f"{_named_places(_stretches_of(dict(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist()))), 'by up to {:.1f} cm')}. "
-                "They stay as they were measured, and nothing that both see shows how far they lie apart across: adjust the trajectories of the "
-                "drives to each other, or measure control points on both, if these centimetres matter.", True)
+                f"{_named_places(_stretches_of(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist())), 'by up to {:.1f} cm')}. "
+                "They stay as measured: adjust the trajectories to each other, or measure control points on both, if these centimetres matter.", True)
     if not measured.any():
         return f"{intro}: nothing that both see shows how far they lie apart.", False
     return (f"{intro}: in height they agree within {100 * np.abs(pair.up[measured]).max():.1f} cm; "

@@ -7,7 +7,7 @@ between the passes. Objects that only one pass measured, such as vehicles, do no
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,13 +20,15 @@ from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
 from ...lazy import cv2, laspy
+from ..frame.passes import Pass
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
-from ..store.records import COORDINATE_SCALE, to_units
+from ..store.records import COORDINATE_SCALE, Points, to_units
 from ..weights import REGISTER
 
 # Corrections of passes that were adjusted to each other; stored with the points, so that measured coordinates can be restored.
 
+MovedPoints = tuple[int, np.ndarray, tuple[np.ndarray, ...]]   # number of a pass, (N,) rows of its points, and (N,) metres east, north and up
 VLR_USER_ID = "Lanewright"    # of the LAS records, one per pass; the record id is the pass number + 1
 _HEAD = np.dtype([("first", "<f8"), ("count", "<u4")])
 
@@ -49,12 +51,18 @@ class PassCorrections:
 
     def units(self, records: Columns | np.ndarray) -> np.ndarray:
         """(3, N) int32 corrections of x, y and z of moved points (Columns or structured records), in units of 0.1 mm."""
-        numbers, corrections = records["pass_number"], np.zeros((3, len(records)), np.int32)
+        corrections = np.zeros((3, len(records)), np.int32)
+        for _, rows, metres in self.of_points(records):
+            corrections[:, rows] = [to_units(v) for v in metres]
+        return corrections
+
+    def of_points(self, records: Columns | np.ndarray) -> Iterator[MovedPoints]:
+        """Yield the corrections of points (Columns or structured records), pass by pass."""
+        numbers = records["pass_number"]
         for number in np.unique(numbers).tolist():
             if number in self.by_pass:
                 rows = np.flatnonzero(numbers == number)
-                corrections[:, rows] = [to_units(v) for v in self.metres(number, records["s"].take(rows) * COORDINATE_SCALE)]
-        return corrections
+                yield number, rows, self.metres(number, records["s"].take(rows) * COORDINATE_SCALE)
 
     def to_records(self) -> list[Any]:
         """The corrections as LAS variable length records, one per pass."""
@@ -142,6 +150,27 @@ class Strips:
 
     def part(self, rows: slice, cells: slice) -> Strips:
         return Strips(self.heights[rows, cells], self.steps[rows, cells], self.paint[rows, cells])
+
+
+def strips_of(ahead: np.ndarray, left: np.ndarray, h: np.ndarray, intensity: np.ndarray, length: float) -> list[Strips]:
+    """The strips across and along of (N,) points, as of `points_on_strip`, on so many metres of road."""
+    wide = 2 * REGISTER.strip_half_width
+    return [Strips.of(fine, coarse, h, intensity, (round(width / REGISTER.row_cell), round(size / REGISTER.lag_cell)))
+            for fine, coarse, size, width in ((left, ahead, wide, length), (ahead, left, length, wide))]
+
+
+def points_on_strip(survey: Any, road: int, start: float, length: float, points: Points, driven: Pass | None = None) -> tuple[np.ndarray, ...]:
+    """The points about the height of a road: (N,) rows, m ahead of its start, m left of the right end of the strip, and m above the road.
+
+    driven : Pass beside whose track and in whose direction they are looked at; None for the reference line
+    """
+    s, d = points.s, points.d
+    nodes = start + np.arange(int(length / REGISTER.row_cell) + 1) * REGISTER.row_cell
+    h = points.z - np.interp(s, nodes, survey.road_height(road, nodes))
+    left = d if driven is None else driven.direction * (d - driven.at_station(s)[0])
+    near = np.flatnonzero((np.abs(left) < REGISTER.strip_half_width) & (h > REGISTER.min_cell_height) & (h < REGISTER.max_cell_height))
+    ahead = s[near] - start if driven is None or driven.direction > 0 else start + length - s[near]
+    return near, ahead, left[near] + REGISTER.strip_half_width, h[near]
 
 
 def _at_faces(heights):
@@ -329,19 +358,12 @@ def _window_evidence(survey, road, number, moves, lags=LAGS):
     moves : {(one, other): {window: (along, left) by which the other is moved before}}
     """
     points = survey.window(road, number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)
-    nodes = number * WINDOW_LENGTH + np.arange(int(WINDOW_LENGTH / REGISTER.row_cell) + 1) * REGISTER.row_cell
-    s, d = points.s, points.d
-    h = points.z - np.interp(s, nodes, survey.road_height(road, nodes))
-    near = np.flatnonzero((np.abs(d) < REGISTER.strip_half_width) & (h > REGISTER.min_cell_height) & (h < REGISTER.max_cell_height))
-    owner, s, d, h = points.pass_number.take(near), s[near] - number * WINDOW_LENGTH, d[near] + REGISTER.strip_half_width, h[near]
-    intensity = points.intensity.take(near).astype(float)
+    near, s, d, h = points_on_strip(survey, road, number * WINDOW_LENGTH, WINDOW_LENGTH, points)
+    owner, intensity = points.pass_number.take(near), points.intensity.take(near).astype(float)
 
     def strips(of_pass, along=0.0, left=0.0):
         """Strips across and along of the points of a pass, moved."""
-        places, offsets = s[of_pass] + along, d[of_pass] + left
-        return [Strips.of(fine, coarse, h[of_pass], intensity[of_pass], (round(width / REGISTER.row_cell), round(length / REGISTER.lag_cell)))
-                for fine, coarse, length, width in ((offsets, places, 2 * REGISTER.strip_half_width, WINDOW_LENGTH),
-                                                    (places, offsets, WINDOW_LENGTH, 2 * REGISTER.strip_half_width))]
+        return strips_of(s[of_pass] + along, d[of_pass] + left, h[of_pass], intensity[of_pass], WINDOW_LENGTH)
 
     rows = {pass_number: of_pass for pass_number in np.unique(owner).tolist()
             if len(of_pass := np.flatnonzero(owner == pass_number)) > REGISTER.min_shared_cells}

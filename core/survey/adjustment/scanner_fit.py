@@ -17,10 +17,10 @@ import numpy as np
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ..store.records import COORDINATE_SCALE, to_units
+from ..store.records import COORDINATE_SCALE
 from ..weights import ADJUST, REGISTER
-from .adjust import MOVED_COLUMNS, replace_points
-from .register import CHANNELS, WINDOW_LENGTH, Strips, best_offsets, correlation_sums, height_offset
+from .adjust import replace_points
+from .register import CHANNELS, WINDOW_LENGTH, best_offsets, correlation_sums, height_offset, points_on_strip, strips_of
 from .trajectory_fit import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
 
 SIDES = "right", "left"
@@ -61,8 +61,7 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
     for offset in offsets:
         if _apart(offset):
             progress.warn(_said(survey, offset, sigma))
-    frame = survey.frame
-    replace_points(survey, lambda records: _moved(frame, moves, records), progress, folder)
+    replace_points(survey, partial(_moved, survey.frame, moves), progress, folder)
     return sigma
 
 
@@ -97,14 +96,13 @@ def _said(survey, one, sigma):
     """The warning about a scanner that lies beside the first."""
     names = f"Scanner {survey.scanners[one.scanner]} and scanner {survey.scanners[0]}"
     if one.far:
-        return (f"{names} lie more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. "
-                "Calibrate the mounting of the scanners anew, or process the points of one scanner alone.")
+        return (f"{names} lie more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other. Calibrate their mounting anew, "
+                "or process the points of one scanner alone.")
     right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, MOVE_WORDS)
                              if abs(metres) > ADJUST.least_told_move)
                    or "nothing that is measurable" for side in np.nan_to_num(-one.moves))
-    return (f"{names} differ all along the survey, as with a wrong lever arm or boresight angles. On the left of the vehicle, points of the first "
-            f"are displaced from those of the other by {left}, on the right by {right}. Each was moved by its share. Nothing shows which of them is "
-            f"right, so the map may be off by {100 * sigma:.1f} cm (one sigma). Calibrate the mounting of the scanners anew.")
+    return (f"{names} differ all along: points of the first are displaced by {left} on the left, by {right} on the right. Each was moved by its "
+            f"share, which leaves {100 * sigma:.1f} cm (one sigma). Calibrate their mounting anew.")
 
 
 def _shares(offsets):
@@ -123,29 +121,21 @@ def _filled(one):
 
 
 def _moved(frame, moves, records):
-    """The Columns of a section with the points of scanners moved."""
-    moved = {name: np.array(records[name]) for name in MOVED_COLUMNS}
+    """MovedPoints of the scanners of a section."""
     number, scanners = records["pass_number"], records["scanner"]
     for p, scanner in itertools.product(np.unique(number).tolist(), moves):
         rows = np.flatnonzero((number == p) & (scanners == scanner))
         if not len(rows):
             continue
-        driven, road = frame.passes[p], frame.road(frame.passes[p].road)
+        driven = frame.passes[p]
         station, x, y = driven.at(records["time"].take(rows), "s", "x", "y")
-        yaw = road.heading(station) + (0.0 if driven.direction > 0 else np.pi)
+        yaw = frame.road(driven.road).heading(station) + (0.0 if driven.direction > 0 else np.pi)
         cos, sin = np.cos(yaw), np.sin(yaw)
         left = (records["y"].take(rows) * COORDINATE_SCALE - y) * cos - (records["x"].take(rows) * COORDINATE_SCALE - x) * sin
         values, positions = moves[scanner]
         left = np.clip(left, -REGISTER.strip_half_width, REGISTER.strip_half_width)
         ahead, aside, up = (a + (left - first) / (last - first) * (b - a) for (a, b), (first, last) in zip(values.T, positions.T))
-        east, north = ahead * cos - aside * sin, ahead * sin + aside * cos
-        s, d = (records[name].take(rows) * COORDINATE_SCALE for name in ("s", "d"))
-        heading = road.heading(s)
-        c, n = np.cos(heading), np.sin(heading)
-        along = (east * c + north * n) / np.clip(1.0 - road.curvature(s) * d, 0.4, 2.5)
-        for name, metres in zip(MOVED_COLUMNS, (east, north, up, along, north * c - east * n)):
-            moved[name][rows] += to_units(metres)
-    return records.with_columns(**moved)
+        yield p, rows, (ahead * cos - aside * sin, ahead * sin + aside * cos, up)
 
 
 def _scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[_ScannerOffsets]:
@@ -170,23 +160,13 @@ def _window_evidence(survey, window):
     """{scanner: [of each side (sums across, sums along, m up, m beside, weight of it)]} of a window, each scanner against the first."""
     p, start, long = window
     points = survey.window(p.road, start, start + long)
-    members = np.flatnonzero(points.pass_number == p.number)
-    s, d = points.s[members], points.d[members]
-    nodes = start + np.arange(int(long / REGISTER.row_cell) + 1) * REGISTER.row_cell
-    h = points.z[members] - np.interp(s, nodes, survey.road_height(p.road, nodes))
-    left = p.direction * (d - p.at_station(s)[0])
-    near = np.flatnonzero((np.abs(left) < REGISTER.strip_half_width) & (h > REGISTER.min_cell_height) & (h < REGISTER.max_cell_height))
-    ahead = s - start if p.direction > 0 else start + long - s
-    ahead, left, h = ahead[near], left[near] + REGISTER.strip_half_width, h[near]
-    scanner, intensity = points.scanner[members[near]], points.intensity[members[near]].astype(float)
+    points = points[points.pass_number == p.number]
+    near, ahead, left, h = points_on_strip(survey, p.road, start, long, points, p)
+    scanner, intensity = points.scanner[near], points.intensity[near].astype(float)
 
     def strips(number):
         rows = np.flatnonzero(scanner == number)
-        if len(rows) < REGISTER.min_shared_cells:
-            return None
-        wide = 2 * REGISTER.strip_half_width
-        return [Strips.of(fine[rows], coarse[rows], h[rows], intensity[rows], (round(width / REGISTER.row_cell), round(length / REGISTER.lag_cell)))
-                for fine, coarse, length, width in ((left, ahead, wide, long), (ahead, left, long, wide))]
+        return None if len(rows) < REGISTER.min_shared_cells else strips_of(ahead[rows], left[rows], h[rows], intensity[rows], long)
 
     first, evidence = strips(0), {}
     for number in range(1, len(survey.scanners)):

@@ -16,7 +16,7 @@ from ...io.crs import FOOT
 from ..estimation.poses import resected, vehicle_axes
 from ..estimation.samples import SAMPLED_LAYERS
 from ..las.parallel_reader import ParallelCloudReader
-from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
+from ..las.point_fields import first_returns, scanners_of
 from ..las.reader import CloudHeader
 from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
 from ..trajectory.shape import shaped_trajectory
@@ -85,14 +85,12 @@ def _other_heights(sample, trajectory, mountings, progress):
                 # from a trajectory that is stretched alike the scanners lie where they ride on the vehicle
                 cloud_alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
                 of = "the cloud alone" if cloud_alone else "cloud and trajectory"
-                progress.warn(f"The heights of {of} seem to be {phrase}: the laser beams meet in the scanner only if heights are "
-                              f"multiplied by {stretch:.4g}. Curbs are missed, and heights and slopes are wrong by that factor. Convert these "
-                              "heights, and run again.")
+                progress.warn(f"The heights of {of} seem to be {phrase}: the laser beams meet in the scanner only if heights are multiplied by "
+                              f"{stretch:.4g}. Convert these heights, and run again.")
                 return True
     if all(mounting.ground > 0 for mounting in mountings):
-        progress.warn(f"The road lies {np.mean([mounting.ground for mounting in mountings]):.1f} m above the scanners, as if heights were counted "
-                      "downwards or turned upside down: curbs, slopes and heights are wrong. Export cloud and trajectory with heights that "
-                      "rise upwards.")
+        progress.warn(f"The road lies {np.mean([mounting.ground for mounting in mountings]):.1f} m above the scanners, as if heights were upside "
+                      "down. Export cloud and trajectory with heights that rise upwards.")
         return True
     return False
 
@@ -108,9 +106,8 @@ def _at_height(trajectory: Trajectory, mountings: Sequence[_Mounting], progress:
     worst = float(up[np.argmax(np.abs(up))])
     extent = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
     progress.warn(f"The trajectory lies {abs(worst):.2f} m {'below' if worst > 0 else 'above'} the scanners{extent}, as their laser beams "
-                  f"show: {'below the road' if worst > 0 else 'no vehicle is so high'}. Heights of cloud and trajectory seem to be of two kinds "
-                  "(above the ellipsoid and above sea level), or one of them is wrong. The trajectory was moved to the height of the scanners; the "
-                  "map has the heights of the cloud. Export both with one kind of heights.")
+                  f"show: {'below the road' if worst > 0 else 'no vehicle is so high'}. It was moved to their height. Export both with one kind of "
+                  "heights (ellipsoid or sea level).")
     metres = np.full(len(trajectory), np.median(up)) if np.ptp(up) < VEHICLE.one_move * abs(worst) else np.interp(trajectory.time, times, up)
     return replace(trajectory, z=trajectory.z + metres)
 
@@ -128,8 +125,7 @@ def _on_way(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Pr
     x, y = (np.interp(times[np.argmax(far)], trajectory.time, getattr(trajectory, name)) for name in "xy")
     extent = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
     progress.warn(f"The trajectory runs {abs(worst):.2f} m to the {'right' if worst > 0 else 'left'} of the way that the scanners took{extent} "
-                  f"(first near x {x:.0f}, y {y:.0f}), as their laser beams show; no vehicle is so wide. It may belong to another lane or "
-                  "drive, or be in another datum than the cloud. It was moved to where the scanners were; check that both files belong together.")
+                  f"(first near x {x:.0f}, y {y:.0f}). It was moved there; it may be of another lane or in another datum.")
     return _moved_aside(trajectory, mountings, times, lever[:, 1])
 
 
@@ -144,9 +140,8 @@ def _tell_jump(trajectory, times, lever, progress):
     if len(jumps):
         k = int(jumps[0])
         metres = float(np.hypot(*np.diff(lever[k:k + 2, :2], axis=0)[0]))
-        progress.warn(f"The scanners ride {metres:.1f} m elsewhere beside the trajectory at {times[k + 1]:.1f} s than at {times[k]:.1f} s, as their "
-                      "laser beams show, and nothing on a vehicle moves so. Files of one drive seem to be in two datums or adjustments, and the map "
-                      "has a step between them. Export all files and the trajectory from one solution, and run again.")
+        progress.warn(f"The scanners ride {metres:.1f} m elsewhere beside the trajectory at {times[k + 1]:.1f} s than at {times[k]:.1f} s. Files of "
+                      "one drive seem to be in two datums: export all of them and the trajectory from one solution.")
 
 
 def _windows(mountings):
@@ -221,8 +216,7 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
     files : headers of the clouds
     scanner_field : as of `ScannerCensus.choose`
     """
-    ends = np.cumsum([file.count for file in files])
-    census, parts = ScannerCensus(), []
+    ends, parts = np.cumsum([file.count for file in files]), []
     with ParallelCloudReader(SAMPLED_LAYERS) as reader:
         starts = set()
         for row in ((np.arange(PLACES_READ) + 0.5) / PLACES_READ * ends[-1]).astype(np.int64).tolist():
@@ -230,41 +224,21 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
             starts.add((number, reader.chunk_start(files[number], row - int(ends[number] - files[number].count))))
         for number, start in sorted(starts):
             parts += _read_place(reader, files[number], start, -(-PLACES_READ * PLACE_WINDOWS // len(starts)))
-    time, place, source, channel = (np.concatenate(column) for column in zip(*parts))
-    for name, values in (("point_source_id", source), ("scanner_channel", channel)):
-        census.take(name, times_by_value(values, time))
-    field, values = census.choose(scanner_field)
-    scanner = np.zeros(len(time), np.uint8)
-    if field is not None:
-        column = source if field == "point_source_id" else channel
-        scanner = numbers_by_value(values, int(column.max(initial=0)) + 1)[column]
+    time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     order = np.argsort(time, kind="stable")
-    return _Sample(time[order], place[order], scanner[order])
+    return _Sample(time[order], place[order], scanners_of(numbers, time, scanner_field)[order])
 
 
 def _read_place(reader, file, start, windows):
-    """[`_first_returns`] of points of a file from the beginning of a chunk on, as many as some windows hold."""
+    """[`first_returns`] of points of a file from the beginning of a chunk on, as many as some windows hold."""
     parts, counts = [], {}
     for block in reader.following(file, start, PLACE_POINTS // 10):
-        parts.append(_first_returns(block))
+        parts.append(first_returns(block))
         for window, count in zip(*np.unique(np.floor(parts[-1][0] / VEHICLE.turns_window), return_counts=True)):
             counts[window] = counts.get(window, 0) + count
         if sum(count >= MIN_TURNS_POINTS for count in counts.values()) >= windows or sum(len(part[0]) for part in parts) >= PLACE_POINTS:
             break
     return parts
-
-
-def _first_returns(block):
-    """(N,) gps_time, (N, 3) map coordinates, point source and scanner channel of the usable first returns of a block."""
-    raw, names = block.array, set(block.point_format.dimension_names)
-    usable = np.asarray(block["return_number"]) <= 1
-    time = raw["gps_time"].astype(float)
-    usable &= np.isfinite(time)
-    if (valid := valid_points(block)) is not None:
-        usable &= valid
-    place = np.stack([raw[name][usable] * scale + offset for name, scale, offset in zip("XYZ", block.scales, block.offsets)], axis=1)
-    channel = np.asarray(block["scanner_channel"]) if "scanner_channel" in names else np.zeros(len(raw), np.int64)
-    return time[usable], place, raw["point_source_id"][usable].astype(np.int64), channel[usable].astype(np.int64)
 
 
 def scanner_mountings(sample: _Sample, trajectory: Trajectory, stretch: float = 1.0) -> list[_Mounting]:

@@ -126,8 +126,7 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
     result = _of_rays(samples, tracks, scanners, adjusted, wkt)
     least = ESTIMATE.share_of_unexplained * adjusted.unexplained
     result.sigma, result.sigma_height = np.maximum(result.sigma, least), np.maximum(result.sigma_height, least)
-    result.notes.append(f"Returns lie {adjusted.unexplained:.2f} m off the rays of a mirror (median), as those of tilted heads of many beams do: the "
-                        "trajectory is less certain than where they keep to them.")
+    result.notes.append(f"Returns lie {adjusted.unexplained:.2f} m off the rays of a mirror (median), which makes the trajectory less certain.")
     return result
 
 
@@ -218,8 +217,8 @@ def _of_rays(samples, tracks, scanners, adjusted, crs):
         rows.append(np.column_stack([time, adjusted.poses.at(interval, share)[:, :YAW + 1], flat, up])[kept])
     time, x, y, z, roll, pitch, yaw, flat, up = np.concatenate(rows).T
     if not len(time):
-        raise RoadExtractionError(f"The places of the scanner could not be told to {ESTIMATE.max_sigma:g} m anywhere. The times may be those of an "
-                                  "export, not of the measuring: give the cloud as the scanner's own program writes it, or a trajectory.")
+        raise RoadExtractionError(f"The places of the scanner could not be told to {ESTIMATE.max_sigma:g} m anywhere. Give the cloud as the "
+                                  "scanner's own program writes it, or a trajectory.")
     ox, oy, oz = samples.origin
     trajectory = Trajectory(time + samples.start, x + ox, y + oy, z + oz, np.degrees(roll), np.degrees(pitch), (90.0 - np.degrees(yaw)) % 360.0, crs)
     ground = np.interp(time, *(np.concatenate(column) for column in zip(*((track.time, track.foot[:, 2]) for track in tracks))))
@@ -239,18 +238,16 @@ def _of_heads(samples, tracks, heads, crs):
     """The places of a many-beam head, one a turn."""
     time, heading, sigma = (np.concatenate([getattr(head, name) for head in heads]) for name in ("time", "heading", "sigma"))
     ground, height, height_sigma = head_heights(samples, tracks, heads)
-    height_note = (f"the elevations of its beams give its height above the road, {height:.2f} m, known to {height_sigma:.2f} m: that of where they "
-                   "lead out, of which the head's own reference point may lie two decimetres off" if height is not None else
-                   f"its height above the road, known to {HEAD.usual_height_sigma:g} m, is a usual one, since its beams fall on "
-                   "too little that stands up")
+    height_note = (f"the elevations of its beams give its height above the road, {height:.2f} m, known to {height_sigma:.2f} m" if height is not None
+                   else f"its height above the road, known to {HEAD.usual_height_sigma:g} m, is a usual one")
     if height is None:
         height, height_sigma = HEAD.usual_height, HEAD.usual_height_sigma
     place = np.column_stack([np.concatenate([head.place for head in heads]), np.concatenate(ground) + height])
     kept = sigma <= ESTIMATE.max_sigma
     trajectory = _rough(time[kept] + samples.start, place[kept], heading[kept], samples.origin, crs, True)
     return EstimatedTrajectory(trajectory, sigma[kept], np.full(int(kept.sum()), height_sigma), "turns", notes=[
-        f"The points are those of a head of many beams that turns {abs(heads[0].rate):.1f} times a second. Its place follows from the "
-        f"directions in which it looked; {height_note}. Roll and pitch are not known."])
+        f"The points are those of a head of many beams that turns {abs(heads[0].rate):.1f} times a second; {height_note}. Roll and pitch are not "
+        "known."])
 
 
 def _by_density(samples, tracks, crs):
@@ -258,8 +255,8 @@ def _by_density(samples, tracks, crs):
     time, place, heading = (np.concatenate(column) for column in zip(*((track.time, track.foot, track.heading) for track in tracks)))
     trajectory = _rough(time + samples.start, place + [0.0, 0.0, TRACK.usual_height], heading, samples.origin, crs, True)
     return _with_density_sigma(trajectory, [
-        "No mirror was seen to turn in the points' times, so the track follows the density of the points alone: it is rough, its place "
-        f"known to about {ESTIMATE.density_sigma:g} m and its height above the road to {ESTIMATE.density_height_sigma:g} m."])
+        f"No mirror was seen to turn, so the track follows the density of the points: its place is known to about {ESTIMATE.density_sigma:g} m, its "
+        f"height above the road to {ESTIMATE.density_height_sigma:g} m."])
 
 
 def _without_time(samples, crs):
@@ -268,10 +265,8 @@ def _without_time(samples, crs):
     step = np.gradient(place[:, :2], axis=0)
     trajectory = _rough(np.arange(len(place), dtype=float), place, np.arctan2(step[:, 1], step[:, 0]), samples.origin, crs, False)
     trajectory = replace(trajectory, way_known=False)
-    notes = [f"The points have no times, so the track is the ridge of their density: it is rough, its place known to about "
-             f"{ESTIMATE.density_sigma:g} m, its height above the road to {ESTIMATE.density_height_sigma:g} m, "
-             "and which way was driven is not known. It is the longest drive; what branches off is not in it, and where a road was driven both "
-             "ways it lies between the drives, up to 2 m beside either."]
+    notes = [f"The points have no times, so the track is the rough ridge of their density: its place is known to about {ESTIMATE.density_sigma:g} "
+             f"m, its height above the road to {ESTIMATE.density_height_sigma:g} m, and which way was driven is not known."]
     return _with_density_sigma(trajectory, notes)
 
 
@@ -292,9 +287,8 @@ def _refuse_airborne(tracks: list[FirstTrack]) -> None:
     """Refuse a cloud whose points are spread so wide at any time that they were measured from high above."""
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     if reach > ESTIMATE.farthest_median:
-        raise RoadExtractionError(f"This looks like an airborne survey: at any moment half of its points lie more than {reach:.0f} m from where they "
-                                  f"are densest, and a vehicle on the road sees half of them within {ESTIMATE.farthest_median:.0f} m. A trajectory "
-                                  "is estimated for mobile laser scanning from the road alone.")
+        raise RoadExtractionError(f"This looks like an airborne survey: half of its points lie more than {reach:.0f} m from where they are densest, "
+                                  f"and {ESTIMATE.farthest_median:.0f} m is what a vehicle on the road sees. Give a survey measured from the road.")
 
 
 def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
@@ -302,8 +296,8 @@ def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> N
     distances = np.concatenate([_places_apart(samples.time[drive], samples.place[drive, :2], track) for drive, track in zip(samples.drives, tracks)])
     if len(distances) and np.mean(np.isfinite(distances)) > 0.5:
         raise RoadExtractionError(
-            f"At most times the points lie in two places {np.nanmedian(distances):.0f} m apart: these are drives whose clocks overlap, as seconds of "
-            "the day or of the week do on other days. Estimate the trajectory of each drive by itself, from its own files.")
+            f"At most times the points lie in two places {np.nanmedian(distances):.0f} m apart, as of drives whose clocks overlap. Estimate the "
+            "trajectory of each drive from its own files.")
 
 
 def _places_apart(time, flat, track):
@@ -340,10 +334,8 @@ def _refuse_without_road(tracks: list[FirstTrack]) -> None:
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     sharp = _usual_acceleration([track.foot for track in tracks], TRACK.window)
     if reach > ESTIMATE.max_road_reach or sharp > ESTIMATE.max_acceleration:
-        raise RoadExtractionError("No mirror is seen to turn in the points' times, and their density does not show the way either: half of the "
-                                  f"points lie more than {reach:.1f} m from where they are densest, and that place moves with accelerations of "
-                                  f"{sharp:.0f} m/s². The road under the vehicle may be missing from the cloud, as when it was wet, or the times may "
-                                  "be those of an export. Give the cloud as the scanner's own program writes it, or a trajectory.")
+        raise RoadExtractionError("No mirror is seen to turn, and the points' density does not show the way: half lie more than "
+                                  f"{reach:.1f} m from where they are densest, which accelerates by {sharp:.0f} m/s². Give a trajectory.")
 
 
 def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> None:
@@ -361,8 +353,8 @@ def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> N
     seconds = sum(float(np.ptp(track.time)) for track in tracks)
     if np.hypot(*(high - low)) < ESTIMATE.min_path and seconds > ESTIMATE.min_standing_time:
         raise RoadExtractionError(
-            f"This looks like a terrestrial scan: in {seconds:.0f} s the scanner stayed within {np.hypot(*(high - low)):.1f} m. A trajectory is "
-            "estimated for clouds measured while driving; give those, or the scanner's position as a trajectory where a map is wanted from here.")
+            f"This looks like a terrestrial scan: in {seconds:.0f} s the scanner stayed within {np.hypot(*(high - low)):.1f} m. Give a cloud "
+            "measured while driving, or the scanner's position as a trajectory.")
 
 
 def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning], heads: Sequence[HeadTrack] = ()) -> None:
@@ -384,8 +376,8 @@ def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning], heads: S
         at_walking_pace = len(pace) > 0 and np.quantile(pace, 0.9) < ESTIMATE.walking_pace
     if at_walking_pace:
         raise RoadExtractionError(
-            f"This looks like a handheld or backpack survey: it moved at {np.median(pace):.1f} m/s, at walking pace, and no mirror turns steadily "
-            "in it. A trajectory is estimated for scanners on vehicles; give the trajectory that the scanner's own program has computed.")
+            f"This looks like a handheld or backpack survey: it moved at {np.median(pace):.1f} m/s, and no mirror turns steadily. Give the "
+            "trajectory that the scanner's own program has computed.")
 
 
 def _paces_of(head):

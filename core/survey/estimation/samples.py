@@ -13,7 +13,7 @@ from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...curves.robust import robustly_smoothed
 from ..las.parallel_reader import ParallelCloudReader
-from ..las.point_fields import SCANNER_FIELDS, ScannerCensus, numbers_by_value, times_by_value, valid_points
+from ..las.point_fields import first_returns, scanners_of
 from ..las.reader import CloudHeader
 from ..las.samples import TimeSlots
 from ..trajectory.time_systems import SECONDS_PER_WEEK, wrapped_week
@@ -54,24 +54,19 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
     """
     slots = TimeSlots.for_points(sum(file.count for file in files), TRACK.max_samples)
     origin = np.floor(np.min([file.minimum for file in files if file.count], axis=0))
-    census, parts = ScannerCensus(), []
+
+    def sampled(part):
+        number, first, count = part
+        return [first_returns(points, slots, origin) for points in readers.points(files[number], first, count, LAS.points_per_block)]
 
     with ParallelCloudReader(SAMPLED_LAYERS) as readers:
-        for part in ordered_map(lambda load: _sample(load(), slots, origin), readers.blocks(files, LAS.points_per_block), progress):
-            time, place, numbers = part
-            for column, name in enumerate(SCANNER_FIELDS):
-                census.take(name, times_by_value(numbers[:, column], time))
-            parts.append(part)
+        parts = [sample for samples in ordered_map(sampled, readers.ranges(files, LAS.points_per_block), progress) for sample in samples]
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     del parts
     if len(time) < TRACK.min_drive_samples:
         raise RoadExtractionError(f"The point clouds have {len(time)} usable points; a trajectory is estimated from {TRACK.min_drive_samples} and "
                                   "more. Give the whole survey.")
-    field, values = census.choose(scanner_field)
-    scanner = np.zeros(len(time), np.uint8)
-    if field is not None:
-        column = numbers[:, SCANNER_FIELDS.index(field)]
-        scanner = numbers_by_value(values, int(column.max()) + 1)[column]
+    scanner = scanners_of(numbers, time, scanner_field)
     span = float(time.min()), float(time.max())
     if span[0] == span[1]:
         return Samples(np.zeros(len(time)), place, scanner, span[0], origin, False, [slice(0, len(time))])
@@ -109,24 +104,6 @@ def rounding_of(time: np.ndarray, start: float) -> float:
         if np.mean(np.abs(steps - np.rint(steps)) <= TRACK.rounded_tolerance) >= TRACK.min_rounded_share:
             return tick
     return 0.0
-
-
-def _sample(block, slots, origin):
-    """(N,) gps_time, (N, 3) local places and (N, 2) source and channel of the first returns of a block that are in the sample."""
-    raw, names = block.array, set(block.point_format.dimension_names)
-    time = raw["gps_time"].astype(float) if "gps_time" in raw.dtype.names else np.zeros(len(raw))
-    first = np.flatnonzero(np.asarray(block["return_number"]) <= 1)
-    # without times neighbours in the file stay together no better than others
-    first = first[slots.kept(time[first])] if len(time) and time.min() < time.max() else first[::slots.stride]
-    valid = valid_points(block)
-    if valid is not None:
-        first = first[valid[first]]
-    place = np.stack([raw[name][first] * scale + (offset - start)
-                      for name, scale, offset, start in zip("XYZ", block.scales, block.offsets, origin)], axis=1)
-    time = time[first]
-    channel = np.asarray(block["scanner_channel"])[first] if "scanner_channel" in names else np.zeros(len(first), np.int64)
-    usable = np.isfinite(time)
-    return time[usable], place[usable], np.stack([raw["point_source_id"][first], channel], axis=1).astype(np.int64)[usable]
 
 
 # The first track: in every short window of time, the place around which points lie densest, on the ridge of density.
@@ -251,7 +228,7 @@ def ridge_of(place: np.ndarray) -> np.ndarray:
     if driven[-1] < TRACK.min_ridge:
         raise RoadExtractionError(
             f"No track shows in the density of the points: the longest ridge is {driven[-1]:.0f} m long, and {TRACK.min_ridge:.0f} m are needed. "
-            "A terrestrial scan and an evenly thinned cloud have none, and these points have no times that would tell more.")
+            "Give points with their times, or a trajectory.")
     even = np.arange(0.0, driven[-1], TRACK.ridge_spacing)
     flat = np.stack([np.interp(even, driven, axis) for axis in track.T], axis=1)
     flat = robustly_smoothed(flat, np.ones(len(flat)), TRACK.ridge_stiffness)

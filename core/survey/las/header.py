@@ -29,18 +29,22 @@ TYPE_SIZES = 1, 1, 2, 2, 4, 4, 8, 8, 4, 8   # source: bytes (LAS 1.4 R15, table 
 class HeaderFields:
     """The numbers of a header as they stand there."""
 
-    head: bytes   # its first bytes
-    version: int
     header_size: int
     points_at: int
     vlrs: int
     point_format: int
     compressed: bool
     record_size: int
+    count: int   # of points that laspy would take
     counts: tuple[int, ...]   # its counts of points that are not 0, that of 64 bits first
+    has_long_count: bool   # whether there is one of 64 bits
     first_waveform: int   # byte of the first waveform packet, 0 without any in the file
     first_evlr: int
     evlrs: int
+    scales: np.ndarray   # (3,) metres
+    offsets: np.ndarray   # offsets, minimum, maximum: (3,) map coordinates
+    minimum: np.ndarray
+    maximum: np.ndarray
 
     @classmethod
     def read(cls, file: BinaryIO) -> HeaderFields | None:
@@ -50,44 +54,13 @@ class HeaderFields:
         if len(head) < 227 or head[:4] != b"LASF":
             return None
         header_size, points_at, vlrs, kind, record_size, count = struct.unpack_from("<HIIBHI", head, 94)
-        version = head[25]
-        waveform, evlr, evlrs, long_count = 0, 0, 0, 0
-        if version >= 3 and len(head) >= 235:
-            waveform = struct.unpack_from("<Q", head, 227)[0]
-        if version >= 4 and len(head) >= 255:
-            evlr, evlrs, long_count = struct.unpack_from("<QIQ", head, 235)
-        return cls(head, version, header_size, points_at, vlrs, kind & 0x3F, bool(kind & COMPRESSED_BIT), record_size,
-                   tuple(number for number in (long_count, count) if number), waveform, evlr, evlrs)
-
-    @property
-    def has_long_count(self) -> bool:
-        """Whether there is a count of 64 bits."""
-        return self.version >= 4 and len(self.head) >= 255
-
-    @property
-    def count(self) -> int:
-        """The number of points that laspy would take."""
-        return struct.unpack_from("<Q", self.head, 247)[0] if self.has_long_count else struct.unpack_from("<I", self.head, 107)[0]
-
-    @property
-    def scales(self) -> np.ndarray:
-        """(3,) metres."""
-        return np.frombuffer(self.head, "<f8", 3, 131)
-
-    @property
-    def offsets(self) -> np.ndarray:
-        """(3,) map coordinates."""
-        return np.frombuffer(self.head, "<f8", 3, 155)
-
-    @property
-    def minimum(self) -> np.ndarray:
-        """(3,) map coordinates."""
-        return np.frombuffer(self.head, "<f8", 6, 179)[1::2]
-
-    @property
-    def maximum(self) -> np.ndarray:
-        """(3,) map coordinates."""
-        return np.frombuffer(self.head, "<f8", 6, 179)[::2]
+        version, numbers = head[25], np.frombuffer(head, "<f8", 12, 131)
+        waveform = struct.unpack_from("<Q", head, 227)[0] if version >= 3 and len(head) >= 235 else 0
+        has_long_count = version >= 4 and len(head) >= 255
+        evlr, evlrs, long_count = struct.unpack_from("<QIQ", head, 235) if has_long_count else (0, 0, 0)
+        return cls(header_size, points_at, vlrs, kind & 0x3F, bool(kind & COMPRESSED_BIT), record_size, long_count if has_long_count else count,
+                   tuple(number for number in (long_count, count) if number), has_long_count, waveform, evlr, evlrs,
+                   numbers[:3], numbers[3:6], numbers[7::2], numbers[6::2])
 
     def records(self, file: BinaryIO, size: int) -> Iterator[_Record]:
         """The variable length records before the points of a file of so many bytes, the last as far as it is there."""
@@ -107,24 +80,21 @@ class HeaderFields:
 
 @dataclass(frozen=True)
 class _Compression:
-    """How the points of a file are compressed; `data` is the LASzip record."""
+    """How the points of a file are compressed."""
 
-    data: bytes
+    data: bytes   # of the LASzip record
+    compressor: int   # number of the kind of chunks
+    chunk_size: int   # points of a chunk; VARIABLE_CHUNKS where each has its own number
+    items: list[tuple[int, int]]   # (type, bytes) of each item of a point
 
-    @property
-    def compressor(self) -> int:
-        """Number of the kind of chunks."""
-        return struct.unpack_from("<H", self.data)[0]
-
-    @property
-    def chunk_size(self) -> int:
-        """Points of a chunk; VARIABLE_CHUNKS where each has its own number."""
-        return struct.unpack_from("<I", self.data, 12)[0]
-
-    @property
-    def items(self) -> list[tuple[int, int]]:
-        """(type, bytes) of each item of a point."""
-        return [struct.unpack_from("<HH", self.data, 34 + 6 * k) for k in range(struct.unpack_from("<H", self.data, 32)[0])]
+    @classmethod
+    def of(cls, record: _Record) -> _Compression | None:
+        """What a record says of compressed points; None where it is another one, or too short."""
+        data = record.data
+        if (record.user, record.number) != (LASZIP_USER, LASZIP_RECORD) or len(data) < 34:
+            return None
+        compressor, chunk_size, items = struct.unpack_from("<H10xI16xH", data)
+        return cls(data, compressor, chunk_size, list(struct.iter_unpack("<HH2x", data[34:34 + 6 * items]))) if len(data) >= 34 + 6 * items else None
 
     @property
     def point_size(self) -> int:
@@ -164,11 +134,6 @@ class _Record:
         return struct.unpack_from("<H", self.head, 18)[0]
 
     @property
-    def end(self) -> int:
-        """The byte behind it."""
-        return self.at + len(self.head) + self.length
-
-    @property
     def whole(self) -> bytes:
         """All of it, with the length that is there."""
         kind = "<H" if len(self.head) == VLR_HEADER_SIZE else "<Q"
@@ -179,23 +144,11 @@ class _Record:
         """Whether it names the extra bytes of points."""
         return self.user == EXTRA_BYTES_USER and self.number == EXTRA_BYTES_RECORD
 
-    @property
-    def compression(self) -> _Compression | None:
-        """What it says of compressed points; None where it is another record, or too short."""
-        laszip = self.user == LASZIP_USER and self.number == LASZIP_RECORD and len(self.data) >= 34
-        return _Compression(self.data) if laszip and len(self.data) >= 34 + 6 * struct.unpack_from("<H", self.data, 32)[0] else None
-
     def mended(self) -> _Record:
         """The same with a user and a CRS that laspy can decode; itself where nothing is wrong."""
         head = self.head[:2] + _decodable(self.head[2:18]) + self.head[18:]
         data = _decodable(self.data) if self.user == CRS_USER and self.number in CRS_TEXTS else self.data
         return self if (head, data) == (self.head, self.data) else replace(self, head=head, data=data)
-
-    def patches(self) -> Iterator[tuple[int, bytes]]:
-        """What `mended` changes, where it lies in the file."""
-        mended = self.mended()
-        if mended is not self:
-            yield self.at, mended.head + mended.data
 
 
 def _base_size(point_format: int) -> int | None:
@@ -203,11 +156,6 @@ def _base_size(point_format: int) -> int | None:
     from laspy import PointFormat, supported_point_formats
 
     return PointFormat(point_format).size if point_format in supported_point_formats() else None
-
-
-def _extra_bytes_described(records: list[_Record]) -> int:
-    """Bytes that the records which name extra bytes describe together."""
-    return sum(_size(entry) or 0 for record in records if record.describes_extra_bytes for entry in _entries(record))
 
 
 def _readable_extra_bytes(record: _Record, point_format: int, room: int) -> _Record:
@@ -281,12 +229,16 @@ class _MendedHeader:
     patches: tuple[tuple[int, bytes], ...] = ()
     notes: tuple[str, ...] = ()
 
-    def with_count(self, fields: HeaderFields, count: int, note: str = "") -> _MendedHeader:
-        """The same with another number of points."""
+    def with_count(self, fields: HeaderFields, count: int) -> _MendedHeader:
+        """The same with as many points as there are."""
+        if count == fields.count:
+            return self
         patches = [(COUNT_AT, struct.pack("<I", count if count < 2**32 else 0))]
         if fields.has_long_count:
             patches.append((LONG_COUNT_AT, struct.pack("<Q", count)))
-        return _MendedHeader((*self.patches, *patches), (*self.notes, *([note] if note else [])))
+        note = f"its header states {fields.count:,} points, and {count:,} are there: those were read" + (
+            ". If it was copied or downloaded, compare its length with the original's" if count < fields.count else "")
+        return _MendedHeader((*self.patches, *patches), self.notes if count in fields.counts else (*self.notes, note))
 
 
 class _MendedFile(io.FileIO):
@@ -334,20 +286,10 @@ def mend(path: str | os.PathLike[str]) -> _MendedHeader:
         if fields.record_size != stated.record_size:
             patches.append((RECORD_SIZE_AT, struct.pack("<H", fields.record_size)))
             notes.append(f"its header states {stated.record_size} bytes per point, and there are {fields.record_size}")
-        patches += _mended_records(records, fields) + [patch for record in extended for patch in record.patches()]
+        patches += _mended_records(records, fields)
+        patches += [(before.at, record.head + record.data) for before in extended if (record := before.mended()) is not before]
         mended = _MendedHeader(tuple(patches), tuple(notes))
-        if fields.compressed:
-            return mended
-        count = _points_in_las(file, fields, size)
-        if count == fields.count:
-            return mended
-        return mended.with_count(fields, count, "" if count in fields.counts else _count_note(fields.count, count))
-
-
-def _count_note(stated: int, there: int) -> str:
-    """The end of a sentence about a file whose header states another number of points than there are."""
-    return f"its header states {stated:,} points, and {there:,} are there: those were read" + (
-        ". If it was copied or downloaded, compare its length with the original's" if there < stated else "")
+        return mended if fields.compressed else mended.with_count(fields, _points_in_las(file, fields, size))
 
 
 def _extended(file, fields, size):
@@ -368,19 +310,16 @@ def _lengths(fields, records, size):
         return fields
     if fields.compressed:
         # the decoder cannot do without the record that says of what its points consist
-        point_size = next((record.compression.point_size for record in records if record.compression is not None), 0)
+        point_size = next((compression.point_size for record in records if (compression := _Compression.of(record))), 0)
         return replace(fields, record_size=point_size) if base <= point_size <= MAX_RECORD_SIZE else fields
-    places = fields.points_at, records[-1].end if records else fields.header_size
-    sizes = fields.record_size, base + _extra_bytes_described(records), base
-    for points_at, record_size in product(places, sizes):
-        if base <= record_size <= MAX_RECORD_SIZE and _fills(fields, points_at, record_size, size):
+    places = fields.points_at, records[-1].at + len(records[-1].head) + records[-1].length if records else fields.header_size
+    described = sum(_size(entry) or 0 for record in records if record.describes_extra_bytes for entry in _entries(record))
+    for points_at, record_size in product(places, (fields.record_size, base + described, base)):
+        # as many points as are stated, of so many bytes each, end where the points of the file end
+        if base <= record_size <= MAX_RECORD_SIZE and points_at <= size \
+                and fields.end_of_points(size) in [points_at + count * record_size for count in fields.counts]:
             return replace(fields, points_at=points_at, record_size=record_size)
     return fields
-
-
-def _fills(fields, points_at, record_size, size):
-    """Whether as many points as are stated, of so many bytes each, end where the points of the file end."""
-    return points_at <= size and fields.end_of_points(size) in [points_at + count * record_size for count in fields.counts]
 
 
 def _mended_records(records, fields):
@@ -428,9 +367,15 @@ def _are_points(file, fields, first, end, rest):
 
 def _sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) -> np.ndarray:
     """(N, 3) coordinates, as they are stored, of some points of an uncompressed file from `first` to before `end`."""
+    rows = np.unique(np.linspace(first, end - 1, min(LAS.points_looked_at, max(end - first, 0))).astype(np.int64))
+    return _stored_places(file, (fields.points_at + rows * fields.record_size).tolist())
+
+
+def _stored_places(file, positions):
+    """(N, 3) coordinates, as they are stored, of points that are not compressed, at positions in a file."""
     places = []
-    for row in np.unique(np.linspace(first, end - 1, min(LAS.points_looked_at, max(end - first, 0))).astype(np.int64)).tolist():
-        file.seek(fields.points_at + row * fields.record_size)
+    for position in positions:
+        file.seek(position)
         stored = file.read(12)
         if len(stored) < 12:   # of a file cut off
             break
@@ -462,13 +407,10 @@ def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = Non
         least = _base_size(fields.point_format)
         if least is not None and fields.record_size < least:
             return f"its header states {fields.record_size} bytes per point, and points of format {fields.point_format} have {least}"
-        return _damage_of_chunks(file, fields, size) if fields.compressed else _missing_points(fields, size)
-
-
-def _missing_points(fields, size):
-    """What is wrong with the number of points of an uncompressed file."""
-    points = (size - fields.points_at) // fields.record_size if fields.record_size else 0
-    return f"its header promises {fields.count:,} points, and {points:,} are there" if fields.count > points else ""
+        if fields.compressed:
+            return _damage_of_chunks(file, fields, size)
+        points = (size - fields.points_at) // fields.record_size if fields.record_size else 0
+        return f"its header promises {fields.count:,} points, and {points:,} are there" if fields.count > points else ""
 
 
 def _damage_of_chunks(file, fields, size):
@@ -494,10 +436,7 @@ def with_points_of_chunks(path: str | os.PathLike[str], mended: _MendedHeader) -
         if fields is None or not fields.compressed:
             return mended
         compression, begin, table = _chunks(file)
-        count = _points_of(file, compression, begin, table, fields)
-    if count == fields.count:
-        return mended
-    return mended.with_count(fields, count, "" if count in fields.counts else _count_note(fields.count, count))
+        return mended.with_count(fields, _points_of(file, compression, begin, table, fields))
 
 
 def places_here_and_there(path: str | os.PathLike[str], mended: _MendedHeader) -> np.ndarray:
@@ -511,17 +450,9 @@ def places_here_and_there(path: str | os.PathLike[str], mended: _MendedHeader) -
         else:
             _, begin, table = _chunks(file)
             starts = begin + np.cumsum([0] + [length for points, length in table if points and length])[:-1]
-            places = np.empty((0, 3), "<i4")
-            if len(starts):
-                places = np.array([_integers_at(file, int(starts[k]))
-                                   for k in np.unique(np.linspace(0, len(starts) - 1, LAS.points_looked_at).astype(int))])
+            looked_at = np.unique(np.linspace(0, max(len(starts) - 1, 0), LAS.points_looked_at).astype(int))
+            places = _stored_places(file, starts[looked_at[:len(starts)]].tolist())
         return places * fields.scales + fields.offsets
-
-
-def _integers_at(file, place):
-    """The stored x, y and z of a point that is not compressed."""
-    file.seek(place)
-    return np.frombuffer(file.read(12), "<i4")
 
 
 def _points_of(file, compression, begin, table, fields):
@@ -590,7 +521,7 @@ def _compression(file):
     """The _Compression of the points of an open LAS or LAZ file; None where they are not compressed, or the record of it is missing."""
     fields = HeaderFields.read(file)
     records = fields.records(file, os.fstat(file.fileno()).st_size) if fields.compressed else ()
-    return next((record.compression for record in records if record.at < fields.points_at and record.compression is not None), None)
+    return next((compression for record in records if record.at < fields.points_at and (compression := _Compression.of(record))), None)
 
 
 def _chunk_table_damage(file, points_at, size, compression):

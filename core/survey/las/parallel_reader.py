@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from ...lazy import laspy, lazrs
 from ..weights import LAS
 from .header import chunks_of
-from .reader import MAX_INTENSITY, CloudHeader, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error, wrap_read_error
+from .reader import MAX_INTENSITY, CloudHeader, damage_from, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error
 
 
 class ParallelCloudReader:
@@ -30,18 +29,6 @@ class ParallelCloudReader:
     def __exit__(self, *problem: object) -> None:
         for _, reader in self._readers.values():
             reader.close()
-
-    def blocks(self, files: Sequence[CloudHeader], size: int) -> Iterator[Callable[[], Any]]:
-        """Yield functions, in the order of the points, that return a laspy point record of about `size` points.
-
-        Any thread may call them; its next call may overwrite the record.
-        """
-        for number, first, count in self.ranges(files, size):
-            if _in_one_piece(files[number], size):
-                for points in read_blocks(files[number].path, size, self._layers, files[number].units):
-                    yield partial(_identity, points)
-            else:
-                yield partial(self._load, files[number], first, count)
 
     def ranges(self, files: Sequence[CloudHeader], size: int) -> Iterator[tuple[int, int, int]]:
         """Yield (number of a file, index of the first point, points) of ranges of about `size` points, in the order of the points.
@@ -100,22 +87,17 @@ class ParallelCloudReader:
 
     def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
         """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
-        for points in self._samples(file):
-            yield np.array(points["gps_time"], float)
-
-    def _samples(self, file):
-        """Yield a few points at several places of a file, its first and last among them, as laspy point records; the next may overwrite one."""
-        loads: list[Callable[[], Any]]
         if file.chunk:
             starts = np.linspace(0, max(file.count - LAS.points_per_sample, 0), LAS.sampled_places).astype(int)
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
-            loads = [partial(self._read_points, file, int(start), LAS.points_per_sample) for start in np.unique(starts)]
+            samples = (self._read_points(file, start, LAS.points_per_sample) for start in np.unique(starts).tolist())
         else:
             header, chunks = self._layout(file)
-            loads = [partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, 1, chunks)]
-            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, LAS.sampled_places).astype(int))]
-        for load in loads:
-            yield load()
+            runs = list(_chunk_runs(file, 1, chunks))
+            numbers = np.unique(np.linspace(0, len(runs) - 1, LAS.sampled_places).astype(int))
+            samples = (self._read_chunks(file.path, header, *runs[k]) for k in numbers)
+        for points in samples:
+            yield np.array(points["gps_time"], float)
 
     def chunk_start(self, file: CloudHeader, at: int) -> int:
         """Index of the first point of the chunk that holds the point `at`."""
@@ -146,31 +128,23 @@ class ParallelCloudReader:
     def _read_chunks(self, path, header, record, place, first, table):
         """The points of chunks that begin at a byte; `table` has (points, bytes) of each."""
         buffer = self._buffer(header, sum(count for count, _ in table))
-
-        def read():
+        with damage_from(path, header.point_count, first):
             with open(path, "rb") as file:
                 file.seek(place)
                 compressed = file.read(sum(length for _, length in table))
             lazrs.decompress_points_with_chunk_table(compressed, record, buffer, table, layer_selection(self._layers).to_lazrs())
-
-        wrap_read_error(read, path, header.point_count, first)
         return _point_record(buffer, header)
 
     def _read_uncompressed(self, path, header, first, count):
         """`count` points of a LAS file from index `first` on."""
         buffer = self._buffer(header, count)
-
-        def read():
-            with open(path, "rb", buffering=0) as file:
-                file.seek(header.offset_to_point_data + first * header.point_format.size)
-                left = memoryview(buffer)
-                while len(left) and (size := file.readinto(left)):
-                    left = left[size:]
-                return (len(buffer) - len(left)) // header.point_format.size
-
-        points_read = wrap_read_error(read, path, header.point_count, first)
-        if points_read < count:
-            raise truncated_file_error(path, header.point_count, first + points_read)
+        left = memoryview(buffer)
+        with damage_from(path, header.point_count, first), open(path, "rb", buffering=0) as file:
+            file.seek(header.offset_to_point_data + first * header.point_format.size)
+            while len(left) and (size := file.readinto(left)):
+                left = left[size:]
+        if len(left):
+            raise truncated_file_error(path, header.point_count, first + (len(buffer) - len(left)) // header.point_format.size)
         return _point_record(buffer, header)
 
     def _buffer(self, header, count):
@@ -218,7 +192,3 @@ def _chunk_runs(file, size, chunks):
         yield record, start, first, run
     if first + points < file.count:
         raise truncated_file_error(file.path, file.count, first + points)
-
-
-def _identity(points):
-    return points

@@ -13,7 +13,7 @@ from ...common.errors import RoadExtractionError
 from ..store.records import COORDINATE_SCALE, MAX_XY_32_BIT, fill_units
 from ..weights import LAS
 from .reader import MAX_INTENSITY, CloudHeader, read_blocks
-from .samples import FileSample
+from .samples import FileSample, TimeSlots
 
 EVER = (-np.inf, np.inf)      # s
 
@@ -99,6 +99,18 @@ def numbers_by_value(scanners: Sequence[Any], count: int) -> np.ndarray:
         values = np.atleast_1d(values)
         numbers[values[values < count]] = number
     return numbers
+
+
+def scanners_of(numbers: np.ndarray, time: np.ndarray, wanted: str | None) -> np.ndarray:
+    """(N,) uint8 number of the scanner of points, by their (N, 2) values of SCANNER_FIELDS and (N,) times; `wanted` as of `ScannerCensus.choose`."""
+    census = ScannerCensus()
+    for name, values in zip(SCANNER_FIELDS, numbers.T):
+        census.add(name, values, time)
+    field, scanners = census.choose(wanted)
+    if field is None:
+        return np.zeros(len(time), np.uint8)
+    column = numbers[:, SCANNER_FIELDS.index(field)]
+    return numbers_by_value(scanners, int(column.max(initial=0)) + 1)[column]
 
 
 def _heads(spans):
@@ -222,8 +234,8 @@ def in_one_scale(files: Sequence[CloudHeader], samples: Sequence[FileSample], wa
                 other.append(path)
     if other:
         times = usual[brightest] / usual[other[0]]
-        return list(files), (f"The intensities of {other[0]} are about {times:.0f} times weaker than those of {brightest}, as if they had another "
-                             "scale: paint is missed, or invented, where both are seen. Export all files with one scale of intensities.")
+        return list(files), (f"The intensities of {other[0]} are about {times:.0f} times weaker than those of {brightest}. Export all files with one "
+                             "scale of intensities.")
     note = ""
     if factors:
         path, factor = next(iter(factors.items()))
@@ -282,8 +294,8 @@ def check_coloured(files: Sequence[CloudHeader], taken_from: str) -> None:
     """Raise RoadExtractionError where intensity is taken from "rgb", and a file that has points holds no colours."""
     grey = [file for file in files if file.count and not file.has_colour]
     if grey and taken_from == "rgb":
-        raise RoadExtractionError(f"The points of {grey[0].path} have no colours (point format {grey[0].point_format}), from which the intensity was "
-                                  "to be taken. Set Intensity from to intensity, or export the points with red, green and blue.")
+        raise RoadExtractionError(f"The points of {grey[0].path} have no colours (point format {grey[0].point_format}). Set Intensity from to "
+                                  "intensity, or export the points with red, green and blue.")
 
 
 def without_intensity(files: Sequence[CloudHeader], taken_from: str, fields: Sequence[str] = ()) -> str:
@@ -327,6 +339,26 @@ def valid_points(block: Any) -> np.ndarray | None:
     if not noise.any():
         return ~withheld if withheld.any() else None
     return ~(noise | withheld)
+
+
+def first_returns(block: Any, slots: TimeSlots | None = None, origin: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0)) -> tuple[np.ndarray, ...]:
+    """(N,) gps_time, (N, 3) m from the origin, and (N, 2) values of SCANNER_FIELDS, of the usable first returns of a block.
+
+    slots : those in the sample alone; None for all
+    """
+    raw, names = block.array, set(block.point_format.dimension_names)
+    time = raw["gps_time"].astype(float) if "gps_time" in raw.dtype.names else np.zeros(len(raw))
+    first = np.flatnonzero(np.asarray(block["return_number"]) <= 1)
+    if slots is not None:
+        # without times neighbours in the file stay together no better than others
+        first = first[slots.kept(time[first])] if len(time) and time.min() < time.max() else first[::slots.stride]
+    if (valid := valid_points(block)) is not None:
+        first = first[valid[first]]
+    first = first[np.isfinite(time[first])]
+    place = np.stack([raw[name][first] * scale + (offset - start)
+                      for name, scale, offset, start in zip("XYZ", block.scales, block.offsets, origin)], axis=1)
+    channel = np.asarray(block["scanner_channel"])[first] if "scanner_channel" in names else np.zeros(len(first), np.int64)
+    return time[first], place, np.stack([raw["point_source_id"][first], channel], axis=1).astype(np.int64)
 
 
 # Coordinates of a LAS file, stored as integers, converted to the local integers of a record.

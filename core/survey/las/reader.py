@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 CLOUD_SUFFIXES = (".las", ".laz")
 MAX_INTENSITY = 2**16 - 1   # derived: of 16 bits
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
-
-ReadResult = TypeVar("ReadResult")
 
 
 @dataclass(frozen=True)
@@ -105,19 +104,14 @@ def _as_known(path, known):
     mended = mend(path)
     with opened(path, mended) as file:
         fields = HeaderFields.read(file)
-    return mended if fields is None or fields.count == known.count else mended.with_count(fields, known.count)
+    return mended if fields is None else mended.with_count(fields, known.count)
 
 
 def _open(path, mended, layers, sparse=False):
     """laspy.LasReader of a file that is read as it was mended."""
-    try:
+    with _file_errors(f"{path} cannot be read as a LAS/LAZ file"):
         return laspy.open(opened(path, mended) if mended.patches else str(path), decompression_selection=layer_selection(layers),
                           laz_backend=laspy.LazBackend.Lazrs if sparse else None)
-    except BaseException as problem:  # laspy's decoders raise many types for a damaged file, some of them not Exceptions
-        if isinstance(problem, NOT_FILE_ERRORS):
-            raise
-        raise RoadExtractionError(
-            f"{path} cannot be read as a LAS/LAZ file ({problem}). It may be damaged or cut off; copy or export it again.") from problem
 
 
 def layer_selection(layers: Iterable[str] | None) -> Any:
@@ -162,7 +156,7 @@ def _overflow(header):
         held = least - LAS.bounds_tolerance <= low and high <= most + LAS.bounds_tolerance
         if -LAS.farthest_place < low < high < LAS.farthest_place and not held:
             return (f"its header says that {axis} runs from {low:.1f} to {high:.1f}, and its scale and offset can hold {least:.1f} to "
-                    f"{most:.1f} alone: points lie elsewhere than they were measured. Export it again with an offset near the survey",)
+                    f"{most:.1f} alone. Export it again with an offset near the survey",)
     return ()
 
 
@@ -234,13 +228,10 @@ def read_points(reader: Any, path: str | os.PathLike[str], first: int, count: in
     RoadExtractionError, which names `path`, if they cannot be read or the file ends early.
     """
     promised = reader.header.point_count
-
-    def read():
+    with damage_from(path, promised, first):
         if reader.points_read != first:
             reader.seek(first)
-        return reader.read_points(count)
-
-    points = wrap_read_error(read, path, promised, first)
+        points = reader.read_points(count)
     if len(points) < min(count, promised - first):
         raise truncated_file_error(path, promised, first + len(points))
     return points
@@ -251,15 +242,19 @@ def truncated_file_error(path: str | os.PathLike[str], promised: int, present: i
     return RoadExtractionError(f"{path} is cut off: its header promises {promised} points, {present} are there. Copy or export the file again.")
 
 
-def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str], promised: int, first: int) -> ReadResult:
-    """The result of a function that reads points of a file from `first` on; errors of the file become a RoadExtractionError of one sentence."""
+def damage_from(path: str | os.PathLike[str], promised: int, first: int) -> AbstractContextManager[None]:
+    """While points of a file are read from `first` on: errors of the file become a RoadExtractionError of one sentence."""
+    return _file_errors(f"{path} is damaged: its header promises {promised} points, and from number {first + 1} on they cannot be read")
+
+
+@contextmanager
+def _file_errors(what):
     try:
-        return read()
-    except BaseException as problem:
+        yield
+    except BaseException as problem:  # decoders raise many types for a damaged file, some of them not Exceptions
         if isinstance(problem, NOT_FILE_ERRORS):
             raise
-        raise RoadExtractionError(f"{path} is damaged: its header promises {promised} points, and from number {first + 1} on they cannot be read "
-                                  f"({problem}). Copy or export the file again.") from problem
+        raise RoadExtractionError(f"{what} ({problem}). Copy or export the file again.") from problem
 
 
 # The CRS of a LAS file from its WKT and GeoKeys records, which may contradict each other.
@@ -273,11 +268,10 @@ EPSG_CODES = range(1024, 32767)   # source: OGC 19-008r4, as are those of the re
 def _crs_of_records(header: Any) -> tuple[str, str]:
     """The CRS that a laspy header states, as WKT with the unit of its heights, and a sentence on why it cannot be used; "" for either."""
     records = [record for record in [*header.vlrs, *(header.evlrs or ())] if record.user_id == RECORDS_OF]
-    texts = [record.record_data_bytes() for record in records if record.record_id == WKT_RECORD]
-    keys = [record.record_data_bytes() for record in records if record.record_id == KEYS_RECORD]
-    doubles = [record.record_data_bytes() for record in records if record.record_id == DOUBLES_RECORD]
     middle = (header.mins + header.maxs) / 2
-    return _stated(b"".join(texts[:1]), b"".join(keys[:1]), b"".join(doubles[:1]), tuple(middle[:2].tolist()))
+    contents = (next((record.record_data_bytes() for record in records if record.record_id == number), b"")
+                for number in (WKT_RECORD, KEYS_RECORD, DOUBLES_RECORD))
+    return _stated(*contents, tuple(middle[:2].tolist()))
 
 
 @lru_cache(maxsize=256)

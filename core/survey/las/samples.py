@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from math import gcd
 
 import numpy as np
@@ -80,8 +81,8 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
             cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of 32-bit numbers, in which some program kept them"
         else:
             cause = f"that is the scale in the header of the file ({scales[k]:g} m)"
-        return (f"The coordinates of {sample.file.path} lie in steps of {listed}: {cause}. Edges and markings are no better than that. Export "
-                "the cloud again with coordinates of 64 bits and a scale of 0.001 m.", float(np.where(coarse, steps, 0.0)[:2].max() / np.sqrt(6.0)))
+        return (f"The coordinates of {sample.file.path} lie in steps of {listed}: {cause}. Export them with 64 bits and a scale of 0.001 m.",
+                float(np.where(coarse, steps, 0.0)[:2].max() / np.sqrt(6.0)))
     return "", 0.0
 
 
@@ -133,14 +134,7 @@ def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> lis
     Only files with the same number of points and the same bounds are read; `warn` is told of every copy.
     """
     first: dict[tuple, CloudHeader] = {}
-    contents: dict[str, tuple[int, ...]] = {}
-
-    def content(file):
-        if file.path not in contents:
-            contents[file.path] = _content(file)
-        return contents[file.path]
-
-    kept = []
+    kept, content = [], cache(_content)
     for file in files:
         alike = (file.count, _whole(file.minimum), _whole(file.maximum))
         earlier = first.setdefault(alike, file)
@@ -183,10 +177,8 @@ def check_measured_once(time: np.ndarray, place: np.ndarray) -> None:
         east, north, up = usual = np.median(apart, axis=0)
         alike = (np.abs(apart - usual) < LAS.coarse_coordinates).all(axis=1).sum()
         if alike > max(LAS.most_of_pairs * len(pairs), LAS.least_doubled * len(time)) and np.linalg.norm(usual) > LAS.coarse_coordinates:
-            raise RoadExtractionError(
-                f"About {200 * alike / len(time):.0f} % of the points were given twice, at one gps_time and {east:+.2f} m east, {north:+.2f} m north "
-                f"and {up:+.2f} m up of each other. One drive seems to have been exported twice, in two datums or adjustments. Give one of its "
-                "exports, and run again.")
+            raise RoadExtractionError(f"About {200 * alike / len(time):.0f} % of the points were given twice, {east:+.2f} m east, {north:+.2f} m "
+                                      f"north and {up:+.2f} m up of each other, as of one drive in two datums. Give one of its exports.")
 
 
 def _whole(places):

@@ -37,6 +37,7 @@ from .unnamed_columns import columns_from_numbers, rough_metres
 
 EARTH_RADIUS = 6.33e6, 6.42e6    # source: m (WGS 84: 6.357e6 to 6.378e6) from the centre of the earth to its surface, with mountains
 FROM_CENTRE = ("ecef_x", "ecef_y", "ecef_z")   # roles of earth-centred coordinates
+SAY_WHICH = "Say which is which in Columns of Import trajectory."
 MEAN_SEA_LEVEL = ("ortho", "msl", "sea", "geoid")   # in names of heights
 COUNTS_OTHERS = re.compile(r"id\b|\b(no|nr)\b|num|count|index|station|chainage|dist|length|km|frame|image|photo|row|line|record", re.IGNORECASE)
 CLOCK_WORDS = {"UTC": "utc|gmt|zulu", "GPS": "gps"}   # in names of times
@@ -173,12 +174,11 @@ def _time(columns, meaning, label, notes, doubts):
         titles = " ".join(columns[column_of[role]].title for role in ("time", "date", "year", "hour") if role in column_of).lower()
         return _gps_seconds(times, column, titles, meaning.clock, label, notes)
     if column.holds_texts:
-        raise RoadExtractionError(f"The column {_named(column)} of {label} should be the time, but holds {column.first[:TRAJECTORY.longest_name]!r}, "
-                                  f"which is neither a number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say "
-                                  "which is which in Columns of Import trajectory.")
+        raise RoadExtractionError(f"The column {_named(column)} of {label} should be the time, but holds {column.first[:TRAJECTORY.longest_name]!r}. "
+                                  f"The first row reads {first_row(columns)}. {SAY_WHICH}")
     if "utc" in column.title.lower():
-        doubts.append(f"The column {_named(column)} of {label} counts seconds of UTC by its name; no leap seconds were added. If points and "
-                      "lines come out shifted along the road, export the trajectory with GPS time.")
+        doubts.append(f"The column {_named(column)} of {label} counts seconds of UTC by its name; no leap seconds were added. If lines come out "
+                      "shifted along the road, export GPS time.")
     seconds = _counted_seconds(column, label, doubts)
     if "week" in column_of and column_of["week"] != column_of["time"]:
         return with_week(seconds, columns[column_of["week"]].values)
@@ -410,8 +410,8 @@ def _meaning_by_numbers(columns, unmatched, path):
     guessed = "x" in column_of and np.nanmedian(np.abs(columns[column_of["x"]].values)) < TRAJECTORY.min_map_coordinate
     if unmatched and (guessed or not column_of):
         raise RoadExtractionError(
-            f"{path} names {len(unmatched)} columns ({listed(unmatched)}), but its rows have {len(columns)}, and the numbers do not show which "
-            f"is which. The first row reads {first_row(columns)}. Say which is which in Columns of Import trajectory.")
+            f"{path} names {len(unmatched)} columns ({listed(unmatched)}), but its rows have {len(columns)}. The first row reads "
+            f"{first_row(columns)}. {SAY_WHICH}")
     column_of = {"time": clocks[0], **column_of} if clocks else column_of
     listing = ", ".join(f"{role} in column {column_of[role] + 1}" for role in (*ROLES, "lon", "lat") if role in column_of)
     return _Meaning(column_of, (f"{path.name} has no line of names; recognised by the numbers: {listing}.",))

@@ -17,7 +17,7 @@ from ...io.text_table import finite_or_nan, read_number_table
 from ...io.weights import IO
 from ..weights import TRAJECTORY
 from .columns import listed, stated_angle_unit
-from .meaning import meaning_of, meaning_of_table, values_by_role
+from .meaning import SAY_WHICH, meaning_of, meaning_of_table, values_by_role
 from .table_columns import columns_of_record, columns_of_rows, is_record, titled_columns
 from .trajectory import Trajectory, lengths_in_metres, reproject_trajectory
 from .unnamed_columns import angle_between, driven_course, geographic_unit, rough_metres
@@ -164,8 +164,7 @@ def _check_complete(source, columns, place, heights_needed=True):
     if missing:
         titles = [column.title or f"column {k + 1}" for k, column in enumerate(columns)]
         raise RoadExtractionError(f"{source} has the columns {listed(titles)}; {' and '.join(missing)} cannot be found among them. Its first row "
-                                  f"reads {listed([column.first for column in columns])}. Name them time, x, y, z, roll, pitch, heading, or "
-                                  "longitude, latitude, height, or say which is which in Columns of Import trajectory.")
+                                  f"reads {listed([column.first for column in columns])}. {SAY_WHICH}")
 
 
 def _stated_lengths(columns, place, preamble):
@@ -225,7 +224,7 @@ def _check_degrees(lon, lat, unit, label):
     if not unit and max(_farthest(lon), _farthest(lat)) > 360:
         raise RoadExtractionError(
             f"{label} has longitude and latitude up to {_farthest(lon):.0f}, {_farthest(lat):.0f}; these are not degrees. Write their unit behind "
-            "their names, such as latitude (ddmm.mmmm) or latitude (1e-7 deg), or name the columns x and y where they are metres.")
+            "their names, such as latitude (ddmm.mmmm).")
     if _farthest(lat) > 90.0 >= _farthest(lon):
         raise RoadExtractionError(f"{label} has latitudes up to {_farthest(lat):.4f}°, and there are none beyond 90°, while its longitudes reach "
                                   f"{_farthest(lon):.4f}°: the two are exchanged. Name the columns the other way round.")
@@ -304,8 +303,8 @@ def _read_sbet(path, crs):
         notes.append(f"{path.name} ends within a record; the last, incomplete one was left out.")
     parsed = parse_crs(crs)
     if parsed is not None and not horizontal_part(parsed).is_geographic:
-        raise RoadExtractionError(f"{path} is an Applanix SBET file: its positions are geographic, but {horizontal_part(parsed).name} was given as "
-                                  "their CRS. Leave the CRS of the input empty or geographic, and give the projected CRS as the target.")
+        raise RoadExtractionError(f"{path} is an Applanix SBET file, which is geographic, but {horizontal_part(parsed).name} was given as its CRS. "
+                                  "Leave the CRS of the input empty.")
     true_heading = rows[:, 9] - rows[:, 10]
     columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],
                    roll=rows[:, 7], pitch=rows[:, 8], heading=true_heading)

@@ -63,9 +63,8 @@ def _smoothed_track(trajectory: Trajectory) -> _TrackShape:
     first = trajectory.time[noisy[0][0].start]
     return _TrackShape(
         replace(trajectory, **columns), left,
-        (f"The positions of the trajectory scatter by {100 * worst:.0f} cm from row to row, as those of an unfiltered receiver "
-        f"({share:.0f} % of the rows, from {first:.1f} s on); no vehicle shakes so. They were smoothed over {TRAJECTORY.smooth_time:g} s, and the "
-        f"way driven is known to about {100 * left:.1f} cm. Give the trajectory that was adjusted together with the inertial unit.",))
+        (f"The positions of the trajectory scatter by {100 * worst:.0f} cm from row to row ({share:.0f} % of the rows, from {first:.1f} s on). They "
+         f"were smoothed, which leaves {100 * left:.1f} cm. Give the trajectory adjusted with the inertial unit.",))
 
 
 def _smooth(columns, piece, step):
@@ -106,9 +105,8 @@ def _curved_track(trajectory: Trajectory) -> _TrackShape:
     note = "Curves were laid through them" + (f", which is a guess in {unsafe} sharp turns" if unsafe else "")
     return _TrackShape(
         joined, sigma,
-        (f"The vertices of the trajectory lie up to {worst[1]:.0f} m apart in bends, which straight lines between them miss by up to "
-         f"{worst[0]:.2f} m (near {position}). {note}; the way driven is known to about {max(100 * sigma, 1):.0f} cm. Export the trajectory with ten "
-         "or more positions a second.",))
+        (f"The vertices of the trajectory lie up to {worst[1]:.0f} m apart in bends, which lines between them miss by {worst[0]:.2f} m (near "
+         f"{position}). {note}, which leaves {max(100 * sigma, 1):.0f} cm. Export ten positions a second.",))
 
 
 def _pieces(trajectory):

@@ -151,8 +151,8 @@ def counted_days(values: np.ndarray, texts: Callable[[], Sequence[str]], what: s
         raise RoadExtractionError(f"{finding}but {first:.10g} is no day of a known count (MJD, Julian days, a spreadsheet). GPS seconds are needed: "
                                   "export the trajectory with these.")
     if last_decimal / 2 > TRAJECTORY.shortest_step:   # by half of it times are rounded
-        raise RoadExtractionError(f"{finding}and its last decimal is {last_decimal:.2g} s, while a vehicle drives centimetres in a thousandth of a "
-                                  "second. Export the trajectory with GPS seconds, or with 8 decimals of a day or more.")
+        raise RoadExtractionError(f"{finding}and its last decimal is {last_decimal:.2g} s. Export the trajectory with GPS seconds, or with 8 "
+                                  "decimals of a day.")
     seconds = (values - _days_from(DAY_COUNTS[kind], GPS_EPOCH)) * SECONDS_PER_DAY
     return ClockTimes(seconds, True, "", True, kind, f"{first:.10g}")
 
@@ -331,9 +331,8 @@ def unix_time_found(seconds: float, what: str) -> str:
     """The sentence on a time that counts from 1970; `what` is its beginning, on who counts."""
     utc = seconds - UNIX_EPOCH
     leap = float(leap_seconds(np.array([utc]))[0])
-    return (f"{what} Unix time: {seconds:.0f} s since 1970 are GPS {utc + leap:.0f} s where they count UTC, which differs from GPS time by "
-            f"{leap:.0f} s, and {utc:.0f} s where they do not. Export GPS time in seconds, or write utc in place of time in Columns of Import "
-            "trajectory.")
+    return (f"{what} Unix time: {seconds:.0f} s since 1970 are GPS {utc + leap:.0f} s in UTC, which is behind by {leap:.0f} s. Export GPS time, or "
+            "write utc in place of time in Columns of Import trajectory.")
 
 
 def _unix_hint(first, last, cloud_first, cloud_last):
@@ -354,6 +353,5 @@ def _leap_hint(first, last, cloud_first, cloud_last):
         for shift in (leap, -leap):
             if first + shift - cloud_first <= 0.1 and cloud_last - last - shift <= 0.1:
                 gap = f"The scan begins {early:.1f} s before the trajectory" if early > late else f"The scan ends {late:.1f} s after the trajectory"
-                return (f"{gap}, and {leap:.0f} s would make them agree, which is what leap seconds come to (UTC against GPS is 18 s since 2017): "
-                        "if the trajectory is in UTC, export it in GPS time.")
+                return f"{gap}, and {leap:.0f} s would make them agree, as leap seconds do: if the trajectory is in UTC, export it in GPS time."
     return ""

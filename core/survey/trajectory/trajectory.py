@@ -97,8 +97,8 @@ def clean_trajectory(trajectory: Trajectory) -> Trajectory:
     refuse_standstill(trajectory)
     step = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))
     if not trajectory.has_time and step.max() > TRAJECTORY.longest_step:
-        raise RoadExtractionError(f"The trajectory has no time and leaps {step.max() / 1000:,.0f} km from one position to the next. Remove the "
-                                  "positions that do not belong to the drive, or give each drive by itself.")
+        raise RoadExtractionError(f"The trajectory has no time and leaps {step.max() / 1000:,.0f} km from one position to the next. Give each drive "
+                                  "by itself.")
     return replace(trajectory, notes=tuple(notes))
 
 
@@ -121,9 +121,8 @@ def _refuse_two_drives(trajectory, rows):
     second = int(np.argmax(at_once))
     first = second - 1
     raise RoadExtractionError(
-        f"The trajectory is at two places at once: row {rows[first] + 1} of its positions at {trajectory.time[first]:.3f} s and row "
-        f"{rows[second] + 1} at {trajectory.time[second]:.3f} s lie {steps[first]:.0f} m apart, and so do {at_once.sum():,} of {len(rows):,} rows. "
-        "Two receivers or two days seem to have been put together: give each drive its own trajectory, or times that continue.")
+        f"The trajectory is at two places at once: row {rows[first] + 1} at {trajectory.time[first]:.3f} s and row {rows[second] + 1} at "
+        f"{trajectory.time[second]:.3f} s lie {steps[first]:.0f} m apart, as do {at_once.sum():,} of {len(rows):,}. Give each drive by itself.")
 
 
 def _refuse_coarse_times(trajectory, repeated):
@@ -167,8 +166,8 @@ def _refuse_degrees(trajectory):
 
     crs = parse_crs(trajectory.crs)
     if crs is not None and horizontal_part(crs).is_geographic:
-        raise RoadExtractionError(f"The trajectory is in {horizontal_part(crs).name} (degrees) and the CRS to convert it to is unknown: the point "
-                                  "cloud carries no CRS. Give the projected CRS of the survey, or run Import trajectory with it as the target.")
+        raise RoadExtractionError(f"The trajectory is in {horizontal_part(crs).name} (degrees), and the point cloud carries no CRS. Give the "
+                                  "projected CRS of the survey.")
 
 
 # A trajectory in another coordinate reference system.
@@ -220,7 +219,7 @@ def taken_to_be_in(trajectory: Trajectory, wkt: str) -> Trajectory:
     crs, (x, y, z), left = lengths_in_metres(wkt, (trajectory.x, trajectory.y, trajectory.z), trajectory.stated_units, "The trajectory")
     if "feet" in dict(left).values():
         raise RoadExtractionError("The trajectory gives positions in feet, and neither it nor the point cloud carries a CRS. Give the CRS in feet "
-                                  "that they are in: Import trajectory takes that of the trajectory, the parameter CRS that of the cloud.")
+                                  "that they are in.")
     moved = x is not trajectory.x or z is not trajectory.z
     return replace(trajectory, x=x, y=y, z=z, crs=crs, stated_units=()) if moved else replace(trajectory, stated_units=())
 

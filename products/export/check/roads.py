@@ -370,7 +370,7 @@ STATED_NEAR = 0.01               # m by which a record may lie beyond its end
 FARTHEST_OBJECT = 100.0          # m beside the reference line
 
 
-class Allowed(NamedTuple):
+class _Allowed(NamedTuple):
     """What an attribute may be: words, or numbers from `least` to `most`, `least` itself or not; numbers count since version 1.since."""
 
     words: tuple[str, ...] = ()
@@ -387,7 +387,7 @@ class Allowed(NamedTuple):
         return bool(self.least < value <= self.most or self.itself and value == self.least)
 
 
-POSITIVE, NOT_NEGATIVE = Allowed(least=0.0, itself=False), Allowed(least=0.0)
+POSITIVE, NOT_NEGATIVE = _Allowed(least=0.0, itself=False), _Allowed(least=0.0)
 MARK_COLOURS = ("standard", "blue", "green", "red", "white", "yellow", "orange", "violet", "black")
 ROAD_TYPES = ("unknown", "rural", "motorway", "town", "lowSpeed", "pedestrian", "bicycle", "townExpressway", "townCollector", "townArterial",
               "townPrivate", "townLocal", "townPlayStreet")
@@ -397,18 +397,18 @@ OBJECT_TYPES = ("", "-1", "none", "obstacle", "car", "pole", "tree", "vegetation
 ORIENTATIONS = ("+", "-", "none")
 # tag -> attribute -> what it may be; what is not stated has a default
 ATTRIBUTES = {
-    "type": {"type": Allowed(ROAD_TYPES)},
-    "speed": {"unit": Allowed(("m/s", "mph", "km/h")), "max": Allowed(("no limit", "undefined"), 0.0)},
-    "paramPoly3": {"pRange": Allowed(("arcLength", "normalized"))},
-    "roadMark": {"color": Allowed(MARK_COLOURS), "weight": Allowed(("standard", "bold")),
-                 "laneChange": Allowed(("increase", "decrease", "both", "none")), "width": NOT_NEGATIVE},
+    "type": {"type": _Allowed(ROAD_TYPES)},
+    "speed": {"unit": _Allowed(("m/s", "mph", "km/h")), "max": _Allowed(("no limit", "undefined"), 0.0)},
+    "paramPoly3": {"pRange": _Allowed(("arcLength", "normalized"))},
+    "roadMark": {"color": _Allowed(MARK_COLOURS), "weight": _Allowed(("standard", "bold")),
+                 "laneChange": _Allowed(("increase", "decrease", "both", "none")), "width": NOT_NEGATIVE},
     "line": {"length": POSITIVE, "space": NOT_NEGATIVE, "width": NOT_NEGATIVE},
     # before 1.7 the sizes of objects are any numbers
-    "object": {"type": Allowed(OBJECT_TYPES), "orientation": Allowed(ORIENTATIONS), "length": POSITIVE._replace(since=7),
+    "object": {"type": _Allowed(OBJECT_TYPES), "orientation": _Allowed(ORIENTATIONS), "length": POSITIVE._replace(since=7),
                "width": POSITIVE._replace(since=7), "height": NOT_NEGATIVE._replace(since=7), "radius": NOT_NEGATIVE._replace(since=7)},
-    "signal": {"orientation": Allowed(ORIENTATIONS), "dynamic": Allowed(("yes", "no")), "s": NOT_NEGATIVE},
-    "superelevation": {"a": Allowed(least=-np.pi / 2, most=np.pi / 2)},
-    "width": {"a": Allowed(least=-1.0, most=50.0)},
+    "signal": {"orientation": _Allowed(ORIENTATIONS), "dynamic": _Allowed(("yes", "no")), "s": NOT_NEGATIVE},
+    "superelevation": {"a": _Allowed(least=-np.pi / 2, most=np.pi / 2)},
+    "width": {"a": _Allowed(least=-1.0, most=50.0)},
 }
 NEEDED_ATTRIBUTES = {"object": ("id", "s", "t"), "signal": ("id", "s", "t"), "lane": ("id", "type"), "connection": ("id",)}
 # (where they are in a road or lane, whether the first must be at 0) of records that go on from s to s

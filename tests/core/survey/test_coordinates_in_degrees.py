@@ -53,5 +53,5 @@ def test_a_cloud_counted_from_the_centre_of_the_earth_is_recognised(street, tmp_
     trajectory, (x, y, z, time) = street
     lon, lat = Transformer.from_crs(32632, 4979, always_xy=True).transform(x, y)
     cloud = write_cloud(tmp_path / "c.laz", *Transformer.from_crs(4979, 4978, always_xy=True).transform(lon, lat, z), time)
-    with pytest.raises(RoadExtractionError, match="centre of the earth: reproject"):
+    with pytest.raises(RoadExtractionError, match="earth-centred: reproject"):
         open_survey([cloud], trajectory)

@@ -41,10 +41,10 @@ def test_blocks_asked_for_in_any_order_by_several_threads_are_the_file(tmp_path,
     file = thousands(tmp_path, suffix)
     whole = np.concatenate([block.array for block in read_blocks(file.path, 33_333)])
     with ParallelCloudReader() as readers, ThreadPoolExecutor(3) as pool:
-        loads = list(readers.blocks([file, file], size))
-        order = np.random.default_rng(size).permutation(len(loads))
-        found = dict(zip(order.tolist(), pool.map(lambda k: loads[k]().array.copy(), order)))
-    read = np.concatenate([found[k] for k in range(len(loads))])
+        ranges = list(readers.ranges([file, file], size))
+        order = np.random.default_rng(size).permutation(len(ranges))
+        found = dict(zip(order.tolist(), pool.map(lambda k: [points.array.copy() for points in readers.points(file, *ranges[k][1:], size)], order)))
+    read = np.concatenate([part for k in range(len(ranges)) for part in found[k]])
     for name in ("X", "Y", "Z", "gps_time"):
         np.testing.assert_array_equal(read[name], np.tile(whole[name], 2))
 
@@ -53,7 +53,8 @@ def test_blocks_asked_for_in_any_order_by_several_threads_are_the_file(tmp_path,
     ("las", 60_000, [60_000, 60_000]), ("laz", 60_000, [50_000, 50_000, 20_000]), ("laz", 1000, [1000] * 120)])
 def test_blocks_are_whole_chunks_where_these_are_not_far_larger(tmp_path, suffix, size, lengths):
     with ParallelCloudReader() as readers:
-        assert [len(load()) for load in readers.blocks([thousands(tmp_path, suffix)], size)] == lengths
+        file = thousands(tmp_path, suffix)
+        assert [len(points) for part in readers.ranges([file], size) for points in readers.points(file, *part[1:], size)] == lengths
 
 
 @pytest.mark.parametrize("suffix", ["las", "laz", "copc.laz"])

@@ -130,14 +130,14 @@ def test_without_gps_time_each_point_goes_to_the_nearest_foot(street, surveyed, 
     assert survey.sensor_height[0] == pytest.approx(2.0, abs=0.01)
 
 
-@pytest.mark.parametrize("lacking, said", [("points", "all points have the same gps_time"), ("trajectory", "the trajectory has no time")])
+@pytest.mark.parametrize("lacking, said", [("points", "All gps_time values are equal"), ("trajectory", "The trajectory has no time")])
 def test_several_passes_without_time_are_warned_of_by_the_name_of_what_lacks_it(tmp_path, lacking, said):
     there, back = drive(PATH), drive(PATH[::-1] + [0.0, 3.0], start=3000.0)
     both = [np.r_[a, b] for a, b in zip(surveyed_points(there), surveyed_points(back))]
     driven = replace(joined(there, back), has_time=lacking != "trajectory")
     heard = Heard()
     open_survey([write_cloud(tmp_path / "twice.laz", *both[:3 if lacking == "points" else 4], crs=CRS)], driven, progress=heard)
-    assert any(re.search(f"drives 2 times over 1 road.*{said}.*passes are mixed.*Export points and trajectory", text) for text in heard.warnings)
+    assert any(re.search(f"{said}.*Driven 2 times over 1 road.*passes are mixed.*Export points and trajectory", text) for text in heard.warnings)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.45, -0.3])

@@ -190,4 +190,4 @@ def test_drives_of_different_years_are_laid_on_each_other_and_said():
     one, other = face_of(survey, 0), face_of(survey, 1)
     np.testing.assert_allclose(one, other, atol=0.01)
     assert np.median(survey.frame.pass_sigma[0].metres) == pytest.approx(0.5, abs=0.02)
-    assert sum("different years" in text for text in heard.warned) == 1
+    assert sum("more than navigation drifts" in text for text in heard.warned) == 1

@@ -74,7 +74,7 @@ def test_a_wrong_lever_arm_is_taken_out_by_half_from_either(metres):
     np.testing.assert_allclose(one, other, atol=0.008)
     assert one[0] == pytest.approx(3.5 + metres / 2, abs=0.03)
     assert sigma == pytest.approx(abs(metres) / 2, abs=0.01)
-    assert len(heard.warned) == 1 and "lever arm or boresight" in heard.warned[0] and f"{100 * abs(metres):.0f}." in heard.warned[0]
+    assert len(heard.warned) == 1 and "Calibrate their mounting" in heard.warned[0] and f"{100 * abs(metres):.0f}." in heard.warned[0]
 
 
 def test_a_boresight_turned_about_the_way_is_taken_out_on_either_side():
