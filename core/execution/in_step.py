@@ -64,8 +64,8 @@ def _answered(asked, executor, progress):
         items = Items(len(places), lambda n: places[n][0].items[places[n][1]])
         results = iter(())
         for one in parts.values():
-            results = executor.run_together(one.phase, items, one.together, progress) if one.together else executor.run(
-                replace(one.phase, together=EXECUTION.items_per_task), items, progress)
+            phase = one.phase if one.together else replace(one.phase, together=EXECUTION.items_per_task)
+            results = executor.run_together(phase, items, one.together, progress)
     return [[answer for _ in range(len(one.items)) for answer in one.read(next(results))] for one in asked]
 
 

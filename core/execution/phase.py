@@ -118,7 +118,13 @@ class Executor:
         raise NotImplementedError
 
     def run_together(self, phase: Phase, items: Sequence[Any], together: int, progress: Progress = Progress()) -> Iterator[Any]:
-        """Yield the results of items of a phase whose function is given lists of them, `together` at most, and returns lists of results."""
+        """Yield the results of items of a phase whose function is given lists of them, `together` at most, and returns lists of results.
+
+        With 0 it is given one item after the other.
+        """
+        if not together:
+            yield from self.run(phase, items, progress)
+            return
         size = max(min(together, len(items) // EXECUTION.least_tasks), 1)
         lists = Items(-(-len(items) // size), lambda k: [items[number] for number in range(k * size, min((k + 1) * size, len(items)))])
         for results in self.run(phase, lists, progress):

@@ -16,7 +16,7 @@ from .frame.road_frame import RoadFrame
 from .las.point_fields import EVER, MAX_INTENSITY, SCANNER_FIELDS, IntensitySource, LasAxis, ScannerCensus, flagged, valid_points
 from .las.samples import TimeSlots
 from .store.columns import Columns
-from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
+from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, to_units
 from .store.section_store import PartitionedPoints, SectionStore
 from .trajectory.time_systems import SECONDS_PER_WEEK
 from .weights import FRAME, READING
@@ -126,27 +126,19 @@ class BlockReader:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
         return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))
 
-    def unfiltered(self, block: Any, summary: BlockSummary) -> list[tuple[int, Columns]]:
-        """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
-        return [(road, points.copy() if near is None else points.take(near).load_all()) for road, points, near in self._near_roads(block, summary)]
+    def drops(self, block: Any) -> tuple[list[np.ndarray], int]:
+        """Units of 0.1 mm from the trajectory down to the points of a block on its track, and how many lie in the corridor, at any height."""
+        drops, count = [], 0
+        for road, points, inside in self._near_roads(block, BlockSummary()):
+            count += len(points) if inside is None else int(np.count_nonzero(inside))
+            drops += [part.copy() for _, _, part in self.tracks.drops(road, points, inside)] if road >= 0 else []
+        return drops, count
 
     def read(self, block: Any, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
              store: SectionStore) -> Iterator[PartitionedPoints]:
         """Yield the points of a block near the road, ready for the store, until the next ones are asked for; `summary` and `chosen` are updated."""
         for road, points, near in self._near_roads(block, summary, ground, chosen):
             yield self._partition(road, points, near, chosen, store)
-
-    def filtered(self, parts: Iterable[tuple[int, Columns]], ground: HeightFilter, chosen: ChosenPoints,
-                 store: SectionStore) -> Iterator[PartitionedPoints]:
-        """Yield those of `unfiltered` that lie near the road, as `read` would have given them."""
-        for road, points in parts:
-            if road < 0:
-                near = ground.level(road_of(road), points["s"], points["z"])
-            else:
-                near = ground.near(road, points["s"], points["z"], ScratchBuffers().of(len(points)))
-                self._count_far(road, points, ~near, chosen)
-            if near.any():
-                yield self._partition(road, points, near, chosen, store)
 
     def _partition(self, road, points, mask, chosen, store):
         if road < 0:
